@@ -1,0 +1,475 @@
+//! The ways to make an embedded graph, each of which validates. Section 2.1.
+
+use std::collections::HashMap;
+
+use thiserror::Error;
+
+use super::{
+    Dart, EmbeddedGraph, Fault, MAX_EDGES, Vertex, fault::clockwise_fault, fault::opposite_fault,
+};
+
+/// Why lists of names are not an embedded graph.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ListError {
+    /// A vertex has two lists.
+    #[error("vertex `{vertex}` has two lists")]
+    VertexTwice {
+        /// The vertex.
+        vertex: String,
+    },
+    /// A neighbour list names something that has no list.
+    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is no vertex")]
+    UnknownNeighbour {
+        /// Whose list it is.
+        vertex: String,
+        /// The name that is no vertex.
+        neighbour: String,
+    },
+    /// A vertex lists a neighbour that does not list it back.
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
+    )]
+    OneSided {
+        /// Whose list it is.
+        vertex: String,
+        /// The neighbour.
+        neighbour: String,
+    },
+    /// A neighbour list names the same neighbour twice.
+    #[error(
+        "vertex `{vertex}` lists the neighbour `{neighbour}` twice; \
+         parallel edges need edge names, in [doors]"
+    )]
+    RepeatedNeighbour {
+        /// Whose list it is.
+        vertex: String,
+        /// The neighbour.
+        neighbour: String,
+    },
+    /// A neighbour list names its own vertex.
+    #[error("vertex `{vertex}` lists itself; loops need edge names, in [doors]")]
+    OwnNeighbour {
+        /// The vertex.
+        vertex: String,
+    },
+    /// An edge name does not stand exactly twice.
+    #[error("edge `{edge}` stands {times} times ({places}); an edge has two ends")]
+    NotTwoEnds {
+        /// The edge.
+        edge: String,
+        /// How often it stands.
+        times: usize,
+        /// The vertices in whose lists it stands.
+        places: String,
+    },
+    /// The graph falls into pieces.
+    #[error("the world is not connected: vertex `{vertex}` cannot be reached from `{from}`")]
+    NotConnected {
+        /// The first vertex out of reach.
+        vertex: String,
+        /// The first vertex of all.
+        from: String,
+    },
+    /// No edge, or too many.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
+/// A dart that has not yet met its opposite.
+const UNPAIRED: Dart = Dart(u32::MAX);
+
+impl EmbeddedGraph {
+    /// An embedded graph from its two permutations of the darts `0 .. 2m`, and the number that each
+    /// of them gets: vertices in the order of their least dart, the darts of a vertex clockwise
+    /// from it.
+    ///
+    /// # Errors
+    /// The [`Fault`] that tells why they are not `opposite` and `clockwise` of a connected graph
+    /// with at least one edge.
+    pub fn from_permutations(
+        opposite: &[u32],
+        clockwise: &[u32],
+    ) -> Result<(Self, Vec<Dart>), Fault> {
+        if opposite.len() != clockwise.len() {
+            return Err(Fault::LengthsDiffer {
+                opposite: opposite.len(),
+                clockwise: clockwise.len(),
+            });
+        }
+        check_size(opposite.len() / 2)?;
+        let fault = opposite_fault(opposite)
+            .or_else(|| clockwise_fault(clockwise, &mut vec![false; clockwise.len()]));
+        if let Some(fault) = fault {
+            return Err(fault);
+        }
+        let mut number = vec![UNPAIRED; opposite.len()];
+        let mut inverse = Vec::with_capacity(opposite.len());
+        let mut degrees = Vec::new();
+        for least in 0..opposite.len() {
+            let before = inverse.len();
+            let mut dart = least;
+            while number[dart] == UNPAIRED {
+                number[dart] = Dart(inverse.len() as u32);
+                inverse.push(dart);
+                dart = clockwise[dart] as usize;
+            }
+            if inverse.len() > before {
+                degrees.push((inverse.len() - before) as u32);
+            }
+        }
+        let renumbered = inverse
+            .iter()
+            .map(|&dart| number[opposite[dart] as usize])
+            .collect();
+        let graph = Self::from_degrees(&degrees, renumbered);
+        match graph.unreached_vertex() {
+            Some(vertex) => {
+                let missed = graph.darts_of(vertex).map(|dart| inverse[dart.at()]).min();
+                Err(Fault::NotConnected {
+                    dart: missed.unwrap_or_default() as u32,
+                })
+            }
+            None => Ok((graph, number)),
+        }
+    }
+
+    /// A simple embedded graph from the clockwise neighbours of each vertex. Vertices are numbered
+    /// in the order of the lists, darts in the order in which the lists name their far ends.
+    ///
+    /// # Errors
+    /// The [`ListError`] that names the first offending vertex and neighbour.
+    pub fn from_neighbour_lists<N: AsRef<str>>(lists: &[(N, Vec<N>)]) -> Result<Self, ListError> {
+        let number = number_vertices(lists)?;
+        let mut end_at: HashMap<(usize, usize), Dart> = HashMap::new();
+        let mut ends = Vec::new();
+        for (vertex, (name, neighbours)) in lists.iter().enumerate() {
+            for neighbour in neighbours {
+                let vertex_name = || name.as_ref().to_owned();
+                let neighbour_name = || neighbour.as_ref().to_owned();
+                let Some(&other) = number.get(neighbour.as_ref()) else {
+                    return Err(ListError::UnknownNeighbour {
+                        vertex: vertex_name(),
+                        neighbour: neighbour_name(),
+                    });
+                };
+                if other == vertex {
+                    return Err(ListError::OwnNeighbour {
+                        vertex: vertex_name(),
+                    });
+                }
+                if end_at
+                    .insert((vertex, other), Dart(ends.len() as u32))
+                    .is_some()
+                {
+                    return Err(ListError::RepeatedNeighbour {
+                        vertex: vertex_name(),
+                        neighbour: neighbour_name(),
+                    });
+                }
+                ends.push((vertex, other));
+            }
+        }
+        let opposite = ends
+            .iter()
+            .map(|&(vertex, other)| {
+                end_at
+                    .get(&(other, vertex))
+                    .copied()
+                    .ok_or_else(|| ListError::OneSided {
+                        vertex: lists[vertex].0.as_ref().to_owned(),
+                        neighbour: lists[other].0.as_ref().to_owned(),
+                    })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Self::from_lists(lists, opposite)
+    }
+
+    /// An embedded graph from the clockwise edge names of each vertex, each edge named exactly
+    /// twice. Vertices are numbered in the order of the lists, darts in the order in which the
+    /// lists name their edges.
+    ///
+    /// # Errors
+    /// The [`ListError`] that names the first offending vertex or edge.
+    pub fn from_edge_lists<N: AsRef<str>>(lists: &[(N, Vec<N>)]) -> Result<Self, ListError> {
+        number_vertices(lists)?;
+        let mut ends: HashMap<&str, Vec<(usize, Dart)>> = HashMap::new();
+        let mut names = Vec::new();
+        for (vertex, (_, edges)) in lists.iter().enumerate() {
+            for edge in edges {
+                let dart = Dart(names.len() as u32);
+                ends.entry(edge.as_ref()).or_default().push((vertex, dart));
+                names.push(edge.as_ref());
+            }
+        }
+        let mut opposite = Vec::with_capacity(names.len());
+        for (dart, name) in names.iter().enumerate() {
+            match ends[name].as_slice() {
+                &[(_, one), (_, other)] => {
+                    opposite.push(if one.at() == dart { other } else { one });
+                }
+                wrong => {
+                    let places = wrong.iter().map(|&(vertex, _)| lists[vertex].0.as_ref());
+                    return Err(ListError::NotTwoEnds {
+                        edge: (*name).to_owned(),
+                        times: wrong.len(),
+                        places: places.collect::<Vec<_>>().join(", "),
+                    });
+                }
+            }
+        }
+        Self::from_lists(lists, opposite)
+    }
+
+    /// The graph whose vertices have the lists' lengths as degrees, checked for size and
+    /// connection.
+    fn from_lists<N: AsRef<str>>(
+        lists: &[(N, Vec<N>)],
+        opposite: Vec<Dart>,
+    ) -> Result<Self, ListError> {
+        check_size(opposite.len() / 2)?;
+        let degrees: Vec<u32> = lists.iter().map(|(_, list)| list.len() as u32).collect();
+        let graph = Self::from_degrees(&degrees, opposite);
+        match graph.unreached_vertex() {
+            Some(vertex) => Err(ListError::NotConnected {
+                vertex: lists[vertex.at()].0.as_ref().to_owned(),
+                from: lists[0].0.as_ref().to_owned(),
+            }),
+            None => Ok(graph),
+        }
+    }
+
+    /// The graph with these degrees and this `opposite`, which the caller has checked.
+    pub(crate) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
+        let mut first = Vec::with_capacity(degrees.len() + 1);
+        let mut vertex = Vec::with_capacity(opposite.len());
+        first.push(0);
+        for (number, &degree) in degrees.iter().enumerate() {
+            vertex.extend((0..degree).map(|_| Vertex(number as u32)));
+            first.push(vertex.len() as u32);
+        }
+        Self {
+            first,
+            vertex,
+            opposite,
+        }
+    }
+
+    /// The first vertex that cannot be reached from the first of all.
+    pub(super) fn unreached_vertex(&self) -> Option<Vertex> {
+        let mut reached = vec![false; self.vertex_count()];
+        let mut open = vec![Vertex(0)];
+        reached[0] = true;
+        while let Some(vertex) = open.pop() {
+            for dart in self.darts_of(vertex) {
+                let neighbour = self.vertex(self.opposite(dart));
+                if !std::mem::replace(&mut reached[neighbour.at()], true) {
+                    open.push(neighbour);
+                }
+            }
+        }
+        self.vertices().find(|vertex| !reached[vertex.at()])
+    }
+
+    /// The same embedded graph with its vertices in the given order and the first dart of each as
+    /// given, and the new number of each dart. `None` unless `firsts` names exactly one dart of
+    /// every vertex.
+    #[must_use]
+    pub fn relabelled(&self, firsts: &[Dart]) -> Option<(Self, Vec<Dart>)> {
+        let mut number = vec![UNPAIRED; self.dart_count()];
+        let mut order = Vec::with_capacity(self.dart_count());
+        let mut degrees = Vec::with_capacity(firsts.len());
+        for &first in firsts {
+            if *number.get(first.at())? != UNPAIRED {
+                return None;
+            }
+            let before = order.len();
+            let mut dart = first;
+            while number[dart.at()] == UNPAIRED {
+                number[dart.at()] = Dart(order.len() as u32);
+                order.push(dart);
+                dart = self.clockwise(dart);
+            }
+            degrees.push((order.len() - before) as u32);
+        }
+        if order.len() != self.dart_count() {
+            return None;
+        }
+        let opposite = order
+            .iter()
+            .map(|&dart| number[self.opposite(dart).at()])
+            .collect();
+        Some((Self::from_degrees(&degrees, opposite), number))
+    }
+}
+
+fn number_vertices<N: AsRef<str>>(
+    lists: &[(N, Vec<N>)],
+) -> Result<HashMap<&str, usize>, ListError> {
+    let mut number = HashMap::new();
+    for (vertex, (name, _)) in lists.iter().enumerate() {
+        if number.insert(name.as_ref(), vertex).is_some() {
+            return Err(ListError::VertexTwice {
+                vertex: name.as_ref().to_owned(),
+            });
+        }
+    }
+    Ok(number)
+}
+
+fn check_size(edges: usize) -> Result<(), Fault> {
+    match edges {
+        0 => Err(Fault::NoEdge),
+        _ if edges > MAX_EDGES => Err(Fault::TooManyEdges),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn neighbours(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
+        let owned: Vec<_> = lists
+            .iter()
+            .map(|(name, list)| (*name, list.to_vec()))
+            .collect();
+        EmbeddedGraph::from_neighbour_lists(&owned)
+    }
+
+    fn edges(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
+        let owned: Vec<_> = lists
+            .iter()
+            .map(|(name, list)| (*name, list.to_vec()))
+            .collect();
+        EmbeddedGraph::from_edge_lists(&owned)
+    }
+
+    #[test]
+    fn permutations_are_renumbered_vertex_by_vertex() {
+        // A path u - v - w; the darts of v are 1 and 3.
+        let (graph, number) =
+            EmbeddedGraph::from_permutations(&[1, 0, 3, 2], &[0, 3, 2, 1]).unwrap();
+        assert_eq!(graph.vertex_count(), 3);
+        assert_eq!(number, [Dart(0), Dart(1), Dart(3), Dart(2)]);
+        assert_eq!(graph.opposite(Dart(2)), Dart(3));
+    }
+
+    #[test]
+    fn each_fault_of_permutations_is_named() {
+        let fault = |opposite: &[u32], clockwise: &[u32]| {
+            EmbeddedGraph::from_permutations(opposite, clockwise).unwrap_err()
+        };
+        assert_eq!(fault(&[], &[]), Fault::NoEdge);
+        assert_eq!(
+            fault(&[1, 0], &[0]),
+            Fault::LengthsDiffer {
+                opposite: 2,
+                clockwise: 1
+            }
+        );
+        assert_eq!(
+            fault(&[5, 0], &[0, 1]),
+            Fault::OppositeOutOfRange {
+                dart: 0,
+                opposite: 5
+            }
+        );
+        assert_eq!(fault(&[0, 1], &[0, 1]), Fault::OppositeFixed { dart: 0 });
+        assert_eq!(
+            fault(&[1, 2, 3, 0], &[0, 1, 2, 3]),
+            Fault::OppositeNotMutual {
+                dart: 0,
+                opposite: 1
+            }
+        );
+        assert_eq!(
+            fault(&[1, 0], &[2, 0]),
+            Fault::ClockwiseOutOfRange {
+                dart: 0,
+                clockwise: 2
+            }
+        );
+        assert_eq!(
+            fault(&[1, 0], &[1, 1]),
+            Fault::ClockwiseRepeated {
+                dart: 1,
+                clockwise: 1
+            }
+        );
+        assert_eq!(
+            fault(&[1, 0, 3, 2], &[0, 1, 2, 3]),
+            Fault::NotConnected { dart: 2 }
+        );
+    }
+
+    #[test]
+    fn each_fault_of_lists_is_named() {
+        let message = |result: Result<EmbeddedGraph, ListError>| result.unwrap_err().to_string();
+        assert_eq!(
+            message(neighbours(&[("a", &["b"]), ("b", &[])])),
+            "vertex `a` lists the neighbour `b`, which does not list `a` back"
+        );
+        assert_eq!(
+            message(neighbours(&[("a", &["c"])])),
+            "vertex `a` lists the neighbour `c`, which is no vertex"
+        );
+        assert_eq!(
+            message(neighbours(&[("a", &["a"])])),
+            "vertex `a` lists itself; loops need edge names, in [doors]"
+        );
+        assert_eq!(
+            message(neighbours(&[("a", &["b", "b"]), ("b", &["a"])])),
+            "vertex `a` lists the neighbour `b` twice; parallel edges need edge names, in [doors]"
+        );
+        assert_eq!(
+            message(neighbours(&[
+                ("a", &["b"]),
+                ("b", &["a"]),
+                ("c", &["d"]),
+                ("d", &["c"])
+            ])),
+            "the world is not connected: vertex `c` cannot be reached from `a`"
+        );
+        assert_eq!(
+            message(edges(&[("a", &["e", "e"]), ("b", &["e"])])),
+            "edge `e` stands 3 times (a, a, b); an edge has two ends"
+        );
+        assert_eq!(
+            message(edges(&[("a", &["e"])])),
+            "edge `e` stands 1 times (a); an edge has two ends"
+        );
+        assert_eq!(
+            message(edges(&[("a", &[]), ("a", &[])])),
+            "vertex `a` has two lists"
+        );
+        assert_eq!(
+            message(edges(&[("a", &[])])),
+            "there is no edge; a world has at least one"
+        );
+    }
+
+    #[test]
+    fn relabelling_keeps_the_orders() {
+        let graph = edges(&[("u", &["a", "b", "a"]), ("v", &["b", "c"]), ("w", &["c"])]).unwrap();
+        let (relabelled, number) = graph.relabelled(&[Dart(5), Dart(4), Dart(1)]).unwrap();
+        for dart in graph.darts() {
+            let image = number[dart.at()];
+            assert_eq!(
+                relabelled.opposite(image),
+                number[graph.opposite(dart).at()]
+            );
+            assert_eq!(
+                relabelled.clockwise(image),
+                number[graph.clockwise(dart).at()]
+            );
+        }
+        assert_eq!(number[5], Dart(0));
+        for unfit in [
+            &[Dart(5), Dart(4)][..],
+            &[Dart(5), Dart(4), Dart(3)],
+            &[Dart(6); 3],
+        ] {
+            assert_eq!(graph.relabelled(unfit), None);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! What can be wrong with two arrays that claim to be an embedded graph. Section 2.1.
+//!
+//! The checks work on plain slices and answer with a small copyable value; the wording is in
+//! [`Display`](std::fmt::Display), out of the way.
+
+use thiserror::Error;
+
+/// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Fault {
+    /// There is no dart at all.
+    #[error("there is no edge; a world has at least one")]
+    NoEdge,
+    /// There are more edges than [`MAX_EDGES`](super::MAX_EDGES).
+    #[error("there are more edges than can be numbered")]
+    TooManyEdges,
+    /// The two arrays have different lengths.
+    #[error("`opposite` speaks of {opposite} darts and `clockwise` of {clockwise}")]
+    LengthsDiffer {
+        /// The length of `opposite`.
+        opposite: usize,
+        /// The length of `clockwise`.
+        clockwise: usize,
+    },
+    /// `opposite` names a dart that does not exist.
+    #[error("the opposite of dart {dart} is {opposite}, which is no dart")]
+    OppositeOutOfRange {
+        /// The dart.
+        dart: u32,
+        /// What was given as its opposite.
+        opposite: u32,
+    },
+    /// A dart is its own opposite.
+    #[error("dart {dart} is its own opposite")]
+    OppositeFixed {
+        /// The dart.
+        dart: u32,
+    },
+    /// The opposite of the opposite is another dart.
+    #[error("the opposite of dart {dart} is {opposite}, whose opposite is another dart")]
+    OppositeNotMutual {
+        /// The dart.
+        dart: u32,
+        /// Its opposite.
+        opposite: u32,
+    },
+    /// `clockwise` names a dart that does not exist.
+    #[error("clockwise from dart {dart} stands {clockwise}, which is no dart")]
+    ClockwiseOutOfRange {
+        /// The dart.
+        dart: u32,
+        /// What was given as the next one.
+        clockwise: u32,
+    },
+    /// Two darts have the same successor around their vertex.
+    #[error("clockwise from dart {dart} stands {clockwise}, as from an earlier dart")]
+    ClockwiseRepeated {
+        /// The second of the two darts.
+        dart: u32,
+        /// The successor that both claim.
+        clockwise: u32,
+    },
+    /// The graph falls into pieces.
+    #[error("dart {dart} cannot be reached from dart 0: the world is not connected")]
+    NotConnected {
+        /// The least dart out of reach.
+        dart: u32,
+    },
+}
+
+/// Why `opposite` is not an involution without fixed points on its own indices; `None` if it is.
+#[must_use]
+pub fn opposite_fault(opposite: &[u32]) -> Option<Fault> {
+    let mut dart = 0;
+    while dart < opposite.len() {
+        let other = opposite[dart];
+        let this = dart as u32;
+        if other as usize >= opposite.len() {
+            return Some(Fault::OppositeOutOfRange {
+                dart: this,
+                opposite: other,
+            });
+        }
+        if other == this {
+            return Some(Fault::OppositeFixed { dart: this });
+        }
+        if opposite[other as usize] != this {
+            return Some(Fault::OppositeNotMutual {
+                dart: this,
+                opposite: other,
+            });
+        }
+        dart += 1;
+    }
+    None
+}
+
+/// Why `clockwise` is not a permutation of its own indices; `None` if it is. `taken` is scratch
+/// space, all `false`, at least as long as `clockwise`.
+#[must_use]
+pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<Fault> {
+    let mut dart = 0;
+    while dart < clockwise.len() {
+        let next = clockwise[dart];
+        let this = dart as u32;
+        if next as usize >= clockwise.len() {
+            return Some(Fault::ClockwiseOutOfRange {
+                dart: this,
+                clockwise: next,
+            });
+        }
+        if taken[next as usize] {
+            return Some(Fault::ClockwiseRepeated {
+                dart: this,
+                clockwise: next,
+            });
+        }
+        taken[next as usize] = true;
+        dart += 1;
+    }
+    None
+}

@@ -1,0 +1,294 @@
+//! Embedded graphs: the worlds that a robot explores. Section 2.1, "The world model".
+//!
+//! An embedded graph is an undirected connected graph with a clockwise order of the edge ends
+//! around each vertex (a *rotation system*, a *combinatorial map*). Loops and parallel edges are
+//! allowed.
+
+mod construct;
+mod fault;
+mod interop;
+
+use std::ops::Range;
+
+pub use construct::ListError;
+pub use fault::{Fault, clockwise_fault, opposite_fault};
+pub use interop::PetgraphError;
+
+/// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Dart(pub u32);
+
+/// A vertex, numbered `0 .. n`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Vertex(pub u32);
+
+impl Dart {
+    /// The dart's number, to index with.
+    #[must_use]
+    pub fn at(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl Vertex {
+    /// The vertex's number, to index with.
+    #[must_use]
+    pub fn at(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// The most edges that an embedded graph may have: a dart's number, and one past it, fit in a `u32`.
+pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
+
+/// A connected embedded graph with at least one edge.
+///
+/// The darts of a vertex stand side by side in clockwise order, and the vertices one after the
+/// other: `clockwise` is "the next number at the same vertex", and a door is an addition. Every
+/// constructor numbers the darts in this way.
+// paper: world.graph, world.embedding
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct EmbeddedGraph {
+    /// The first dart of each vertex, and then the number of darts.
+    first: Vec<u32>,
+    /// The vertex of each dart.
+    vertex: Vec<Vertex>,
+    /// The other end of each dart's edge.
+    opposite: Vec<Dart>,
+}
+
+impl EmbeddedGraph {
+    /// The number of vertices, `n`.
+    #[must_use]
+    pub fn vertex_count(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// The number of edges, `m`.
+    #[must_use]
+    pub fn edge_count(&self) -> usize {
+        self.opposite.len() / 2
+    }
+
+    /// The number of darts, `2m`.
+    #[must_use]
+    pub fn dart_count(&self) -> usize {
+        self.opposite.len()
+    }
+
+    /// All vertices, in the order of their numbers.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + Clone + use<> {
+        (0..self.first.len() as u32 - 1).map(Vertex)
+    }
+
+    /// All darts, in the order of their numbers.
+    pub fn darts(&self) -> impl ExactSizeIterator<Item = Dart> + Clone + use<> {
+        (0..self.opposite.len() as u32).map(Dart)
+    }
+
+    /// All edges, each as its two darts, the lower number first, in the order of the first.
+    pub fn edges(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
+        self.darts()
+            .map(|dart| (dart, self.opposite(dart)))
+            .filter(|(dart, other)| dart < other)
+    }
+
+    /// The other end of the dart's edge.
+    #[inline]
+    #[must_use]
+    pub fn opposite(&self, dart: Dart) -> Dart {
+        self.opposite[dart.at()]
+    }
+
+    /// The vertex at which the dart is.
+    #[inline]
+    #[must_use]
+    pub fn vertex(&self, dart: Dart) -> Vertex {
+        self.vertex[dart.at()]
+    }
+
+    /// The number of darts at the vertex.
+    #[inline]
+    #[must_use]
+    pub fn degree(&self, vertex: Vertex) -> u32 {
+        self.first[vertex.at() + 1] - self.first[vertex.at()]
+    }
+
+    /// The dart's place in the clockwise order of its vertex, counted from the vertex's first dart.
+    #[inline]
+    #[must_use]
+    pub fn index(&self, dart: Dart) -> u32 {
+        dart.0 - self.first[self.vertex(dart).at()]
+    }
+
+    /// The dart that stands `index` places clockwise from the vertex's first; the inverse of
+    /// [`index`](Self::index). `None` where the vertex has no so many darts.
+    #[must_use]
+    pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
+        let darts = self.dart_range(vertex);
+        (index < darts.end - darts.start).then(|| Dart(darts.start + index))
+    }
+
+    /// The darts of a vertex in clockwise order from its first.
+    pub fn darts_of(
+        &self,
+        vertex: Vertex,
+    ) -> impl ExactSizeIterator<Item = Dart> + DoubleEndedIterator + Clone + use<> {
+        self.dart_range(vertex).map(Dart)
+    }
+
+    /// The next dart around the same vertex.
+    #[inline]
+    #[must_use]
+    pub fn clockwise(&self, dart: Dart) -> Dart {
+        let darts = self.dart_range(self.vertex(dart));
+        if dart.0 + 1 == darts.end {
+            Dart(darts.start)
+        } else {
+            Dart(dart.0 + 1)
+        }
+    }
+
+    /// The previous dart around the same vertex.
+    #[inline]
+    #[must_use]
+    pub fn counterclockwise(&self, dart: Dart) -> Dart {
+        let darts = self.dart_range(self.vertex(dart));
+        if dart.0 == darts.start {
+            Dart(darts.end - 1)
+        } else {
+            Dart(dart.0 - 1)
+        }
+    }
+
+    #[inline]
+    fn dart_range(&self, vertex: Vertex) -> Range<u32> {
+        self.first[vertex.at()]..self.first[vertex.at() + 1]
+    }
+
+    /// The number of faces: the orbits of "cross the edge, then turn clockwise".
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        let mut seen = vec![false; self.dart_count()];
+        let mut faces = 0;
+        for first in self.darts() {
+            let mut dart = first;
+            if !seen[dart.at()] {
+                faces += 1;
+            }
+            while !std::mem::replace(&mut seen[dart.at()], true) {
+                dart = self.clockwise(self.opposite(dart));
+            }
+        }
+        faces
+    }
+
+    /// The genus of the surface on which the graph lies: 0 in the plane, 1 on the torus, ...
+    /// (Euler: `n - m + faces = 2 - 2 genus`).
+    #[must_use]
+    pub fn genus(&self) -> usize {
+        (2 + self.edge_count() - self.vertex_count() - self.face_count()) / 2
+    }
+
+    /// Whether the graph has neither a loop nor two edges between the same vertices.
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        let mut last_met_from = vec![None; self.vertex_count()];
+        self.vertices().all(|vertex| {
+            self.darts_of(vertex).all(|dart| {
+                let neighbour = self.vertex(self.opposite(dart));
+                neighbour != vertex && last_met_from[neighbour.at()].replace(vertex) != Some(vertex)
+            })
+        })
+    }
+
+    /// The mirror image: the same graph with every order reversed. The first dart of each vertex
+    /// stays first, so that the dart with index `i` becomes the one with index `-i`.
+    #[must_use]
+    pub fn mirror_image(&self) -> Self {
+        let image = |dart: Dart| {
+            let darts = self.dart_range(self.vertex(dart));
+            let index = dart.0 - darts.start;
+            if index == 0 {
+                dart
+            } else {
+                Dart(darts.end - index)
+            }
+        };
+        let opposite = self
+            .darts()
+            .map(|dart| image(self.opposite(image(dart))))
+            .collect();
+        Self {
+            first: self.first.clone(),
+            vertex: self.vertex.clone(),
+            opposite,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The two-vertex graph with three parallel edges, in the plane (`crossed` = false) and on the
+    /// torus.
+    fn theta(crossed: bool) -> EmbeddedGraph {
+        let far = if crossed {
+            ["a", "b", "c"]
+        } else {
+            ["c", "b", "a"]
+        };
+        EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
+    }
+
+    #[test]
+    fn three_parallel_edges_lie_in_the_plane_or_on_the_torus() {
+        assert_eq!((theta(false).face_count(), theta(false).genus()), (3, 0));
+        assert_eq!((theta(true).face_count(), theta(true).genus()), (1, 1));
+        assert!(!theta(true).is_simple());
+    }
+
+    #[test]
+    fn clockwise_and_counterclockwise_undo_each_other() {
+        let graph = theta(true);
+        for dart in graph.darts() {
+            assert_eq!(graph.counterclockwise(graph.clockwise(dart)), dart);
+            assert_eq!(
+                graph.dart(graph.vertex(dart), graph.index(dart)),
+                Some(dart)
+            );
+        }
+        assert_eq!(graph.dart(Vertex(0), 3), None);
+    }
+
+    #[test]
+    fn the_mirror_image_of_the_mirror_image_is_the_graph() {
+        let graph = EmbeddedGraph::from_neighbour_lists(&[
+            ("x", vec!["a", "b", "c", "d"]),
+            ("a", vec!["x", "b"]),
+            ("b", vec!["x", "a"]),
+            ("c", vec!["x"]),
+            ("d", vec!["x"]),
+        ])
+        .unwrap();
+        let mirror = graph.mirror_image();
+        assert_ne!(mirror, graph);
+        assert_eq!(mirror.mirror_image(), graph);
+        for dart in graph.darts() {
+            assert_eq!(
+                mirror.vertex(mirror.opposite(dart)),
+                graph.vertex(mirror.opposite(dart))
+            );
+        }
+        assert_eq!(mirror.genus(), graph.genus());
+    }
+
+    #[test]
+    fn a_loop_or_a_parallel_edge_is_not_simple() {
+        let bouquet = EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "a"])]).unwrap();
+        assert!(!bouquet.is_simple());
+        let path = EmbeddedGraph::from_neighbour_lists(&[("u", vec!["v"]), ("v", vec!["u"])]);
+        assert!(path.unwrap().is_simple());
+    }
+}

@@ -1,0 +1,1 @@
+//! plantri's `planar_code` and `edge_code`.

@@ -1,0 +1,1 @@
+//! World files, in TOML and JSON.

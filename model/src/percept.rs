@@ -1,0 +1,160 @@
+//! What a robot perceives at a vertex and how it moves: degrees, doors, sightings, door sequences
+//! and the way back. Section 2.1, "Robot motion and perception".
+
+use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+/// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
+/// is the way back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Door(pub u32);
+
+impl Door {
+    /// The way back.
+    pub const BACK: Door = Door(0);
+
+    /// The door that leads from the dart with index `from` to the one with index `to`, at a vertex
+    /// of the given degree; both indices are below it.
+    #[inline]
+    #[must_use]
+    pub fn between(from: u32, to: u32, degree: u32) -> Self {
+        Self(if to >= from {
+            to - from
+        } else {
+            to + degree - from
+        })
+    }
+
+    /// The door `-d`: the one that undoes this one, at a vertex of the given degree.
+    #[inline]
+    #[must_use]
+    pub fn inverse(self, degree: u32) -> Self {
+        Self::between(self.0, 0, degree)
+    }
+
+    /// The door as it is called when the robot counts from the dart behind `entry` instead of from
+    /// its entry dart.
+    #[inline]
+    #[must_use]
+    pub fn seen_from(self, entry: Door, degree: u32) -> Self {
+        Self::between(entry.0, self.0, degree)
+    }
+}
+
+/// What the marker in use adds to a percept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Sighting {
+    /// No marker is here.
+    Nothing,
+    /// The directional marker is here and points along this door.
+    Pointing(Door),
+}
+
+/// What is sensed on arriving at a vertex, and nothing else.
+// paper: percept.degree, percept.featureless
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Percept {
+    /// The number of doors.
+    pub degree: u32,
+    /// What the marker adds.
+    pub sighting: Sighting,
+}
+
+impl EmbeddedGraph {
+    /// The dart behind a door, for a robot that came in by the dart `pose`; doors are counted
+    /// modulo the degree. This is also the dart by which the robot leaves.
+    // paper: percept.entry, percept.doors
+    #[inline]
+    #[must_use]
+    pub fn behind(&self, pose: Dart, door: Door) -> Dart {
+        let vertex = self.vertex(pose);
+        let degree = self.degree(vertex);
+        let turn = if door.0 < degree {
+            door.0
+        } else {
+            door.0 % degree
+        };
+        let index = self.index(pose);
+        // Never overflows: `index + turn - degree` is computed without the sum.
+        let step = if turn >= degree - index {
+            turn.wrapping_sub(degree)
+        } else {
+            turn
+        };
+        Dart(pose.0.wrapping_add(step))
+    }
+
+    /// The pose after leaving by a door: the robot comes in by the other end of that edge.
+    // paper: motion.door
+    #[inline]
+    #[must_use]
+    pub fn after(&self, pose: Dart, door: Door) -> Dart {
+        self.opposite(self.behind(pose, door))
+    }
+
+    /// The pose at the end of a door sequence.
+    #[must_use]
+    pub fn walk(&self, pose: Dart, doors: &[Door]) -> Dart {
+        doors
+            .iter()
+            .fold(pose, |pose, &door| self.after(pose, door))
+    }
+}
+
+/// The door sequence that leads back along a path, from the doors that it took and the degrees of
+/// the vertices at which it took them, in the order in which they were met.
+///
+/// After `d1 ... dk` the way back is `0, -dk, ..., -d2`; it ends at the vertex where the path
+/// began, and the robot then has come in by the door `d1`, as it was called at the beginning.
+// paper: alg1.15
+pub fn retrace(path: &[(Door, u32)]) -> impl Iterator<Item = Door> + '_ {
+    let turns = path
+        .iter()
+        .skip(1)
+        .rev()
+        .map(|&(door, degree)| door.inverse(degree));
+    (!path.is_empty())
+        .then_some(Door::BACK)
+        .into_iter()
+        .chain(turns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn k4() -> EmbeddedGraph {
+        EmbeddedGraph::from_neighbour_lists(&[
+            ("a", vec!["b", "c", "d"]),
+            ("b", vec!["a", "d", "c"]),
+            ("c", vec!["a", "b", "d"]),
+            ("d", vec!["a", "c", "b"]),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn doors_are_counted_clockwise_from_the_entry() {
+        let graph = k4();
+        for pose in graph.darts() {
+            assert_eq!(graph.behind(pose, Door(0)), pose);
+            assert_eq!(graph.behind(pose, Door(1)), graph.clockwise(pose));
+            assert_eq!(graph.behind(pose, Door(2)), graph.counterclockwise(pose));
+            assert_eq!(graph.behind(pose, Door(3)), pose);
+            assert_eq!(graph.behind(pose, Door(u32::MAX)), pose);
+        }
+    }
+
+    #[test]
+    fn the_way_back_ends_where_the_path_began_turned_by_its_first_door() {
+        let graph = k4();
+        for pose in graph.darts() {
+            for doors in (0..27).map(|n| [Door(n % 3), Door(n / 3 % 3), Door(n / 9)]) {
+                let path = doors.map(|door| (door, 3));
+                let back: Vec<_> = retrace(&path).collect();
+                let end = graph.walk(graph.walk(pose, &doors), &back);
+                assert_eq!(end, graph.behind(pose, doors[0]));
+            }
+        }
+        assert_eq!(retrace(&[]).count(), 0);
+    }
+}

@@ -1,0 +1,32 @@
+//! `toposlam completions SHELL`.
+
+use std::io::Write;
+
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+use super::{Failure, Outcome};
+
+/// Print the completions of a shell
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  toposlam completions bash > ~/.local/share/bash-completion/completions/toposlam"
+)]
+pub(super) struct Arguments {
+    /// The shell
+    shell: Shell,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(
+            self.shell,
+            &mut super::Arguments::command(),
+            "toposlam",
+            &mut script,
+        );
+        out.write_all(&script)?;
+        Ok(Outcome::Holds)
+    }
+}

@@ -1,0 +1,48 @@
+//! The verbs of the command line, and what they share: exit codes, failures, files written whole.
+
+mod completions;
+mod outcome;
+mod output;
+
+use std::{
+    io::{self, Write},
+    process::ExitCode,
+};
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use outcome::{Failure, Outcome};
+
+/// Deterministic topological SLAM that can be trusted: an executable specification of embedded
+/// graphs, percepts and Algorithm 1, and a checker that runs it on every small world.
+#[derive(Parser)]
+#[command(name = "toposlam", version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Completions(completions::Arguments),
+}
+
+/// Runs the verb that the command line names.
+pub(crate) fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let mut out = io::stdout().lock();
+    let result = match arguments.verb {
+        Some(Verb::Completions(verb)) => verb.run(&mut out),
+        None => help(&mut out),
+    };
+    match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {
+        Ok(outcome) => outcome.into(),
+        Err(failure) => failure.report(),
+    }
+}
+
+/// What `toposlam` alone prints: what it is, and its verbs.
+fn help(out: &mut dyn Write) -> Result<Outcome, Failure> {
+    write!(out, "{}", Arguments::command().render_help())?;
+    Ok(Outcome::Holds)
+}

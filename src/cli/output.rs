@@ -1,0 +1,32 @@
+//! Files are written whole or not at all.
+
+use std::{ffi::OsString, fs, io, path::Path};
+
+use super::Failure;
+
+/// Writes a file by way of a neighbour that then takes its name, so that nothing half-written is
+/// left behind.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let Some(name) = path.file_name() else {
+        return Err(Failure::in_file(path, "this is not the name of a file"));
+    };
+    // A device or a pipe is written to, not replaced.
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return fs::write(path, bytes).map_err(|error| unwritable(path, &error));
+    }
+    let mut partial_name = OsString::from(".");
+    partial_name.push(name);
+    partial_name.push(format!(".{}.partial", std::process::id()));
+    let partial = path.with_file_name(partial_name);
+    fs::write(&partial, bytes)
+        .and_then(|()| fs::rename(&partial, path))
+        .map_err(|error| {
+            // Best effort: the error that is reported is the one that matters.
+            let _ = fs::remove_file(&partial);
+            unwritable(path, &error)
+        })
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    Failure::in_file(path, format!("cannot be written: {error}"))
+}

@@ -1,0 +1,6 @@
+//! Deterministic topological SLAM that can be trusted.
+//!
+//! This package is the front of the house: it passes on the specification ([`model`]), draws worlds
+//! and holds what the command line `toposlam` prints.
+
+pub use toposlam_model as model;
