@@ -59,6 +59,19 @@ pub struct Percept {
     pub sighting: Sighting,
 }
 
+impl Percept {
+    /// The same vertex as perceived by a robot that has come in by the door `entry` instead.
+    #[inline]
+    #[must_use]
+    pub fn seen_from(self, entry: Door) -> Self {
+        let sighting = match self.sighting {
+            Sighting::Nothing => Sighting::Nothing,
+            Sighting::Pointing(door) => Sighting::Pointing(door.seen_from(entry, self.degree)),
+        };
+        Self { sighting, ..self }
+    }
+}
+
 impl EmbeddedGraph {
     /// The dart behind a door, for a robot that came in by the dart `pose`; doors are counted
     /// modulo the degree. This is also the dart by which the robot leaves.
@@ -106,16 +119,16 @@ impl EmbeddedGraph {
 /// After `d1 ... dk` the way back is `0, -dk, ..., -d2`; it ends at the vertex where the path
 /// began, and the robot then has come in by the door `d1`, as it was called at the beginning.
 // paper: alg1.15
-pub fn retrace(path: &[(Door, u32)]) -> impl Iterator<Item = Door> + '_ {
-    let turns = path
-        .iter()
-        .skip(1)
-        .rev()
-        .map(|&(door, degree)| door.inverse(degree));
-    (!path.is_empty())
-        .then_some(Door::BACK)
-        .into_iter()
-        .chain(turns)
+pub fn retrace<P>(path: P) -> impl Iterator<Item = Door>
+where
+    P: DoubleEndedIterator<Item = (Door, u32)> + ExactSizeIterator,
+{
+    let back = (path.len() > 0).then_some(Door::BACK);
+    back.into_iter().chain(
+        path.skip(1)
+            .rev()
+            .map(|(door, degree)| door.inverse(degree)),
+    )
 }
 
 #[cfg(test)]
@@ -150,11 +163,11 @@ mod tests {
         for pose in graph.darts() {
             for doors in (0..27).map(|n| [Door(n % 3), Door(n / 3 % 3), Door(n / 9)]) {
                 let path = doors.map(|door| (door, 3));
-                let back: Vec<_> = retrace(&path).collect();
+                let back: Vec<_> = retrace(path.into_iter()).collect();
                 let end = graph.walk(graph.walk(pose, &doors), &back);
                 assert_eq!(end, graph.behind(pose, doors[0]));
             }
         }
-        assert_eq!(retrace(&[]).count(), 0);
+        assert_eq!(retrace(std::iter::empty()).count(), 0);
     }
 }

@@ -6,6 +6,7 @@
 
 mod construct;
 mod fault;
+mod grow;
 mod interop;
 
 use std::ops::Range;
@@ -77,7 +78,9 @@ impl EmbeddedGraph {
     }
 
     /// All vertices, in the order of their numbers.
-    pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + Clone + use<> {
+    pub fn vertices(
+        &self,
+    ) -> impl ExactSizeIterator<Item = Vertex> + DoubleEndedIterator + Clone + use<> {
         (0..self.first.len() as u32 - 1).map(Vertex)
     }
 

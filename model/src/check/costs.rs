@@ -1,0 +1,74 @@
+//! A set of costs: how many moves the runs of a start can take.
+
+/// A set of small numbers, as bits.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Costs(Vec<u64>);
+
+impl Costs {
+    /// The set of 0 alone.
+    pub(super) fn nothing() -> Self {
+        Self(vec![1])
+    }
+
+    /// Adds each number of another set, increased by `by`.
+    pub(super) fn include(&mut self, other: &Self, by: u64) {
+        let (words, shift) = ((by / 64) as usize, by % 64);
+        self.0
+            .resize(self.0.len().max(other.0.len() + words + 1), 0);
+        for (place, &word) in other.0.iter().enumerate() {
+            self.0[place + words] |= word << shift;
+            if shift > 0 {
+                self.0[place + words + 1] |= word >> (64 - shift);
+            }
+        }
+        while self.0.last() == Some(&0) {
+            self.0.pop();
+        }
+    }
+
+    /// The costs, ascending.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = u64> + '_ {
+        (0..self.0.len() as u64 * 64).filter(|&cost| self.contains(cost))
+    }
+
+    /// Whether a run can take so many moves.
+    #[must_use]
+    pub fn contains(&self, cost: u64) -> bool {
+        self.0
+            .get((cost / 64) as usize)
+            .is_some_and(|word| word >> (cost % 64) & 1 == 1)
+    }
+
+    /// The least cost.
+    #[must_use]
+    pub fn min(&self) -> Option<u64> {
+        self.iter().next()
+    }
+
+    /// The greatest cost.
+    #[must_use]
+    pub fn max(&self) -> Option<u64> {
+        self.iter().next_back()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_are_shifted_across_words() {
+        let mut costs = Costs::default();
+        let mut some = Costs::default();
+        for cost in [0, 1, 63, 64, 200] {
+            some.include(&Costs::nothing(), cost);
+        }
+        for by in [0, 1, 64, 65] {
+            costs.include(&some, by);
+        }
+        let expected = [0, 1, 2, 63, 64, 65, 66, 127, 128, 129, 200, 201, 264, 265];
+        assert_eq!(costs.iter().collect::<Vec<_>>(), expected);
+        assert_eq!((costs.min(), costs.max()), (Some(0), Some(265)));
+        assert_eq!(Costs::default().max(), None);
+    }
+}

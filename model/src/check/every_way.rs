@@ -1,0 +1,156 @@
+//! Algorithm 1 with all choices: every order at line 5, and at line 9 among the hypotheses that the
+//! percept on arrival has not already contradicted. Section 2.3.
+
+use std::collections::HashMap;
+
+use super::{Costs, Flaw, judge::judge};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    isomorphism::Candidate,
+    mapping::{Choices, Exploration, PartialMap, Tree, Verdict, try_path},
+    world::GraphWorld,
+};
+
+/// All runs of Algorithm 1 on one start.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EveryWay {
+    /// Distinct states at line 4: the map, numbered by discovery, and the robot's vertex in it.
+    pub states: u64,
+    /// Distinct sequences of choices. Stays at the largest `u128` if there are more.
+    pub runs: u128,
+    /// The numbers of moves that occur among the runs.
+    pub costs: Costs,
+}
+
+/// Runs Algorithm 1 on a start with all choices, and judges the end of every run. States are
+/// explored once, runs are counted.
+///
+/// # Errors
+/// The first [`Flaw`].
+pub fn every_way(graph: &EmbeddedGraph, facing: Dart) -> Result<EveryWay, Flaw> {
+    let mut world = GraphWorld::new(graph, facing);
+    let mut exploration = Exploration::new(graph.dart_count());
+    exploration.begin(&mut world, &mut ())?;
+    let mut search = Search {
+        facing,
+        from_line_4: HashMap::new(),
+        candidate: Candidate::default(),
+    };
+    let Futures { runs, costs } = search.from_line_4(&world, &exploration)?;
+    Ok(EveryWay {
+        states: search.from_line_4.len() as u64,
+        runs,
+        costs,
+    })
+}
+
+/// What can come after a state: how many runs, and how many more moves they take.
+#[derive(Clone, Default)]
+struct Futures {
+    runs: u128,
+    costs: Costs,
+}
+
+impl Futures {
+    fn include(&mut self, other: &Self, moves: u64) {
+        self.runs = self.runs.saturating_add(other.runs);
+        self.costs.include(&other.costs, moves);
+    }
+}
+
+struct Search {
+    facing: Dart,
+    from_line_4: HashMap<(PartialMap, Vertex), Futures>,
+    candidate: Candidate,
+}
+
+/// Takes this edge.
+struct ThisEdge(Dart);
+
+/// Takes the hypothesis at this place.
+struct ThisHypothesis(usize);
+
+impl Choices for ThisEdge {
+    fn next_edge(&mut self, _: &PartialMap, _: &mut Tree) -> Option<Dart> {
+        Some(self.0)
+    }
+}
+
+impl Choices for ThisHypothesis {
+    fn next_edge(&mut self, _: &PartialMap, _: &mut Tree) -> Option<Dart> {
+        None
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, _: &[Dart]) -> usize {
+        self.0
+    }
+}
+
+impl Search {
+    /// Every choice at line 5.
+    fn from_line_4(
+        &mut self,
+        world: &GraphWorld,
+        exploration: &Exploration,
+    ) -> Result<Futures, Flaw> {
+        let map = exploration.map();
+        let state = (map.clone(), map.vertex(exploration.robot()));
+        if let Some(known) = self.from_line_4.get(&state) {
+            return Ok(known.clone());
+        }
+        let mut futures = Futures::default();
+        if map.unexplored_is_empty() {
+            judge(exploration, self.facing, world, &mut self.candidate)?;
+            futures.include(
+                &Futures {
+                    runs: 1,
+                    costs: Costs::nothing(),
+                },
+                0,
+            );
+        }
+        for edge in map.unexplored() {
+            let (mut world, mut next) = (world.clone(), exploration.clone());
+            if let Some(edge) = next.next_edge(&mut ThisEdge(edge)) {
+                next.explore(edge, &mut world, &mut ())?;
+                let after = self.from_line_8(&world, &next, &mut HashMap::new())?;
+                futures.include(&after, next.moves() - exploration.moves());
+            }
+        }
+        self.from_line_4.insert(state, futures.clone());
+        Ok(futures)
+    }
+
+    /// Every choice at line 9. What is left of H decides the state within the round.
+    fn from_line_8(
+        &mut self,
+        world: &GraphWorld,
+        exploration: &Exploration,
+        known: &mut HashMap<Vec<Dart>, Futures>,
+    ) -> Result<Futures, Flaw> {
+        if let Some(known) = known.get(exploration.hypotheses()) {
+            return Ok(known.clone());
+        }
+        let mut futures = Futures::default();
+        if exploration.hypotheses().is_empty() {
+            let mut next = exploration.clone();
+            next.add_place(&mut ())?;
+            futures = self.from_line_4(world, &next)?;
+        }
+        for place in 0..exploration.hypotheses().len() {
+            let (mut world, mut next) = (world.clone(), exploration.clone());
+            if let Some(hypothesis) = next.next_hypothesis(&mut ThisHypothesis(place)) {
+                let after = match try_path(&mut next, hypothesis, &mut world, &mut ())? {
+                    Verdict::Confirmed => {
+                        next.close_loop(hypothesis, &mut ());
+                        self.from_line_4(&world, &next)?
+                    }
+                    Verdict::Rejected => self.from_line_8(&world, &next, known)?,
+                };
+                futures.include(&after, next.moves() - exploration.moves());
+            }
+        }
+        known.insert(exploration.hypotheses().to_vec(), futures.clone());
+        Ok(futures)
+    }
+}

@@ -1,0 +1,228 @@
+//! Is a run of Algorithm 1 right? Section 2.1 (the map is isomorphic to the world), Section 2.3.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::Candidate,
+    mapping::{Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, map_world},
+    world::{GraphWorld, NoSuchDoor},
+};
+
+/// An algorithm that maps worlds; the check is run on Algorithm 1, and its tests on broken variants.
+pub trait Algorithm: Sync {
+    /// Maps a world; afterwards the exploration holds map, pose and moves.
+    ///
+    /// # Errors
+    /// Those of [`map_world`].
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<NoSuchDoor>>;
+}
+
+/// Algorithm 1 with the default choices.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Algorithm1;
+
+impl Algorithm for Algorithm1 {
+    #[inline]
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<NoSuchDoor>> {
+        map_world(world, &mut Nearest, exploration, observer)
+    }
+}
+
+/// What is wrong with a run. Darts of the map are numbered as discovered, those of the world as
+/// there.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Flaw {
+    /// It did not come to an end: a door that does not exist, a contradiction, the bound.
+    #[error(transparent)]
+    Error(#[from] MappingError<NoSuchDoor>),
+    /// It ended with unexplored edges.
+    #[error("it ended with {unexplored} edge ends unexplored")]
+    Unfinished {
+        /// How many.
+        unexplored: u32,
+    },
+    /// The map is not isomorphic to the world, start to start.
+    #[error("the map is not isomorphic to the world")]
+    WrongMap,
+    /// The robot is not where it believes to be.
+    #[error(
+        "the robot believes to have come in by the map's dart {}, which is dart {} of the world, \
+         but has come in by dart {}",
+        believed.0, image.0, truly.0
+    )]
+    WrongPose {
+        /// The pose in the map.
+        believed: Dart,
+        /// The dart of the world that this is.
+        image: Dart,
+        /// The pose in the world.
+        truly: Dart,
+    },
+    /// More moves than the bound.
+    #[error("it took {moves} moves; the bound is {bound}")]
+    TooManyMoves {
+        /// The moves.
+        moves: u64,
+        /// The bound.
+        bound: u64,
+    },
+}
+
+/// The most moves that Algorithm 1 may make: `m n + 2 m^2 (n - 1)`.
+// paper: cost.bound
+#[must_use]
+pub fn move_bound(edges: usize, vertices: usize) -> u64 {
+    let (m, n) = (edges as u64, vertices as u64);
+    m.saturating_mul(n)
+        .saturating_add(m.saturating_mul(m).saturating_mul(2 * (n - 1)))
+}
+
+/// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
+/// verified; the robot's pose is what it believes; the moves are within the bound.
+///
+/// # Errors
+/// The first [`Flaw`].
+// paper: alg1.isomorphic
+pub(super) fn judge(
+    exploration: &Exploration,
+    facing: Dart,
+    world: &GraphWorld,
+    candidate: &mut Candidate,
+) -> Result<(), Flaw> {
+    let unexplored = exploration.map().unexplored_count();
+    let Some(map) = exploration.map().complete() else {
+        return Err(Flaw::Unfinished { unexplored });
+    };
+    let graph = world.graph();
+    let bijection = candidate.of_starts((map, FACING), (graph, facing));
+    if !bijection.verify(map, graph) {
+        return Err(Flaw::WrongMap);
+    }
+    let (believed, truly) = (exploration.robot(), world.pose());
+    let image = bijection.images()[believed.at()];
+    if image != truly {
+        return Err(Flaw::WrongPose {
+            believed,
+            image,
+            truly,
+        });
+    }
+    let (moves, bound) = (
+        exploration.moves(),
+        move_bound(graph.edge_count(), graph.vertex_count()),
+    );
+    if moves > bound {
+        return Err(Flaw::TooManyMoves { moves, bound });
+    }
+    Ok(())
+}
+
+/// The first thing that a run added to its map and that is not so in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FalseStep {
+    /// The moves made by then.
+    pub moves: u64,
+    /// What was added.
+    pub added: Event,
+}
+
+impl fmt::Display for FalseStep {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { moves, added } = self;
+        write!(out, "after {moves} moves ")?;
+        match added {
+            Event::LoopClosed { edge, other } => {
+                write!(
+                    out,
+                    "the map's darts {} and {} are wrongly made one edge",
+                    edge.0, other.0
+                )
+            }
+            Event::VertexAdded { edge, vertex } => write!(
+                out,
+                "vertex v{} is wrongly added behind the map's dart {}",
+                vertex.0, edge.0
+            ),
+            _ => write!(out, "the map is wrong"),
+        }
+    }
+}
+
+/// Runs an algorithm on a start, and answers the first step after which its map no longer embeds in
+/// the world; `None` if it always does.
+pub fn first_false_step(
+    algorithm: &impl Algorithm,
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    exploration: &mut Exploration,
+) -> Option<FalseStep> {
+    let mut first = None;
+    let mut watch = |exploration: &Exploration, added: Event| {
+        let adds = matches!(added, Event::LoopClosed { .. } | Event::VertexAdded { .. });
+        if adds && first.is_none() && !embeds(exploration.map(), graph, facing) {
+            first = Some(FalseStep {
+                moves: exploration.moves(),
+                added,
+            });
+        }
+    };
+    // Whether it ends well does not matter here.
+    let _ = algorithm.run(&mut GraphWorld::new(graph, facing), exploration, &mut watch);
+    first
+}
+
+/// Whether the known map embeds in the world, start to start: dart for dart, orders kept, no two
+/// darts at the same place.
+#[must_use]
+fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
+    let mut image = vec![None; map.dart_count()];
+    let mut taken = vec![false; graph.dart_count()];
+    for vertex in map.vertices() {
+        // A vertex was first entered by its first dart, from a vertex discovered before.
+        let mut darts = map.darts_of(vertex);
+        let Some(entry) = darts.next() else {
+            return false;
+        };
+        let parent = if entry == FACING {
+            None
+        } else {
+            map.opposite(entry)
+        };
+        let mut at = match parent {
+            None if entry == FACING => facing,
+            parent => match parent.and_then(|dart: Dart| image[dart.at()]) {
+                Some(dart) => graph.opposite(dart),
+                None => return false,
+            },
+        };
+        if map.degree(vertex) != graph.degree(graph.vertex(at)) {
+            return false;
+        }
+        for dart in std::iter::once(entry).chain(darts) {
+            image[dart.at()] = Some(at);
+            if std::mem::replace(&mut taken[at.at()], true) {
+                return false;
+            }
+            at = graph.clockwise(at);
+        }
+    }
+    map.vertices()
+        .flat_map(|vertex| map.darts_of(vertex))
+        .all(|dart| match map.opposite(dart) {
+            None => true,
+            Some(other) => image[other.at()] == image[dart.at()].map(|image| graph.opposite(image)),
+        })
+}

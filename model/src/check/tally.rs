@@ -1,0 +1,133 @@
+//! What a check counts.
+
+use super::{EveryWay, FalseStep, Flaw};
+use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+/// The start that took the most moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WorstStart {
+    /// The world.
+    pub graph: EmbeddedGraph,
+    /// The facing dart.
+    pub facing: Dart,
+    /// The moves.
+    pub moves: u64,
+}
+
+/// A start on which the algorithm failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// The world.
+    pub graph: EmbeddedGraph,
+    /// The facing dart.
+    pub facing: Dart,
+    /// What was wrong at the end.
+    pub flaw: Flaw,
+    /// The first wrong addition to the map, if there was one.
+    pub false_step: Option<FalseStep>,
+}
+
+/// What a check has seen so far.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Embedded graphs up to isomorphism.
+    pub worlds: u64,
+    /// Starts run.
+    pub starts: u64,
+    /// Starts mapped right.
+    pub mapped: u64,
+    /// The moves of all runs with the default choices together.
+    pub moves_total: u64,
+    /// The first start that took the most moves with the default choices.
+    pub worst: Option<WorstStart>,
+    /// The moves and the vertices of the run with the most moves a vertex.
+    pub dearest: Option<(u64, u64)>,
+    /// The first start on which the algorithm failed.
+    pub failure: Option<Failure>,
+    /// Where all choices were tried: distinct states at line 4, summed over the starts.
+    pub states: u64,
+    /// Where all choices were tried: runs, summed over the starts.
+    pub runs: u128,
+    /// Where all choices were tried: the fewest and the most moves of any run.
+    pub extremes: Option<(u64, u64)>,
+    /// Whether the check was broken off.
+    pub interrupted: bool,
+}
+
+impl Tally {
+    /// Starts on which the algorithm failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.starts - self.mapped
+    }
+
+    /// The most moves of a run with the default choices; 0 if there was none.
+    #[must_use]
+    pub fn moves_max(&self) -> u64 {
+        self.worst.as_ref().map_or(0, |worst| worst.moves)
+    }
+
+    /// The largest moves / (m^2 n), for worlds with `edges` edges.
+    #[must_use]
+    pub fn largest_ratio(&self, edges: usize) -> f64 {
+        let (moves, vertices) = self.dearest.unwrap_or((0, 1));
+        moves as f64 / (edges as f64 * edges as f64 * vertices as f64)
+    }
+
+    /// Counts a run that ended.
+    pub(super) fn count_run(&mut self, graph: &EmbeddedGraph, facing: Dart, moves: u64) {
+        self.moves_total += moves;
+        if self.worst.as_ref().is_none_or(|worst| moves > worst.moves) {
+            self.worst = Some(WorstStart {
+                graph: graph.clone(),
+                facing,
+                moves,
+            });
+        }
+        self.count_dearest((moves, graph.vertex_count() as u64));
+    }
+
+    /// Counts all runs of a start, beside that of the default choices.
+    pub(super) fn count_every_way(&mut self, ways: &EveryWay) {
+        self.states += ways.states;
+        self.runs = self.runs.saturating_add(ways.runs);
+        self.count_extremes(ways.costs.min().zip(ways.costs.max()));
+    }
+
+    fn count_extremes(&mut self, extremes: Option<(u64, u64)>) {
+        self.extremes = match (self.extremes, extremes) {
+            (Some((least, most)), Some((less, more))) => Some((least.min(less), most.max(more))),
+            (one, other) => one.or(other),
+        };
+    }
+
+    fn count_dearest(&mut self, (moves, vertices): (u64, u64)) {
+        if self
+            .dearest
+            .is_none_or(|(most, of)| moves * of > most * vertices)
+        {
+            self.dearest = Some((moves, vertices));
+        }
+    }
+
+    /// Takes in what another part of the same check has seen, which comes later in its order.
+    pub fn merge(&mut self, later: Self) {
+        self.worlds += later.worlds;
+        self.starts += later.starts;
+        self.mapped += later.mapped;
+        self.moves_total += later.moves_total;
+        self.states += later.states;
+        self.runs = self.runs.saturating_add(later.runs);
+        self.interrupted |= later.interrupted;
+        self.count_extremes(later.extremes);
+        if later.moves_max() > self.moves_max() || self.worst.is_none() {
+            self.worst = later.worst;
+        }
+        if let Some(dearest) = later.dearest {
+            self.count_dearest(dearest);
+        }
+        if self.failure.is_none() {
+            self.failure = later.failure;
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The classes of worlds that can be enumerated.
+
+use std::{fmt, str::FromStr};
+
+use thiserror::Error;
+
+/// A class of embedded graphs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// All embedded graphs: loops and parallel edges allowed, any genus.
+    Multigraph,
+    /// No loops and no parallel edges; any genus.
+    Simple,
+    /// Simple, and no vertex of degree more than 3: dead ends, bends and T junctions.
+    Corridor,
+    /// Simple, and of genus 0.
+    Planar,
+}
+
+/// A name that no class has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{0}` is no class of worlds; there are multigraph, simple, corridor and planar")]
+pub struct UnknownClass(String);
+
+impl Class {
+    /// Every class.
+    pub const ALL: [Self; 4] = [Self::Multigraph, Self::Simple, Self::Corridor, Self::Planar];
+
+    /// The class's name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Multigraph => "multigraph",
+            Self::Simple => "simple",
+            Self::Corridor => "corridor",
+            Self::Planar => "planar",
+        }
+    }
+
+    /// Whether loops and parallel edges are forbidden.
+    #[must_use]
+    pub fn is_simple(self) -> bool {
+        self != Self::Multigraph
+    }
+
+    /// The highest degree that a vertex may have.
+    #[must_use]
+    pub fn max_degree(self) -> u32 {
+        if self == Self::Corridor { 3 } else { u32::MAX }
+    }
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+impl FromStr for Class {
+    type Err = UnknownClass;
+
+    fn from_str(name: &str) -> Result<Self, UnknownClass> {
+        let class = Self::ALL.into_iter().find(|class| class.name() == name);
+        class.ok_or_else(|| UnknownClass(name.to_owned()))
+    }
+}

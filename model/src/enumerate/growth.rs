@@ -1,0 +1,296 @@
+//! An embedded graph that grows, edge by edge, in the order in which a robot would meet its darts.
+
+use std::ops::ControlFlow;
+
+use super::{Class, Each, Found};
+use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+/// The most edges that a growth can have: its darts are the bits of a `u64`.
+pub(super) const MAX_EDGES: usize = 32;
+
+/// The most darts.
+pub(super) const DARTS: usize = 2 * MAX_EDGES;
+
+/// Stands as the opposite of a free dart.
+pub(super) const FREE: u8 = u8::MAX;
+
+/// A history of growth: the graph so far, and its code so far.
+#[derive(Clone, Debug)]
+pub(super) struct Growth {
+    class: Class,
+    each: Each,
+    /// The number of edges at the end.
+    target: usize,
+    /// The other end of each dart, or [`FREE`].
+    pub(super) opposite: [u8; DARTS],
+    pub(super) vertex: [u8; DARTS],
+    /// The first dart of each vertex, and its degree.
+    pub(super) first: [u8; MAX_EDGES + 1],
+    pub(super) degree: [u8; MAX_EDGES + 1],
+    /// The vertices, as bits, that are neighbours of each vertex.
+    adjacent: [u64; MAX_EDGES + 1],
+    vertices: usize,
+    darts: usize,
+    /// The free darts, as bits.
+    free: u64,
+    /// The code so far: a word an edge, as in `isomorphism::Code`, but in a byte.
+    pub(super) words: [u8; MAX_EDGES],
+    pub(super) edges: usize,
+    /// The darts, as bits, whose code so far is not yet greater than that of dart 0, but could
+    /// still become less. Dart 0 is not among them.
+    pub(super) rivals: u64,
+}
+
+/// The word of an edge to a new vertex.
+pub(super) fn new_vertex(degree: u8) -> u8 {
+    u8::MAX - degree
+}
+
+/// The numbers of the bits that are set, from the lowest.
+fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = (set != 0).then(|| set.trailing_zeros() as usize)?;
+        set &= set - 1;
+        Some(lowest)
+    })
+}
+
+impl Growth {
+    pub(super) fn new(class: Class, target: usize, each: Each) -> Self {
+        Self {
+            class,
+            each,
+            target,
+            opposite: [FREE; DARTS],
+            vertex: [0; DARTS],
+            first: [0; MAX_EDGES + 1],
+            degree: [0; MAX_EDGES + 1],
+            adjacent: [0; MAX_EDGES + 1],
+            vertices: 0,
+            darts: 0,
+            free: 0,
+            words: [0; MAX_EDGES],
+            edges: 0,
+            rivals: 0,
+        }
+    }
+
+    pub(super) fn edges_at_the_end(&self) -> usize {
+        self.target
+    }
+
+    /// Grows on in every way until there are `edges` edges, and shows each result.
+    pub(super) fn grow_to(
+        &mut self,
+        edges: usize,
+        visit: &mut impl FnMut(&Self) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if self.vertices > 0 {
+            return self.grow_edge(edges, visit);
+        }
+        for degree in (1..=self.highest_degree()).rev() {
+            if self.can_end(degree, self.target) {
+                self.add_vertex(degree);
+                self.grow_edge(edges, visit)?;
+                self.remove_vertex();
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The highest degree that the next vertex may have.
+    fn highest_degree(&self) -> usize {
+        let of_root = match self.each {
+            Each::World if self.vertices > 0 => self.degree[0] as usize,
+            _ => 2 * self.target,
+        };
+        of_root.min(self.class.max_degree() as usize)
+    }
+
+    /// Whether `free` free darts and `edges` edges to come can come out even: only the last edge
+    /// may leave no dart free, and each uses up two at most.
+    fn can_end(&self, free: usize, edges: usize) -> bool {
+        (free == 0) == (edges == 0) && free <= 2 * edges
+    }
+
+    fn grow_edge(
+        &mut self,
+        edges: usize,
+        visit: &mut impl FnMut(&Self) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if self.edges == edges {
+            return visit(self);
+        }
+        let dart = self.free.trailing_zeros() as usize;
+        let free = self.free.count_ones() as usize;
+        let left = self.target - self.edges - 1;
+        let rivals = self.rivals;
+        if self.can_end(free - 2.min(free), left) && free >= 2 {
+            for other in bits(self.partners(dart)) {
+                self.join(dart, other, other as u8);
+                if self.can_still_end(left) && self.may_be_least() {
+                    self.grow_edge(edges, visit)?;
+                }
+                self.rivals = rivals;
+                self.unjoin(dart, other);
+            }
+        }
+        for degree in (1..=self
+            .highest_degree()
+            .min(2 * left + 2 - free.min(2 * left + 2)))
+            .rev()
+        {
+            if self.can_end(free + degree - 2, left) {
+                let entry = self.darts;
+                self.add_vertex(degree);
+                self.join(dart, entry, new_vertex(degree as u8));
+                if self.can_still_end(left) && self.may_be_least() {
+                    self.grow_edge(edges, visit)?;
+                }
+                self.rivals = rivals;
+                self.unjoin(dart, entry);
+                self.remove_vertex();
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The free darts, as bits, to which the class lets a dart be joined.
+    fn partners(&self, dart: usize) -> u64 {
+        let mut partners = self.free & !(1 << dart);
+        if self.class.is_simple() {
+            let vertex = self.vertex[dart] as usize;
+            for neighbour in bits(self.adjacent[vertex] | 1 << vertex) {
+                partners &= !self.darts_of(neighbour);
+            }
+        }
+        if self.class == Class::Planar {
+            partners &= self.free_in_face(dart);
+        }
+        partners
+    }
+
+    fn darts_of(&self, vertex: usize) -> u64 {
+        (u64::MAX >> (DARTS - self.degree[vertex] as usize)) << self.first[vertex]
+    }
+
+    /// The free darts, as bits, that stick out into the same face as a free dart, and it too.
+    fn free_in_face(&self, dart: usize) -> u64 {
+        let mut found = 0;
+        let mut at = dart;
+        loop {
+            if self.opposite[at] == FREE {
+                found |= 1 << at;
+            } else {
+                at = self.opposite[at] as usize;
+            }
+            at = self.clockwise(at);
+            if at == dart {
+                return found;
+            }
+        }
+    }
+
+    /// Whether the class leaves a way to use up the free darts in `left` more edges. (A necessary
+    /// condition; that of [`can_end`](Self::can_end) has been checked.)
+    fn can_still_end(&self, left: usize) -> bool {
+        // As many edges as free darts are always enough: a dead end at each.
+        if !self.class.is_simple() || self.free.count_ones() as usize <= left {
+            return true;
+        }
+        if self.class == Class::Planar {
+            let mut unseen = self.free;
+            let mut needed = 0;
+            while unseen != 0 {
+                let face = self.free_in_face(unseen.trailing_zeros() as usize);
+                unseen &= !face;
+                needed += self.edges_needed(face);
+            }
+            needed <= left
+        } else {
+            self.edges_needed(self.free) <= left
+        }
+    }
+
+    /// The least number of edges that can use up these free darts, if none may be joined to one at
+    /// its own vertex.
+    fn edges_needed(&self, free: u64) -> usize {
+        let most_at_one = (0..self.vertices)
+            .map(|v| (free & self.darts_of(v)).count_ones())
+            .max();
+        free.count_ones().div_ceil(2).max(most_at_one.unwrap_or(0)) as usize
+    }
+
+    pub(super) fn clockwise(&self, dart: usize) -> usize {
+        let vertex = self.vertex[dart] as usize;
+        let first = self.first[vertex] as usize;
+        if dart + 1 == first + self.degree[vertex] as usize {
+            first
+        } else {
+            dart + 1
+        }
+    }
+
+    fn add_vertex(&mut self, degree: usize) {
+        let new = self.vertices;
+        self.first[new] = self.darts as u8;
+        self.degree[new] = degree as u8;
+        self.adjacent[new] = 0;
+        self.vertex[self.darts..self.darts + degree].fill(new as u8);
+        self.vertices += 1;
+        self.darts += degree;
+        self.free |= self.darts_of(new);
+        // Only a vertex with as many darts can rival the start, and dart 0 is no rival to itself.
+        if self.each == Each::World && degree == self.degree[0] as usize {
+            self.rivals |= self.darts_of(new) & !1;
+        }
+    }
+
+    fn remove_vertex(&mut self) {
+        self.vertices -= 1;
+        let darts = self.darts_of(self.vertices);
+        self.free &= !darts;
+        self.rivals &= !darts;
+        self.darts -= self.degree[self.vertices] as usize;
+    }
+
+    fn join(&mut self, one: usize, other: usize, word: u8) {
+        self.opposite[one] = other as u8;
+        self.opposite[other] = one as u8;
+        self.free &= !(1 << one | 1 << other);
+        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
+        self.adjacent[from] |= 1 << to;
+        self.adjacent[to] |= 1 << from;
+        self.words[self.edges] = word;
+        self.edges += 1;
+    }
+
+    fn unjoin(&mut self, one: usize, other: usize) {
+        self.opposite[one] = FREE;
+        self.opposite[other] = FREE;
+        self.free |= 1 << one | 1 << other;
+        let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
+        self.adjacent[from] &= !(1 << to);
+        self.adjacent[to] &= !(1 << from);
+        self.edges -= 1;
+    }
+
+    /// Shows a finished growth as an embedded graph, made in the memory of the one before.
+    pub(super) fn show(
+        &self,
+        graph: &mut EmbeddedGraph,
+        visit: &mut impl FnMut(Found) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        graph.clear();
+        for &degree in &self.degree[..self.vertices] {
+            graph.add_vertex(u32::from(degree));
+        }
+        for (dart, &other) in self.opposite[..self.darts].iter().enumerate() {
+            graph.join(Dart(dart as u32), Dart(u32::from(other)));
+        }
+        visit(Found {
+            graph,
+            automorphisms: self.rivals.count_ones() + 1,
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! Every start and every embedded graph of a size, once, in a fixed order, in constant memory.
+//!
+//! Darts are numbered in the order in which a robot meets them (see [`code`](crate::isomorphism)):
+//! the lowest dart with a free end is joined to a later free dart, or to the first dart of a new
+//! vertex. Each start has exactly one such history, so nothing is made twice and nothing is thrown
+//! away. An embedded graph is taken at its least start; a history that cannot become least is given
+//! up as soon as that shows.
+
+mod class;
+mod growth;
+mod rivals;
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+pub use class::{Class, UnknownClass};
+
+use crate::embedded_graph::EmbeddedGraph;
+use growth::{Growth, MAX_EDGES};
+
+/// What is enumerated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Each {
+    /// Every start, once; its facing dart is dart 0.
+    Start,
+    /// Every embedded graph up to isomorphism, once; dart 0 is the facing dart of its least start.
+    World,
+}
+
+/// All starts, or all embedded graphs up to isomorphism, of a class and a number of edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Enumeration {
+    class: Class,
+    edges: usize,
+    each: Each,
+}
+
+/// A number of edges for which there is nothing to enumerate, or too much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum SizeError {
+    /// No edges.
+    #[error("a world has at least one edge")]
+    NoEdge,
+    /// More than the enumeration can hold, and than anyone could wait for.
+    #[error("worlds with {0} edges are too many to enumerate; the limit is {MAX_EDGES}")]
+    TooManyEdges(usize),
+}
+
+/// What the enumeration shows at each step.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<'g> {
+    /// The embedded graph; darts are numbered as met from the start, which faces dart 0.
+    pub graph: &'g EmbeddedGraph,
+    /// The number of its automorphisms, when worlds are enumerated; 1 when starts are.
+    pub automorphisms: u32,
+}
+
+/// A part of an enumeration: all histories that begin alike. The parts are disjoint, and together
+/// they are the whole.
+#[derive(Clone, Debug)]
+pub struct Part(Growth);
+
+/// How many edges the beginnings that separate the parts have.
+const BEGINNING: usize = 4;
+
+impl Enumeration {
+    /// An enumeration of a class.
+    ///
+    /// # Errors
+    /// Where the number of edges is 0 or more than 32.
+    pub fn new(each: Each, class: Class, edges: usize) -> Result<Self, SizeError> {
+        match edges {
+            0 => Err(SizeError::NoEdge),
+            _ if edges > MAX_EDGES => Err(SizeError::TooManyEdges(edges)),
+            _ => Ok(Self { class, edges, each }),
+        }
+    }
+
+    /// The parts of the enumeration, in its order; they do not depend on who works on them.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Part> {
+        let mut parts = Vec::new();
+        let beginning = BEGINNING.min(self.edges);
+        let _ = Growth::new(self.class, self.edges, self.each).grow_to(beginning, &mut |growth| {
+            parts.push(Part(growth.clone()));
+            ControlFlow::Continue(())
+        });
+        parts
+    }
+
+    /// Shows everything, in order, until `visit` breaks off.
+    pub fn for_each(&self, visit: &mut impl FnMut(Found) -> ControlFlow<()>) -> ControlFlow<()> {
+        let mut graph = EmbeddedGraph::unfinished();
+        let mut whole = Growth::new(self.class, self.edges, self.each);
+        whole.grow_to(self.edges, &mut |growth| growth.show(&mut graph, visit))
+    }
+}
+
+impl Part {
+    /// Shows all that belongs to the part, in order, until `visit` breaks off.
+    pub fn for_each(&self, visit: &mut impl FnMut(Found) -> ControlFlow<()>) -> ControlFlow<()> {
+        let mut graph = EmbeddedGraph::unfinished();
+        let mut growth = self.0.clone();
+        let edges = growth.edges_at_the_end();
+        growth.grow_to(edges, &mut |growth| growth.show(&mut graph, visit))
+    }
+}

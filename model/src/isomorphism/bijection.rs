@@ -1,0 +1,99 @@
+//! The witness of an isomorphism: a bijection of darts, and its verifier.
+
+use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+/// Where each dart of one embedded graph goes in another.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Bijection(Vec<Dart>);
+
+/// Stands as the image of a dart that has none yet.
+const NONE: Dart = Dart(u32::MAX);
+
+impl Bijection {
+    /// The given images, in the order of the darts' numbers; [`verify`](Self::verify) tells whether
+    /// they are an isomorphism.
+    #[must_use]
+    pub fn claimed(images: Vec<Dart>) -> Self {
+        Self(images)
+    }
+
+    /// The only candidate for an isomorphism of two starts: facing goes to facing, and whatever
+    /// stands clockwise from a dart, or opposite to it, goes to what stands so from its image.
+    /// [`verify`](Self::verify) tells whether it is one. Linear time.
+    #[must_use]
+    pub fn of_starts(from: (&EmbeddedGraph, Dart), to: (&EmbeddedGraph, Dart)) -> Self {
+        let mut candidate = Candidate::default();
+        candidate.of_starts(from, to);
+        candidate.bijection
+    }
+
+    /// Where the dart goes; `None` for a dart beyond those that the bijection speaks of.
+    #[must_use]
+    pub fn image(&self, dart: Dart) -> Option<Dart> {
+        self.0.get(dart.at()).copied()
+    }
+
+    /// Where each dart goes, in the order of their numbers.
+    #[must_use]
+    pub fn images(&self) -> &[Dart] {
+        &self.0
+    }
+
+    /// Whether this is an isomorphism from one embedded graph to the other. Knows nothing of how it
+    /// was found.
+    ///
+    /// It looks at every dart: that its image exists, and that `opposite` and `clockwise` are kept.
+    /// This makes it a bijection too: the images are closed under both, so in a connected graph they
+    /// are all of its darts, and there are as many of the one as of the other.
+    #[must_use]
+    pub fn verify(&self, from: &EmbeddedGraph, to: &EmbeddedGraph) -> bool {
+        from.dart_count() == to.dart_count()
+            && self.0.len() == from.dart_count()
+            && self.0.iter().all(|image| image.at() < to.dart_count())
+            && from.darts().all(|dart| {
+                let image = self.0[dart.at()];
+                self.0[from.opposite(dart).at()] == to.opposite(image)
+                    && self.0[from.clockwise(dart).at()] == to.clockwise(image)
+            })
+    }
+}
+
+/// Makes one candidate bijection after another in the same memory.
+#[derive(Clone, Debug, Default)]
+pub struct Candidate {
+    /// The latest candidate.
+    pub bijection: Bijection,
+    /// The darts that have an image, in the order in which they got it.
+    reached: Vec<Dart>,
+}
+
+impl Candidate {
+    /// [`Bijection::of_starts`], in the memory of the candidate before.
+    pub fn of_starts(
+        &mut self,
+        (from, facing): (&EmbeddedGraph, Dart),
+        (to, facing_image): (&EmbeddedGraph, Dart),
+    ) -> &Bijection {
+        let image = &mut self.bijection.0;
+        image.clear();
+        image.resize(from.dart_count(), NONE);
+        image[facing.at()] = facing_image;
+        self.reached.clear();
+        self.reached.push(facing);
+        let mut next = 0;
+        while let Some(&dart) = self.reached.get(next) {
+            next += 1;
+            let at = image[dart.at()];
+            for (neighbour, its_image) in [
+                (from.clockwise(dart), to.clockwise(at)),
+                (from.opposite(dart), to.opposite(at)),
+            ] {
+                if image[neighbour.at()] == NONE {
+                    image[neighbour.at()] = its_image;
+                    self.reached.push(neighbour);
+                }
+            }
+        }
+        &self.bijection
+    }
+}

@@ -1,0 +1,106 @@
+//! The code of a start: equal for two starts exactly when they are isomorphic. Linear time.
+//!
+//! The darts are numbered as a robot meets them: those of the start vertex clockwise from the
+//! facing dart; then, dart by dart, the other end of its edge, and if that is at a vertex not met
+//! before, the darts there, clockwise from it. The code is what is found at each dart in turn.
+
+use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+/// The code of a start: the degree of the start vertex and then, for each edge in the order in
+/// which it is met, a word for where it leads.
+///
+/// The order of codes is lexicographic. A lead to a dart already met (the lower its number the
+/// less) is less than a lead to a new vertex, and a vertex of higher degree is less than one of
+/// lower degree.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Code(pub(super) Vec<u32>);
+
+impl Code {
+    /// The words of the code: `u32::MAX - degree` for the start vertex; then for each edge the
+    /// number of its second dart, or `u32::MAX - degree` where that is at a new vertex.
+    #[must_use]
+    pub fn words(&self) -> &[u32] {
+        &self.0
+    }
+}
+
+/// The word for a vertex met for the first time.
+fn new_vertex(degree: u32) -> u32 {
+    u32::MAX - degree
+}
+
+/// The code of a start. Linear time.
+// paper: world.unlabelled
+#[must_use]
+pub fn code(graph: &EmbeddedGraph, facing: Dart) -> Code {
+    let mut numbering = Numbering::new(graph);
+    numbering.begin(graph, facing);
+    let root = new_vertex(graph.degree(graph.vertex(facing)));
+    let mut words = Vec::with_capacity(graph.edge_count() + 1);
+    words.push(root);
+    words.extend(std::iter::from_fn(|| numbering.next_word(graph)));
+    Code(words)
+}
+
+/// The numbering of a graph's darts from a start, made one edge at a time. Can be begun again
+/// without clearing.
+pub(super) struct Numbering {
+    /// The darts in the order in which they are met.
+    pub(super) order: Vec<Dart>,
+    /// The number of each dart, valid where `stamp` is current.
+    number: Vec<u32>,
+    stamp: Vec<u32>,
+    current: u32,
+    /// How many darts of `order` have been looked behind.
+    done: usize,
+}
+
+impl Numbering {
+    pub(super) fn new(graph: &EmbeddedGraph) -> Self {
+        Self {
+            order: Vec::with_capacity(graph.dart_count()),
+            number: vec![0; graph.dart_count()],
+            stamp: vec![0; graph.dart_count()],
+            current: 0,
+            done: 0,
+        }
+    }
+
+    /// Starts anew, and answers the first word.
+    pub(super) fn begin(&mut self, graph: &EmbeddedGraph, facing: Dart) -> u32 {
+        // One numbering is begun at most once for each of fewer than 2^32 darts.
+        self.current += 1;
+        self.order.clear();
+        self.done = 0;
+        self.meet(graph, facing)
+    }
+
+    fn meet(&mut self, graph: &EmbeddedGraph, entry: Dart) -> u32 {
+        let mut dart = entry;
+        let degree = graph.degree(graph.vertex(entry));
+        for _ in 0..degree {
+            self.number[dart.at()] = self.order.len() as u32;
+            self.stamp[dart.at()] = self.current;
+            self.order.push(dart);
+            dart = graph.clockwise(dart);
+        }
+        new_vertex(degree)
+    }
+
+    /// The word of the next edge; `None` after the last.
+    pub(super) fn next_word(&mut self, graph: &EmbeddedGraph) -> Option<u32> {
+        while self.done < self.order.len() {
+            let this = self.done;
+            self.done += 1;
+            let other = graph.opposite(self.order[this]);
+            if self.stamp[other.at()] != self.current {
+                return Some(self.meet(graph, other));
+            }
+            let number = self.number[other.at()];
+            if number as usize > this {
+                return Some(number);
+            }
+        }
+        None
+    }
+}

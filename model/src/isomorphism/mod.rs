@@ -1,0 +1,169 @@
+//! When two worlds are the same: codes of starts, canonical forms, automorphisms, bijections.
+//! Section 2.1 ("isomorphic" in the sense of the paper's [8]).
+
+mod bijection;
+mod canonical;
+mod code;
+mod compare;
+
+pub use bijection::{Bijection, Candidate};
+pub use canonical::{Canonical, canonical};
+pub use code::{Code, code};
+pub use compare::{Difference, isomorphism, mirror_isomorphism};
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::embedded_graph::{Dart, EmbeddedGraph};
+
+    /// A world with `edges` edges, decided by the numbers: each joins two free places or opens a
+    /// vertex.
+    fn arbitrary_graph(edges: usize) -> impl Strategy<Value = EmbeddedGraph> {
+        let pairs = Just((0..2 * edges as u32).collect::<Vec<_>>()).prop_shuffle();
+        let cycles = Just((0..2 * edges as u32).collect::<Vec<_>>()).prop_shuffle();
+        (pairs, cycles).prop_filter_map("not connected", |(pairs, clockwise)| {
+            let mut opposite = vec![0; pairs.len()];
+            for pair in pairs.chunks(2) {
+                opposite[pair[0] as usize] = pair[1];
+                opposite[pair[1] as usize] = pair[0];
+            }
+            EmbeddedGraph::from_permutations(&opposite, &clockwise)
+                .ok()
+                .map(|(graph, _)| graph)
+        })
+    }
+
+    fn relabelled() -> impl Strategy<Value = (EmbeddedGraph, EmbeddedGraph, Vec<Dart>)> {
+        (1..12usize)
+            .prop_flat_map(arbitrary_graph)
+            .prop_flat_map(|graph| {
+                let order = Just(graph.vertices().collect::<Vec<_>>()).prop_shuffle();
+                let turns = proptest::collection::vec(0..64u32, graph.vertex_count());
+                (order, turns).prop_map(move |(order, turns)| {
+                    let firsts: Vec<_> = order
+                        .iter()
+                        .zip(turns)
+                        .map(|(&v, turn)| graph.dart(v, turn % graph.degree(v)).unwrap())
+                        .collect();
+                    let (copy, number) = graph.relabelled(&firsts).unwrap();
+                    (graph.clone(), copy, number)
+                })
+            })
+    }
+
+    /// The number of automorphisms, one candidate after the other.
+    fn automorphisms_by_trial(graph: &EmbeddedGraph) -> usize {
+        graph
+            .darts()
+            .filter(|&dart| {
+                Bijection::of_starts((graph, Dart(0)), (graph, dart)).verify(graph, graph)
+            })
+            .count()
+    }
+
+    proptest! {
+        #[test]
+        fn a_relabelled_copy_is_recognised((graph, copy, number) in relabelled()) {
+            prop_assert!(isomorphism(&graph, &copy).unwrap().verify(&graph, &copy));
+            for dart in graph.darts() {
+                prop_assert_eq!(code(&graph, dart), code(&copy, number[dart.at()]));
+            }
+        }
+
+        #[test]
+        fn starts_have_the_same_code_exactly_when_the_bijection_verifies(
+            graph in (1..6usize).prop_flat_map(arbitrary_graph),
+            other in (1..6usize).prop_flat_map(arbitrary_graph),
+        ) {
+            for dart in other.darts() {
+                let bijection = Bijection::of_starts((&graph, Dart(0)), (&other, dart));
+                prop_assert_eq!(
+                    code(&graph, Dart(0)) == code(&other, dart),
+                    bijection.verify(&graph, &other)
+                );
+            }
+        }
+
+        #[test]
+        fn the_least_start_is_the_least_and_its_orbit_counts_the_automorphisms(
+            graph in (1..9usize).prop_flat_map(arbitrary_graph),
+        ) {
+            let form = canonical(&graph);
+            let codes: Vec<_> = graph.darts().map(|dart| code(&graph, dart)).collect();
+            prop_assert_eq!(&form.code, codes.iter().min().unwrap());
+            prop_assert_eq!(form.automorphisms, automorphisms_by_trial(&graph));
+            for one in graph.darts() {
+                for other in graph.darts() {
+                    prop_assert_eq!(
+                        form.orbit[one.at()] == form.orbit[other.at()],
+                        codes[one.at()] == codes[other.at()]
+                    );
+                }
+            }
+        }
+
+        #[test]
+        fn the_mirror_image_is_named(graph in (1..12usize).prop_flat_map(arbitrary_graph)) {
+            let bijection = mirror_isomorphism(&graph, &graph.mirror_image()).unwrap();
+            prop_assert!(bijection.verify(&graph, &graph));
+        }
+    }
+
+    #[test]
+    fn the_verifier_rejects_an_altered_bijection() {
+        let lists = [("u", vec!["a", "b", "c"]), ("v", vec!["c", "b", "a"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let right = isomorphism(&graph, &graph).unwrap();
+        assert!(right.clone().verify(&graph, &graph));
+        for place in 0..6 {
+            for wrong in (0..8)
+                .map(Dart)
+                .filter(|&dart| dart != right.images()[place])
+            {
+                let mut images = right.images().to_vec();
+                images[place] = wrong;
+                assert!(!Bijection::claimed(images).verify(&graph, &graph));
+            }
+        }
+        assert!(!Bijection::claimed(Vec::new()).verify(&graph, &graph));
+    }
+
+    #[test]
+    fn each_difference_is_named() {
+        let graph = |lists: &[(&'static str, &[&'static str])]| {
+            let owned: Vec<_> = lists
+                .iter()
+                .map(|(name, list)| (*name, list.to_vec()))
+                .collect();
+            EmbeddedGraph::from_edge_lists(&owned).unwrap()
+        };
+        let difference = |one: &EmbeddedGraph, other: &EmbeddedGraph| {
+            isomorphism(one, other).unwrap_err().to_string()
+        };
+        let edge = graph(&[("u", &["a"]), ("v", &["a"])]);
+        let plane = graph(&[("u", &["a", "a", "b", "b"])]);
+        let torus = graph(&[("u", &["a", "b", "a", "b"])]);
+        let path = graph(&[("u", &["a"]), ("v", &["a", "b"]), ("w", &["b"])]);
+        let pan = graph(&[("u", &["a", "a", "b"]), ("v", &["b"])]);
+        let two = graph(&[("u", &["a", "b"]), ("v", &["a", "b"])]);
+        assert_eq!(difference(&edge, &plane), "1 edges against 2");
+        assert_eq!(difference(&path, &two), "3 vertices against 2");
+        assert_eq!(difference(&pan, &two), "1 vertices of degree 3 against 0");
+        assert_eq!(difference(&plane, &torus), "genus 0 against 1");
+        let left = graph(&[
+            ("u", &["a", "b", "c"]),
+            ("v", &["a"]),
+            ("w", &["b", "d"]),
+            ("x", &["d"]),
+            ("y", &["c", "e"]),
+            ("z", &["e", "f"]),
+            ("t", &["f"]),
+        ]);
+        assert_eq!(
+            difference(&left, &left.mirror_image()),
+            "the orders around the vertices differ"
+        );
+    }
+}

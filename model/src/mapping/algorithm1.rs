@@ -1,0 +1,106 @@
+//! Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
+//!
+//! The numbers are those of the printed lines. The state, and the small steps that are taken here,
+//! are [`Exploration`]'s.
+
+use super::{Choices, Event, Exploration, MappingError, Observer};
+use crate::{embedded_graph::Dart, world::World};
+
+/// How the trial of a hypothesis ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The percepts did not match; the robot is back where it was.
+    Rejected,
+    /// The percepts matched throughout; the robot stands at the marker.
+    Confirmed,
+}
+
+/// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing
+/// door. Afterwards `exploration` holds the map, where the robot is in it and how many moves it
+/// made; [`Exploration::map`] is then [complete](super::PartialMap::complete).
+///
+/// # Errors
+/// The world's own; a contradiction, where no world could be so; or more known darts than the
+/// bound of the exploration. The exploration then tells how far it came.
+pub fn map_world<W: World>(
+    world: &mut W,
+    choices: &mut impl Choices,
+    exploration: &mut Exploration,
+    observer: &mut impl Observer,
+) -> Result<(), MappingError<W::Error>> {
+    // 1, 2, 3: the marker lies at v0; S is v0; U is its edges. paper: alg1.1, alg1.2, alg1.3
+    exploration.begin(world, observer)?;
+    // 4: while U is not empty.
+    while !exploration.map().unexplored_is_empty() {
+        // 5: remove an unexplored edge e from U.
+        let Some(edge) = exploration.next_edge(choices) else {
+            break;
+        };
+        // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
+        exploration.explore(edge, world, observer)?;
+        let mut confirmed = None;
+        // 8, 9: while H is not empty, remove a hypothesis from it.
+        while let Some(hypothesis) = exploration.next_hypothesis(choices) {
+            // 10 to 17: exit the loop when one is confirmed.
+            if try_path(exploration, hypothesis, world, observer)? == Verdict::Confirmed {
+                confirmed = Some(hypothesis);
+                break;
+            }
+        }
+        match confirmed {
+            // 18, 19, 20: a loop was closed.
+            Some(hypothesis) => exploration.close_loop(hypothesis, observer),
+            // 21, 22, 23: vu is a new place.
+            None => exploration.add_place(observer)?,
+        }
+    }
+    // S is the map.
+    Ok(())
+}
+
+/// Lines 10 to 17: follows the path that leads to the marker if the hypothesis is true, for as long
+/// as the robot perceives along it what it should.
+///
+/// # Errors
+/// The world's own, or a contradiction on the way back.
+pub fn try_path<W: World>(
+    exploration: &mut Exploration,
+    hypothesis: Dart,
+    world: &mut W,
+    observer: &mut impl Observer,
+) -> Result<Verdict, MappingError<W::Error>> {
+    exploration.set_out();
+    let mut pose = hypothesis;
+    let mut followed = 0;
+    // 10: the motions of the path to v0, and the percepts expected along it.
+    while let Some((door, next)) = exploration.toward_marker(pose) {
+        let expected = exploration.map().expected(next);
+        // 11: try to traverse it.
+        let perceived = exploration.take(door, world, observer)?;
+        followed += 1;
+        // 12, 13: the percepts do not match.
+        if perceived != expected {
+            // 14, 15: reject the hypothesis, and retrace the path back to vu.
+            exploration.retrace(world, observer)?;
+            let event = Event::Rejected {
+                hypothesis,
+                followed,
+                expected,
+                perceived,
+            };
+            observer.event(exploration, event);
+            return Ok(Verdict::Rejected);
+        }
+        pose = next;
+    }
+    // 16, 17: the percepts match throughout; confirm the hypothesis.
+    exploration.arrive_at_marker(pose);
+    observer.event(
+        exploration,
+        Event::Confirmed {
+            hypothesis,
+            followed,
+        },
+    );
+    Ok(Verdict::Confirmed)
+}

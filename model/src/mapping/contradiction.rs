@@ -1,0 +1,110 @@
+//! How a world can fail Algorithm 1: it breaks, it contradicts itself, or it has no end.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::{
+    embedded_graph::Vertex,
+    percept::{Percept, Sighting},
+};
+
+/// Why a map could not be made.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MappingError<E> {
+    /// Sensing or moving failed.
+    #[error(transparent)]
+    World(E),
+    /// What was perceived cannot be so in any world.
+    #[error("the world contradicts itself: {0}")]
+    Contradiction(Contradiction),
+    /// More darts are known than the bound allows.
+    #[error("more than {bound} darts (edge ends) are known and there is no end in sight")]
+    Bound {
+        /// The bound.
+        bound: usize,
+    },
+}
+
+impl<E> From<Contradiction> for MappingError<E> {
+    fn from(contradiction: Contradiction) -> Self {
+        Self::Contradiction(contradiction)
+    }
+}
+
+/// A percept that cannot be, after all that was perceived before. Vertices and darts are those of
+/// the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Contradiction {
+    /// At the start the marker must be seen pointing along door 0.
+    #[error(
+        "at the start the marker must point along door 0, but there is {}",
+        Seen(perceived)
+    )]
+    Start {
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// A vertex with no door, or a marker that points along a door that is not there.
+    #[error("no vertex looks like this: {}", Seen(perceived))]
+    Impossible {
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// A known place looks different on the way to an unexplored edge.
+    #[error(
+        "at the known vertex v{}, entered by its dart {index}, there should be {} but there is {}",
+        vertex.0, Seen(expected), Seen(perceived)
+    )]
+    KnownPlace {
+        /// The vertex.
+        vertex: Vertex,
+        /// The index of the dart by which it was entered.
+        index: u32,
+        /// What the map says.
+        expected: Percept,
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// The marker is seen at the far end of an unexplored edge, where no unexplored dart of the
+    /// marked vertex agrees with it.
+    #[error(
+        "behind the unexplored dart {index} of vertex v{} there is {}, which agrees with no \
+         unexplored dart of the marked vertex",
+        vertex.0, Seen(perceived)
+    )]
+    Marker {
+        /// The vertex from which the unexplored edge left.
+        vertex: Vertex,
+        /// The index of its dart.
+        index: u32,
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// A place looks different on the way back from a rejected hypothesis.
+    #[error(
+        "on the way back there should be {} but there is {}",
+        Seen(expected),
+        Seen(perceived)
+    )]
+    WayBack {
+        /// What was perceived there on the way out, turned to the new entry.
+        expected: Percept,
+        /// What was perceived on the way back.
+        perceived: Percept,
+    },
+}
+
+/// A percept in words.
+struct Seen<'p>(&'p Percept);
+
+impl fmt::Display for Seen<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Percept { degree, sighting } = self.0;
+        write!(out, "degree {degree} ")?;
+        match sighting {
+            Sighting::Nothing => write!(out, "without the marker"),
+            Sighting::Pointing(door) => write!(out, "with the marker along door {}", door.0),
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! The state of Algorithm 1, and the small steps of which it is made. Section 2.3.
+//!
+//! A plain value: whoever wants to try every way clones it, at line 4 or at line 8, together with
+//! the world. All memory is kept from run to run.
+
+use std::{cmp::Reverse, mem};
+
+use super::{Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, Tree};
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    percept::{Door, Percept, Sighting, retrace},
+    world::World,
+};
+
+/// How many darts may be known before a run is given up, where nobody says otherwise: a world of
+/// more than 8,000 edges, or one without end.
+pub const DEFAULT_DART_BOUND: usize = 1 << 14;
+
+/// The state of a run of Algorithm 1: what the robot knows, where it is, and how far it went.
+#[derive(Clone, Debug)]
+pub struct Exploration {
+    bound: usize,
+    moves: u64,
+    map: PartialMap,
+    /// The dart of the map by which the robot has come in; between lines 6 and 17, when it is at no
+    /// known place, the last such.
+    robot: Dart,
+    here: Here,
+    /// The known end of the edge that is being explored.
+    edge: Dart,
+    /// What the robot perceived at its unknown end.
+    arrival: Percept,
+    /// H, from the farthest to the nearest.
+    hypotheses: Vec<Dart>,
+    /// The percept at each vertex left since setting out, and the door by which it was left.
+    trail: Vec<(Percept, Door)>,
+    from_robot: Tree,
+    to_marker: Tree,
+    /// Whether `to_marker` is that of the present map.
+    to_marker_is_current: bool,
+    /// Scratch: the darts on the way to the known end of the edge.
+    way: Vec<Dart>,
+}
+
+/// How the robot stands where it is.
+#[derive(Clone, Copy, Debug)]
+struct Here {
+    /// What it perceives, with doors counted from its reference dart.
+    percept: Percept,
+    /// The door, counted from the reference dart, by which it has really come in. It differs from
+    /// [`Door::BACK`] when the robot is back from a rejected hypothesis.
+    entry: Door,
+}
+
+const NOWHERE: Percept = Percept {
+    degree: 0,
+    sighting: Sighting::Nothing,
+};
+
+impl Exploration {
+    /// A state ready for a run that may come to know at most `bound` darts.
+    #[must_use]
+    pub fn new(bound: usize) -> Self {
+        Self {
+            bound,
+            moves: 0,
+            map: PartialMap::new(),
+            robot: FACING,
+            here: Here {
+                percept: NOWHERE,
+                entry: Door::BACK,
+            },
+            edge: FACING,
+            arrival: NOWHERE,
+            hypotheses: Vec::new(),
+            trail: Vec::new(),
+            from_robot: Tree::default(),
+            to_marker: Tree::default(),
+            to_marker_is_current: false,
+            way: Vec::new(),
+        }
+    }
+
+    /// Changes how many darts later runs may come to know.
+    pub fn set_bound(&mut self, bound: usize) {
+        self.bound = bound;
+    }
+
+    /// The map S, with the unexplored edges U.
+    #[inline]
+    #[must_use]
+    pub fn map(&self) -> &PartialMap {
+        &self.map
+    }
+
+    /// The robot's pose in the map: the dart by which it has come in. At line 8, when it is at no
+    /// known place, the last known one.
+    #[inline]
+    #[must_use]
+    pub fn robot(&self) -> Dart {
+        self.robot
+    }
+
+    /// The moves made so far.
+    #[inline]
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.moves
+    }
+
+    /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would
+    /// have come in, from the farthest from the marker to the nearest.
+    #[must_use]
+    pub fn hypotheses(&self) -> &[Dart] {
+        &self.hypotheses
+    }
+
+    /// Lines 1 to 3: the directional marker lies at v0, S is v0, and U is its edges.
+    ///
+    /// # Errors
+    /// The world's own; where the marker is not seen as it must be; the bound.
+    // paper: alg1.1, alg1.2, alg1.3
+    pub fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.moves = 0;
+        self.map.clear();
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
+            return Err(Contradiction::Start { perceived: percept }.into());
+        }
+        self.check_bound(percept.degree)?;
+        let start = self.map.add_vertex(percept.degree);
+        self.stand_at(FACING, percept);
+        self.to_marker.plant(&self.map, start);
+        self.to_marker_is_current = true;
+        observer.event(self, Event::Started { percept });
+        Ok(())
+    }
+
+    /// Line 5: the edge to explore next, as chosen; `None` if all is explored.
+    // paper: alg1.5
+    pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        self.from_robot
+            .plant(&self.map, self.map.vertex(self.robot));
+        choices.next_edge(&self.map, &mut self.from_robot)
+    }
+
+    /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
+    /// to its unknown end, and raises the hypotheses about that: each unexplored dart by which the
+    /// robot may have come in, but those that its percept contradicts at once.
+    ///
+    /// # Errors
+    /// The world's own; where a known place is not as it was, or the marker appears where it cannot
+    /// be.
+    // paper: alg1.6, alg1.7
+    pub fn explore<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.set_out();
+        let mut way = mem::take(&mut self.way);
+        self.from_robot
+            .path_from_root(&self.map, self.map.vertex(edge), &mut way);
+        for &dart in &way {
+            let Some(next) = self.map.opposite(dart) else {
+                break;
+            };
+            let perceived = self.take(self.map.door(self.robot, dart), world, observer)?;
+            let expected = self.map.expected(next);
+            if perceived != expected {
+                let (vertex, index) = (self.map.vertex(next), self.map.index(next));
+                return Err(Contradiction::KnownPlace {
+                    vertex,
+                    index,
+                    expected,
+                    perceived,
+                }
+                .into());
+            }
+            self.robot = next;
+        }
+        self.way = way;
+        let arrival = self.take(self.map.door(self.robot, edge), world, observer)?;
+        self.edge = edge;
+        self.arrival = arrival;
+        self.raise_hypotheses()?;
+        let hypotheses = self.hypotheses.len();
+        let contradicted = self.map.unexplored_count() as usize - 1 - hypotheses;
+        let event = Event::Arrived {
+            edge,
+            percept: arrival,
+            contradicted,
+            hypotheses,
+        };
+        observer.event(self, event);
+        Ok(())
+    }
+
+    fn raise_hypotheses(&mut self) -> Result<(), Contradiction> {
+        let Self {
+            map,
+            arrival,
+            hypotheses,
+            edge,
+            ..
+        } = self;
+        hypotheses.clear();
+        for vertex in map.vertices() {
+            if map.is_frontier(vertex) && map.degree(vertex) == arrival.degree {
+                let darts = map.unexplored_at(vertex);
+                hypotheses
+                    .extend(darts.filter(|dart| dart != edge && map.expected(*dart) == *arrival));
+            }
+        }
+        if hypotheses.is_empty() {
+            let (vertex, index) = (map.vertex(*edge), map.index(*edge));
+            let perceived = *arrival;
+            return match perceived.sighting {
+                Sighting::Nothing => Ok(()),
+                Sighting::Pointing(_) => Err(Contradiction::Marker {
+                    vertex,
+                    index,
+                    perceived,
+                }),
+            };
+        }
+        if !mem::replace(&mut self.to_marker_is_current, true) {
+            self.to_marker.plant(map, Vertex(0));
+            self.to_marker.grow_whole(map);
+        }
+        let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));
+        hypotheses.sort_unstable_by_key(|&dart| Reverse((hops(dart), dart)));
+        Ok(())
+    }
+
+    /// Lines 8 and 9: removes the hypothesis chosen next from H; `None` when H is empty.
+    // paper: alg1.8, alg1.9
+    pub fn next_hypothesis(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        if self.hypotheses.is_empty() {
+            return None;
+        }
+        let chosen = choices.next_hypothesis(&self.map, &self.hypotheses);
+        Some(self.hypotheses.remove(chosen))
+    }
+
+    /// Line 10, one step at a time: the door towards the marker for a robot that came in by the
+    /// dart `pose` of the map, and the pose behind it; `None` at the marked vertex.
+    // paper: alg1.10
+    #[inline]
+    #[must_use]
+    pub fn toward_marker(&self, pose: Dart) -> Option<(Door, Dart)> {
+        self.to_marker.toward_root(&self.map, pose)
+    }
+
+    /// Begins a path that can be retraced.
+    #[inline]
+    pub fn set_out(&mut self) {
+        self.trail.clear();
+    }
+
+    /// Makes one move, and answers what the robot perceives after it.
+    ///
+    /// # Errors
+    /// The world's own; a percept that no vertex can give.
+    #[inline]
+    pub fn take<W: World>(
+        &mut self,
+        door: Door,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        let Here { percept, entry } = self.here;
+        self.trail.push((percept, door));
+        let perceived = self.go(door.seen_from(entry, percept.degree), world, observer)?;
+        self.here = Here {
+            percept: perceived,
+            entry: Door::BACK,
+        };
+        Ok(perceived)
+    }
+
+    #[inline]
+    fn go<W: World>(
+        &mut self,
+        door: Door,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        world.traverse(door).map_err(MappingError::World)?;
+        self.moves += 1;
+        let percept = world.percept().map_err(MappingError::World)?;
+        let possible = match percept.sighting {
+            Sighting::Nothing => percept.degree > 0,
+            Sighting::Pointing(door) => door.0 < percept.degree,
+        };
+        observer.event(self, Event::Moved { door, percept });
+        if possible {
+            Ok(percept)
+        } else {
+            Err(Contradiction::Impossible { perceived: percept }.into())
+        }
+    }
+
+    /// Line 15: goes back along the path since [`set_out`](Self::set_out), and counts doors there
+    /// as before.
+    ///
+    /// # Errors
+    /// The world's own; where a place on the way back is not as it was on the way out.
+    // paper: alg1.15
+    pub fn retrace<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        let trail = mem::take(&mut self.trail);
+        let doors = retrace(trail.iter().map(|&(percept, door)| (door, percept.degree)));
+        for (back, &(percept, door)) in doors.zip(trail.iter().rev()) {
+            let perceived = self.go(back, world, observer)?;
+            let expected = percept.seen_from(door);
+            if perceived != expected {
+                return Err(Contradiction::WayBack {
+                    expected,
+                    perceived,
+                }
+                .into());
+            }
+        }
+        if let Some(&(percept, entry)) = trail.first() {
+            self.here = Here { percept, entry };
+        }
+        self.trail = trail;
+        Ok(())
+    }
+
+    /// Lines 16 and 17: a path was followed to its end, and the robot knows that it has come to the
+    /// marker by the dart `pose`.
+    pub fn arrive_at_marker(&mut self, pose: Dart) {
+        self.stand_at(pose, self.here.percept);
+    }
+
+    fn stand_at(&mut self, pose: Dart, percept: Percept) {
+        self.robot = pose;
+        self.here = Here {
+            percept,
+            entry: Door::BACK,
+        };
+    }
+
+    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
+    // paper: alg1.18, alg1.19, alg1.20
+    pub fn close_loop(&mut self, hypothesis: Dart, observer: &mut impl Observer) {
+        self.map.join(self.edge, hypothesis);
+        self.to_marker_is_current = false;
+        observer.event(
+            self,
+            Event::LoopClosed {
+                edge: self.edge,
+                other: hypothesis,
+            },
+        );
+    }
+
+    /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
+    /// is still there.
+    ///
+    /// # Errors
+    /// The bound.
+    // paper: alg1.21, alg1.22, alg1.23
+    pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
+        self.check_bound(self.arrival.degree)?;
+        let vertex = self.map.add_vertex(self.arrival.degree);
+        let entry = self.map.first_dart(vertex);
+        self.map.join(self.edge, entry);
+        if self.to_marker_is_current {
+            self.to_marker.add_leaf(&self.map, vertex);
+        }
+        // The robot may have come back by another dart than it first came in by.
+        let really = Dart(entry.0 + self.here.entry.0);
+        self.stand_at(really, self.map.expected(really));
+        observer.event(
+            self,
+            Event::VertexAdded {
+                edge: self.edge,
+                vertex,
+            },
+        );
+        Ok(())
+    }
+
+    fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {
+        let bound = self.bound;
+        if self.map.dart_count().saturating_add(degree as usize) > bound {
+            return Err(MappingError::Bound { bound });
+        }
+        Ok(())
+    }
+}

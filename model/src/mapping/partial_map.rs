@@ -1,0 +1,181 @@
+//! The map S while it is built, with the unexplored edges U. Section 2.3, Algorithm 1.
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    percept::{Door, Percept, Sighting},
+};
+
+/// The known part of the world.
+///
+/// Vertices are numbered in the order of discovery; the darts of a vertex stand clockwise from the
+/// dart by which it was first entered, and at the start vertex, number 0, from the facing dart. A
+/// dart whose other end is not known is *unexplored*: together these are U.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PartialMap {
+    known: EmbeddedGraph,
+    /// The number of unexplored darts at each vertex.
+    unexplored_at: Vec<u32>,
+    unexplored: u32,
+}
+
+/// The facing dart, along which the marker points.
+pub const FACING: Dart = Dart(0);
+
+impl PartialMap {
+    /// The map that knows nothing.
+    pub(super) fn new() -> Self {
+        Self {
+            known: EmbeddedGraph::unfinished(),
+            unexplored_at: Vec::new(),
+            unexplored: 0,
+        }
+    }
+
+    /// Back to knowing nothing.
+    pub(super) fn clear(&mut self) {
+        self.known.clear();
+        self.unexplored_at.clear();
+        self.unexplored = 0;
+    }
+
+    /// Adds a vertex all of whose darts are unexplored.
+    pub(super) fn add_vertex(&mut self, degree: u32) -> Vertex {
+        self.unexplored_at.push(degree);
+        self.unexplored += degree;
+        self.known.add_vertex(degree)
+    }
+
+    /// Makes two unexplored darts the ends of one edge.
+    pub(super) fn join(&mut self, one: Dart, other: Dart) {
+        self.known.join(one, other);
+        for end in [one, other] {
+            self.unexplored_at[self.known.vertex(end).at()] -= 1;
+        }
+        self.unexplored -= 2;
+    }
+
+    /// The number of known vertices.
+    #[must_use]
+    pub fn vertex_count(&self) -> usize {
+        self.known.vertex_count()
+    }
+
+    /// The number of known darts, explored or not.
+    #[must_use]
+    pub fn dart_count(&self) -> usize {
+        self.known.dart_count()
+    }
+
+    /// The number of unexplored darts: the size of U.
+    #[must_use]
+    pub fn unexplored_count(&self) -> u32 {
+        self.unexplored
+    }
+
+    /// Whether U is empty.
+    #[inline]
+    #[must_use]
+    pub fn unexplored_is_empty(&self) -> bool {
+        self.unexplored == 0
+    }
+
+    /// U: the unexplored darts, in the order of their numbers.
+    pub fn unexplored(&self) -> impl Iterator<Item = Dart> + '_ {
+        self.known
+            .vertices()
+            .flat_map(|vertex| self.unexplored_at(vertex))
+    }
+
+    /// The unexplored darts of one vertex, in the order of their numbers.
+    pub fn unexplored_at(&self, vertex: Vertex) -> impl DoubleEndedIterator<Item = Dart> + '_ {
+        let darts = self.known.darts_of(vertex);
+        darts.filter(|&dart| self.known.is_free(dart))
+    }
+
+    /// Whether the vertex has an unexplored dart.
+    #[inline]
+    #[must_use]
+    pub fn is_frontier(&self, vertex: Vertex) -> bool {
+        self.unexplored_at[vertex.at()] > 0
+    }
+
+    /// The other end of an explored dart; `None` for an unexplored one.
+    #[inline]
+    #[must_use]
+    pub fn opposite(&self, dart: Dart) -> Option<Dart> {
+        (!self.known.is_free(dart)).then(|| self.known.opposite(dart))
+    }
+
+    /// The vertex at which the dart is.
+    #[inline]
+    #[must_use]
+    pub fn vertex(&self, dart: Dart) -> Vertex {
+        self.known.vertex(dart)
+    }
+
+    /// The degree of a vertex.
+    #[inline]
+    #[must_use]
+    pub fn degree(&self, vertex: Vertex) -> u32 {
+        self.known.degree(vertex)
+    }
+
+    /// The dart's place clockwise from the one by which its vertex was first entered.
+    #[inline]
+    #[must_use]
+    pub fn index(&self, dart: Dart) -> u32 {
+        self.known.index(dart)
+    }
+
+    /// The dart with the given index at a vertex.
+    #[must_use]
+    pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
+        self.known.dart(vertex, index)
+    }
+
+    /// The darts of a vertex in the order of their indices.
+    pub fn darts_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + use<> {
+        self.known.darts_of(vertex)
+    }
+
+    /// The door that leads to the dart `to` for a robot that came in by `pose`, at the same vertex.
+    #[inline]
+    #[must_use]
+    pub fn door(&self, pose: Dart, to: Dart) -> Door {
+        let degree = self.degree(self.vertex(pose));
+        Door::between(self.index(pose), self.index(to), degree)
+    }
+
+    /// What the robot expects to perceive when it comes in by the dart `pose`.
+    #[inline]
+    #[must_use]
+    pub fn expected(&self, pose: Dart) -> Percept {
+        let vertex = self.vertex(pose);
+        let sighting = if vertex == Vertex(0) {
+            Sighting::Pointing(self.door(pose, FACING))
+        } else {
+            Sighting::Nothing
+        };
+        Percept {
+            degree: self.degree(vertex),
+            sighting,
+        }
+    }
+
+    /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].
+    #[must_use]
+    pub fn complete(&self) -> Option<&EmbeddedGraph> {
+        (self.unexplored == 0 && self.vertex_count() > 0).then_some(&self.known)
+    }
+
+    /// The first dart of a vertex: the one by which it was first entered.
+    #[inline]
+    pub(super) fn first_dart(&self, vertex: Vertex) -> Dart {
+        self.known.first_dart(vertex)
+    }
+
+    /// All known vertices in the order of discovery.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + DoubleEndedIterator + use<> {
+        self.known.vertices()
+    }
+}

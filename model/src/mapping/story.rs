@@ -1,0 +1,85 @@
+//! The story of a run of Algorithm 1, told to whoever listens.
+
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    mapping::Exploration,
+    percept::{Door, Percept},
+};
+
+/// What happens in a run, as it happens. Vertices and darts are those of the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Lines 1 to 3: the marker lies at the start vertex.
+    Started {
+        /// What the robot perceives there.
+        percept: Percept,
+    },
+    /// One move.
+    Moved {
+        /// The door taken.
+        door: Door,
+        /// What the robot perceives behind it.
+        percept: Percept,
+    },
+    /// Lines 5 to 7: the robot stands at the unknown end of an edge.
+    Arrived {
+        /// The known end of the edge.
+        edge: Dart,
+        /// What the robot perceives at the unknown one.
+        percept: Percept,
+        /// How many hypotheses the percept contradicts at once.
+        contradicted: usize,
+        /// How many are left to be tried.
+        hypotheses: usize,
+    },
+    /// Lines 13 to 15: a hypothesis fell, and the robot is back.
+    Rejected {
+        /// The unexplored dart by which the robot would have come in.
+        hypothesis: Dart,
+        /// How many moves its path was followed.
+        followed: u32,
+        /// What should have been perceived at the last of them.
+        expected: Percept,
+        /// What was.
+        perceived: Percept,
+    },
+    /// Lines 16 and 17: a hypothesis stood; the robot is at the marker.
+    Confirmed {
+        /// The unexplored dart by which the robot came in.
+        hypothesis: Dart,
+        /// How many moves its path was followed.
+        followed: u32,
+    },
+    /// Lines 18 to 20: an edge was added between known vertices.
+    LoopClosed {
+        /// The end from which it was explored.
+        edge: Dart,
+        /// The other end.
+        other: Dart,
+    },
+    /// Lines 21 to 23: a vertex was added, with the edge that leads to it.
+    VertexAdded {
+        /// The end from which the edge was explored.
+        edge: Dart,
+        /// The new vertex.
+        vertex: Vertex,
+    },
+}
+
+/// Listens to a run.
+pub trait Observer {
+    /// Something happened; the exploration is as it is after it.
+    fn event(&mut self, exploration: &Exploration, event: Event);
+}
+
+/// Nobody listens.
+impl Observer for () {
+    #[inline]
+    fn event(&mut self, _: &Exploration, _: Event) {}
+}
+
+impl<F: FnMut(&Exploration, Event)> Observer for F {
+    fn event(&mut self, exploration: &Exploration, event: Event) {
+        self(exploration, event);
+    }
+}

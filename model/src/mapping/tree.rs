@@ -1,0 +1,131 @@
+//! Shortest paths in the known map: breadth-first trees, the darts of a vertex in index order, the
+//! first parent kept. Section 2.3, Algorithm 1, lines 6 and 10.
+
+use super::partial_map::PartialMap;
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    percept::Door,
+};
+
+/// A breadth-first tree of the known map, grown as far as somebody asked.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    /// For each vertex the number of edges to the root.
+    hops: Vec<u32>,
+    /// For each vertex in the tree, but for the root, its dart that leads towards the root.
+    up: Vec<Dart>,
+    /// The vertices in the tree in the order in which they were reached.
+    reached: Vec<Vertex>,
+    /// How many of `reached` have been looked around.
+    grown: usize,
+}
+
+/// Stands as the hops of a vertex that is not in the tree.
+const UNREACHED: u32 = u32::MAX;
+
+impl Tree {
+    /// Begins a new tree at its root.
+    pub(super) fn plant(&mut self, map: &PartialMap, root: Vertex) {
+        self.hops.clear();
+        self.hops.resize(map.vertex_count(), UNREACHED);
+        self.up.resize(map.vertex_count(), Dart(0));
+        self.reached.clear();
+        self.grown = 0;
+        self.hops[root.at()] = 0;
+        self.reached.push(root);
+    }
+
+    /// Looks around one more vertex; `false` if there is none.
+    fn grow(&mut self, map: &PartialMap) -> bool {
+        let Some(&vertex) = self.reached.get(self.grown) else {
+            return false;
+        };
+        self.grown += 1;
+        for dart in map.darts_of(vertex) {
+            if let Some(far) = map.opposite(dart) {
+                let neighbour = map.vertex(far);
+                if self.hops[neighbour.at()] == UNREACHED {
+                    self.hops[neighbour.at()] = self.hops[vertex.at()] + 1;
+                    self.up[neighbour.at()] = far;
+                    self.reached.push(neighbour);
+                }
+            }
+        }
+        true
+    }
+
+    /// Grows the tree over the whole map.
+    pub(super) fn grow_whole(&mut self, map: &PartialMap) {
+        while self.grow(map) {}
+    }
+
+    /// Takes in a vertex just added to the map, to which only one edge leads: the whole tree stays
+    /// breadth-first.
+    pub(super) fn add_leaf(&mut self, map: &PartialMap, leaf: Vertex) {
+        let entry = map.first_dart(leaf);
+        if let Some(parent) = map.opposite(entry) {
+            self.hops.push(self.hops[map.vertex(parent).at()] + 1);
+            self.up.push(entry);
+        }
+    }
+
+    /// The unexplored dart that is fewest hops from the root; then of the vertex discovered first;
+    /// then with the lowest index. `None` if nothing is unexplored.
+    pub fn nearest_unexplored(&mut self, map: &PartialMap) -> Option<Dart> {
+        let mut level = 0;
+        loop {
+            let end = self.reached.len();
+            let frontier = self.reached[level..end]
+                .iter()
+                .filter(|&&vertex| map.is_frontier(vertex));
+            if let Some(&vertex) = frontier.min() {
+                return map.unexplored_at(vertex).next();
+            }
+            level = end;
+            while self.grown < end {
+                self.grow(map);
+            }
+            if self.reached.len() == end {
+                return None;
+            }
+        }
+    }
+
+    /// The number of edges from a vertex to the root; the vertex is in the tree.
+    #[inline]
+    #[must_use]
+    pub fn hops(&self, vertex: Vertex) -> u32 {
+        self.hops[vertex.at()]
+    }
+
+    /// Writes the darts by which a robot leaves the vertices on its way from the root to `target`.
+    pub(super) fn path_from_root(
+        &mut self,
+        map: &PartialMap,
+        target: Vertex,
+        path: &mut Vec<Dart>,
+    ) {
+        while self.hops[target.at()] == UNREACHED && self.grow(map) {}
+        path.clear();
+        let mut vertex = target;
+        while self.hops[vertex.at()] != 0 {
+            let Some(down) = map.opposite(self.up[vertex.at()]) else {
+                break;
+            };
+            path.push(down);
+            vertex = map.vertex(down);
+        }
+        path.reverse();
+    }
+
+    /// The next door towards the root, and the pose behind it; `None` at the root.
+    #[inline]
+    pub(super) fn toward_root(&self, map: &PartialMap, pose: Dart) -> Option<(Door, Dart)> {
+        let vertex = map.vertex(pose);
+        if self.hops[vertex.at()] == 0 {
+            return None;
+        }
+        let up = self.up[vertex.at()];
+        Some((map.door(pose, up), map.opposite(up)?))
+    }
+}
