@@ -3,6 +3,7 @@
 mod completions;
 mod outcome;
 mod output;
+mod paper;
 
 use std::{
     io::{self, Write},
@@ -25,6 +26,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Verb {
     Completions(completions::Arguments),
+    Paper(paper::Arguments),
 }
 
 /// Runs the verb that the command line names.
@@ -33,6 +35,7 @@ pub(crate) fn run() -> ExitCode {
     let mut out = io::stdout().lock();
     let result = match arguments.verb {
         Some(Verb::Completions(verb)) => verb.run(&mut out),
+        Some(Verb::Paper(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };
     match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {

@@ -1,0 +1,210 @@
+//! `toposlam paper [--section N] [--open] [--json]`.
+
+use std::{
+    collections::BTreeSet,
+    io::{self, Write},
+};
+
+use serde::Serialize;
+use toposlam::paper::{CITATIONS, Citation, Row, Status, TABLE, Trace, requirements};
+
+use super::{Failure, Outcome};
+
+/// The widest line.
+const WIDTH: usize = 100;
+
+/// Show every requirement of the paper: where it is implemented, where it is tested, what is open
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit code 1: a requirement is said to be done, and no code or no test cites it; or \
+                  something cites what is no requirement.\n\n\
+                  Example:\n  toposlam paper --section 2.3"
+)]
+pub(super) struct Arguments {
+    /// Only this section of the paper, and its parts
+    #[arg(long, value_name = "N")]
+    section: Option<String>,
+    /// Only what is open
+    #[arg(long)]
+    open: bool,
+    /// One JSON object a line, the totals last
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let requirements =
+            requirements(TABLE).map_err(|error| Failure::at("tests/paper.toml", error))?;
+        let trace = Trace::new(&requirements, CITATIONS);
+        let mut rows: Vec<_> = trace.rows.iter().collect();
+        if let Some(section) = &self.section {
+            rows.retain(|row| row.requirement.is_in(section));
+            if rows.is_empty() {
+                let known: BTreeSet<_> = requirements.iter().map(|r| r.section.as_str()).collect();
+                let known = known.into_iter().collect::<Vec<_>>().join(", ");
+                let cause = format!("no requirement stands in `{section}`; sections: {known}");
+                return Err(Failure::at("--section", cause));
+            }
+        }
+        if self.open {
+            rows.retain(|row| row.requirement.status != Status::Done);
+        }
+        if self.json {
+            print_json(out, &rows, &trace)?;
+        } else {
+            print_table(out, &rows, &trace)?;
+        }
+        Ok(if trace.holds() {
+            Outcome::Holds
+        } else {
+            Outcome::Violated
+        })
+    }
+}
+
+/// A line of `--json`.
+#[derive(Serialize)]
+struct RowLine<'a> {
+    schema: u32,
+    id: &'a str,
+    section: &'a str,
+    line: Option<u32>,
+    text: &'a str,
+    status: &'static str,
+    after: Option<&'a [String]>,
+    code: Vec<String>,
+    tests: Vec<String>,
+}
+
+/// The last line of `--json`.
+#[derive(Serialize)]
+struct TotalsLine {
+    schema: u32,
+    requirements: usize,
+    done: usize,
+    open: usize,
+    faults: Vec<String>,
+    holds: bool,
+}
+
+/// The rows and then the totals, one JSON object a line.
+fn print_json(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> Result<(), Failure> {
+    let place = |citation: &Citation| format!("{}:{}", citation.file, citation.line);
+    for row in rows {
+        let requirement = row.requirement;
+        let (status, after) = match &requirement.status {
+            Status::Done => ("done", None),
+            Status::Open { after } => ("open", Some(after.as_slice())),
+        };
+        let line = RowLine {
+            schema: 1,
+            id: &requirement.id,
+            section: &requirement.section,
+            line: requirement.line,
+            text: &requirement.text,
+            status,
+            after,
+            code: row.code.iter().map(place).collect(),
+            tests: row.tests.iter().map(place).collect(),
+        };
+        print_object(out, &line)?;
+    }
+    let done = done(rows);
+    let totals = TotalsLine {
+        schema: 1,
+        requirements: rows.len(),
+        done,
+        open: rows.len() - done,
+        faults: trace.faults().collect(),
+        holds: trace.holds(),
+    };
+    print_object(out, &totals)
+}
+
+fn print_object(out: &mut dyn Write, object: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(object).map_err(io::Error::from)?;
+    Ok(writeln!(out, "{text}")?)
+}
+
+/// The rows by section, for people, and then the totals.
+fn print_table(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> io::Result<()> {
+    let id_width = rows.iter().map(|row| row.requirement.id.len()).max();
+    let id_width = id_width.unwrap_or_default();
+    for section in rows.chunk_by(|a, b| a.requirement.section == b.requirement.section) {
+        writeln!(out, "Section {}", section[0].requirement.section)?;
+        for row in section {
+            print_row(out, row, id_width)?;
+        }
+        writeln!(out)?;
+    }
+    let done = done(rows);
+    let (all, open) = (rows.len(), rows.len() - done);
+    writeln!(out, "{all} requirements: {done} done, {open} open")?;
+    let faults: Vec<_> = trace.faults().collect();
+    if !faults.is_empty() {
+        writeln!(out, "\nThe table and the sources do not agree:")?;
+        for fault in faults {
+            writeln!(out, "  {fault}")?;
+        }
+    }
+    Ok(())
+}
+
+fn print_row(out: &mut dyn Write, row: &Row, id_width: usize) -> io::Result<()> {
+    let requirement = row.requirement;
+    let line = requirement.line.map(|line| line.to_string());
+    let line = line.unwrap_or_default();
+    let head = format!("  {:id_width$}  {line:>2}  ", requirement.id);
+    print_hanging(out, &head, &requirement.text)?;
+    let margin = " ".repeat(head.len());
+    if let Status::Open { after } = &requirement.status {
+        print_hanging(out, &format!("{margin}open   after "), &after.join(", "))?;
+    }
+    let is_done = requirement.status == Status::Done;
+    for (what, citations) in [("code ", &row.code), ("tests", &row.tests)] {
+        if is_done || !citations.is_empty() {
+            print_hanging(out, &format!("{margin}{what}  "), &places(citations))?;
+        }
+    }
+    Ok(())
+}
+
+/// The places of citations: each file once, with its lines.
+fn places(citations: &[Citation]) -> String {
+    if citations.is_empty() {
+        return "none".to_owned();
+    }
+    citations
+        .chunk_by(|a, b| a.file == b.file)
+        .map(|of_file| {
+            let lines: Vec<_> = of_file.iter().map(|c| c.line.to_string()).collect();
+            format!("{}:{}", of_file[0].file, lines.join(", "))
+        })
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// Prints a text after its head; the lines that it needs beyond the first begin below its first
+/// word.
+fn print_hanging(out: &mut dyn Write, head: &str, text: &str) -> io::Result<()> {
+    let mut column = head.len();
+    write!(out, "{head}")?;
+    for (nth, word) in text.split(' ').enumerate() {
+        if nth > 0 && column + 1 + word.len() > WIDTH {
+            write!(out, "\n{:1$}", "", head.len())?;
+            column = head.len();
+        } else if nth > 0 {
+            write!(out, " ")?;
+            column += 1;
+        }
+        write!(out, "{word}")?;
+        column += word.len();
+    }
+    writeln!(out)
+}
+
+fn done(rows: &[&Row]) -> usize {
+    let is_done = |row: &&&Row| row.requirement.status == Status::Done;
+    rows.iter().filter(is_done).count()
+}

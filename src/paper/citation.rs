@@ -1,0 +1,116 @@
+//! Citations of the paper in source text. The build script shares this file with the library: it
+//! runs it over all sources.
+
+/// Whether a citation says "here it is implemented" or "here it is checked".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// In code.
+    Code,
+    /// In a test: in a file under a folder `tests`, or below the line `#[cfg(test)]` of a file.
+    Test,
+}
+
+/// A place in the sources that cites a requirement of the paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Citation<'a> {
+    /// The id of the requirement, as it is written there.
+    pub id: &'a str,
+    /// The file, from the root of the workspace, with `/` between folders.
+    pub file: &'a str,
+    /// The line in the file; the first is 1.
+    pub line: usize,
+    /// What is there: code or a test.
+    pub kind: Kind,
+}
+
+/// The citations in the text of a file, in their order. A citation is a comment of its own or at
+/// the end of a line: `// paper: id`, or several ids with commas between them.
+pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
+    let mut kind = if file.split('/').any(|folder| folder == "tests") {
+        Kind::Test
+    } else {
+        Kind::Code
+    };
+    text.lines().zip(1..).flat_map(move |(source, line)| {
+        if source.starts_with("#[cfg(test)]") {
+            kind = Kind::Test;
+        }
+        let kind = kind;
+        cited(source).map(move |id| Citation {
+            id,
+            file,
+            line,
+            kind,
+        })
+    })
+}
+
+/// The ids that one line of source cites.
+fn cited(source: &str) -> impl Iterator<Item = &str> {
+    source
+        .split_once("//")
+        .filter(|(before, _)| !is_in_string(before))
+        .and_then(|(_, comment)| comment.strip_prefix(" paper:"))
+        .into_iter()
+        .flat_map(|ids| ids.split(','))
+        .map(str::trim)
+}
+
+/// Whether a string that began in this text has not ended in it.
+fn is_in_string(text: &str) -> bool {
+    (text.matches('"').count() - text.matches(r#"\""#).count()) % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found<'a>(file: &'a str, text: &'a str) -> Vec<(&'a str, usize, Kind)> {
+        citations(file, text)
+            .map(|citation| (citation.id, citation.line, citation.kind))
+            .collect()
+    }
+
+    #[test]
+    fn a_comment_cites_one_id_or_several() {
+        let text = "fn f() {\n    // paper: alg1.4, alg1.5\n    g(); // paper: alg1.6\n}\n";
+        assert_eq!(
+            found("src/mapping.rs", text),
+            [
+                ("alg1.4", 2, Kind::Code),
+                ("alg1.5", 2, Kind::Code),
+                ("alg1.6", 3, Kind::Code)
+            ]
+        );
+    }
+
+    #[test]
+    fn below_cfg_test_and_under_tests_a_citation_is_a_test() {
+        let text = "// paper: world.graph\n#[cfg(test)]\nmod tests {\n    // paper: world.graph\n}";
+        let kinds = |file| citations(file, text).map(|c| c.kind).collect::<Vec<_>>();
+        assert_eq!(kinds("model/src/a.rs"), [Kind::Code, Kind::Test]);
+        assert_eq!(kinds("model/tests/a.rs"), [Kind::Test, Kind::Test]);
+        assert_eq!(kinds("src/latests/a.rs"), [Kind::Code, Kind::Test]);
+    }
+
+    #[test]
+    fn strings_and_docs_cite_nothing() {
+        for text in [
+            "let text = \"// paper: alg1.1\";",
+            "/// Written `// paper: alg1.1`.",
+            "//! paper: alg1.1",
+            "// the paper: alg1.1",
+        ] {
+            assert_eq!(found("src/a.rs", text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_sloppy_citation_is_found_and_so_can_be_refused() {
+        assert_eq!(
+            found("a.rs", "// paper: alg1.1 and more"),
+            [("alg1.1 and more", 1, Kind::Code)]
+        );
+        assert_eq!(found("a.rs", "// paper:"), [("", 1, Kind::Code)]);
+    }
+}

@@ -1,0 +1,19 @@
+//! The paper, traced: what it requires, where that is implemented and where it is tested.
+//!
+//! The requirements stand in `tests/paper.toml`. Sources cite them (see [`citations`]); those
+//! citations were collected when this library was built, so that they can be shown far from the
+//! sources.
+
+mod citation;
+mod requirement;
+mod trace;
+
+pub use citation::{Citation, Kind, citations};
+pub use requirement::{Requirement, Status, TableError, requirements};
+pub use trace::{Row, Trace};
+
+/// The table of requirements, as it is written.
+pub const TABLE: &str = include_str!("../../tests/paper.toml");
+
+/// Every citation in the sources of the workspace, by file and line.
+pub const CITATIONS: &[Citation<'static>] = include!(concat!(env!("OUT_DIR"), "/citations.rs"));
