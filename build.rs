@@ -57,12 +57,7 @@ fn embed_citations() -> Result<(), String> {
 
 /// The citation, as it is written in Rust.
 fn literal(citation: &Citation) -> String {
-    let Citation {
-        id,
-        file,
-        line,
-        kind,
-    } = citation;
+    let Citation { id, file, line, kind } = citation;
     format!("Citation {{ id: {id:?}, file: {file:?}, line: {line}, kind: Kind::{kind:?} }},\n")
 }
 
@@ -72,10 +67,7 @@ fn find_sources(root: &Path, folder_name: &str, sources: &mut Vec<String>) -> Re
         let path = format!("{folder_name}/{name}");
         if root.join(&path).is_dir() {
             find_sources(root, &path, sources)?;
-        } else if Path::new(&name)
-            .extension()
-            .is_some_and(|kind| kind == "rs")
-        {
+        } else if Path::new(&name).extension().is_some_and(|kind| kind == "rs") {
             sources.push(path);
         }
     }
@@ -87,10 +79,7 @@ fn folder(root: &Path, folder_name: &str) -> Result<Vec<String>, String> {
     fs::read_dir(root.join(folder_name))
         .and_then(Iterator::collect::<io::Result<Vec<_>>>)
         .map(|entries| {
-            entries
-                .iter()
-                .map(|entry| entry.file_name().to_string_lossy().into_owned())
-                .collect()
+            entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
         })
         .map_err(|error| at(folder_name, &error))
 }

@@ -18,11 +18,7 @@ fn table() -> Vec<Requirement> {
 }
 
 fn toposlam_paper(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_toposlam"))
-        .arg("paper")
-        .args(arguments)
-        .output()
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_toposlam")).arg("paper").args(arguments).output().unwrap()
 }
 
 fn lines_of(output: &Output) -> Vec<&str> {
@@ -37,11 +33,7 @@ fn every_citation_is_of_a_requirement() {
         .iter()
         .map(|Citation { id, file, line, .. }| format!("{file}:{line}: `{id}`"))
         .collect();
-    assert!(
-        unknown.is_empty(),
-        "these ids are not in tests/paper.toml:\n{}",
-        unknown.join("\n")
-    );
+    assert!(unknown.is_empty(), "these ids are not in tests/paper.toml:\n{}", unknown.join("\n"));
 }
 
 #[test]
@@ -54,28 +46,19 @@ fn everything_done_is_cited_by_code_and_by_a_test() {
         .map(|row| format!("code lacks  // paper: {}", row.requirement.id))
         .chain(tests.map(|row| format!("tests lack  // paper: {}", row.requirement.id)))
         .collect();
-    assert!(
-        lacking.is_empty(),
-        "said to be done in tests/paper.toml, but\n{}",
-        lacking.join("\n")
-    );
+    assert!(lacking.is_empty(), "said to be done in tests/paper.toml, but\n{}", lacking.join("\n"));
 }
 
 #[test]
 fn every_line_of_both_algorithms_is_a_requirement() {
     let printed = |algorithm: &str, last: u32| {
-        (1..=last)
-            .map(|line| (format!("{algorithm}.{line}"), line))
-            .collect::<Vec<_>>()
+        (1..=last).map(|line| (format!("{algorithm}.{line}"), line)).collect::<Vec<_>>()
     };
     let with_a_line: Vec<_> = table()
         .into_iter()
         .filter_map(|requirement| requirement.line.map(|line| (requirement.id, line)))
         .collect();
-    assert_eq!(
-        with_a_line,
-        [printed("alg1", 23), printed("alg2", 32)].concat()
-    );
+    assert_eq!(with_a_line, [printed("alg1", 23), printed("alg2", 32)].concat());
 }
 
 #[test]
@@ -95,10 +78,7 @@ fn the_embedded_citations_are_where_they_say() {
         let source = fs::read_to_string(file).unwrap();
         let line = source.lines().nth(citation.line - 1).unwrap();
         let (_, ids) = line.split_once("// paper: ").unwrap();
-        assert!(
-            ids.split(", ").any(|id| id == citation.id),
-            "{citation:?} in {line}"
-        );
+        assert!(ids.split(", ").any(|id| id == citation.id), "{citation:?} in {line}");
     }
     assert!(CITATIONS.is_sorted_by_key(|citation| (citation.file, citation.line)));
 }
@@ -108,16 +88,11 @@ fn an_unknown_id_and_a_missing_citation_are_noticed() {
     let done: Vec<_> = table()
         .into_iter()
         .filter(|requirement| requirement.id == "alg1.4" || requirement.id == "alg2.4")
-        .map(|requirement| Requirement {
-            status: Status::Done,
-            ..requirement
-        })
+        .map(|requirement| Requirement { status: Status::Done, ..requirement })
         .collect();
     let code = "// paper: alg1.4\n// paper: alg2.4";
     let test = "// paper: alg1.4, alg9.9";
-    let both: Vec<_> = citations("src/a.rs", code)
-        .chain(citations("tests/a.rs", test))
-        .collect();
+    let both: Vec<_> = citations("src/a.rs", code).chain(citations("tests/a.rs", test)).collect();
     let faults = |cited: &[Citation]| Trace::new(&done, cited).faults().collect::<Vec<_>>();
     assert_eq!(
         faults(&both),
@@ -129,28 +104,18 @@ fn an_unknown_id_and_a_missing_citation_are_noticed() {
     let tests_only: Vec<_> = citations("tests/a.rs", "// paper: alg1.4").collect();
     assert_eq!(
         faults(&tests_only),
-        [
-            "alg1.4: done, but no code cites it",
-            "alg2.4: done, but no code and no test cites it",
-        ]
+        ["alg1.4: done, but no code cites it", "alg2.4: done, but no code and no test cites it",]
     );
     let complete = ["alg1.4", "alg2.4"].map(|id| {
-        [Kind::Code, Kind::Test].map(|kind| Citation {
-            id,
-            file: "src/a.rs",
-            line: 1,
-            kind,
-        })
+        [Kind::Code, Kind::Test].map(|kind| Citation { id, file: "src/a.rs", line: 1, kind })
     });
     assert!(Trace::new(&done, complete.as_flattened()).holds());
 }
 
 #[test]
 fn an_open_requirement_need_not_be_cited() {
-    let open: Vec<_> = table()
-        .into_iter()
-        .filter(|requirement| requirement.status != Status::Done)
-        .collect();
+    let open: Vec<_> =
+        table().into_iter().filter(|requirement| requirement.status != Status::Done).collect();
     assert!(!open.is_empty());
     assert!(Trace::new(&open, &[]).holds());
 }
@@ -182,10 +147,8 @@ fn the_table_shows_every_requirement_within_100_columns() {
 #[test]
 fn json_is_one_object_a_line_and_the_totals_last() {
     let output = toposlam_paper(&["--json", "--section", "2"]);
-    let objects: Vec<serde_json::Value> = lines_of(&output)
-        .iter()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
+    let objects: Vec<serde_json::Value> =
+        lines_of(&output).iter().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert!(objects.iter().all(|object| object["schema"] == 1));
     let (totals, rows) = objects.split_last().unwrap();
     assert_eq!(totals["requirements"], rows.len());
@@ -193,12 +156,7 @@ fn json_is_one_object_a_line_and_the_totals_last() {
     assert_eq!(totals["open"], open);
     let degree = rows.iter().find(|row| row["id"] == "percept.degree");
     let code = &degree.unwrap()["code"];
-    assert!(
-        code[0]
-            .as_str()
-            .unwrap()
-            .starts_with("model/src/percept.rs:")
-    );
+    assert!(code[0].as_str().unwrap().starts_with("model/src/percept.rs:"));
 }
 
 #[test]
@@ -206,8 +164,5 @@ fn a_section_that_the_paper_has_not_is_bad_usage() {
     let output = toposlam_paper(&["--section", "9"]);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        message.contains("`9`") && message.contains("2.3"),
-        "{message}"
-    );
+    assert!(message.contains("`9`") && message.contains("2.3"), "{message}");
 }

@@ -22,11 +22,10 @@ pub struct Directional {
 impl Marker for Directional {
     #[inline]
     fn sighting(&self, graph: &EmbeddedGraph, pose: Dart) -> Sighting {
-        let vertex = graph.vertex(pose);
-        if vertex != graph.vertex(self.along) {
+        if graph.vertex(pose) != graph.vertex(self.along) {
             return Sighting::Nothing;
         }
         let (from, to) = (graph.index(pose), graph.index(self.along));
-        Sighting::Pointing(Door::between(from, to, graph.degree(vertex)))
+        Sighting::Pointing(Door::between(from, to, graph.degree_around(pose)))
     }
 }

@@ -17,11 +17,7 @@ impl Door {
     #[inline]
     #[must_use]
     pub fn between(from: u32, to: u32, degree: u32) -> Self {
-        Self(if to >= from {
-            to - from
-        } else {
-            to + degree - from
-        })
+        Self(if to >= from { to - from } else { to + degree - from })
     }
 
     /// The door `-d`: the one that undoes this one, at a vertex of the given degree.
@@ -79,20 +75,11 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn behind(&self, pose: Dart, door: Door) -> Dart {
-        let vertex = self.vertex(pose);
-        let degree = self.degree(vertex);
-        let turn = if door.0 < degree {
-            door.0
-        } else {
-            door.0 % degree
-        };
+        let degree = self.degree_around(pose);
+        let turn = if door.0 < degree { door.0 } else { door.0 % degree };
         let index = self.index(pose);
         // Never overflows: `index + turn - degree` is computed without the sum.
-        let step = if turn >= degree - index {
-            turn.wrapping_sub(degree)
-        } else {
-            turn
-        };
+        let step = if turn >= degree - index { turn.wrapping_sub(degree) } else { turn };
         Dart(pose.0.wrapping_add(step))
     }
 
@@ -107,9 +94,7 @@ impl EmbeddedGraph {
     /// The pose at the end of a door sequence.
     #[must_use]
     pub fn walk(&self, pose: Dart, doors: &[Door]) -> Dart {
-        doors
-            .iter()
-            .fold(pose, |pose, &door| self.after(pose, door))
+        doors.iter().fold(pose, |pose, &door| self.after(pose, door))
     }
 }
 
@@ -124,11 +109,7 @@ where
     P: DoubleEndedIterator<Item = (Door, u32)> + ExactSizeIterator,
 {
     let back = (path.len() > 0).then_some(Door::BACK);
-    back.into_iter().chain(
-        path.skip(1)
-            .rev()
-            .map(|(door, degree)| door.inverse(degree)),
-    )
+    back.into_iter().chain(path.skip(1).rev().map(|(door, degree)| door.inverse(degree)))
 }
 
 #[cfg(test)]

@@ -51,11 +51,7 @@ impl<'g> GraphWorld<'g> {
     /// facing dart, which is the robot's entry dart.
     #[must_use]
     pub fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
-        Self {
-            graph,
-            marker: Directional { along: facing },
-            pose: facing,
-        }
+        Self { graph, marker: Directional { along: facing }, pose: facing }
     }
 }
 
@@ -79,14 +75,14 @@ impl<M: Marker> World for GraphWorld<'_, M> {
     #[inline]
     fn percept(&mut self) -> Result<Percept, NoSuchDoor> {
         Ok(Percept {
-            degree: self.graph.degree(self.graph.vertex(self.pose)),
+            degree: self.graph.degree_around(self.pose),
             sighting: self.marker.sighting(self.graph, self.pose),
         })
     }
 
     #[inline]
     fn traverse(&mut self, door: Door) -> Result<(), NoSuchDoor> {
-        let degree = self.graph.degree(self.graph.vertex(self.pose));
+        let degree = self.graph.degree_around(self.pose);
         if door.0 >= degree {
             return Err(NoSuchDoor { door, degree });
         }

@@ -18,13 +18,11 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     partial_name.push(name);
     partial_name.push(format!(".{}.partial", std::process::id()));
     let partial = path.with_file_name(partial_name);
-    fs::write(&partial, bytes)
-        .and_then(|()| fs::rename(&partial, path))
-        .map_err(|error| {
-            // Best effort: the error that is reported is the one that matters.
-            let _ = fs::remove_file(&partial);
-            unwritable(path, &error)
-        })
+    fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
+        // Best effort: the error that is reported is the one that matters.
+        let _ = fs::remove_file(&partial);
+        unwritable(path, &error)
+    })
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Failure {

@@ -55,11 +55,7 @@ impl Arguments {
         } else {
             print_table(out, &rows, &trace)?;
         }
-        Ok(if trace.holds() {
-            Outcome::Holds
-        } else {
-            Outcome::Violated
-        })
+        Ok(if trace.holds() { Outcome::Holds } else { Outcome::Violated })
     }
 }
 

@@ -26,22 +26,14 @@ pub struct Citation<'a> {
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
 /// the end of a line: `// paper: id`, or several ids with commas between them.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
-    let mut kind = if file.split('/').any(|folder| folder == "tests") {
-        Kind::Test
-    } else {
-        Kind::Code
-    };
+    let mut kind =
+        if file.split('/').any(|folder| folder == "tests") { Kind::Test } else { Kind::Code };
     text.lines().zip(1..).flat_map(move |(source, line)| {
         if source.starts_with("#[cfg(test)]") {
             kind = Kind::Test;
         }
         let kind = kind;
-        cited(source).map(move |id| Citation {
-            id,
-            file,
-            line,
-            kind,
-        })
+        cited(source).map(move |id| Citation { id, file, line, kind })
     })
 }
 
@@ -66,9 +58,7 @@ mod tests {
     use super::*;
 
     fn found<'a>(file: &'a str, text: &'a str) -> Vec<(&'a str, usize, Kind)> {
-        citations(file, text)
-            .map(|citation| (citation.id, citation.line, citation.kind))
-            .collect()
+        citations(file, text).map(|citation| (citation.id, citation.line, citation.kind)).collect()
     }
 
     #[test]
@@ -76,11 +66,7 @@ mod tests {
         let text = "fn f() {\n    // paper: alg1.4, alg1.5\n    g(); // paper: alg1.6\n}\n";
         assert_eq!(
             found("src/mapping.rs", text),
-            [
-                ("alg1.4", 2, Kind::Code),
-                ("alg1.5", 2, Kind::Code),
-                ("alg1.6", 3, Kind::Code)
-            ]
+            [("alg1.4", 2, Kind::Code), ("alg1.5", 2, Kind::Code), ("alg1.6", 3, Kind::Code)]
         );
     }
 

@@ -103,14 +103,10 @@ pub fn requirements(text: &str) -> Result<Vec<Requirement>, TableError> {
         let Status::Open { after } = status else {
             continue;
         };
-        if let Some(after) = after
-            .iter()
-            .find(|after| is_id(after) && !ids.contains(after.as_str()))
+        if let Some(after) =
+            after.iter().find(|after| is_id(after) && !ids.contains(after.as_str()))
         {
-            return Err(TableError::UnknownAfter {
-                id: id.clone(),
-                after: after.clone(),
-            });
+            return Err(TableError::UnknownAfter { id: id.clone(), after: after.clone() });
         }
     }
     Ok(requirements)
@@ -145,14 +141,7 @@ enum Word {
 
 impl Entry {
     fn into_requirement(self) -> Result<Requirement, TableError> {
-        let Self {
-            id,
-            section,
-            line,
-            text,
-            status,
-            after,
-        } = self;
+        let Self { id, section, line, text, status, after } = self;
         if !is_id(&id) {
             return Err(TableError::MalformedId(id));
         }
@@ -165,13 +154,7 @@ impl Entry {
             Word::Done => Status::Done,
             Word::Open => Status::Open { after },
         };
-        Ok(Requirement {
-            id,
-            section,
-            line,
-            text,
-            status,
-        })
+        Ok(Requirement { id, section, line, text, status })
     }
 }
 
@@ -179,9 +162,7 @@ impl Entry {
 fn is_id(text: &str) -> bool {
     let of_a_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     text.contains('.')
-        && text
-            .split('.')
-            .all(|word| !word.is_empty() && word.chars().all(of_a_word))
+        && text.split('.').all(|word| !word.is_empty() && word.chars().all(of_a_word))
 }
 
 #[cfg(test)]

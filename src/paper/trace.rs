@@ -75,10 +75,7 @@ impl<'a> Trace<'a> {
                 (false, true) => "test",
                 (true, true) => "code and no test",
             };
-            Some(format!(
-                "{}: done, but no {what} cites it",
-                row.requirement.id
-            ))
+            Some(format!("{}: done, but no {what} cites it", row.requirement.id))
         });
         unknown.chain(lacking)
     }

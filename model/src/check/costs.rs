@@ -13,8 +13,7 @@ impl Costs {
     /// Adds each number of another set, increased by `by`.
     pub(super) fn include(&mut self, other: &Self, by: u64) {
         let (words, shift) = ((by / 64) as usize, by % 64);
-        self.0
-            .resize(self.0.len().max(other.0.len() + words + 1), 0);
+        self.0.resize(self.0.len().max(other.0.len() + words + 1), 0);
         for (place, &word) in other.0.iter().enumerate() {
             self.0[place + words] |= word << shift;
             if shift > 0 {
@@ -34,9 +33,7 @@ impl Costs {
     /// Whether a run can take so many moves.
     #[must_use]
     pub fn contains(&self, cost: u64) -> bool {
-        self.0
-            .get((cost / 64) as usize)
-            .is_some_and(|word| word >> (cost % 64) & 1 == 1)
+        self.0.get((cost / 64) as usize).is_some_and(|word| word >> (cost % 64) & 1 == 1)
     }
 
     /// The least cost.

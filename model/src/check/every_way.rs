@@ -31,17 +31,10 @@ pub fn every_way(graph: &EmbeddedGraph, facing: Dart) -> Result<EveryWay, Flaw> 
     let mut world = GraphWorld::new(graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
     exploration.begin(&mut world, &mut ())?;
-    let mut search = Search {
-        facing,
-        from_line_4: HashMap::new(),
-        candidate: Candidate::default(),
-    };
+    let mut search =
+        Search { facing, from_line_4: HashMap::new(), candidate: Candidate::default() };
     let Futures { runs, costs } = search.from_line_4(&world, &exploration)?;
-    Ok(EveryWay {
-        states: search.from_line_4.len() as u64,
-        runs,
-        costs,
-    })
+    Ok(EveryWay { states: search.from_line_4.len() as u64, runs, costs })
 }
 
 /// What can come after a state: how many runs, and how many more moves they take.
@@ -101,13 +94,7 @@ impl Search {
         let mut futures = Futures::default();
         if map.unexplored_is_empty() {
             judge(exploration, self.facing, world, &mut self.candidate)?;
-            futures.include(
-                &Futures {
-                    runs: 1,
-                    costs: Costs::nothing(),
-                },
-                0,
-            );
+            futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
         }
         for edge in map.unexplored() {
             let (mut world, mut next) = (world.clone(), exploration.clone());

@@ -86,8 +86,7 @@ pub enum Flaw {
 #[must_use]
 pub fn move_bound(edges: usize, vertices: usize) -> u64 {
     let (m, n) = (edges as u64, vertices as u64);
-    m.saturating_mul(n)
-        .saturating_add(m.saturating_mul(m).saturating_mul(2 * (n - 1)))
+    m.saturating_mul(n).saturating_add(m.saturating_mul(m).saturating_mul(2 * (n - 1)))
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
@@ -114,16 +113,10 @@ pub(super) fn judge(
     let (believed, truly) = (exploration.robot(), world.pose());
     let image = bijection.images()[believed.at()];
     if image != truly {
-        return Err(Flaw::WrongPose {
-            believed,
-            image,
-            truly,
-        });
+        return Err(Flaw::WrongPose { believed, image, truly });
     }
-    let (moves, bound) = (
-        exploration.moves(),
-        move_bound(graph.edge_count(), graph.vertex_count()),
-    );
+    let (moves, bound) =
+        (exploration.moves(), move_bound(graph.edge_count(), graph.vertex_count()));
     if moves > bound {
         return Err(Flaw::TooManyMoves { moves, bound });
     }
@@ -145,11 +138,7 @@ impl fmt::Display for FalseStep {
         write!(out, "after {moves} moves ")?;
         match added {
             Event::LoopClosed { edge, other } => {
-                write!(
-                    out,
-                    "the map's darts {} and {} are wrongly made one edge",
-                    edge.0, other.0
-                )
+                write!(out, "the map's darts {} and {} are wrongly made one edge", edge.0, other.0)
             }
             Event::VertexAdded { edge, vertex } => write!(
                 out,
@@ -173,10 +162,7 @@ pub fn first_false_step(
     let mut watch = |exploration: &Exploration, added: Event| {
         let adds = matches!(added, Event::LoopClosed { .. } | Event::VertexAdded { .. });
         if adds && first.is_none() && !embeds(exploration.map(), graph, facing) {
-            first = Some(FalseStep {
-                moves: exploration.moves(),
-                added,
-            });
+            first = Some(FalseStep { moves: exploration.moves(), added });
         }
     };
     // Whether it ends well does not matter here.
@@ -196,11 +182,7 @@ fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
         let Some(entry) = darts.next() else {
             return false;
         };
-        let parent = if entry == FACING {
-            None
-        } else {
-            map.opposite(entry)
-        };
+        let parent = if entry == FACING { None } else { map.opposite(entry) };
         let mut at = match parent {
             None if entry == FACING => facing,
             parent => match parent.and_then(|dart: Dart| image[dart.at()]) {
@@ -219,10 +201,8 @@ fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
             at = graph.clockwise(at);
         }
     }
-    map.vertices()
-        .flat_map(|vertex| map.darts_of(vertex))
-        .all(|dart| match map.opposite(dart) {
-            None => true,
-            Some(other) => image[other.at()] == image[dart.at()].map(|image| graph.opposite(image)),
-        })
+    map.vertices().flat_map(|vertex| map.darts_of(vertex)).all(|dart| match map.opposite(dart) {
+        None => true,
+        Some(other) => image[other.at()] == image[dart.at()].map(|image| graph.opposite(image)),
+    })
 }

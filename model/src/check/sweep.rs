@@ -42,11 +42,7 @@ impl Shard {
 
     /// What belongs to the shard, of the parts of an enumeration.
     fn select(self, parts: Vec<Part>) -> Vec<Part> {
-        parts
-            .into_iter()
-            .skip(self.index - 1)
-            .step_by(self.of)
-            .collect()
+        parts.into_iter().skip(self.index - 1).step_by(self.of).collect()
     }
 }
 
@@ -55,10 +51,7 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, ShardError> {
         let shard = text.split_once('/').and_then(|(index, of)| {
-            Some(Self {
-                index: index.parse().ok()?,
-                of: of.parse().ok()?,
-            })
+            Some(Self { index: index.parse().ok()?, of: of.parse().ok()? })
         });
         shard
             .filter(|shard| (1..=shard.of).contains(&shard.index))
@@ -118,12 +111,10 @@ impl Sweep {
         };
         #[cfg(not(feature = "rayon"))]
         let tallies = parts.iter().map(check);
-        tallies
-            .into_iter()
-            .fold(Tally::default(), |mut sum, tally| {
-                sum.merge(tally);
-                sum
-            })
+        tallies.into_iter().fold(Tally::default(), |mut sum, tally| {
+            sum.merge(tally);
+            sum
+        })
     }
 
     fn check_part(&self, part: &Part, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
@@ -199,12 +190,7 @@ impl<'a, A: Algorithm> Checker<'a, A> {
                 let graph = graph.clone();
                 let false_step =
                     first_false_step(self.algorithm, &graph, facing, &mut self.exploration);
-                tally.failure = Some(Failure {
-                    graph,
-                    facing,
-                    flaw,
-                    false_step,
-                });
+                tally.failure = Some(Failure { graph, facing, flaw, false_step });
             }
             Err(_) => {}
         }
@@ -212,8 +198,7 @@ impl<'a, A: Algorithm> Checker<'a, A> {
 
     fn run(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Result<u64, Flaw> {
         let mut world = GraphWorld::new(graph, facing);
-        self.algorithm
-            .run(&mut world, &mut self.exploration, &mut ())?;
+        self.algorithm.run(&mut world, &mut self.exploration, &mut ())?;
         judge(&self.exploration, facing, &world, &mut self.candidate)?;
         Ok(self.exploration.moves())
     }

@@ -78,11 +78,7 @@ impl Tally {
     pub(super) fn count_run(&mut self, graph: &EmbeddedGraph, facing: Dart, moves: u64) {
         self.moves_total += moves;
         if self.worst.as_ref().is_none_or(|worst| moves > worst.moves) {
-            self.worst = Some(WorstStart {
-                graph: graph.clone(),
-                facing,
-                moves,
-            });
+            self.worst = Some(WorstStart { graph: graph.clone(), facing, moves });
         }
         self.count_dearest((moves, graph.vertex_count() as u64));
     }
@@ -102,10 +98,7 @@ impl Tally {
     }
 
     fn count_dearest(&mut self, (moves, vertices): (u64, u64)) {
-        if self
-            .dearest
-            .is_none_or(|(most, of)| moves * of > most * vertices)
-        {
+        if self.dearest.is_none_or(|(most, of)| moves * of > most * vertices) {
             self.dearest = Some((moves, vertices));
         }
     }

@@ -117,17 +117,12 @@ impl EmbeddedGraph {
                 degrees.push((inverse.len() - before) as u32);
             }
         }
-        let renumbered = inverse
-            .iter()
-            .map(|&dart| number[opposite[dart] as usize])
-            .collect();
+        let renumbered = inverse.iter().map(|&dart| number[opposite[dart] as usize]).collect();
         let graph = Self::from_degrees(&degrees, renumbered);
         match graph.unreached_vertex() {
             Some(vertex) => {
                 let missed = graph.darts_of(vertex).map(|dart| inverse[dart.at()]).min();
-                Err(Fault::NotConnected {
-                    dart: missed.unwrap_or_default() as u32,
-                })
+                Err(Fault::NotConnected { dart: missed.unwrap_or_default() as u32 })
             }
             None => Ok((graph, number)),
         }
@@ -153,14 +148,9 @@ impl EmbeddedGraph {
                     });
                 };
                 if other == vertex {
-                    return Err(ListError::OwnNeighbour {
-                        vertex: vertex_name(),
-                    });
+                    return Err(ListError::OwnNeighbour { vertex: vertex_name() });
                 }
-                if end_at
-                    .insert((vertex, other), Dart(ends.len() as u32))
-                    .is_some()
-                {
+                if end_at.insert((vertex, other), Dart(ends.len() as u32)).is_some() {
                     return Err(ListError::RepeatedNeighbour {
                         vertex: vertex_name(),
                         neighbour: neighbour_name(),
@@ -172,13 +162,10 @@ impl EmbeddedGraph {
         let opposite = ends
             .iter()
             .map(|&(vertex, other)| {
-                end_at
-                    .get(&(other, vertex))
-                    .copied()
-                    .ok_or_else(|| ListError::OneSided {
-                        vertex: lists[vertex].0.as_ref().to_owned(),
-                        neighbour: lists[other].0.as_ref().to_owned(),
-                    })
+                end_at.get(&(other, vertex)).copied().ok_or_else(|| ListError::OneSided {
+                    vertex: lists[vertex].0.as_ref().to_owned(),
+                    neighbour: lists[other].0.as_ref().to_owned(),
+                })
             })
             .collect::<Result<Vec<_>, _>>()?;
         Self::from_lists(lists, opposite)
@@ -239,23 +226,17 @@ impl EmbeddedGraph {
     }
 
     /// The graph with these degrees and this `opposite`, which the caller has checked.
-    pub(crate) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
-        let mut first = Vec::with_capacity(degrees.len() + 1);
-        let mut vertex = Vec::with_capacity(opposite.len());
-        first.push(0);
-        for (number, &degree) in degrees.iter().enumerate() {
-            vertex.extend((0..degree).map(|_| Vertex(number as u32)));
-            first.push(vertex.len() as u32);
+    fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
+        let mut graph = Self::unfinished();
+        for &degree in degrees {
+            graph.add_vertex(degree);
         }
-        Self {
-            first,
-            vertex,
-            opposite,
-        }
+        graph.opposite = opposite;
+        graph
     }
 
     /// The first vertex that cannot be reached from the first of all.
-    pub(super) fn unreached_vertex(&self) -> Option<Vertex> {
+    fn unreached_vertex(&self) -> Option<Vertex> {
         let mut reached = vec![false; self.vertex_count()];
         let mut open = vec![Vertex(0)];
         reached[0] = true;
@@ -294,10 +275,7 @@ impl EmbeddedGraph {
         if order.len() != self.dart_count() {
             return None;
         }
-        let opposite = order
-            .iter()
-            .map(|&dart| number[self.opposite(dart).at()])
-            .collect();
+        let opposite = order.iter().map(|&dart| number[self.opposite(dart).at()]).collect();
         Some((Self::from_degrees(&degrees, opposite), number))
     }
 }
@@ -308,9 +286,7 @@ fn number_vertices<N: AsRef<str>>(
     let mut number = HashMap::new();
     for (vertex, (name, _)) in lists.iter().enumerate() {
         if number.insert(name.as_ref(), vertex).is_some() {
-            return Err(ListError::VertexTwice {
-                vertex: name.as_ref().to_owned(),
-            });
+            return Err(ListError::VertexTwice { vertex: name.as_ref().to_owned() });
         }
     }
     Ok(number)
@@ -329,18 +305,12 @@ mod tests {
     use super::*;
 
     fn neighbours(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
-        let owned: Vec<_> = lists
-            .iter()
-            .map(|(name, list)| (*name, list.to_vec()))
-            .collect();
+        let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
         EmbeddedGraph::from_neighbour_lists(&owned)
     }
 
     fn edges(lists: &[(&'static str, &[&'static str])]) -> Result<EmbeddedGraph, ListError> {
-        let owned: Vec<_> = lists
-            .iter()
-            .map(|(name, list)| (*name, list.to_vec()))
-            .collect();
+        let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
         EmbeddedGraph::from_edge_lists(&owned)
     }
 
@@ -360,46 +330,16 @@ mod tests {
             EmbeddedGraph::from_permutations(opposite, clockwise).unwrap_err()
         };
         assert_eq!(fault(&[], &[]), Fault::NoEdge);
-        assert_eq!(
-            fault(&[1, 0], &[0]),
-            Fault::LengthsDiffer {
-                opposite: 2,
-                clockwise: 1
-            }
-        );
-        assert_eq!(
-            fault(&[5, 0], &[0, 1]),
-            Fault::OppositeOutOfRange {
-                dart: 0,
-                opposite: 5
-            }
-        );
+        assert_eq!(fault(&[1, 0], &[0]), Fault::LengthsDiffer { opposite: 2, clockwise: 1 });
+        assert_eq!(fault(&[5, 0], &[0, 1]), Fault::OppositeOutOfRange { dart: 0, opposite: 5 });
         assert_eq!(fault(&[0, 1], &[0, 1]), Fault::OppositeFixed { dart: 0 });
         assert_eq!(
             fault(&[1, 2, 3, 0], &[0, 1, 2, 3]),
-            Fault::OppositeNotMutual {
-                dart: 0,
-                opposite: 1
-            }
+            Fault::OppositeNotMutual { dart: 0, opposite: 1 }
         );
-        assert_eq!(
-            fault(&[1, 0], &[2, 0]),
-            Fault::ClockwiseOutOfRange {
-                dart: 0,
-                clockwise: 2
-            }
-        );
-        assert_eq!(
-            fault(&[1, 0], &[1, 1]),
-            Fault::ClockwiseRepeated {
-                dart: 1,
-                clockwise: 1
-            }
-        );
-        assert_eq!(
-            fault(&[1, 0, 3, 2], &[0, 1, 2, 3]),
-            Fault::NotConnected { dart: 2 }
-        );
+        assert_eq!(fault(&[1, 0], &[2, 0]), Fault::ClockwiseOutOfRange { dart: 0, clockwise: 2 });
+        assert_eq!(fault(&[1, 0], &[1, 1]), Fault::ClockwiseRepeated { dart: 1, clockwise: 1 });
+        assert_eq!(fault(&[1, 0, 3, 2], &[0, 1, 2, 3]), Fault::NotConnected { dart: 2 });
     }
 
     #[test]
@@ -422,12 +362,7 @@ mod tests {
             "vertex `a` lists the neighbour `b` twice; parallel edges need edge names, in [doors]"
         );
         assert_eq!(
-            message(neighbours(&[
-                ("a", &["b"]),
-                ("b", &["a"]),
-                ("c", &["d"]),
-                ("d", &["c"])
-            ])),
+            message(neighbours(&[("a", &["b"]), ("b", &["a"]), ("c", &["d"]), ("d", &["c"])])),
             "the world is not connected: vertex `c` cannot be reached from `a`"
         );
         assert_eq!(
@@ -438,14 +373,8 @@ mod tests {
             message(edges(&[("a", &["e"])])),
             "edge `e` stands 1 times (a); an edge has two ends"
         );
-        assert_eq!(
-            message(edges(&[("a", &[]), ("a", &[])])),
-            "vertex `a` has two lists"
-        );
-        assert_eq!(
-            message(edges(&[("a", &[])])),
-            "there is no edge; a world has at least one"
-        );
+        assert_eq!(message(edges(&[("a", &[]), ("a", &[])])), "vertex `a` has two lists");
+        assert_eq!(message(edges(&[("a", &[])])), "there is no edge; a world has at least one");
     }
 
     #[test]
@@ -454,21 +383,11 @@ mod tests {
         let (relabelled, number) = graph.relabelled(&[Dart(5), Dart(4), Dart(1)]).unwrap();
         for dart in graph.darts() {
             let image = number[dart.at()];
-            assert_eq!(
-                relabelled.opposite(image),
-                number[graph.opposite(dart).at()]
-            );
-            assert_eq!(
-                relabelled.clockwise(image),
-                number[graph.clockwise(dart).at()]
-            );
+            assert_eq!(relabelled.opposite(image), number[graph.opposite(dart).at()]);
+            assert_eq!(relabelled.clockwise(image), number[graph.clockwise(dart).at()]);
         }
         assert_eq!(number[5], Dart(0));
-        for unfit in [
-            &[Dart(5), Dart(4)][..],
-            &[Dart(5), Dart(4), Dart(3)],
-            &[Dart(6); 3],
-        ] {
+        for unfit in [&[Dart(5), Dart(4)][..], &[Dart(5), Dart(4), Dart(3)], &[Dart(6); 3]] {
             assert_eq!(graph.relabelled(unfit), None);
         }
     }

@@ -76,19 +76,13 @@ pub fn opposite_fault(opposite: &[u32]) -> Option<Fault> {
         let other = opposite[dart];
         let this = dart as u32;
         if other as usize >= opposite.len() {
-            return Some(Fault::OppositeOutOfRange {
-                dart: this,
-                opposite: other,
-            });
+            return Some(Fault::OppositeOutOfRange { dart: this, opposite: other });
         }
         if other == this {
             return Some(Fault::OppositeFixed { dart: this });
         }
         if opposite[other as usize] != this {
-            return Some(Fault::OppositeNotMutual {
-                dart: this,
-                opposite: other,
-            });
+            return Some(Fault::OppositeNotMutual { dart: this, opposite: other });
         }
         dart += 1;
     }
@@ -104,16 +98,10 @@ pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<Fault> {
         let next = clockwise[dart];
         let this = dart as u32;
         if next as usize >= clockwise.len() {
-            return Some(Fault::ClockwiseOutOfRange {
-                dart: this,
-                clockwise: next,
-            });
+            return Some(Fault::ClockwiseOutOfRange { dart: this, clockwise: next });
         }
         if taken[next as usize] {
-            return Some(Fault::ClockwiseRepeated {
-                dart: this,
-                clockwise: next,
-            });
+            return Some(Fault::ClockwiseRepeated { dart: this, clockwise: next });
         }
         taken[next as usize] = true;
         dart += 1;

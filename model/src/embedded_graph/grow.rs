@@ -2,7 +2,7 @@
 //!
 //! For the rooms that build graphs step by step and take care that nobody sees an unfinished one.
 
-use super::{Dart, EmbeddedGraph, Vertex};
+use super::{Dart, Darts, EmbeddedGraph, Vertex};
 
 /// Stands as the opposite of a free dart.
 const FREE: Dart = Dart(u32::MAX);
@@ -10,27 +10,27 @@ const FREE: Dart = Dart(u32::MAX);
 impl EmbeddedGraph {
     /// No vertex at all, yet.
     pub(crate) fn unfinished() -> Self {
-        Self {
-            first: vec![0],
-            vertex: Vec::new(),
-            opposite: Vec::new(),
-        }
+        Self { darts_of: Vec::new(), vertex: Vec::new(), opposite: Vec::new(), around: Vec::new() }
     }
 
     /// Back to no vertex at all; keeps the memory.
     pub(crate) fn clear(&mut self) {
-        self.first.truncate(1);
+        self.darts_of.clear();
         self.vertex.clear();
         self.opposite.clear();
+        self.around.clear();
     }
 
     /// Adds a vertex with the given number of free darts.
     pub(crate) fn add_vertex(&mut self, degree: u32) -> Vertex {
-        let vertex = Vertex(self.first.len() as u32 - 1);
-        let end = self.opposite.len() + degree as usize;
-        self.vertex.resize(end, vertex);
-        self.opposite.resize(end, FREE);
-        self.first.push(end as u32);
+        let vertex = Vertex(self.darts_of.len() as u32);
+        let first = self.opposite.len() as u32;
+        let darts = Darts { first, end: first + degree };
+        let count = darts.end as usize;
+        self.darts_of.push(darts);
+        self.vertex.resize(count, vertex);
+        self.opposite.resize(count, FREE);
+        self.around.resize(count, darts);
         vertex
     }
 
@@ -40,15 +40,16 @@ impl EmbeddedGraph {
         self.opposite[other.at()] = one;
     }
 
-    /// Whether the dart has no opposite yet.
+    /// The dart's opposite; `None` while it is free.
     #[inline]
-    pub(crate) fn is_free(&self, dart: Dart) -> bool {
-        self.opposite[dart.at()] == FREE
+    pub(crate) fn joined(&self, dart: Dart) -> Option<Dart> {
+        let other = self.opposite[dart.at()];
+        (other != FREE).then_some(other)
     }
 
     /// The first dart of a vertex.
     #[inline]
     pub(crate) fn first_dart(&self, vertex: Vertex) -> Dart {
-        Dart(self.first[vertex.at()])
+        Dart(self.darts_of[vertex.at()].first)
     }
 }

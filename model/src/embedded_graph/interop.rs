@@ -65,12 +65,7 @@ impl EmbeddedGraph {
                 let listed = edges.iter().filter(|&&other| other == edge).count();
                 if listed != touches {
                     let edge = edge.index();
-                    return Err(PetgraphError::NotIncident {
-                        node,
-                        edge,
-                        listed,
-                        touches,
-                    });
+                    return Err(PetgraphError::NotIncident { node, edge, listed, touches });
                 }
             }
             let names = edges.iter().map(|edge| edge.index().to_string()).collect();
@@ -106,26 +101,15 @@ mod tests {
     fn a_petgraph_graph_with_an_order_becomes_embedded_and_comes_back() {
         let mut graph = UnGraph::<(), ()>::new_undirected();
         let (u, v) = (graph.add_node(()), graph.add_node(()));
-        let (a, b, c) = (
-            graph.add_edge(u, v, ()),
-            graph.add_edge(u, v, ()),
-            graph.add_edge(u, u, ()),
-        );
+        let (a, b, c) =
+            (graph.add_edge(u, v, ()), graph.add_edge(u, v, ()), graph.add_edge(u, u, ()));
         let embedded =
             EmbeddedGraph::from_petgraph(&graph, &[vec![a, c, b, c], vec![b, a]]).unwrap();
         assert_eq!((embedded.vertex_count(), embedded.edge_count()), (2, 3));
         let back = embedded.to_petgraph();
         assert_eq!(back.edge_count(), 3);
-        assert_eq!(
-            back.edges_connecting(NodeIndex::new(0), NodeIndex::new(1))
-                .count(),
-            2
-        );
-        assert_eq!(
-            back.edges_connecting(NodeIndex::new(0), NodeIndex::new(0))
-                .count(),
-            1
-        );
+        assert_eq!(back.edges_connecting(NodeIndex::new(0), NodeIndex::new(1)).count(), 2);
+        assert_eq!(back.edges_connecting(NodeIndex::new(0), NodeIndex::new(0)).count(), 1);
     }
 
     #[test]
@@ -133,11 +117,8 @@ mod tests {
         let mut graph = UnGraph::<(), ()>::new_undirected();
         let (u, v) = (graph.add_node(()), graph.add_node(()));
         let a = graph.add_edge(u, v, ());
-        let message = |order: &[Vec<_>]| {
-            EmbeddedGraph::from_petgraph(&graph, order)
-                .unwrap_err()
-                .to_string()
-        };
+        let message =
+            |order: &[Vec<_>]| EmbeddedGraph::from_petgraph(&graph, order).unwrap_err().to_string();
         assert_eq!(message(&[vec![a]]), "1 lists were given for 2 nodes");
         assert_eq!(
             message(&[vec![a], vec![]]),

@@ -9,8 +9,6 @@ mod fault;
 mod grow;
 mod interop;
 
-use std::ops::Range;
-
 pub use construct::ListError;
 pub use fault::{Fault, clockwise_fault, opposite_fault};
 pub use interop::PetgraphError;
@@ -50,19 +48,36 @@ pub const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 // paper: world.graph, world.embedding
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EmbeddedGraph {
-    /// The first dart of each vertex, and then the number of darts.
-    first: Vec<u32>,
+    /// The darts of each vertex.
+    darts_of: Vec<Darts>,
     /// The vertex of each dart.
     vertex: Vec<Vertex>,
     /// The other end of each dart's edge.
     opposite: Vec<Dart>,
+    /// The darts of each dart's vertex, once more, so that a motion needs one look-up.
+    around: Vec<Darts>,
+}
+
+/// The darts of a vertex: consecutive numbers in clockwise order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Darts {
+    first: u32,
+    /// One past the last.
+    end: u32,
+}
+
+impl Darts {
+    #[inline]
+    fn count(self) -> u32 {
+        self.end - self.first
+    }
 }
 
 impl EmbeddedGraph {
     /// The number of vertices, `n`.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
-        self.first.len() - 1
+        self.darts_of.len()
     }
 
     /// The number of edges, `m`.
@@ -81,7 +96,7 @@ impl EmbeddedGraph {
     pub fn vertices(
         &self,
     ) -> impl ExactSizeIterator<Item = Vertex> + DoubleEndedIterator + Clone + use<> {
-        (0..self.first.len() as u32 - 1).map(Vertex)
+        (0..self.darts_of.len() as u32).map(Vertex)
     }
 
     /// All darts, in the order of their numbers.
@@ -91,9 +106,7 @@ impl EmbeddedGraph {
 
     /// All edges, each as its two darts, the lower number first, in the order of the first.
     pub fn edges(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
-        self.darts()
-            .map(|dart| (dart, self.opposite(dart)))
-            .filter(|(dart, other)| dart < other)
+        self.darts().map(|dart| (dart, self.opposite(dart))).filter(|(dart, other)| dart < other)
     }
 
     /// The other end of the dart's edge.
@@ -114,22 +127,22 @@ impl EmbeddedGraph {
     #[inline]
     #[must_use]
     pub fn degree(&self, vertex: Vertex) -> u32 {
-        self.first[vertex.at() + 1] - self.first[vertex.at()]
+        self.darts_of[vertex.at()].count()
     }
 
     /// The dart's place in the clockwise order of its vertex, counted from the vertex's first dart.
     #[inline]
     #[must_use]
     pub fn index(&self, dart: Dart) -> u32 {
-        dart.0 - self.first[self.vertex(dart).at()]
+        dart.0 - self.around[dart.at()].first
     }
 
     /// The dart that stands `index` places clockwise from the vertex's first; the inverse of
     /// [`index`](Self::index). `None` where the vertex has no so many darts.
     #[must_use]
     pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
-        let darts = self.dart_range(vertex);
-        (index < darts.end - darts.start).then(|| Dart(darts.start + index))
+        let darts = self.darts_of[vertex.at()];
+        (index < darts.count()).then(|| Dart(darts.first + index))
     }
 
     /// The darts of a vertex in clockwise order from its first.
@@ -137,36 +150,31 @@ impl EmbeddedGraph {
         &self,
         vertex: Vertex,
     ) -> impl ExactSizeIterator<Item = Dart> + DoubleEndedIterator + Clone + use<> {
-        self.dart_range(vertex).map(Dart)
+        let Darts { first, end } = self.darts_of[vertex.at()];
+        (first..end).map(Dart)
     }
 
     /// The next dart around the same vertex.
     #[inline]
     #[must_use]
     pub fn clockwise(&self, dart: Dart) -> Dart {
-        let darts = self.dart_range(self.vertex(dart));
-        if dart.0 + 1 == darts.end {
-            Dart(darts.start)
-        } else {
-            Dart(dart.0 + 1)
-        }
+        let darts = self.around[dart.at()];
+        if dart.0 + 1 == darts.end { Dart(darts.first) } else { Dart(dart.0 + 1) }
     }
 
     /// The previous dart around the same vertex.
     #[inline]
     #[must_use]
     pub fn counterclockwise(&self, dart: Dart) -> Dart {
-        let darts = self.dart_range(self.vertex(dart));
-        if dart.0 == darts.start {
-            Dart(darts.end - 1)
-        } else {
-            Dart(dart.0 - 1)
-        }
+        let darts = self.around[dart.at()];
+        if dart.0 == darts.first { Dart(darts.end - 1) } else { Dart(dart.0 - 1) }
     }
 
+    /// The number of darts at the dart's vertex.
     #[inline]
-    fn dart_range(&self, vertex: Vertex) -> Range<u32> {
-        self.first[vertex.at()]..self.first[vertex.at() + 1]
+    #[must_use]
+    pub fn degree_around(&self, dart: Dart) -> u32 {
+        self.around[dart.at()].count()
     }
 
     /// The number of faces: the orbits of "cross the edge, then turn clockwise".
@@ -210,23 +218,11 @@ impl EmbeddedGraph {
     #[must_use]
     pub fn mirror_image(&self) -> Self {
         let image = |dart: Dart| {
-            let darts = self.dart_range(self.vertex(dart));
-            let index = dart.0 - darts.start;
-            if index == 0 {
-                dart
-            } else {
-                Dart(darts.end - index)
-            }
+            let darts = self.around[dart.at()];
+            if dart.0 == darts.first { dart } else { Dart(darts.end - self.index(dart)) }
         };
-        let opposite = self
-            .darts()
-            .map(|dart| image(self.opposite(image(dart))))
-            .collect();
-        Self {
-            first: self.first.clone(),
-            vertex: self.vertex.clone(),
-            opposite,
-        }
+        let opposite = self.darts().map(|dart| image(self.opposite(image(dart)))).collect();
+        Self { opposite, ..self.clone() }
     }
 }
 
@@ -237,11 +233,7 @@ mod tests {
     /// The two-vertex graph with three parallel edges, in the plane (`crossed` = false) and on the
     /// torus.
     fn theta(crossed: bool) -> EmbeddedGraph {
-        let far = if crossed {
-            ["a", "b", "c"]
-        } else {
-            ["c", "b", "a"]
-        };
+        let far = if crossed { ["a", "b", "c"] } else { ["c", "b", "a"] };
         EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
     }
 
@@ -257,10 +249,7 @@ mod tests {
         let graph = theta(true);
         for dart in graph.darts() {
             assert_eq!(graph.counterclockwise(graph.clockwise(dart)), dart);
-            assert_eq!(
-                graph.dart(graph.vertex(dart), graph.index(dart)),
-                Some(dart)
-            );
+            assert_eq!(graph.dart(graph.vertex(dart), graph.index(dart)), Some(dart));
         }
         assert_eq!(graph.dart(Vertex(0), 3), None);
     }
@@ -279,10 +268,7 @@ mod tests {
         assert_ne!(mirror, graph);
         assert_eq!(mirror.mirror_image(), graph);
         for dart in graph.darts() {
-            assert_eq!(
-                mirror.vertex(mirror.opposite(dart)),
-                graph.vertex(mirror.opposite(dart))
-            );
+            assert_eq!(mirror.vertex(mirror.opposite(dart)), graph.vertex(mirror.opposite(dart)));
         }
         assert_eq!(mirror.genus(), graph.genus());
     }

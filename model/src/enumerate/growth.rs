@@ -135,11 +135,7 @@ impl Growth {
                 self.unjoin(dart, other);
             }
         }
-        for degree in (1..=self
-            .highest_degree()
-            .min(2 * left + 2 - free.min(2 * left + 2)))
-            .rev()
-        {
+        for degree in (1..=self.highest_degree().min(2 * left + 2 - free.min(2 * left + 2))).rev() {
             if self.can_end(free + degree - 2, left) {
                 let entry = self.darts;
                 self.add_vertex(degree);
@@ -215,20 +211,14 @@ impl Growth {
     /// The least number of edges that can use up these free darts, if none may be joined to one at
     /// its own vertex.
     fn edges_needed(&self, free: u64) -> usize {
-        let most_at_one = (0..self.vertices)
-            .map(|v| (free & self.darts_of(v)).count_ones())
-            .max();
+        let most_at_one = (0..self.vertices).map(|v| (free & self.darts_of(v)).count_ones()).max();
         free.count_ones().div_ceil(2).max(most_at_one.unwrap_or(0)) as usize
     }
 
     pub(super) fn clockwise(&self, dart: usize) -> usize {
         let vertex = self.vertex[dart] as usize;
         let first = self.first[vertex] as usize;
-        if dart + 1 == first + self.degree[vertex] as usize {
-            first
-        } else {
-            dart + 1
-        }
+        if dart + 1 == first + self.degree[vertex] as usize { first } else { dart + 1 }
     }
 
     fn add_vertex(&mut self, degree: usize) {
@@ -288,9 +278,6 @@ impl Growth {
         for (dart, &other) in self.opposite[..self.darts].iter().enumerate() {
             graph.join(Dart(dart as u32), Dart(u32::from(other)));
         }
-        visit(Found {
-            graph,
-            automorphisms: self.rivals.count_ones() + 1,
-        })
+        visit(Found { graph, automorphisms: self.rivals.count_ones() + 1 })
     }
 }

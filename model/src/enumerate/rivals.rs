@@ -38,16 +38,11 @@ impl Growth {
         let word = if far == vertex {
             let degree = self.degree[vertex];
             let rival = rival as u8;
-            if other > rival {
-                other - rival
-            } else {
-                other + degree - rival
-            }
+            if other > rival { other - rival } else { other + degree - rival }
         } else {
             new_vertex(self.degree[far])
         };
-        word.cmp(&self.words[0])
-            .then_with(|| self.compare_throughout(rival))
+        word.cmp(&self.words[0]).then_with(|| self.compare_throughout(rival))
     }
 
     fn compare_throughout(&self, rival: usize) -> Ordering {

@@ -63,8 +63,8 @@ impl Bijection {
 pub struct Candidate {
     /// The latest candidate.
     pub bijection: Bijection,
-    /// The darts that have an image, in the order in which they got it.
-    reached: Vec<Dart>,
+    /// Darts and their images, from which the rest is found.
+    reached: Vec<(Dart, Dart)>,
 }
 
 impl Candidate {
@@ -77,21 +77,21 @@ impl Candidate {
         let image = &mut self.bijection.0;
         image.clear();
         image.resize(from.dart_count(), NONE);
-        image[facing.at()] = facing_image;
         self.reached.clear();
-        self.reached.push(facing);
+        self.reached.push((facing, facing_image));
+        // Vertex by vertex: all darts around it, and then what is opposite to each.
         let mut next = 0;
-        while let Some(&dart) = self.reached.get(next) {
+        while let Some(&(entry, entry_image)) = self.reached.get(next) {
             next += 1;
-            let at = image[dart.at()];
-            for (neighbour, its_image) in [
-                (from.clockwise(dart), to.clockwise(at)),
-                (from.opposite(dart), to.opposite(at)),
-            ] {
-                if image[neighbour.at()] == NONE {
-                    image[neighbour.at()] = its_image;
-                    self.reached.push(neighbour);
+            let (mut dart, mut at) = (entry, entry_image);
+            while image[dart.at()] == NONE {
+                image[dart.at()] = at;
+                let far = from.opposite(dart);
+                if image[far.at()] == NONE {
+                    self.reached.push((far, to.opposite(at)));
                 }
+                dart = from.clockwise(dart);
+                at = to.clockwise(at);
             }
         }
         &self.bijection

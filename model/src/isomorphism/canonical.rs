@@ -72,19 +72,11 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
         }
     }
     let root = orbits.find_mut(best.order[0].0);
-    let automorphisms = graph
-        .darts()
-        .filter(|dart| orbits.find(dart.0) == root)
-        .count();
+    let automorphisms = graph.darts().filter(|dart| orbits.find(dart.0) == root).count();
     let mut least = vec![None; graph.dart_count()];
     let orbit = graph
         .darts()
         .map(|dart| *least[orbits.find(dart.0) as usize].get_or_insert(dart))
         .collect();
-    Canonical {
-        code: Code(code),
-        order: best.order,
-        automorphisms,
-        orbit,
-    }
+    Canonical { code: Code(code), order: best.order, automorphisms, orbit }
 }

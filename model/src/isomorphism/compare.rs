@@ -31,10 +31,7 @@ impl Difference {
     /// differs.
     fn between(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Self {
         let count = |graph: &EmbeddedGraph, degree: u32| {
-            graph
-                .vertices()
-                .filter(|&vertex| graph.degree(vertex) == degree)
-                .count()
+            graph.vertices().filter(|&vertex| graph.degree(vertex) == degree).count()
         };
         let highest = one.vertices().map(|vertex| one.degree(vertex)).max();
         let highest = highest.max(other.vertices().map(|vertex| other.degree(vertex)).max());
@@ -62,10 +59,7 @@ impl fmt::Display for Difference {
         match self {
             Self::Edges(one, other) => write!(out, "{one} edges against {other}"),
             Self::Vertices(one, other) => write!(out, "{one} vertices against {other}"),
-            Self::Degrees {
-                degree,
-                vertices: (one, other),
-            } => {
+            Self::Degrees { degree, vertices: (one, other) } => {
                 write!(out, "{one} vertices of degree {degree} against {other}")
             }
             Self::Genus(one, other) => write!(out, "genus {one} against {other}"),

@@ -29,28 +29,24 @@ mod tests {
                 opposite[pair[0] as usize] = pair[1];
                 opposite[pair[1] as usize] = pair[0];
             }
-            EmbeddedGraph::from_permutations(&opposite, &clockwise)
-                .ok()
-                .map(|(graph, _)| graph)
+            EmbeddedGraph::from_permutations(&opposite, &clockwise).ok().map(|(graph, _)| graph)
         })
     }
 
     fn relabelled() -> impl Strategy<Value = (EmbeddedGraph, EmbeddedGraph, Vec<Dart>)> {
-        (1..12usize)
-            .prop_flat_map(arbitrary_graph)
-            .prop_flat_map(|graph| {
-                let order = Just(graph.vertices().collect::<Vec<_>>()).prop_shuffle();
-                let turns = proptest::collection::vec(0..64u32, graph.vertex_count());
-                (order, turns).prop_map(move |(order, turns)| {
-                    let firsts: Vec<_> = order
-                        .iter()
-                        .zip(turns)
-                        .map(|(&v, turn)| graph.dart(v, turn % graph.degree(v)).unwrap())
-                        .collect();
-                    let (copy, number) = graph.relabelled(&firsts).unwrap();
-                    (graph.clone(), copy, number)
-                })
+        (1..12usize).prop_flat_map(arbitrary_graph).prop_flat_map(|graph| {
+            let order = Just(graph.vertices().collect::<Vec<_>>()).prop_shuffle();
+            let turns = proptest::collection::vec(0..64u32, graph.vertex_count());
+            (order, turns).prop_map(move |(order, turns)| {
+                let firsts: Vec<_> = order
+                    .iter()
+                    .zip(turns)
+                    .map(|(&v, turn)| graph.dart(v, turn % graph.degree(v)).unwrap())
+                    .collect();
+                let (copy, number) = graph.relabelled(&firsts).unwrap();
+                (graph.clone(), copy, number)
             })
+        })
     }
 
     /// The number of automorphisms, one candidate after the other.
@@ -118,10 +114,7 @@ mod tests {
         let right = isomorphism(&graph, &graph).unwrap();
         assert!(right.clone().verify(&graph, &graph));
         for place in 0..6 {
-            for wrong in (0..8)
-                .map(Dart)
-                .filter(|&dart| dart != right.images()[place])
-            {
+            for wrong in (0..8).map(Dart).filter(|&dart| dart != right.images()[place]) {
                 let mut images = right.images().to_vec();
                 images[place] = wrong;
                 assert!(!Bijection::claimed(images).verify(&graph, &graph));
@@ -133,10 +126,7 @@ mod tests {
     #[test]
     fn each_difference_is_named() {
         let graph = |lists: &[(&'static str, &[&'static str])]| {
-            let owned: Vec<_> = lists
-                .iter()
-                .map(|(name, list)| (*name, list.to_vec()))
-                .collect();
+            let owned: Vec<_> = lists.iter().map(|(name, list)| (*name, list.to_vec())).collect();
             EmbeddedGraph::from_edge_lists(&owned).unwrap()
         };
         let difference = |one: &EmbeddedGraph, other: &EmbeddedGraph| {

@@ -82,12 +82,7 @@ pub fn try_path<W: World>(
         if perceived != expected {
             // 14, 15: reject the hypothesis, and retrace the path back to vu.
             exploration.retrace(world, observer)?;
-            let event = Event::Rejected {
-                hypothesis,
-                followed,
-                expected,
-                perceived,
-            };
+            let event = Event::Rejected { hypothesis, followed, expected, perceived };
             observer.event(exploration, event);
             return Ok(Verdict::Rejected);
         }
@@ -95,12 +90,6 @@ pub fn try_path<W: World>(
     }
     // 16, 17: the percepts match throughout; confirm the hypothesis.
     exploration.arrive_at_marker(pose);
-    observer.event(
-        exploration,
-        Event::Confirmed {
-            hypothesis,
-            followed,
-        },
-    );
+    observer.event(exploration, Event::Confirmed { hypothesis, followed });
     Ok(Verdict::Confirmed)
 }

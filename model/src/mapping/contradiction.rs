@@ -37,10 +37,7 @@ impl<E> From<Contradiction> for MappingError<E> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Contradiction {
     /// At the start the marker must be seen pointing along door 0.
-    #[error(
-        "at the start the marker must point along door 0, but there is {}",
-        Seen(perceived)
-    )]
+    #[error("at the start the marker must point along door 0, but there is {}", Seen(perceived))]
     Start {
         /// What was perceived.
         perceived: Percept,
@@ -82,11 +79,7 @@ pub enum Contradiction {
         perceived: Percept,
     },
     /// A place looks different on the way back from a rejected hypothesis.
-    #[error(
-        "on the way back there should be {} but there is {}",
-        Seen(expected),
-        Seen(perceived)
-    )]
+    #[error("on the way back there should be {} but there is {}", Seen(expected), Seen(perceived))]
     WayBack {
         /// What was perceived there on the way out, turned to the new entry.
         expected: Percept,

@@ -52,10 +52,7 @@ struct Here {
     entry: Door,
 }
 
-const NOWHERE: Percept = Percept {
-    degree: 0,
-    sighting: Sighting::Nothing,
-};
+const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
 impl Exploration {
     /// A state ready for a run that may come to know at most `bound` darts.
@@ -66,10 +63,7 @@ impl Exploration {
             moves: 0,
             map: PartialMap::new(),
             robot: FACING,
-            here: Here {
-                percept: NOWHERE,
-                entry: Door::BACK,
-            },
+            here: Here { percept: NOWHERE, entry: Door::BACK },
             edge: FACING,
             arrival: NOWHERE,
             hypotheses: Vec::new(),
@@ -143,8 +137,7 @@ impl Exploration {
     /// Line 5: the edge to explore next, as chosen; `None` if all is explored.
     // paper: alg1.5
     pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
-        self.from_robot
-            .plant(&self.map, self.map.vertex(self.robot));
+        self.from_robot.plant(&self.map, self.map.vertex(self.robot));
         choices.next_edge(&self.map, &mut self.from_robot)
     }
 
@@ -164,8 +157,7 @@ impl Exploration {
     ) -> Result<(), MappingError<W::Error>> {
         self.set_out();
         let mut way = mem::take(&mut self.way);
-        self.from_robot
-            .path_from_root(&self.map, self.map.vertex(edge), &mut way);
+        self.from_robot.path_from_root(&self.map, self.map.vertex(edge), &mut way);
         for &dart in &way {
             let Some(next) = self.map.opposite(dart) else {
                 break;
@@ -174,13 +166,7 @@ impl Exploration {
             let expected = self.map.expected(next);
             if perceived != expected {
                 let (vertex, index) = (self.map.vertex(next), self.map.index(next));
-                return Err(Contradiction::KnownPlace {
-                    vertex,
-                    index,
-                    expected,
-                    perceived,
-                }
-                .into());
+                return Err(Contradiction::KnownPlace { vertex, index, expected, perceived }.into());
             }
             self.robot = next;
         }
@@ -191,30 +177,21 @@ impl Exploration {
         self.raise_hypotheses()?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map.unexplored_count() as usize - 1 - hypotheses;
-        let event = Event::Arrived {
-            edge,
-            percept: arrival,
-            contradicted,
-            hypotheses,
-        };
+        let event = Event::Arrived { edge, percept: arrival, contradicted, hypotheses };
         observer.event(self, event);
         Ok(())
     }
 
     fn raise_hypotheses(&mut self) -> Result<(), Contradiction> {
-        let Self {
-            map,
-            arrival,
-            hypotheses,
-            edge,
-            ..
-        } = self;
+        let Self { map, arrival, hypotheses, edge, .. } = self;
         hypotheses.clear();
         for vertex in map.vertices() {
             if map.is_frontier(vertex) && map.degree(vertex) == arrival.degree {
-                let darts = map.unexplored_at(vertex);
-                hypotheses
-                    .extend(darts.filter(|dart| dart != edge && map.expected(*dart) == *arrival));
+                for dart in map.unexplored_at(vertex) {
+                    if dart != *edge && map.expected(dart) == *arrival {
+                        hypotheses.push(dart);
+                    }
+                }
             }
         }
         if hypotheses.is_empty() {
@@ -222,11 +199,7 @@ impl Exploration {
             let perceived = *arrival;
             return match perceived.sighting {
                 Sighting::Nothing => Ok(()),
-                Sighting::Pointing(_) => Err(Contradiction::Marker {
-                    vertex,
-                    index,
-                    perceived,
-                }),
+                Sighting::Pointing(_) => Err(Contradiction::Marker { vertex, index, perceived }),
             };
         }
         if !mem::replace(&mut self.to_marker_is_current, true) {
@@ -277,10 +250,7 @@ impl Exploration {
         let Here { percept, entry } = self.here;
         self.trail.push((percept, door));
         let perceived = self.go(door.seen_from(entry, percept.degree), world, observer)?;
-        self.here = Here {
-            percept: perceived,
-            entry: Door::BACK,
-        };
+        self.here = Here { percept: perceived, entry: Door::BACK };
         Ok(perceived)
     }
 
@@ -323,11 +293,7 @@ impl Exploration {
             let perceived = self.go(back, world, observer)?;
             let expected = percept.seen_from(door);
             if perceived != expected {
-                return Err(Contradiction::WayBack {
-                    expected,
-                    perceived,
-                }
-                .into());
+                return Err(Contradiction::WayBack { expected, perceived }.into());
             }
         }
         if let Some(&(percept, entry)) = trail.first() {
@@ -345,24 +311,15 @@ impl Exploration {
 
     fn stand_at(&mut self, pose: Dart, percept: Percept) {
         self.robot = pose;
-        self.here = Here {
-            percept,
-            entry: Door::BACK,
-        };
+        self.here = Here { percept, entry: Door::BACK };
     }
 
     /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
     // paper: alg1.18, alg1.19, alg1.20
     pub fn close_loop(&mut self, hypothesis: Dart, observer: &mut impl Observer) {
         self.map.join(self.edge, hypothesis);
-        self.to_marker_is_current = false;
-        observer.event(
-            self,
-            Event::LoopClosed {
-                edge: self.edge,
-                other: hypothesis,
-            },
-        );
+        self.to_marker_is_current &= self.to_marker.stays_with(&self.map, self.edge, hypothesis);
+        observer.event(self, Event::LoopClosed { edge: self.edge, other: hypothesis });
     }
 
     /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
@@ -382,13 +339,7 @@ impl Exploration {
         // The robot may have come back by another dart than it first came in by.
         let really = Dart(entry.0 + self.here.entry.0);
         self.stand_at(really, self.map.expected(really));
-        observer.event(
-            self,
-            Event::VertexAdded {
-                edge: self.edge,
-                vertex,
-            },
-        );
+        observer.event(self, Event::VertexAdded { edge: self.edge, vertex });
         Ok(())
     }
 

@@ -24,11 +24,7 @@ pub const FACING: Dart = Dart(0);
 impl PartialMap {
     /// The map that knows nothing.
     pub(super) fn new() -> Self {
-        Self {
-            known: EmbeddedGraph::unfinished(),
-            unexplored_at: Vec::new(),
-            unexplored: 0,
-        }
+        Self { known: EmbeddedGraph::unfinished(), unexplored_at: Vec::new(), unexplored: 0 }
     }
 
     /// Back to knowing nothing.
@@ -81,15 +77,13 @@ impl PartialMap {
 
     /// U: the unexplored darts, in the order of their numbers.
     pub fn unexplored(&self) -> impl Iterator<Item = Dart> + '_ {
-        self.known
-            .vertices()
-            .flat_map(|vertex| self.unexplored_at(vertex))
+        self.known.vertices().flat_map(|vertex| self.unexplored_at(vertex))
     }
 
     /// The unexplored darts of one vertex, in the order of their numbers.
     pub fn unexplored_at(&self, vertex: Vertex) -> impl DoubleEndedIterator<Item = Dart> + '_ {
         let darts = self.known.darts_of(vertex);
-        darts.filter(|&dart| self.known.is_free(dart))
+        darts.filter(|&dart| self.known.joined(dart).is_none())
     }
 
     /// Whether the vertex has an unexplored dart.
@@ -103,7 +97,7 @@ impl PartialMap {
     #[inline]
     #[must_use]
     pub fn opposite(&self, dart: Dart) -> Option<Dart> {
-        (!self.known.is_free(dart)).then(|| self.known.opposite(dart))
+        self.known.joined(dart)
     }
 
     /// The vertex at which the dart is.
@@ -142,7 +136,7 @@ impl PartialMap {
     #[inline]
     #[must_use]
     pub fn door(&self, pose: Dart, to: Dart) -> Door {
-        let degree = self.degree(self.vertex(pose));
+        let degree = self.known.degree_around(pose);
         Door::between(self.index(pose), self.index(to), degree)
     }
 
@@ -150,16 +144,12 @@ impl PartialMap {
     #[inline]
     #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {
-        let vertex = self.vertex(pose);
-        let sighting = if vertex == Vertex(0) {
+        let sighting = if self.vertex(pose) == Vertex(0) {
             Sighting::Pointing(self.door(pose, FACING))
         } else {
             Sighting::Nothing
         };
-        Percept {
-            degree: self.degree(vertex),
-            sighting,
-        }
+        Percept { degree: self.known.degree_around(pose), sighting }
     }
 
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].

@@ -69,15 +69,20 @@ impl Tree {
         }
     }
 
+    /// Whether the whole tree stays the same with a new edge between two of its vertices: so it is
+    /// if they are equally far from the root, since then neither is reached by way of the other.
+    pub(super) fn stays_with(&self, map: &PartialMap, one: Dart, other: Dart) -> bool {
+        self.hops(map.vertex(one)) == self.hops(map.vertex(other))
+    }
+
     /// The unexplored dart that is fewest hops from the root; then of the vertex discovered first;
     /// then with the lowest index. `None` if nothing is unexplored.
     pub fn nearest_unexplored(&mut self, map: &PartialMap) -> Option<Dart> {
         let mut level = 0;
         loop {
             let end = self.reached.len();
-            let frontier = self.reached[level..end]
-                .iter()
-                .filter(|&&vertex| map.is_frontier(vertex));
+            let frontier =
+                self.reached[level..end].iter().filter(|&&vertex| map.is_frontier(vertex));
             if let Some(&vertex) = frontier.min() {
                 return map.unexplored_at(vertex).next();
             }
