@@ -187,10 +187,11 @@ impl<'a, A: Algorithm> Checker<'a, A> {
         match result {
             Ok(()) => tally.mapped += 1,
             Err(flaw) if tally.failure.is_none() => {
+                let moves = self.exploration.moves();
                 let graph = graph.clone();
                 let false_step =
                     first_false_step(self.algorithm, &graph, facing, &mut self.exploration);
-                tally.failure = Some(Failure { graph, facing, flaw, false_step });
+                tally.failure = Some(Failure { graph, facing, flaw, moves, false_step });
             }
             Err(_) => {}
         }

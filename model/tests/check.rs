@@ -1,0 +1,296 @@
+//! The exhaustive check holds, its numbers are pinned, and it fails on broken variants of
+//! Algorithm 1.
+
+use toposlam_model::{
+    check::{Algorithm, Algorithm1, Choice, Failure, Shard, Sweep, Tally, every_way, move_bound},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
+    isomorphism::code,
+    mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
+    percept::{Door, Percept, Sighting},
+    world::{GraphWorld, NoSuchDoor},
+};
+
+fn sweep(class: Class, edges: usize, choice: Choice, algorithm: &impl Algorithm) -> Tally {
+    let enumeration = Enumeration::new(Each::World, class, edges).unwrap();
+    Sweep { enumeration, shard: Shard::WHOLE, choice }.run(algorithm, &())
+}
+
+/// Starts: A000698. Moves: pinned from a first run, so that a silent change of the choices shows.
+// paper: marker.directional-sufficient, alg1.isomorphic, alg1.terminates, alg1.located, cost.bound
+#[test]
+fn every_start_with_up_to_six_edges_is_mapped_right() {
+    let rows: Vec<_> = (1..=6)
+        .map(|edges| {
+            let tally = sweep(Class::Multigraph, edges, Choice::Default, &Algorithm1);
+            assert_eq!(tally.failure, None);
+            assert_eq!(tally.mapped, tally.starts);
+            assert!(tally.largest_ratio(edges) <= 1.0 / edges as f64 + 2.0);
+            (tally.worlds, tally.starts, tally.moves_total, tally.moves_max())
+        })
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            (2, 2, 2, 1),
+            (5, 10, 23, 3),
+            (20, 74, 289, 10),
+            (107, 706, 4182, 21),
+            (870, 8162, 68_652, 36),
+            (9436, 110_410, 1_257_094, 55),
+        ]
+    );
+}
+
+/// The states at line 4, summed over all starts, by an independent computation.
+// paper: alg1.4, alg1.5, alg1.8, alg1.9
+#[test]
+fn every_way_of_every_start_is_mapped_right() {
+    let states: Vec<_> = (1..=4)
+        .map(|edges| {
+            let tally = sweep(Class::Multigraph, edges, Choice::All, &Algorithm1);
+            assert_eq!(tally.failure, None);
+            tally.states
+        })
+        .collect();
+    assert_eq!(states, [4, 43, 725, 16_471]);
+}
+
+#[test]
+fn the_default_run_is_among_all_runs() {
+    let enumeration = Enumeration::new(Each::Start, Class::Multigraph, 4).unwrap();
+    let mut starts = 0;
+    let _ = enumeration.for_each(&mut |found| {
+        let mut exploration = Exploration::new(8);
+        let mut world = GraphWorld::new(found.graph, Dart(0));
+        Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
+        let ways = every_way(found.graph, Dart(0)).unwrap();
+        assert!(ways.costs.contains(exploration.moves()));
+        starts += 1;
+        std::ops::ControlFlow::Continue(())
+    });
+    assert_eq!(starts, 706);
+}
+
+#[test]
+fn the_shards_are_the_whole() {
+    for class in Class::ALL {
+        let enumeration = Enumeration::new(Each::World, class, 6).unwrap();
+        let of = |shard: &str| {
+            let sweep =
+                Sweep { enumeration, shard: shard.parse().unwrap(), choice: Choice::Default };
+            sweep.run(&Algorithm1, &())
+        };
+        let whole = of("1/1");
+        let mut shares = Tally::default();
+        for shard in ["1/3", "2/3", "3/3"] {
+            let share = of(shard);
+            assert!(share.worlds < whole.worlds);
+            shares.merge(share);
+        }
+        assert_eq!(
+            (shares.worlds, shares.starts, shares.mapped, shares.moves_total, shares.moves_max()),
+            (whole.worlds, whole.starts, whole.mapped, whole.moves_total, whole.moves_max())
+        );
+    }
+    for wrong in ["3/2", "0/2", "1", "1/0", "a/b", "-1/2", ""] {
+        assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+    }
+}
+
+fn cycle(edges: usize) -> EmbeddedGraph {
+    let name = |vertex: usize| format!("v{}", vertex % edges);
+    let lists: Vec<_> = (0..edges)
+        .map(|vertex| (name(vertex), vec![name(vertex + 1), name(vertex + edges - 1)]))
+        .collect();
+    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+}
+
+fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
+    let mut exploration = Exploration::new(graph.dart_count());
+    let mut world = GraphWorld::new(graph, facing);
+    Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
+    exploration.moves()
+}
+
+// paper: cost.cycle
+#[test]
+fn a_cycle_of_m_edges_costs_m_from_every_start() {
+    for edges in 3..40 {
+        let graph = cycle(edges);
+        assert!(graph.darts().all(|facing| moves(&graph, facing) == edges as u64));
+    }
+}
+
+// paper: cost.chain
+#[test]
+fn a_chain_of_m_edges_costs_m_from_an_end() {
+    for edges in 1..40 {
+        let lists: Vec<_> = (0..=edges)
+            .map(|vertex: usize| {
+                let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
+                let right = (vertex < edges).then(|| format!("e{vertex}"));
+                (format!("v{vertex}"), left.into_iter().chain(right).collect())
+            })
+            .collect();
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        assert_eq!(moves(&graph, Dart(0)), edges as u64);
+        let ways = every_way(&graph, Dart(0)).unwrap();
+        assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
+    }
+}
+
+// paper: cost.lower-bound
+#[test]
+fn no_run_takes_fewer_moves_than_there_are_edges() {
+    for edges in 1..=4 {
+        let tally = sweep(Class::Multigraph, edges, Choice::All, &Algorithm1);
+        assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
+    }
+}
+
+#[test]
+fn the_bound_is_the_stated_one() {
+    assert_eq!(move_bound(6, 6), 6 * 6 + 2 * 36 * 5);
+    assert_eq!(move_bound(1, 1), 1);
+}
+
+/// Algorithm 1 with something broken in lines 10 to 17.
+struct Broken(Flaw);
+
+#[derive(Clone, Copy)]
+enum Flaw {
+    /// Line 15 is left out.
+    NoRetrace,
+    /// Line 12 does not look where the marker points.
+    DirectionIgnored,
+    /// A hypothesis is confirmed by the first percept that matches: that on arrival.
+    FirstPerceptSuffices,
+    /// Line 10 expects the marker to point one door further than it does.
+    OffByOne,
+}
+
+impl Broken {
+    fn try_path(
+        &self,
+        exploration: &mut Exploration,
+        hypothesis: Dart,
+        world: &mut GraphWorld,
+        observer: &mut impl Observer,
+    ) -> Result<Verdict, MappingError<NoSuchDoor>> {
+        exploration.set_out();
+        let mut pose = hypothesis;
+        if matches!(self.0, Flaw::FirstPerceptSuffices) {
+            exploration.arrive_at_marker(pose);
+            return Ok(Verdict::Confirmed);
+        }
+        while let Some((door, next)) = exploration.toward_marker(pose) {
+            let expected = exploration.map().expected(next);
+            let perceived = exploration.take(door, world, observer)?;
+            if !self.matches(expected, perceived) {
+                match self.0 {
+                    Flaw::NoRetrace => {}
+                    _ => exploration.retrace(world, observer)?,
+                }
+                return Ok(Verdict::Rejected);
+            }
+            pose = next;
+        }
+        exploration.arrive_at_marker(pose);
+        Ok(Verdict::Confirmed)
+    }
+
+    fn matches(&self, expected: Percept, perceived: Percept) -> bool {
+        match (self.0, expected.sighting, perceived.sighting) {
+            (Flaw::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
+                expected.degree == perceived.degree
+            }
+            (Flaw::OffByOne, Sighting::Pointing(door), _) => {
+                let door = Door((door.0 + 1) % expected.degree);
+                Percept { sighting: Sighting::Pointing(door), ..expected } == perceived
+            }
+            _ => expected == perceived,
+        }
+    }
+}
+
+impl Algorithm for Broken {
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<NoSuchDoor>> {
+        exploration.begin(world, observer)?;
+        while let Some(edge) = exploration.next_edge(&mut Nearest) {
+            exploration.explore(edge, world, observer)?;
+            let mut confirmed = None;
+            while let Some(hypothesis) = exploration.next_hypothesis(&mut Nearest) {
+                if self.try_path(exploration, hypothesis, world, observer)? == Verdict::Confirmed {
+                    confirmed = Some(hypothesis);
+                    break;
+                }
+            }
+            match confirmed {
+                Some(hypothesis) => exploration.close_loop(hypothesis, observer),
+                None => exploration.add_place(observer)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first start on which a broken variant fails: its edges, its code, what was wrong.
+fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
+    (1..=4)
+        .find_map(|edges| {
+            let tally = sweep(Class::Multigraph, edges, Choice::Default, &Broken(flaw));
+            assert_eq!(tally.failed() > 0, tally.failure.is_some());
+            let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;
+            let words = code(&graph, facing).words().to_vec();
+            let step = false_step.map_or(format!("after {moves} moves"), |step| step.to_string());
+            Some((edges, words, format!("{step}: {flaw}")))
+        })
+        .expect("the check catches it")
+}
+
+// paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
+#[test]
+fn every_broken_variant_is_caught_on_a_small_start() {
+    let flaws =
+        [Flaw::NoRetrace, Flaw::DirectionIgnored, Flaw::FirstPerceptSuffices, Flaw::OffByOne];
+    let caught = flaws.map(smallest_failure);
+    // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
+    let bound = |darts: u32| {
+        format!("more than {darts} darts (edge ends) are known and there is no end in sight")
+    };
+    let new = |degree: u32| u32::MAX - degree;
+    let expected = [
+        (
+            3,
+            vec![new(1), new(5), 5, 4],
+            format!(
+                "after 4 moves the map's darts 2 and 4 are wrongly made one edge: {}",
+                bound(6)
+            ),
+        ),
+        (
+            4,
+            vec![new(2), new(6), 4, 7, 6],
+            format!(
+                "after 5 moves the map's darts 3 and 5 are wrongly made one edge: {}",
+                bound(8)
+            ),
+        ),
+        (
+            3,
+            vec![new(1), new(5), 5, 4],
+            "after 2 moves the map's darts 2 and 3 are wrongly made one edge: the world \
+             contradicts itself: behind the unexplored dart 3 of vertex v1 there is degree 1 with \
+             the marker along door 0, which agrees with no unexplored dart of the marked vertex"
+                .to_owned(),
+        ),
+        (3, vec![new(2), new(4), 3, 5], format!("after 6 moves: {}", bound(6))),
+    ];
+    assert_eq!(caught, expected);
+}
