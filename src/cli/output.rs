@@ -2,6 +2,8 @@
 
 use std::{ffi::OsString, fs, io, path::Path};
 
+use toposlam_model::format::{named_world::NamedWorld, world_file};
+
 use super::Failure;
 
 /// Writes a file by way of a neighbour that then takes its name, so that nothing half-written is
@@ -23,6 +25,26 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         let _ = fs::remove_file(&partial);
         unwritable(path, &error)
     })
+}
+
+/// Refuses a path in a folder that does not exist, before long work begins.
+pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => {
+            Err(Failure::in_file(path, format!("there is no folder {}", folder.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a world file: JSON where the name ends in `.json`, else TOML.
+pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure> {
+    let text = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("json") => world_file::to_json_text(world),
+        _ => world_file::to_toml(world),
+    };
+    write_whole(path, text.as_bytes())
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Failure {

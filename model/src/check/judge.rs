@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    isomorphism::Candidate,
+    isomorphism::{Bijection, Candidate},
     mapping::{Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, map_world},
     world::{GraphWorld, NoSuchDoor},
 };
@@ -90,17 +90,17 @@ pub fn move_bound(edges: usize, vertices: usize) -> u64 {
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
-/// verified; the robot's pose is what it believes; the moves are within the bound.
+/// verified, and answered; the robot's pose is what it believes; the moves are within the bound.
 ///
 /// # Errors
 /// The first [`Flaw`].
 // paper: alg1.isomorphic
-pub(super) fn judge(
+pub fn judge<'c>(
     exploration: &Exploration,
     facing: Dart,
     world: &GraphWorld,
-    candidate: &mut Candidate,
-) -> Result<(), Flaw> {
+    candidate: &'c mut Candidate,
+) -> Result<&'c Bijection, Flaw> {
     let unexplored = exploration.map().unexplored_count();
     let Some(map) = exploration.map().complete() else {
         return Err(Flaw::Unfinished { unexplored });
@@ -120,7 +120,7 @@ pub(super) fn judge(
     if moves > bound {
         return Err(Flaw::TooManyMoves { moves, bound });
     }
-    Ok(())
+    Ok(bijection)
 }
 
 /// The first thing that a run added to its map and that is not so in the world.

@@ -8,6 +8,6 @@ mod tally;
 
 pub use costs::Costs;
 pub use every_way::{EveryWay, every_way};
-pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, move_bound};
+pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
 pub use sweep::{Choice, Shard, ShardError, Sweep, Watch, check_world};
 pub use tally::{Failure, Tally, WorstStart};

@@ -1,0 +1,180 @@
+//! Algorithm 1 ends on every world, also on one that breaks, lies, or has no end.
+
+use proptest::prelude::*;
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    mapping::{Contradiction, Event, Exploration, MappingError, Nearest, map_world},
+    percept::{Door, Percept, Sighting},
+    world::{GraphWorld, NoSuchDoor, World},
+};
+
+const BOUND: usize = 60;
+
+fn map(world: &mut impl World<Error = NoSuchDoor>) -> Result<u64, MappingError<NoSuchDoor>> {
+    let mut exploration = Exploration::new(BOUND);
+    map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
+}
+
+fn plain(degree: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Nothing }
+}
+
+fn marked(degree: u32, door: u32) -> Percept {
+    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
+}
+
+/// A sensor that says what is written, and then the last of it again and again.
+struct Script<'s> {
+    percepts: &'s [Percept],
+    moves: usize,
+}
+
+impl World for Script<'_> {
+    type Error = NoSuchDoor;
+
+    fn percept(&mut self) -> Result<Percept, NoSuchDoor> {
+        Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
+    }
+
+    fn traverse(&mut self, _: Door) -> Result<(), NoSuchDoor> {
+        self.moves += 1;
+        Ok(())
+    }
+}
+
+fn scripted(percepts: &[Percept]) -> MappingError<NoSuchDoor> {
+    map(&mut Script { percepts, moves: 0 }).unwrap_err()
+}
+
+// paper: alg1.1, alg1.terminates
+#[test]
+fn a_world_without_end_runs_into_the_bound() {
+    assert_eq!(scripted(&[marked(3, 0), plain(3)]), MappingError::Bound { bound: BOUND });
+    assert_eq!(scripted(&[marked(u32::MAX, 0)]), MappingError::Bound { bound: BOUND });
+    assert_eq!(scripted(&[marked(3, 0), plain(u32::MAX)]), MappingError::Bound { bound: BOUND });
+}
+
+#[test]
+fn a_start_without_its_marker_is_a_contradiction() {
+    for perceived in [plain(3), plain(0), marked(3, 1), marked(0, 0)] {
+        assert_eq!(scripted(&[perceived]), Contradiction::Start { perceived }.into());
+    }
+}
+
+#[test]
+fn a_percept_that_no_vertex_gives_is_a_contradiction() {
+    for perceived in [plain(0), marked(2, 2), marked(0, 0)] {
+        let expected = Contradiction::Impossible { perceived }.into();
+        assert_eq!(scripted(&[marked(1, 0), perceived]), expected);
+    }
+}
+
+// paper: alg1.6
+#[test]
+fn a_known_place_that_changed_is_a_contradiction() {
+    // A dead end behind each of two doors; but the start has three doors when met again.
+    let expected = Contradiction::KnownPlace {
+        vertex: Vertex(0),
+        index: 0,
+        expected: marked(2, 0),
+        perceived: marked(3, 0),
+    };
+    assert_eq!(scripted(&[marked(2, 0), plain(1), marked(3, 0)]), expected.into());
+    assert_eq!(
+        MappingError::<NoSuchDoor>::from(expected).to_string(),
+        "the world contradicts itself: at the known vertex v0, entered by its dart 0, there should \
+         be degree 2 with the marker along door 0 but there is degree 3 with the marker along door 0"
+    );
+}
+
+#[test]
+fn a_marker_where_it_cannot_be_is_a_contradiction() {
+    for perceived in [marked(3, 1), marked(2, 0)] {
+        let expected = Contradiction::Marker { vertex: Vertex(0), index: 0, perceived };
+        assert_eq!(scripted(&[marked(2, 0), perceived]), expected.into());
+    }
+}
+
+#[test]
+fn a_way_back_that_changed_is_a_contradiction() {
+    // v0 has one door, v1 behind it three; behind the second of these again three: is it v1, by its
+    // third? The path back to v0 shows three doors again, and the way back of that shows two.
+    let percepts = [marked(1, 0), plain(3), plain(3), plain(3), plain(2)];
+    let expected = Contradiction::WayBack { expected: plain(3), perceived: plain(2) };
+    assert_eq!(scripted(&percepts), expected.into());
+}
+
+#[test]
+fn the_worlds_own_error_is_passed_on() {
+    struct Closed;
+    impl World for Closed {
+        type Error = NoSuchDoor;
+        fn percept(&mut self) -> Result<Percept, NoSuchDoor> {
+            Ok(marked(2, 0))
+        }
+        fn traverse(&mut self, door: Door) -> Result<(), NoSuchDoor> {
+            Err(NoSuchDoor { door, degree: 0 })
+        }
+    }
+    let error = NoSuchDoor { door: Door(0), degree: 0 };
+    assert_eq!(map(&mut Closed), Err(MappingError::World(error)));
+}
+
+proptest! {
+    #[test]
+    fn every_sensor_comes_to_an_end(
+        percepts in proptest::collection::vec((0..5u32, 0..8u32), 1..200),
+    ) {
+        let percepts: Vec<_> = std::iter::once(marked(2, 0))
+            .chain(percepts.into_iter().map(|(degree, door)| {
+                if door < degree { marked(degree, door) } else { plain(degree) }
+            }))
+            .collect();
+        let _ = map(&mut Script { percepts: &percepts, moves: 0 });
+    }
+}
+
+/// The story tells every move and every decision.
+// paper: alg1.2, alg1.3, alg1.7, alg1.18, alg1.19, alg1.20, alg1.21, alg1.22, alg1.23, alg1.return
+#[test]
+fn the_story_of_a_triangle_with_a_tail() {
+    let graph = EmbeddedGraph::from_neighbour_lists(&[
+        ("end", vec!["a"]),
+        ("a", vec!["end", "b", "c"]),
+        ("b", vec!["a", "c"]),
+        ("c", vec!["b", "a"]),
+    ])
+    .unwrap();
+    let mut story = Vec::new();
+    let mut exploration = Exploration::new(graph.dart_count());
+    let mut listen = |_: &Exploration, event: Event| {
+        if !matches!(event, Event::Moved { .. }) {
+            story.push(event);
+        }
+    };
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
+    let arrived = |edge, percept, contradicted, hypotheses| Event::Arrived {
+        edge: Dart(edge),
+        percept,
+        contradicted,
+        hypotheses,
+    };
+    let added = |edge, vertex| Event::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
+    assert_eq!(
+        story,
+        [
+            Event::Started { percept: marked(1, 0) },
+            arrived(0, plain(3), 0, 0),
+            added(0, 1),
+            arrived(2, plain(2), 1, 0),
+            added(2, 2),
+            arrived(5, plain(2), 1, 0),
+            added(5, 3),
+            arrived(7, plain(3), 0, 1),
+            Event::Confirmed { hypothesis: Dart(3), followed: 1 },
+            Event::LoopClosed { edge: Dart(7), other: Dart(3) },
+        ]
+    );
+    assert_eq!(exploration.moves(), 5);
+}

@@ -1,0 +1,213 @@
+//! `toposlam explore WORLD`: Algorithm 1 on one world, told as a story.
+
+mod doors;
+mod story;
+
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+
+use serde_json::json;
+use toposlam::picture::{self, Picture};
+use toposlam_model::{
+    check::{Flaw, every_way, judge, move_bound},
+    embedded_graph::Dart,
+    format::{named_world::NamedWorld, world_file},
+    isomorphism::Bijection,
+    mapping::{DEFAULT_DART_BOUND, Exploration, FACING, MappingError, Nearest, map_world},
+    world::GraphWorld,
+};
+
+use super::{Failure, Outcome, input, output};
+use doors::Doors;
+use story::{Detail, Story};
+
+/// Run Algorithm 1 on one world: the map, the moves, the story of each hypothesis
+///
+/// The world is used only to answer what the robot perceives, and to prove the map right at the end.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  toposlam explore worlds/shape-6.toml
+  toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
+  toposlam explore worlds/shape-8.toml --choices all
+
+In the story, v2.1 is dart 1 of the map's vertex v2: the one that stands one place clockwise from the
+dart by which v2 was first entered.
+
+Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 given up at --max-darts.")]
+pub(super) struct Arguments {
+    /// A world file
+    world: PathBuf,
+
+    /// Where the robot starts, and which door is behind it [default: the world's own start]
+    #[arg(long, value_name = "VERTEX:FACING")]
+    start: Option<String>,
+
+    /// Also try every resolution of what Algorithm 1 leaves open: default or all
+    #[arg(long, default_value = "default", value_parser = ["default", "all"])]
+    choices: String,
+
+    /// Give up when more edge ends are known
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
+    max_darts: usize,
+
+    /// Tell every rejected hypothesis, not only the first few of each round
+    #[arg(long, conflicts_with = "json")]
+    full: bool,
+
+    /// Tell the doors taken
+    #[arg(long, conflicts_with = "json")]
+    doors: bool,
+
+    /// Write the map as a world file (JSON where the name ends in .json)
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+
+    /// Write a picture of the map, with the cost
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+
+    /// Print one JSON object, with the doors taken
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let world = input::read_world(&self.world)?;
+        let facing = input::start_of(&world, self.start.as_deref())?;
+        for file in self.map.iter().chain(&self.svg) {
+            output::check_folder(file)?;
+        }
+        let mut out = io::BufWriter::new(out);
+        let mut exploration = Exploration::new(self.max_darts);
+        let mut robot = GraphWorld::new(&world.graph, facing);
+        let run = if self.json {
+            let mut doors = Doors::new(&mut out);
+            let run = map_world(&mut robot, &mut Nearest, &mut exploration, &mut doors);
+            doors.finish()?;
+            run
+        } else {
+            let detail = Detail { every_hypothesis: self.full, doors: self.doors };
+            let mut story = Story::new(&mut out, &world, facing, detail);
+            let run = map_world(&mut robot, &mut Nearest, &mut exploration, &mut story);
+            story.finish()?;
+            run
+        };
+        let result = run.map_err(Flaw::from).and_then(|()| judge(&exploration, facing, &robot));
+        let ending = Ending { world: &world, facing, exploration: &exploration, result };
+        if self.json {
+            ending.tell_json(&mut out, self.choices == "all")?;
+        } else {
+            ending.tell(&mut out, self.choices == "all")?;
+        }
+        out.flush()?;
+        if let Some(map) = ending.map() {
+            if let Some(path) = &self.map {
+                output::write_world(path, &map)?;
+            }
+            if let Some(path) = &self.svg {
+                let caption = format!("mapped in {} moves", exploration.moves());
+                let drawn = Picture { caption: &caption, ..Picture::of(&map) };
+                output::write_whole(path, picture::svg(&drawn).as_bytes())?;
+            }
+        }
+        Ok(ending.outcome())
+    }
+}
+
+/// How the run ended.
+struct Ending<'a> {
+    world: &'a NamedWorld,
+    facing: Dart,
+    exploration: &'a Exploration,
+    result: Result<Bijection, Flaw>,
+}
+
+impl Ending<'_> {
+    fn outcome(&self) -> Outcome {
+        match self.result {
+            Ok(_) => Outcome::Holds,
+            Err(Flaw::Error(MappingError::Bound { .. })) => Outcome::Incomplete,
+            Err(_) => Outcome::Violated,
+        }
+    }
+
+    /// The map as a world, where it is complete.
+    fn map(&self) -> Option<NamedWorld> {
+        let name = format!("{}-map", self.world.name);
+        let about = format!("The map of {}, made in {} moves", self.world.name, self.exploration.moves());
+        let graph = self.exploration.map().complete()?;
+        Some(NamedWorld::discovered(&name, &about, graph, Some(FACING)))
+    }
+
+    fn tell_json(&self, out: &mut dyn Write, all: bool) -> Result<(), Failure> {
+        let map = self.exploration.map();
+        let mut line = json!({
+            "moves": self.exploration.moves(),
+            "edges": map.complete().map(|graph| graph.edge_count()),
+            "vertices": map.vertex_count(),
+            "isomorphic": self.result.is_ok(),
+            "map": self.map().as_ref().map(world_file::to_json),
+            "start": self.world.start_text(self.facing),
+        });
+        if let Err(flaw) = &self.result {
+            line["error"] = json!(flaw.to_string());
+        }
+        if all {
+            let ways = every_way(&self.world.graph, self.facing);
+            let ways = ways.map_err(|flaw| Failure::at("--choices all", flaw))?;
+            line["states"] = json!(ways.states);
+            line["runs"] = json!(ways.runs.to_string());
+            line["costs"] = ways.costs.iter().collect();
+        }
+        // The doors stand before this, in the same object.
+        let rest = line.to_string();
+        writeln!(out, "{}", rest.strip_prefix('{').unwrap_or(&rest))?;
+        Ok(())
+    }
+
+    fn tell(&self, out: &mut dyn Write, all: bool) -> Result<(), Failure> {
+        let Self { world, exploration, .. } = self;
+        match &self.result {
+            Err(flaw) => writeln!(out, "\nAfter {} moves: {flaw}", exploration.moves())?,
+            Ok(bijection) => self.tell_map(bijection, out)?,
+        }
+        if all {
+            let ways = every_way(&world.graph, self.facing);
+            let ways = ways.map_err(|flaw| Failure::at("--choices all", flaw))?;
+            let costs: Vec<_> = ways.costs.iter().map(|cost| cost.to_string()).collect();
+            writeln!(out, "\nWith all choices: {} states, {} runs,", ways.states, ways.runs)?;
+            writeln!(out, "which take this many moves: {}", costs.join(" "))?;
+        }
+        Ok(())
+    }
+
+    fn tell_map(&self, bijection: &Bijection, out: &mut dyn Write) -> Result<(), Failure> {
+        let Self { world, exploration, .. } = self;
+        let (edges, vertices) = (world.graph.edge_count(), world.graph.vertex_count());
+        writeln!(
+            out,
+            "\nThe map: {vertices} vertices and {edges} edges, in {} moves (at least {edges}, at most {}).",
+            exploration.moves(),
+            move_bound(edges, vertices),
+        )?;
+        let image = |dart: Dart| bijection.image(dart).unwrap_or(self.facing);
+        write!(out, "It is isomorphic to the world:")?;
+        for (place, vertex) in exploration.map().vertices().enumerate() {
+            let name = exploration.map().darts_of(vertex).next().map(|dart| world.at_text(image(dart)));
+            let break_ = if place % 6 == 0 { "\n " } else { "" };
+            write!(out, "{break_} v{} = {},", vertex.0, name.unwrap_or_default())?;
+        }
+        let robot = exploration.robot();
+        writeln!(
+            out,
+            "\nand the robot knows where it is: at v{}, having come in by its dart {}.",
+            exploration.map().vertex(robot).0,
+            exploration.map().index(robot),
+        )?;
+        Ok(())
+    }
+}

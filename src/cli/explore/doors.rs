@@ -1,0 +1,34 @@
+//! The doors of a run as the beginning of a JSON object, written as they are taken.
+
+use std::io::{self, Write};
+
+use toposlam_model::mapping::{Event, Exploration, Observer};
+
+/// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
+pub(super) struct Doors<'o, W> {
+    out: &'o mut W,
+    taken: u64,
+    result: io::Result<()>,
+}
+
+impl<'o, W: Write> Doors<'o, W> {
+    pub(super) fn new(out: &'o mut W) -> Self {
+        let result = write!(out, "{{\"schema\":1,\"doors\":[");
+        Self { out, taken: 0, result }
+    }
+
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.result?;
+        write!(self.out, "],")
+    }
+}
+
+impl<W: Write> Observer for Doors<'_, W> {
+    fn event(&mut self, _: &Exploration, event: Event) {
+        if let (Ok(()), Event::Moved { door, .. }) = (&self.result, event) {
+            let comma = if self.taken == 0 { "" } else { "," };
+            self.taken += 1;
+            self.result = write!(self.out, "{comma}{}", door.0);
+        }
+    }
+}

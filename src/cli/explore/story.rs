@@ -1,0 +1,176 @@
+//! The story of a run of Algorithm 1, round by round, for a person to read.
+
+use std::io::{self, Write};
+
+use toposlam_model::{
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    mapping::{Event, Exploration, Observer, PartialMap},
+    percept::{Door, Percept, Sighting},
+};
+
+/// How much is told.
+#[derive(Clone, Copy)]
+pub(super) struct Detail {
+    /// Every rejected hypothesis, or only the first few of each round.
+    pub(super) every_hypothesis: bool,
+    /// The doors taken.
+    pub(super) doors: bool,
+}
+
+/// How many rejected hypotheses of a round are told one by one, where not all are wanted.
+const TOLD: usize = 4;
+
+/// Tells a run as it goes.
+pub(super) struct Story<'o, W> {
+    out: &'o mut W,
+    detail: Detail,
+    result: io::Result<()>,
+    round: u64,
+    doors: Vec<Door>,
+    /// Rejected in this round.
+    rejected: usize,
+    /// Moves at the beginning of what is told next.
+    moves: u64,
+}
+
+impl<'o, W: Write> Story<'o, W> {
+    pub(super) fn new(out: &'o mut W, world: &NamedWorld, facing: Dart, detail: Detail) -> Self {
+        let result = writeln!(
+            out,
+            "{}, from {} with its back to the door {}.",
+            world.name,
+            world.at_text(facing),
+            world.facing_text(facing)
+        );
+        Self { out, detail, result, round: 0, doors: Vec::new(), rejected: 0, moves: 0 }
+    }
+
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.result
+    }
+
+    fn tell(&mut self, exploration: &Exploration, event: Event) -> io::Result<()> {
+        let map = exploration.map();
+        match event {
+            Event::Started { percept } => {
+                writeln!(self.out, "It drops its marker at v0, where it senses {}.", seen(percept))
+            }
+            Event::Moved { door, .. } => {
+                if self.detail.doors {
+                    self.doors.push(door);
+                }
+                Ok(())
+            }
+            Event::Arrived { edge, percept, contradicted, hypotheses } => {
+                self.round += 1;
+                self.rejected = 0;
+                let edge = dart(map, edge);
+                writeln!(
+                    self.out,
+                    "\n{:>3}  behind {edge}, after {}: {}",
+                    self.round,
+                    self.count_moves(exploration),
+                    seen(percept)
+                )?;
+                match (contradicted, hypotheses) {
+                    (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
+                    (_, 0) => writeln!(
+                        self.out,
+                        "     which contradicts all {contradicted} other unexplored darts at once"
+                    ),
+                    _ => writeln!(
+                        self.out,
+                        "     which could be {hypotheses} of the {} other unexplored darts",
+                        contradicted + hypotheses
+                    ),
+                }
+            }
+            Event::Rejected { hypothesis, followed, expected, perceived } => {
+                self.rejected += 1;
+                let moves = self.count_moves(exploration);
+                if self.rejected > TOLD && !self.detail.every_hypothesis {
+                    return Ok(());
+                }
+                writeln!(
+                    self.out,
+                    "     {}? no: door {followed} of its path shows {}, not {} ({moves} there and back)",
+                    dart(map, hypothesis),
+                    seen(perceived),
+                    seen(expected),
+                )
+            }
+            Event::Confirmed { hypothesis, followed } => {
+                self.tell_untold()?;
+                let moves = self.count_moves(exploration);
+                let how = match followed {
+                    0 => "the marker is here and points as it must".to_owned(),
+                    _ => format!("its path leads to the marker, which points as it must ({moves})"),
+                };
+                writeln!(self.out, "     {}? yes: {how}", dart(map, hypothesis))
+            }
+            Event::LoopClosed { edge, other } => {
+                writeln!(self.out, "     so {} and {} are one edge", dart(map, edge), dart(map, other))?;
+                self.tell_map(map)
+            }
+            Event::VertexAdded { edge, vertex } => {
+                self.tell_untold()?;
+                writeln!(self.out, "     so {} leads to a new vertex, v{}", dart(map, edge), vertex.0)?;
+                self.tell_map(map)
+            }
+        }
+    }
+
+    /// The rejected hypotheses that were not told one by one.
+    fn tell_untold(&mut self) -> io::Result<()> {
+        if self.rejected > TOLD && !self.detail.every_hypothesis {
+            let more = self.rejected - TOLD;
+            writeln!(self.out, "     ... and {more} more, all rejected")?;
+        }
+        Ok(())
+    }
+
+    fn tell_map(&mut self, map: &PartialMap) -> io::Result<()> {
+        if self.detail.doors {
+            let doors: Vec<_> = self.doors.drain(..).map(|door| door.0.to_string()).collect();
+            writeln!(self.out, "     doors: {}", doors.join(" "))?;
+        }
+        let unexplored = map.unexplored_count();
+        let edges = (map.dart_count() as u32 - unexplored) / 2;
+        writeln!(
+            self.out,
+            "     known: {} vertices, {edges} edges; unexplored: {unexplored} darts",
+            map.vertex_count(),
+        )
+    }
+
+    fn count_moves(&mut self, exploration: &Exploration) -> String {
+        let moves = exploration.moves() - std::mem::replace(&mut self.moves, exploration.moves());
+        format!("{moves} move{}", if moves == 1 { "" } else { "s" })
+    }
+}
+
+impl<W: Write> Observer for Story<'_, W> {
+    fn event(&mut self, exploration: &Exploration, event: Event) {
+        if self.result.is_ok() {
+            self.result = self.tell(exploration, event);
+        }
+    }
+}
+
+/// A dart of the map.
+fn dart(map: &PartialMap, dart: Dart) -> String {
+    format!("v{}.{}", map.vertex(dart).0, map.index(dart))
+}
+
+/// A percept.
+fn seen(percept: Percept) -> String {
+    let doors = match percept.degree {
+        1 => "1 door".to_owned(),
+        degree => format!("{degree} doors"),
+    };
+    match percept.sighting {
+        Sighting::Nothing => doors,
+        Sighting::Pointing(door) => format!("{doors} and the marker along door {}", door.0),
+    }
+}
