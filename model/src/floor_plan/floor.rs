@@ -52,6 +52,7 @@ impl Rectangle {
 impl FloorPlan {
     /// The floor: for each hallway, in their order, its rectangle from junction to junction,
     /// widened by half the hallway width on all sides. Walls stand on the border of their union.
+    #[must_use]
     pub fn floor(&self) -> impl ExactSizeIterator<Item = Rectangle> + '_ {
         self.hallways
             .iter()

@@ -257,3 +257,146 @@ fn in_order_of_discovery(graph: &EmbeddedGraph, start: Dart) -> EmbeddedGraph {
         .collect();
     EmbeddedGraph::from_degrees(&degrees, opposite)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::format::any_graph::{Class, any_graph};
+
+    /// A loop `a` and two edges `b`, `c` to a second vertex.
+    fn with_loop() -> NamedWorld {
+        let lists = [("u", vec!["a", "b", "a", "c"]), ("v", vec!["b", "c"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let edges = lists.iter().flat_map(|(_, edges)| edges);
+        NamedWorld {
+            edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
+            vertex_names: vec!["u".to_owned(), "v".to_owned()],
+            ..NamedWorld::discovered("", "", &graph, None)
+        }
+    }
+
+    fn path() -> NamedWorld {
+        let graph = EmbeddedGraph::from_neighbour_lists(&[
+            ("v0", vec!["v1"]),
+            ("v1", vec!["v0", "v2"]),
+            ("v2", vec!["v1"]),
+        ]);
+        NamedWorld::discovered("", "", &graph.unwrap(), None)
+    }
+
+    #[test]
+    fn a_start_faces_a_neighbour_or_an_edge_or_an_end_of_a_loop() {
+        let world = with_loop();
+        for (text, dart) in [
+            ("u:a:1", 0),
+            ("u:b", 1),
+            ("u:a:2", 2),
+            ("u:c", 3),
+            ("v:b", 4),
+            ("v:c", 5),
+        ] {
+            assert_eq!(world.start_from_text(text), Ok(Dart(dart)));
+            assert_eq!(world.start_text(Dart(dart)), text);
+        }
+        assert_eq!(path().start_from_text("v1:v2"), Ok(Dart(2)));
+    }
+
+    #[test]
+    fn a_start_that_is_not_there_is_told_with_what_is() {
+        fn message(world: &NamedWorld, text: &str) -> String {
+            world.start_from_text(text).unwrap_err().to_string()
+        }
+        let world = with_loop();
+        assert_eq!(
+            message(&world, "u"),
+            "`u` is no start; write `vertex:facing`"
+        );
+        assert_eq!(message(&world, "w:a"), "there is no vertex `w`");
+        assert_eq!(
+            message(&world, "u:a"),
+            "edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
+        );
+        for wrong in ["d", "a:3", "b:1", "a:1:1", ""] {
+            assert_eq!(
+                message(&world, &format!("u:{wrong}")),
+                format!("no edge `{wrong}` ends at vertex `u`; there end a:1, b, a:2, c")
+            );
+        }
+        assert_eq!(
+            message(&path(), "v1:v1"),
+            "vertex `v1` has no neighbour `v1`; it has v0, v2"
+        );
+    }
+
+    #[test]
+    fn a_long_list_of_neighbours_is_cut() {
+        let leaves: Vec<String> = (0..9).map(|leaf| format!("l{leaf}")).collect();
+        let mut lists = vec![("hub".to_owned(), leaves.clone())];
+        lists.extend(
+            leaves
+                .into_iter()
+                .map(|leaf| (leaf, vec!["hub".to_owned()])),
+        );
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+        let star = NamedWorld::discovered("", "", &graph, None);
+        assert_eq!(
+            star.start_from_text("v0:q").unwrap_err().to_string(),
+            "vertex `v0` has no neighbour `q`; it has v1, v2, v3, v4, v5, v6, v7, v8, ..."
+        );
+    }
+
+    #[test]
+    fn what_the_tools_made_is_named_as_it_is_discovered() {
+        // From v facing c: its darts clockwise are c, b; c leads to u, entered by c, whose other
+        // darts are, clockwise, a, b, a.
+        let graph = with_loop().graph;
+        let world = NamedWorld::discovered("made", "by a test", &graph, Some(Dart(5)));
+        assert_eq!(
+            (world.name.as_str(), world.about.as_str()),
+            ("made", "by a test")
+        );
+        assert_eq!(world.vertex_names, ["v0", "v1"]);
+        assert_eq!(
+            world.edge_names.as_deref().unwrap(),
+            ["e0", "e1", "e0", "e2", "e1", "e2"]
+        );
+        assert_eq!(world.start_text(world.start.unwrap()), "v0:e0");
+        assert_eq!(path().edge_names, None);
+    }
+
+    proptest! {
+        #[test]
+        fn the_text_of_a_start_tells_it(graph in any_graph(Class::Multigraph, 12)) {
+            let world = NamedWorld::discovered("", "", &graph, None);
+            for dart in world.graph.darts() {
+                prop_assert_eq!(world.start_from_text(&world.start_text(dart)), Ok(dart));
+            }
+        }
+
+        #[test]
+        fn discovery_renumbers_the_graph_and_changes_nothing_else(
+            graph in any_graph(Class::Multigraph, 12), start in any::<u32>()
+        ) {
+            let start = Dart(start % graph.dart_count() as u32);
+            let world = NamedWorld::discovered("", "", &graph, Some(start));
+            prop_assert_eq!(world.edge_names.is_none(), graph.is_simple());
+            // The renumbering is the one that carries the start along all walks.
+            let mut image = vec![None; graph.dart_count()];
+            let mut open = vec![(start, Dart(0))];
+            while let Some((here, there)) = open.pop() {
+                match image[here.at()].replace(there) {
+                    None => {
+                        open.push((graph.clockwise(here), world.graph.clockwise(there)));
+                        open.push((graph.opposite(here), world.graph.opposite(there)));
+                    }
+                    Some(earlier) => prop_assert_eq!(earlier, there),
+                }
+            }
+            // Numbering it again changes nothing.
+            let again = NamedWorld::discovered("", "", &world.graph, world.start);
+            prop_assert_eq!(again, world);
+        }
+    }
+}

@@ -99,7 +99,7 @@ pub enum Cause {
     Lists(#[from] ListError),
     /// The hallways are not a floor plan.
     #[error(transparent)]
-    Plan(#[from] FloorPlanError),
+    Plan(#[from] Box<FloorPlanError>),
     /// The start is not there.
     #[error(transparent)]
     Start(#[from] StartError),

@@ -10,3 +10,6 @@ mod write;
 pub use error::{Cause, Place, WorldFileError};
 pub use read::read;
 pub use write::{to_json, to_json_text, to_toml};
+
+#[cfg(test)]
+mod tests;

@@ -149,7 +149,7 @@ fn in_plan(error: FloorPlanError) -> WorldFileError {
         FloorPlanError::UnknownJunction { number, .. } => format!("hallways[{number}]"),
         _ => "hallways".to_owned(),
     };
-    Cause::from(error).at(path)
+    Cause::from(Box::new(error)).at(path)
 }
 
 /// A table of which only known keys are taken, each once.

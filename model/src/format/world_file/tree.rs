@@ -14,6 +14,7 @@ pub(super) enum Tree {
     Text(String),
     Number(f64),
     Truth,
+    Date,
     Null,
 }
 
@@ -64,6 +65,7 @@ impl Tree {
             Self::Text(_) => "a text",
             Self::Number(_) => "a number",
             Self::Truth => "true or false",
+            Self::Date => "a date",
             Self::Null => "null",
         }
     }
@@ -74,6 +76,9 @@ impl<'de> Deserialize<'de> for Tree {
         deserializer.deserialize_any(TreeVisitor)
     }
 }
+
+/// The key under which toml hands over a date.
+const DATE: &str = "$__toml_private_datetime";
 
 struct TreeVisitor;
 
@@ -93,6 +98,9 @@ impl<'de> Visitor<'de> for TreeVisitor {
                 return Err(A::Error::custom(format!("duplicate key `{key}`")));
             }
             entries.push((key, map.next_value()?));
+        }
+        if seen.contains(DATE) {
+            return Ok(Tree::Date);
         }
         Ok(Tree::Table(entries))
     }

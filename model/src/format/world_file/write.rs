@@ -28,29 +28,31 @@ pub fn to_json(world: &NamedWorld) -> Value {
 /// The world as a TOML file.
 #[must_use]
 pub fn to_toml(world: &NamedWorld) -> String {
-    let mut text = String::new();
+    let mut first = String::new();
+    let mut tables = Vec::new();
     for (key, value) in object(&to_json(world)) {
         match value {
-            Value::Object(table) => {
-                text += &format!("\n[{key}]\n");
-                for (key, value) in table {
-                    text += &format!("{key} = {}\n", inline(value));
-                }
+            Value::Object(_) => tables.push(format!("[{key}]\n{}", toml_entries(value))),
+            Value::Array(items) => {
+                let items = items.iter();
+                tables.extend(items.map(|item| format!("[[{key}]]\n{}", toml_entries(item))));
             }
-            Value::Array(tables) => {
-                for table in tables {
-                    text += &format!("\n[[{key}]]\n");
-                    for (key, value) in object(table) {
-                        text += &format!("{key} = {}\n", inline(value));
-                    }
-                }
-            }
-            // JSON lets the character DEL stand in a text as it is, TOML does not; nothing else
-            // that JSON writes means another thing in TOML.
-            scalar => text += &format!("{key} = {}\n", inline(scalar).replace('\x7f', "\\u007f")),
+            text => first.push_str(&toml_entry(key, text)),
         }
     }
-    text
+    let parts = Some(first).filter(|first| !first.is_empty()).into_iter();
+    parts.chain(tables).collect::<Vec<_>>().join("\n")
+}
+
+fn toml_entries(table: &Value) -> String {
+    let entries = object(table);
+    entries.map(|(key, value)| toml_entry(key, value)).collect()
+}
+
+/// One line. JSON lets the character DEL stand in a text as it is, TOML does not; nothing else that
+/// JSON writes in a list, a text or a number means another thing in TOML.
+fn toml_entry(key: &str, value: &Value) -> String {
+    format!("{key} = {}\n", inline(value).replace('\x7f', "\\u007f"))
 }
 
 /// The world as a JSON file.
