@@ -74,7 +74,6 @@ impl FloorPlan {
 }
 
 /// Refuses junctions that are too close, and floors that meet other than at a shared junction.
-/// Quadratic in the size of the plan.
 pub(super) fn check(plan: &FloorPlan) -> Result<(), FloorPlanError> {
     junctions_off_foreign_hallways(plan)?;
     floors_apart(plan)?;

@@ -118,7 +118,7 @@ impl FloorPlan {
     /// and its hallways, each with the names of its two junctions; all in metres.
     ///
     /// The junctions are the vertices of the embedded graph, in the order given; the darts of each
-    /// stand clockwise from north.
+    /// stand clockwise from north. Checking the floors is quadratic in the size of the plan.
     ///
     /// # Errors
     /// The first thing that does not fit, with the junctions and hallways that are at fault.

@@ -1,14 +1,15 @@
 //! plantri's binary codes for embedded graphs, `planar_code` and `edge_code`. Section 2.1.
 //!
-//! Source: the guide of plantri (Brinkmann and McKay), its Appendix A. Both codes list the darts of
-//! each vertex clockwise, and nothing in them needs the plane: any genus can be told.
+//! As plantri (Brinkmann and McKay), nauty and graphtools (Van Cleemput) write and read them. Both
+//! codes list the darts of each vertex clockwise, and nothing in them needs the plane: any genus can
+//! be told.
 //!
 //! **planar_code**, after the header `>>planar_code<<`: for each graph the number of vertices, and
 //! for each vertex its neighbours, counted from 1, and a 0. Numbers have one byte; if the first is
 //! 0, then it is followed by the same with numbers of two bytes. The headers `>>planar_code le<<`
-//! and `>>planar_code be<<` tell their order. Under the bare header the House of Graphs writes the
-//! lesser byte first and nauty the greater one, so there the reader takes the order in which the
-//! graph makes sense. Lists of neighbours do not tell which parallel edge is which, nor which ends
+//! and `>>planar_code be<<` tell their order. Under the bare header graphtools takes the lesser
+//! byte first and nauty the greater one, so there the reader takes the order in which the graph
+//! makes sense. Lists of neighbours do not tell which parallel edge is which, nor which ends
 //! belong to the same loop, so these are refused: `edge_code` tells them.
 //!
 //! **edge_code**, after the header `>>edge_code<<`: for each graph the length of its body in bytes,

@@ -50,6 +50,17 @@ fn plantri_s_own_example_is_the_octahedron_in_the_plane() {
     assert_eq!(all(&OCTAHEDRON).unwrap(), worlds);
 }
 
+/// What nauty 2.8.6 writes for the complete graph of four vertices (`geng 4 6:6 | planarg -p`).
+const NAUTY: &[u8] = b">>planar_code<<\x04\
+    \x02\x04\x03\0\x03\x04\x01\0\x01\x04\x02\0\x01\x02\x03\0";
+
+#[test]
+fn nauty_s_complete_graph_lies_in_the_plane() {
+    let worlds = all(NAUTY).unwrap();
+    assert_eq!((worlds[0].edge_count(), worlds[0].genus()), (6, 0));
+    assert_eq!(write(&worlds, Code::Planar).unwrap(), NAUTY);
+}
+
 #[test]
 fn headers_may_stand_between_worlds() {
     let one = [b">>planar_code le<<".as_slice(), &OCTAHEDRON].concat();
