@@ -98,6 +98,15 @@ fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
         assert_eq!(all(&bytes).unwrap(), [path(300)], "{header}");
     }
     assert!(all(&[b">>planar_code be<<".as_slice(), &little].concat()).is_err());
+    for cut in [&little[..little.len() - 1], &big[..big.len() - 1]] {
+        assert_eq!(
+            message(cut),
+            format!(
+                "byte {}, world 1: the file ends in the middle of a world",
+                cut.len()
+            )
+        );
+    }
     let written = write(&[path(300)], Code::Planar).unwrap();
     assert_eq!(
         written,
@@ -124,6 +133,9 @@ fn edge_code_tells_loops_and_parallel_edges() {
 
 #[test]
 fn a_long_edge_code_tells_its_sizes() {
+    // 170 edge ends and 85 separators are the most that one byte can tell the length of.
+    assert_eq!(write(&[path(86)], Code::Edge).unwrap()[13], 255);
+    assert_eq!(write(&[path(87)], Code::Edge).unwrap()[13..15], [0, 0x21]);
     let bytes = write(&[path(100)], Code::Edge).unwrap();
     // 198 edge ends and 99 separators: 0x129 bytes, told in two bytes, the edges in one.
     assert_eq!(bytes[13..20], [0, 0x21, 0x01, 0x29, 0, 255, 0]);
