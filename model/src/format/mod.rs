@@ -4,3 +4,6 @@ pub mod dot;
 pub mod named_world;
 pub mod plantri;
 pub mod world_file;
+
+#[cfg(test)]
+mod any_graph;

@@ -1,11 +1,17 @@
-//! A world with the names that its file gives to its vertices and edges.
+//! A world with the names that its file gives to its vertices and edges, and the starts that are
+//! told by these names. Section 2.1.
 
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use thiserror::Error;
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    floor_plan::FloorPlan,
+};
 
 /// A world as a file tells it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedWorld {
-    /// What the world is called.
+    /// What the world is called; may be empty.
     pub name: String,
     /// What it is, in a line or two; may be empty.
     pub about: String,
@@ -15,8 +21,382 @@ pub struct NamedWorld {
     pub start: Option<Dart>,
     /// The name of each vertex.
     pub vertex_names: Vec<String>,
-    /// The name of each dart's edge, one entry a dart; `None` where the file speaks of neighbours.
+    /// The name of each dart's edge, one entry a dart; `None` where the file speaks of neighbours,
+    /// which it can do only of a simple graph.
     pub edge_names: Option<Vec<String>>,
     /// Where each vertex is, where the world is a floor plan: metres, x to the east, y to the north.
     pub positions: Option<Vec<[f64; 2]>>,
+    /// The floor plan, where the world is one; its junctions are the vertices, in the same order.
+    pub plan: Option<FloorPlan>,
+}
+
+/// Why names do not tell a start.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum StartError {
+    /// A start on the command line has no colon.
+    #[error("`{text}` is no start; write `vertex:facing`")]
+    NoColon {
+        /// What was given.
+        text: String,
+    },
+    /// No vertex has this name.
+    #[error("there is no vertex `{vertex}`")]
+    UnknownVertex {
+        /// The name.
+        vertex: String,
+    },
+    /// The vertex has no such neighbour.
+    #[error("vertex `{vertex}` has no neighbour `{facing}`; it has {listed}")]
+    NoSuchNeighbour {
+        /// The vertex.
+        vertex: String,
+        /// What was given.
+        facing: String,
+        /// The neighbours that there are.
+        listed: String,
+    },
+    /// No such edge ends at the vertex.
+    #[error("no edge `{facing}` ends at vertex `{vertex}`; there end {listed}")]
+    NoSuchEdge {
+        /// The vertex.
+        vertex: String,
+        /// What was given.
+        facing: String,
+        /// The edges that there are.
+        listed: String,
+    },
+    /// The edge is a loop, and nothing tells which of its ends is meant.
+    #[error("edge `{edge}` is a loop; write `{edge}:1` or `{edge}:2` for one of its ends")]
+    BareLoop {
+        /// The loop.
+        edge: String,
+    },
+}
+
+impl NamedWorld {
+    /// A world that the tools made: vertices `v0`, `v1`, ... and edges `e0`, `e1`, ... in the order
+    /// in which a robot discovers them that looks at the darts of each vertex clockwise from the
+    /// one by which it first came. It begins at `start`, or at dart 0 where there is none.
+    ///
+    /// Edges have names exactly when the graph is not simple. The graph is renumbered in that
+    /// order, so that a start becomes dart 0.
+    #[must_use]
+    pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, start: Option<Dart>) -> Self {
+        let graph_as_discovered = in_order_of_discovery(graph, start.unwrap_or(Dart(0)));
+        let edge_names = (!graph.is_simple()).then(|| {
+            let mut names = vec![String::new(); graph.dart_count()];
+            for (edge, (dart, other)) in graph_as_discovered.edges().enumerate() {
+                names[dart.at()] = format!("e{edge}");
+                names[other.at()] = format!("e{edge}");
+            }
+            names
+        });
+        Self {
+            name: name.to_owned(),
+            about: about.to_owned(),
+            start: start.map(|_| Dart(0)),
+            vertex_names: (0..graph.vertex_count()).map(|n| format!("v{n}")).collect(),
+            edge_names,
+            positions: None,
+            plan: None,
+            graph: graph_as_discovered,
+        }
+    }
+
+    /// The vertex of this name.
+    #[must_use]
+    pub fn vertex_named(&self, name: &str) -> Option<Vertex> {
+        let number = self.vertex_names.iter().position(|known| known == name)?;
+        Some(Vertex(number as u32))
+    }
+
+    /// The dart of a start as the command line tells it: `vertex:facing`.
+    ///
+    /// # Errors
+    /// Where there is no colon, or no such dart.
+    pub fn start_from_text(&self, text: &str) -> Result<Dart, StartError> {
+        let (at, facing) = text.split_once(':').ok_or_else(|| StartError::NoColon {
+            text: text.to_owned(),
+        })?;
+        self.start_from_names(at, facing)
+    }
+
+    /// The dart at the vertex `at` that `facing` tells: a neighbour's name where the world speaks
+    /// of neighbours, else an edge's, and for a loop `e:1` or `e:2`, the first or second of its
+    /// ends in the order of the file.
+    ///
+    /// # Errors
+    /// Where there is no such dart, or the name of a loop stands alone.
+    pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
+        let vertex = self
+            .vertex_named(at)
+            .ok_or_else(|| StartError::UnknownVertex {
+                vertex: at.to_owned(),
+            })?;
+        let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
+        let mut bare_loop = false;
+        for dart in self.graph.darts_of(vertex) {
+            let name = self.leads_to(dart);
+            if !self.is_named_loop(dart) {
+                if name == facing {
+                    return Ok(dart);
+                }
+            } else if name == facing {
+                bare_loop = true;
+            } else if Some(name) == edge && self.facing_text(dart) == facing {
+                return Ok(dart);
+            }
+        }
+        let vertex = at.to_owned();
+        let facing = facing.to_owned();
+        Err(if bare_loop {
+            StartError::BareLoop { edge: facing }
+        } else if self.edge_names.is_some() {
+            let listed = self.listed(&vertex);
+            StartError::NoSuchEdge {
+                vertex,
+                facing,
+                listed,
+            }
+        } else {
+            let listed = self.listed(&vertex);
+            StartError::NoSuchNeighbour {
+                vertex,
+                facing,
+                listed,
+            }
+        })
+    }
+
+    /// The start `vertex:facing` that tells this dart; the inverse of
+    /// [`start_from_text`](Self::start_from_text).
+    #[must_use]
+    pub fn start_text(&self, dart: Dart) -> String {
+        format!("{}:{}", self.at_text(dart), self.facing_text(dart))
+    }
+
+    /// The name of the vertex at which the dart is: what a file's `at` says of it.
+    #[must_use]
+    pub fn at_text(&self, dart: Dart) -> &str {
+        &self.vertex_names[self.graph.vertex(dart).at()]
+    }
+
+    /// What a file's `facing` says of this dart.
+    #[must_use]
+    pub fn facing_text(&self, dart: Dart) -> String {
+        let name = self.leads_to(dart);
+        if self.is_named_loop(dart) {
+            let end = if dart < self.graph.opposite(dart) {
+                1
+            } else {
+                2
+            };
+            format!("{name}:{end}")
+        } else {
+            name.to_owned()
+        }
+    }
+
+    /// What the file lists at the dart's place: its edge, or the neighbour at its other end.
+    pub(super) fn leads_to(&self, dart: Dart) -> &str {
+        match &self.edge_names {
+            Some(names) => &names[dart.at()],
+            None => self.at_text(self.graph.opposite(dart)),
+        }
+    }
+
+    fn is_named_loop(&self, dart: Dart) -> bool {
+        self.edge_names.is_some()
+            && self.graph.vertex(dart) == self.graph.vertex(self.graph.opposite(dart))
+    }
+
+    /// What can be faced at a vertex, for a message: the first few.
+    fn listed(&self, vertex: &str) -> String {
+        const SHOWN: usize = 8;
+        let Some(vertex) = self.vertex_named(vertex) else {
+            return String::new();
+        };
+        let darts = self.graph.darts_of(vertex);
+        let more = if darts.len() > SHOWN { ", ..." } else { "" };
+        let shown: Vec<_> = darts
+            .take(SHOWN)
+            .map(|dart| self.facing_text(dart))
+            .collect();
+        shown.join(", ") + more
+    }
+}
+
+/// The same embedded graph, its vertices and darts numbered in the order in which they are
+/// discovered from `start`, which becomes dart 0.
+fn in_order_of_discovery(graph: &EmbeddedGraph, start: Dart) -> EmbeddedGraph {
+    const UNSEEN: Dart = Dart(u32::MAX);
+    let mut number = vec![UNSEEN; graph.dart_count()];
+    let mut order = Vec::with_capacity(graph.dart_count());
+    let mut degrees = Vec::with_capacity(graph.vertex_count());
+    let mut meet = |entry: Dart, order: &mut Vec<Dart>| {
+        if number[entry.at()] != UNSEEN {
+            return;
+        }
+        let mut dart = entry;
+        while number[dart.at()] == UNSEEN {
+            number[dart.at()] = Dart(order.len() as u32);
+            order.push(dart);
+            dart = graph.clockwise(dart);
+        }
+        degrees.push(graph.degree(graph.vertex(entry)));
+    };
+    meet(start, &mut order);
+    let mut next = 0;
+    while next < order.len() {
+        meet(graph.opposite(order[next]), &mut order);
+        next += 1;
+    }
+    let opposite = order
+        .iter()
+        .map(|&dart| number[graph.opposite(dart).at()])
+        .collect();
+    EmbeddedGraph::from_degrees(&degrees, opposite)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::format::any_graph::{Class, any_graph};
+
+    /// A loop `a` and two edges `b`, `c` to a second vertex.
+    fn with_loop() -> NamedWorld {
+        let lists = [("u", vec!["a", "b", "a", "c"]), ("v", vec!["b", "c"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let edges = lists.iter().flat_map(|(_, edges)| edges);
+        NamedWorld {
+            edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
+            vertex_names: vec!["u".to_owned(), "v".to_owned()],
+            ..NamedWorld::discovered("", "", &graph, None)
+        }
+    }
+
+    fn path() -> NamedWorld {
+        let graph = EmbeddedGraph::from_neighbour_lists(&[
+            ("v0", vec!["v1"]),
+            ("v1", vec!["v0", "v2"]),
+            ("v2", vec!["v1"]),
+        ]);
+        NamedWorld::discovered("", "", &graph.unwrap(), None)
+    }
+
+    #[test]
+    fn a_start_faces_a_neighbour_or_an_edge_or_an_end_of_a_loop() {
+        let world = with_loop();
+        for (text, dart) in [
+            ("u:a:1", 0),
+            ("u:b", 1),
+            ("u:a:2", 2),
+            ("u:c", 3),
+            ("v:b", 4),
+            ("v:c", 5),
+        ] {
+            assert_eq!(world.start_from_text(text), Ok(Dart(dart)));
+            assert_eq!(world.start_text(Dart(dart)), text);
+        }
+        assert_eq!(path().start_from_text("v1:v2"), Ok(Dart(2)));
+    }
+
+    #[test]
+    fn a_start_that_is_not_there_is_told_with_what_is() {
+        fn message(world: &NamedWorld, text: &str) -> String {
+            world.start_from_text(text).unwrap_err().to_string()
+        }
+        let world = with_loop();
+        assert_eq!(
+            message(&world, "u"),
+            "`u` is no start; write `vertex:facing`"
+        );
+        assert_eq!(message(&world, "w:a"), "there is no vertex `w`");
+        assert_eq!(
+            message(&world, "u:a"),
+            "edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
+        );
+        for wrong in ["d", "a:3", "b:1", "a:1:1", ""] {
+            assert_eq!(
+                message(&world, &format!("u:{wrong}")),
+                format!("no edge `{wrong}` ends at vertex `u`; there end a:1, b, a:2, c")
+            );
+        }
+        assert_eq!(
+            message(&path(), "v1:v1"),
+            "vertex `v1` has no neighbour `v1`; it has v0, v2"
+        );
+    }
+
+    #[test]
+    fn a_long_list_of_neighbours_is_cut() {
+        let leaves: Vec<String> = (0..9).map(|leaf| format!("l{leaf}")).collect();
+        let mut lists = vec![("hub".to_owned(), leaves.clone())];
+        lists.extend(
+            leaves
+                .into_iter()
+                .map(|leaf| (leaf, vec!["hub".to_owned()])),
+        );
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+        let star = NamedWorld::discovered("", "", &graph, None);
+        assert_eq!(
+            star.start_from_text("v0:q").unwrap_err().to_string(),
+            "vertex `v0` has no neighbour `q`; it has v1, v2, v3, v4, v5, v6, v7, v8, ..."
+        );
+    }
+
+    #[test]
+    fn what_the_tools_made_is_named_as_it_is_discovered() {
+        // From v facing c: its darts clockwise are c, b; c leads to u, entered by c, whose other
+        // darts are, clockwise, a, b, a.
+        let graph = with_loop().graph;
+        let world = NamedWorld::discovered("made", "by a test", &graph, Some(Dart(5)));
+        assert_eq!(
+            (world.name.as_str(), world.about.as_str()),
+            ("made", "by a test")
+        );
+        assert_eq!(world.vertex_names, ["v0", "v1"]);
+        assert_eq!(
+            world.edge_names.as_deref().unwrap(),
+            ["e0", "e1", "e0", "e2", "e1", "e2"]
+        );
+        assert_eq!(world.start_text(world.start.unwrap()), "v0:e0");
+        assert_eq!(path().edge_names, None);
+    }
+
+    proptest! {
+        #[test]
+        fn the_text_of_a_start_tells_it(graph in any_graph(Class::Multigraph, 12)) {
+            let world = NamedWorld::discovered("", "", &graph, None);
+            for dart in world.graph.darts() {
+                prop_assert_eq!(world.start_from_text(&world.start_text(dart)), Ok(dart));
+            }
+        }
+
+        #[test]
+        fn discovery_renumbers_the_graph_and_changes_nothing_else(
+            graph in any_graph(Class::Multigraph, 12), start in any::<u32>()
+        ) {
+            let start = Dart(start % graph.dart_count() as u32);
+            let world = NamedWorld::discovered("", "", &graph, Some(start));
+            prop_assert_eq!(world.edge_names.is_none(), graph.is_simple());
+            // The renumbering is the one that carries the start along all walks.
+            let mut image = vec![None; graph.dart_count()];
+            let mut open = vec![(start, Dart(0))];
+            while let Some((here, there)) = open.pop() {
+                match image[here.at()].replace(there) {
+                    None => {
+                        open.push((graph.clockwise(here), world.graph.clockwise(there)));
+                        open.push((graph.opposite(here), world.graph.opposite(there)));
+                    }
+                    Some(earlier) => prop_assert_eq!(earlier, there),
+                }
+            }
+            // Numbering it again changes nothing.
+            let again = NamedWorld::discovered("", "", &world.graph, world.start);
+            prop_assert_eq!(again, world);
+        }
+    }
 }

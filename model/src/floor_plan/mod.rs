@@ -1,0 +1,313 @@
+//! Floor plans: hallways with geometry, and the embedded graph that they are. Section 2.4.
+//!
+//! Hallways run along the axes, x to the east and y to the north, and meet at junctions that are
+//! dead ends, Ls or Ts. Clockwise is clockwise seen from above.
+
+mod error;
+mod floor;
+
+use std::collections::HashMap;
+
+pub use error::FloorPlanError;
+pub use floor::Rectangle;
+
+use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
+
+/// Lengths that differ by no more are the same, in metres.
+const TOLERANCE: f64 = 1e-6;
+
+/// Where a door of a junction leads, in clockwise order from north.
+// paper: env.right-angles
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Direction {
+    /// To greater y.
+    North,
+    /// To greater x.
+    East,
+    /// To lesser y.
+    South,
+    /// To lesser x.
+    West,
+}
+
+impl Direction {
+    /// All four, clockwise from north.
+    pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
+
+    /// The way back.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::North => Self::South,
+            Self::East => Self::West,
+            Self::South => Self::North,
+            Self::West => Self::East,
+        }
+    }
+
+    /// The unit vector, x to the east and y to the north.
+    #[must_use]
+    pub fn vector(self) -> [f64; 2] {
+        match self {
+            Self::North => [0.0, 1.0],
+            Self::East => [1.0, 0.0],
+            Self::South => [0.0, -1.0],
+            Self::West => [-1.0, 0.0],
+        }
+    }
+
+    /// Along which axis, and whither, one gets from one position to another; `None` where there is
+    /// no such axis.
+    fn between(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        match (x.abs() <= TOLERANCE, y.abs() <= TOLERANCE) {
+            (true, false) if y > 0.0 => Some(Self::North),
+            (true, false) => Some(Self::South),
+            (false, true) if x > 0.0 => Some(Self::East),
+            (false, true) => Some(Self::West),
+            _ => None,
+        }
+    }
+}
+
+/// The three kinds of junction that a robot can tell apart.
+// paper: env.junction-types
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JunctionKind {
+    /// One door.
+    DeadEnd,
+    /// Two doors at a right angle.
+    L,
+    /// Three doors.
+    T,
+}
+
+/// A place where hallways end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Junction {
+    /// Its name.
+    pub name: String,
+    /// Where its turning point is, in metres, x to the east and y to the north.
+    pub position: [f64; 2],
+    /// How many doors it has, and how they stand.
+    pub kind: JunctionKind,
+}
+
+/// A straight hallway between two junctions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hallway {
+    /// The junction that was named first.
+    pub from: Vertex,
+    /// The other one.
+    pub to: Vertex,
+}
+
+/// A valid floor plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorPlan {
+    hallway_width: f64,
+    junctions: Vec<Junction>,
+    hallways: Vec<Hallway>,
+    graph: EmbeddedGraph,
+    /// Where each dart leads.
+    directions: Vec<Direction>,
+}
+
+impl FloorPlan {
+    /// A floor plan from the width of its hallways, its junctions, each with a name and a position,
+    /// and its hallways, each with the names of its two junctions; all in metres.
+    ///
+    /// The junctions are the vertices of the embedded graph, in the order given; the darts of each
+    /// stand clockwise from north. Checking the floors is quadratic in the size of the plan.
+    ///
+    /// # Errors
+    /// The first thing that does not fit, with the junctions and hallways that are at fault.
+    pub fn new(
+        hallway_width: f64,
+        junctions: &[(String, [f64; 2])],
+        hallways: &[(String, String)],
+    ) -> Result<Self, FloorPlanError> {
+        if !(hallway_width.is_finite() && hallway_width > 0.0) {
+            return Err(FloorPlanError::HallwayWidth {
+                width: hallway_width,
+            });
+        }
+        let hallways = between_known_junctions(junctions, hallways)?;
+        let doors = doors(junctions, &hallways)?;
+        let junctions = junctions
+            .iter()
+            .zip(&doors)
+            .map(|((name, position), doors)| {
+                Ok(Junction {
+                    kind: kind(name, doors)?,
+                    name: name.clone(),
+                    position: *position,
+                })
+            })
+            .collect::<Result<Vec<_>, FloorPlanError>>()?;
+        let lists: Vec<(&str, Vec<&str>)> = junctions
+            .iter()
+            .zip(&doors)
+            .map(|(junction, doors)| {
+                let neighbours = doors.iter().flatten();
+                let names = neighbours.map(|&vertex| junctions[vertex.at()].name.as_str());
+                (junction.name.as_str(), names.collect())
+            })
+            .collect();
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists)?;
+        let directions = doors
+            .iter()
+            .flat_map(|doors| Direction::ALL.into_iter().zip(doors))
+            .filter_map(|(direction, door)| door.map(|_| direction))
+            .collect();
+        let plan = Self {
+            hallway_width,
+            junctions,
+            hallways,
+            graph,
+            directions,
+        };
+        floor::check(&plan)?;
+        Ok(plan)
+    }
+
+    /// The width of every hallway, from wall to wall, in metres.
+    #[must_use]
+    pub fn hallway_width(&self) -> f64 {
+        self.hallway_width
+    }
+
+    /// The junctions; the one at index `i` is vertex `i`.
+    #[must_use]
+    pub fn junctions(&self) -> &[Junction] {
+        &self.junctions
+    }
+
+    /// The junction that is this vertex.
+    #[must_use]
+    pub fn junction(&self, vertex: Vertex) -> &Junction {
+        &self.junctions[vertex.at()]
+    }
+
+    /// The hallways, in the order given.
+    #[must_use]
+    pub fn hallways(&self) -> &[Hallway] {
+        &self.hallways
+    }
+
+    /// The embedded graph that the plan is; it lies in the plane.
+    #[must_use]
+    pub fn graph(&self) -> &EmbeddedGraph {
+        &self.graph
+    }
+
+    /// Where the dart's hallway leads, seen from the dart's junction.
+    #[must_use]
+    pub fn direction(&self, dart: Dart) -> Direction {
+        self.directions[dart.at()]
+    }
+}
+
+/// The hallways as vertices; refuses junctions and hallways that are ill-formed by themselves.
+fn between_known_junctions(
+    junctions: &[(String, [f64; 2])],
+    hallways: &[(String, String)],
+) -> Result<Vec<Hallway>, FloorPlanError> {
+    let mut vertices = HashMap::new();
+    for (number, (name, position)) in junctions.iter().enumerate() {
+        let junction = || name.clone();
+        if !position.iter().all(|coordinate| coordinate.is_finite()) {
+            return Err(FloorPlanError::Position {
+                junction: junction(),
+                position: *position,
+            });
+        }
+        if vertices.insert(name, Vertex(number as u32)).is_some() {
+            return Err(FloorPlanError::JunctionTwice {
+                junction: junction(),
+            });
+        }
+    }
+    let known = |number, name| {
+        let vertex = vertices.get(name).copied();
+        vertex.ok_or_else(|| FloorPlanError::UnknownJunction {
+            number,
+            junction: String::clone(name),
+        })
+    };
+    hallways
+        .iter()
+        .enumerate()
+        .map(|(number, (from, to))| {
+            Ok(Hallway {
+                from: known(number, from)?,
+                to: known(number, to)?,
+            })
+        })
+        .collect()
+}
+
+/// For each junction, the junction behind its door in each direction.
+fn doors(
+    junctions: &[(String, [f64; 2])],
+    hallways: &[Hallway],
+) -> Result<Vec<[Option<Vertex>; 4]>, FloorPlanError> {
+    let name = |vertex: Vertex| junctions[vertex.at()].0.clone();
+    let mut doors = vec![[None; 4]; junctions.len()];
+    for &Hallway { from, to } in hallways {
+        if from == to {
+            return Err(FloorPlanError::NoLength {
+                junction: name(from),
+            });
+        }
+        let Some(direction) = Direction::between(junctions[from.at()].1, junctions[to.at()].1)
+        else {
+            return Err(FloorPlanError::NotAlongAxis {
+                from: name(from),
+                to: name(to),
+            });
+        };
+        let ends = [(from, to, direction), (to, from, direction.reversed())];
+        for (here, there, direction) in ends {
+            match doors[here.at()][direction as usize].replace(there) {
+                None => {}
+                Some(earlier) if earlier == there => {
+                    return Err(FloorPlanError::HallwayTwice {
+                        from: name(from),
+                        to: name(to),
+                    });
+                }
+                Some(earlier) => {
+                    return Err(FloorPlanError::SameDirection {
+                        junction: name(here),
+                        one: name(earlier),
+                        other: name(there),
+                    });
+                }
+            }
+        }
+    }
+    Ok(doors)
+}
+
+/// What kind of junction has these doors.
+fn kind(name: &str, doors: &[Option<Vertex>; 4]) -> Result<JunctionKind, FloorPlanError> {
+    let junction = || name.to_owned();
+    match doors.iter().flatten().count() {
+        0 => Err(FloorPlanError::NoDoor {
+            junction: junction(),
+        }),
+        1 => Ok(JunctionKind::DeadEnd),
+        2 if doors[0].is_some() == doors[2].is_some() => Err(FloorPlanError::StraightThrough {
+            junction: junction(),
+        }),
+        2 => Ok(JunctionKind::L),
+        3 => Ok(JunctionKind::T),
+        _ => Err(FloorPlanError::FourDoors {
+            junction: junction(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,45 @@
+//! Embedded graphs for property tests: an edge at a time, between any two corners.
+
+use proptest::{collection::vec, prelude::*};
+
+use crate::embedded_graph::EmbeddedGraph;
+
+/// Which embedded graphs a test wants.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Class {
+    Multigraph,
+    Simple,
+}
+
+/// Any connected embedded graph of the class with up to `most` edges, of any genus.
+pub(super) fn any_graph(class: Class, most: usize) -> impl Strategy<Value = EmbeddedGraph> {
+    // Each edge: a corner that it leaves, whether it leads to a new vertex, a corner where it ends.
+    let edge = (any::<u16>(), any::<bool>(), any::<u16>());
+    vec(edge, 1..=most).prop_map(move |edges| grown(class, &edges))
+}
+
+fn grown(class: Class, edges: &[(u16, bool, u16)]) -> EmbeddedGraph {
+    let mut lists: Vec<Vec<(usize, usize)>> = vec![vec![]];
+    for (edge, &(from, new, to)) in edges.iter().enumerate() {
+        let u = usize::from(from) % lists.len();
+        let mut v = usize::from(to) % lists.len();
+        let joined = u == v || lists[u].iter().any(|&(_, neighbour)| neighbour == v);
+        if new || (matches!(class, Class::Simple) && joined) {
+            v = lists.len();
+            lists.push(vec![]);
+        }
+        for (here, there, corner) in [(u, v, from), (v, u, to)] {
+            let corner = usize::from(corner) / 7 % (lists[here].len() + 1);
+            lists[here].insert(corner, (edge, there));
+        }
+    }
+    let named: Vec<(String, Vec<String>)> = lists
+        .iter()
+        .enumerate()
+        .map(|(vertex, list)| {
+            let edges = list.iter().map(|(edge, _)| edge.to_string());
+            (vertex.to_string(), edges.collect())
+        })
+        .collect();
+    EmbeddedGraph::from_edge_lists(&named).unwrap()
+}

@@ -1,1 +1,0 @@
-//! plantri's `planar_code` and `edge_code`.

@@ -1,0 +1,130 @@
+//! What can be wrong with plantri's codes, and where.
+
+use thiserror::Error;
+
+use crate::embedded_graph::Fault;
+
+/// Why bytes are not one of plantri's codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("byte {offset}, world {world}: {cause}")]
+pub struct PlantriError {
+    /// Where in the file it shows; the first byte is 0.
+    pub offset: usize,
+    /// In which world of the file; the first is 1.
+    pub world: usize,
+    /// What is wrong.
+    #[source]
+    pub cause: Cause,
+}
+
+/// What is wrong at a byte. Vertices are counted from 1 and edges from 0, as in the codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Cause {
+    /// There is nothing at all.
+    #[error("there is no world")]
+    Empty,
+    /// A header of something else.
+    #[error("unknown header; known are planar_code, planar_code le, planar_code be and edge_code")]
+    UnknownHeader,
+    /// The file ends too early.
+    #[error("the file ends in the middle of a world")]
+    Truncated,
+    /// A neighbour is no vertex.
+    #[error("vertex {vertex} lists the neighbour {neighbour}, but there are {vertices} vertices")]
+    UnknownNeighbour {
+        /// Whose list it is.
+        vertex: usize,
+        /// The number that is no vertex.
+        neighbour: usize,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A neighbour does not list the vertex back.
+    #[error("vertex {vertex} lists the neighbour {neighbour}, which does not list {vertex} back")]
+    OneSided {
+        /// Whose list it is.
+        vertex: usize,
+        /// The neighbour.
+        neighbour: usize,
+    },
+    /// A parallel edge or a loop in `planar_code`.
+    #[error(
+        "vertex {vertex} lists {neighbour} again or itself; \
+         planar_code cannot tell parallel edges and loops apart, edge_code can"
+    )]
+    NotSimple {
+        /// Whose list it is.
+        vertex: usize,
+        /// What it lists.
+        neighbour: usize,
+    },
+    /// A vertex has an empty list.
+    #[error("vertex {vertex} has no edge")]
+    NoEdge {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// The byte that tells the sizes tells a size that cannot be.
+    #[error("a length of {length_bytes} bytes and edges of {edge_bytes} bytes cannot be")]
+    Sizes {
+        /// The bytes of the length.
+        length_bytes: u8,
+        /// The bytes of each edge.
+        edge_bytes: u8,
+    },
+    /// The body ends within an edge.
+    #[error("the body ends in the middle of an edge")]
+    HalfEdgeNumber,
+    /// An edge's number is too high.
+    #[error("vertex {vertex} lists edge {edge}, but there are {edges} edges, counted from 0")]
+    UnknownEdge {
+        /// Whose list it is.
+        vertex: usize,
+        /// The number that is no edge.
+        edge: u64,
+        /// The number of edges.
+        edges: usize,
+    },
+    /// There is an odd number of edge ends.
+    #[error("the lists hold {ends} edge ends; every edge has two")]
+    OddEnds {
+        /// Their number.
+        ends: usize,
+    },
+    /// An edge is listed too often.
+    #[error("edge {edge} stands here for the third time; every edge has two ends")]
+    ThirdEnd {
+        /// The edge.
+        edge: u64,
+    },
+    /// The graph falls into pieces.
+    #[error("the world is not connected: vertex {vertex} cannot be reached from 1")]
+    NotConnected {
+        /// The first vertex out of reach.
+        vertex: usize,
+    },
+    /// The graph has no edge or too many.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
+/// Why an embedded graph cannot be written in a code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum WriteError {
+    /// A loop or a parallel edge.
+    #[error(
+        "world {world} has loops or parallel edges, which planar_code cannot tell; use edge_code"
+    )]
+    NotSimple {
+        /// Which world; the first is 1.
+        world: usize,
+    },
+    /// More vertices than two bytes can number.
+    #[error("world {world} has {vertices} vertices; planar_code goes up to 65535")]
+    TooManyVertices {
+        /// Which world; the first is 1.
+        world: usize,
+        /// How many it has.
+        vertices: usize,
+    },
+}

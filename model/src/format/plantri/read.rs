@@ -1,0 +1,347 @@
+//! Reading plantri's codes, one world after the other.
+
+use super::{Cause, Code, PlantriError};
+use crate::embedded_graph::{EmbeddedGraph, Fault, MAX_EDGES};
+
+/// How the numbers of `planar_code` with two bytes are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ByteOrder {
+    /// The lesser byte first.
+    Little,
+    /// The greater byte first.
+    Big,
+    /// The header does not say.
+    Untold,
+}
+
+/// The headers, and what they tell.
+const HEADERS: [(&[u8], Code, ByteOrder); 4] = [
+    (b">>planar_code<<", Code::Planar, ByteOrder::Untold),
+    (b">>planar_code le<<", Code::Planar, ByteOrder::Little),
+    (b">>planar_code be<<", Code::Planar, ByteOrder::Big),
+    (b">>edge_code<<", Code::Edge, ByteOrder::Untold),
+];
+
+/// The worlds of a file, in their order. Ends after the first error.
+///
+/// Reading a world takes at most 128 bytes of memory for each byte of it.
+#[derive(Clone, Debug)]
+pub struct Worlds<'a> {
+    bytes: &'a [u8],
+    next: usize,
+    read: usize,
+    code: Code,
+    order: ByteOrder,
+    done: bool,
+}
+
+/// The worlds of a file of either code, which its header tells; without a header it is
+/// `planar_code`. Headers may stand again between worlds, as in files joined together.
+///
+/// Vertices are numbered in the order of the file, and the darts of each in the order in which it
+/// lists them.
+#[must_use]
+pub fn read(bytes: &[u8]) -> Worlds<'_> {
+    read_headerless(bytes, Code::Planar)
+}
+
+/// The worlds of a file of which the code is known: as [`read`], but this code is taken where no
+/// header stands.
+#[must_use]
+pub fn read_headerless(bytes: &[u8], code: Code) -> Worlds<'_> {
+    Worlds {
+        bytes,
+        next: 0,
+        read: 0,
+        code,
+        order: ByteOrder::Untold,
+        done: false,
+    }
+}
+
+impl Iterator for Worlds<'_> {
+    type Item = Result<EmbeddedGraph, PlantriError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.done {
+            return None;
+        }
+        let result = self.take_header().and_then(|()| self.world());
+        let error = |(offset, cause)| PlantriError {
+            offset,
+            world: self.read + 1,
+            cause,
+        };
+        match result.map_err(error).transpose()? {
+            Ok((graph, next)) => {
+                self.next = next;
+                self.read += 1;
+                Some(Ok(graph))
+            }
+            Err(error) => {
+                self.done = true;
+                Some(Err(error))
+            }
+        }
+    }
+}
+
+/// What is wrong, and at which byte.
+type Failure = (usize, Cause);
+
+impl Worlds<'_> {
+    /// Goes past a header. Where one can stand, none of its letters could be a vertex or an edge: a
+    /// world that begins with `>>` has 62 vertices, or a body of 62 bytes and so at most 31 edges.
+    fn take_header(&mut self) -> Result<(), Failure> {
+        let rest = &self.bytes[self.next..];
+        let is_header = rest.starts_with(b">>") && rest.get(2).is_some_and(u8::is_ascii_lowercase);
+        if !is_header {
+            return Ok(());
+        }
+        match HEADERS.iter().find(|(header, ..)| rest.starts_with(header)) {
+            Some(&(header, code, order)) => {
+                self.next += header.len();
+                self.code = code;
+                self.order = order;
+                Ok(())
+            }
+            None => Err((self.next, Cause::UnknownHeader)),
+        }
+    }
+
+    /// The next world and the byte after it; `None` at the end of the file.
+    fn world(&self) -> Result<Option<(EmbeddedGraph, usize)>, Failure> {
+        let at_end = self.next == self.bytes.len();
+        match (at_end, self.code) {
+            (true, _) if self.read == 0 => Err((self.next, Cause::Empty)),
+            (true, _) => Ok(None),
+            (false, Code::Planar) => self.planar_code().map(Some),
+            (false, Code::Edge) => self.edge_code().map(Some),
+        }
+    }
+
+    fn planar_code(&self) -> Result<(EmbeddedGraph, usize), Failure> {
+        let mut cursor = Cursor {
+            bytes: self.bytes,
+            at: self.next,
+        };
+        if cursor.bytes[cursor.at] != 0 {
+            return planar_code(cursor, 1, ByteOrder::Big);
+        }
+        cursor.at += 1;
+        match self.order {
+            ByteOrder::Untold => planar_code(cursor, 2, ByteOrder::Little).or_else(|little| {
+                // Of two readings that fail, the one that got further tells more.
+                planar_code(cursor, 2, ByteOrder::Big)
+                    .map_err(|big| if big.0 > little.0 { big } else { little })
+            }),
+            order => planar_code(cursor, 2, order),
+        }
+    }
+
+    fn edge_code(&self) -> Result<(EmbeddedGraph, usize), Failure> {
+        let mut cursor = Cursor {
+            bytes: self.bytes,
+            at: self.next,
+        };
+        let (length, edge_bytes) = match cursor.number(1, ByteOrder::Big)? {
+            0 => {
+                let sizes_at = cursor.at;
+                let sizes = cursor.number(1, ByteOrder::Big)? as u8;
+                let (length_bytes, edge_bytes) = (sizes >> 4, sizes & 15);
+                if length_bytes == 0 || edge_bytes == 0 {
+                    let cause = Cause::Sizes {
+                        length_bytes,
+                        edge_bytes,
+                    };
+                    return Err((sizes_at, cause));
+                }
+                let length = cursor.number(length_bytes.into(), ByteOrder::Big)?;
+                (length, usize::from(edge_bytes))
+            }
+            length => (length, 1),
+        };
+        let end = usize::try_from(length)
+            .ok()
+            .and_then(|length| cursor.at.checked_add(length))
+            .filter(|&end| end <= self.bytes.len())
+            .ok_or((self.bytes.len(), Cause::Truncated))?;
+        cursor.bytes = &self.bytes[..end];
+        Ok((edge_code(cursor, edge_bytes)?, end))
+    }
+}
+
+/// A place in the file.
+#[derive(Clone, Copy)]
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Cursor<'_> {
+    /// The next number; one that does not fit is as high as can be.
+    fn number(&mut self, size: usize, order: ByteOrder) -> Result<u64, Failure> {
+        let bytes = self
+            .at
+            .checked_add(size)
+            .and_then(|end| self.bytes.get(self.at..end));
+        let bytes = bytes.ok_or((self.bytes.len(), Cause::Truncated))?;
+        self.at += size;
+        let add = |number: u64, &byte: &u8| match number.checked_mul(256) {
+            Some(shifted) => shifted | u64::from(byte),
+            None => u64::MAX,
+        };
+        Ok(match order {
+            ByteOrder::Little => bytes.iter().rev().fold(0, add),
+            ByteOrder::Big | ByteOrder::Untold => bytes.iter().fold(0, add),
+        })
+    }
+}
+
+/// Reads a `planar_code` from its number of vertices on.
+fn planar_code(
+    mut cursor: Cursor<'_>,
+    size: usize,
+    order: ByteOrder,
+) -> Result<(EmbeddedGraph, usize), Failure> {
+    let start = cursor.at;
+    let vertices = cursor.number(size, order)? as usize;
+    let lists = cursor.at;
+    let mut darts: Vec<(u32, u32)> = Vec::new();
+    let mut firsts = Vec::new();
+    for vertex in 0..vertices {
+        firsts.push(darts.len() as u32);
+        loop {
+            let at = cursor.at;
+            let neighbour = cursor.number(size, order)? as usize;
+            if neighbour == 0 {
+                break;
+            }
+            if neighbour > vertices {
+                let cause = Cause::UnknownNeighbour {
+                    vertex: vertex + 1,
+                    neighbour,
+                    vertices,
+                };
+                return Err((at, cause));
+            }
+            darts.push((vertex as u32, neighbour as u32 - 1));
+        }
+    }
+    check_size(start, darts.len())?;
+    // The byte at which a dart stands: one number for each dart and each list before it.
+    let place = |dart: usize| lists + size * (dart + darts[dart].0 as usize);
+    let mut sorted: Vec<u32> = (0..darts.len() as u32).collect();
+    sorted.sort_unstable_by_key(|&dart| (darts[dart as usize], dart));
+    let again = sorted
+        .windows(2)
+        .filter(|pair| darts[pair[0] as usize] == darts[pair[1] as usize])
+        .map(|pair| pair[1] as usize);
+    let loops = (0..darts.len()).filter(|&dart| darts[dart].0 == darts[dart].1);
+    if let Some(dart) = again.chain(loops).min() {
+        let (vertex, neighbour) = numbers(darts[dart]);
+        return Err((place(dart), Cause::NotSimple { vertex, neighbour }));
+    }
+    let opposite = (0..darts.len())
+        .map(|dart| {
+            let (vertex, neighbour) = darts[dart];
+            sorted
+                .binary_search_by_key(&(neighbour, vertex), |&other| darts[other as usize])
+                .map(|at| sorted[at])
+                .map_err(|_| {
+                    let (vertex, neighbour) = numbers(darts[dart]);
+                    (place(dart), Cause::OneSided { vertex, neighbour })
+                })
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok((graph(start, &opposite, &firsts)?, cursor.at))
+}
+
+/// A dart that is not yet known.
+const UNMET: u32 = u32::MAX;
+
+/// Reads the body of an `edge_code`, which reaches to the end of the cursor's bytes.
+fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failure> {
+    let start = cursor.at;
+    let mut ends: Vec<u64> = Vec::new();
+    let mut firsts = vec![0];
+    while let Some(&byte) = cursor.bytes.get(cursor.at) {
+        if byte == 255 {
+            cursor.at += 1;
+            firsts.push(ends.len() as u32);
+        } else {
+            let at = cursor.at;
+            let half = |_| (at, Cause::HalfEdgeNumber);
+            ends.push(cursor.number(size, ByteOrder::Big).map_err(half)?);
+        }
+    }
+    // The byte at which a dart stands: its vertex has as many lists before it.
+    let vertex = |dart: usize| firsts.partition_point(|&first| first as usize <= dart) - 1;
+    let place = |dart: usize| start + size * dart + vertex(dart);
+    check_size(start, ends.len())?;
+    if ends.len() % 2 == 1 {
+        return Err((start, Cause::OddEnds { ends: ends.len() }));
+    }
+    let mut first_end = vec![UNMET; ends.len() / 2];
+    let mut opposite = vec![UNMET; ends.len()];
+    for (dart, &edge) in ends.iter().enumerate() {
+        let edges = first_end.len();
+        let Some(first) = usize::try_from(edge)
+            .ok()
+            .and_then(|edge| first_end.get_mut(edge))
+        else {
+            let cause = Cause::UnknownEdge {
+                vertex: vertex(dart) + 1,
+                edge,
+                edges,
+            };
+            return Err((place(dart), cause));
+        };
+        let other = *first as usize;
+        if *first == UNMET {
+            *first = dart as u32;
+        } else if opposite[other] == UNMET {
+            opposite[other] = dart as u32;
+            opposite[dart] = *first;
+        } else {
+            return Err((place(dart), Cause::ThirdEnd { edge }));
+        }
+    }
+    graph(start, &opposite, &firsts)
+}
+
+/// Refuses more darts than can be numbered, before anything is numbered.
+fn check_size(start: usize, darts: usize) -> Result<(), Failure> {
+    if darts / 2 > MAX_EDGES {
+        return Err((start, Fault::TooManyEdges.into()));
+    }
+    Ok(())
+}
+
+/// The vertex and its neighbour as the code counts them.
+fn numbers((vertex, neighbour): (u32, u32)) -> (usize, usize) {
+    (vertex as usize + 1, neighbour as usize + 1)
+}
+
+/// The graph of vertices whose darts begin at `firsts`, of the world that stands at `start`.
+fn graph(start: usize, opposite: &[u32], firsts: &[u32]) -> Result<EmbeddedGraph, Failure> {
+    let darts = opposite.len() as u32;
+    let ends = firsts.iter().skip(1).copied().chain([darts]);
+    let lists: Vec<_> = firsts.iter().copied().zip(ends).collect();
+    let without_edge = lists.iter().position(|(first, end)| first == end);
+    if let Some(vertex) = without_edge.filter(|_| darts > 0) {
+        return Err((start, Cause::NoEdge { vertex: vertex + 1 }));
+    }
+    let mut clockwise: Vec<u32> = (1..=darts).collect();
+    for &(first, end) in lists.iter().filter(|(first, end)| first < end) {
+        clockwise[end as usize - 1] = first;
+    }
+    match EmbeddedGraph::from_permutations(opposite, &clockwise) {
+        Ok((graph, _)) => Ok(graph),
+        Err(Fault::NotConnected { dart }) => {
+            let vertex = firsts.partition_point(|&first| first <= dart);
+            Err((start, Cause::NotConnected { vertex }))
+        }
+        Err(fault) => Err((start, fault.into())),
+    }
+}

@@ -1,1 +1,0 @@
-//! World files, in TOML and JSON.

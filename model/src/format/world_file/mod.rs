@@ -1,0 +1,15 @@
+//! World files, in TOML and in JSON of the same shape: an embedded graph told by neighbours
+//! (`[clockwise]`), by edges (`[doors]`), or by a floor plan (`[floor]`, `[junctions]`,
+//! `[[hallways]]`), and where the robot starts in it (`[start]`). Sections 2.1 and 2.4.
+
+mod error;
+mod read;
+mod tree;
+mod write;
+
+pub use error::{Cause, Place, WorldFileError};
+pub use read::read;
+pub use write::{to_json, to_json_text, to_toml};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,463 @@
+use proptest::{collection::vec, prelude::*};
+
+use super::*;
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    floor_plan::FloorPlan,
+    format::{
+        any_graph::{Class, any_graph},
+        named_world::NamedWorld,
+    },
+};
+
+fn message(text: &str) -> String {
+    read(text.as_bytes()).unwrap_err().to_string()
+}
+
+const TRIANGLE: &str = r#"name = "triangle"
+about = "Three corners"
+
+[clockwise]
+z = ["a", "m"]
+a = ["m", "z"]
+m = ["z", "a"]
+
+[start]
+at = "a"
+facing = "z"
+"#;
+
+const TRIANGLE_IN_JSON: &str = r#"{
+  "name": "triangle",
+  "about": "Three corners",
+  "clockwise": {
+    "z": ["a", "m"],
+    "a": ["m", "z"],
+    "m": ["z", "a"]
+  },
+  "start": {
+    "at": "a",
+    "facing": "z"
+  }
+}
+"#;
+
+const DOORS: &str = r#"[doors]
+u = ["a", "b", "a", "c"]
+v = ["b", "c"]
+
+[start]
+at = "u"
+facing = "a:2"
+"#;
+
+const PLAN: &str = r#"name = "bend"
+
+[floor]
+hallway_width = 1.6
+
+[junctions]
+south = [0.0, -4.5]
+corner = [0.0, 0.0]
+east = [4.0, 0.0]
+
+[[hallways]]
+from = "south"
+to = "corner"
+
+[[hallways]]
+from = "east"
+to = "corner"
+
+[start]
+at = "corner"
+facing = "east"
+"#;
+
+#[test]
+fn vertices_stand_in_the_order_of_the_file() {
+    let world = read(TRIANGLE.as_bytes()).unwrap();
+    assert_eq!(world.vertex_names, ["z", "a", "m"]);
+    assert_eq!(world.start, Some(Dart(3)));
+    assert_eq!(
+        (world.name.as_str(), world.about.as_str()),
+        ("triangle", "Three corners")
+    );
+    assert_eq!(world.edge_names, None);
+    assert_eq!(read(TRIANGLE_IN_JSON.as_bytes()).unwrap(), world);
+    assert_eq!(to_toml(&world), TRIANGLE);
+    assert_eq!(to_json_text(&world), TRIANGLE_IN_JSON);
+}
+
+#[test]
+fn a_file_of_doors_names_its_edges() {
+    let world = read(DOORS.as_bytes()).unwrap();
+    assert_eq!(
+        world.edge_names.as_deref().unwrap(),
+        ["a", "b", "a", "c", "b", "c"]
+    );
+    assert_eq!(world.start, Some(Dart(2)));
+    assert_eq!(world.name, "");
+    assert_eq!(to_toml(&world), DOORS);
+}
+
+#[test]
+fn a_floor_plan_gives_its_graph_and_keeps_its_geometry() {
+    let world = read(PLAN.as_bytes()).unwrap();
+    assert_eq!(world.vertex_names, ["south", "corner", "east"]);
+    assert_eq!(
+        world.positions.as_deref(),
+        Some(&[[0.0, -4.5], [0.0, 0.0], [4.0, 0.0]][..])
+    );
+    assert_eq!(world.start_text(world.start.unwrap()), "corner:east");
+    assert_eq!(to_toml(&world), PLAN);
+    assert_eq!(
+        to_json_text(&world),
+        r#"{
+  "name": "bend",
+  "floor": {
+    "hallway_width": 1.6
+  },
+  "junctions": {
+    "south": [0.0, -4.5],
+    "corner": [0.0, 0.0],
+    "east": [4.0, 0.0]
+  },
+  "hallways": [
+    {"from": "south", "to": "corner"},
+    {"from": "east", "to": "corner"}
+  ],
+  "start": {
+    "at": "corner",
+    "facing": "east"
+  }
+}
+"#
+    );
+    assert_eq!(read(to_json_text(&world).as_bytes()).unwrap(), world);
+    let whole_numbers = PLAN.replace(".0", "");
+    assert_eq!(read(whole_numbers.as_bytes()).unwrap(), world);
+}
+
+#[test]
+fn a_file_without_text_is_told_so() {
+    assert_eq!(message(""), "the file is empty");
+    assert_eq!(message(" \n"), "the file is empty");
+    let error = read(b"name = \"a\"\nab\xff").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 2, column 3: this is not UTF-8 text"
+    );
+}
+
+#[test]
+fn broken_text_is_told_with_its_place() {
+    assert_eq!(
+        message("name = \"a\"\n[clockwise\n"),
+        "line 2, column 11: unclosed table, expected `]`"
+    );
+    assert_eq!(
+        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\na = []\n"),
+        "line 4, column 1: duplicate key"
+    );
+    assert_eq!(
+        message("{\n \"name\": }"),
+        "line 2, column 10: expected value"
+    );
+    assert_eq!(
+        message("{\"clockwise\": {\"a\": [],\n\"a\": []}}"),
+        "line 2, column 3: duplicate key `a`"
+    );
+    assert_eq!(message("{} x"), "line 1, column 4: trailing characters");
+}
+
+#[test]
+fn unknown_and_missing_keys_are_named() {
+    assert_eq!(
+        message("[clokwise]\na = [\"b\"]"),
+        "clokwise: unknown key; here can stand: \
+         name, about, clockwise, doors, floor, junctions, hallways, start"
+    );
+    assert_eq!(
+        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
+        "start.from: unknown key; here can stand: at, facing"
+    );
+    assert_eq!(
+        message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\""),
+        "start: the key `facing` is missing"
+    );
+    assert_eq!(
+        message("{\"a\\nb\": 1}"),
+        "a\\nb: unknown key; here can stand: \
+         name, about, clockwise, doors, floor, junctions, hallways, start"
+    );
+    assert_eq!(
+        message("[floor]\nhallway_width = 1"),
+        "the key `junctions` is missing"
+    );
+    assert_eq!(
+        message(&PLAN.replace("to = \"corner\"\n\n[start]", "[start]")),
+        "hallways[1]: the key `to` is missing"
+    );
+}
+
+#[test]
+fn values_of_the_wrong_kind_are_named() {
+    for (text, expected) in [
+        ("name = 3", "name: here should be a name, not a number"),
+        (
+            "about = []\n[doors]",
+            "about: here should be a text, not a list",
+        ),
+        (
+            "clockwise = []",
+            "clockwise: here should be a table, not a list",
+        ),
+        (
+            "[clockwise]\na = \"b\"",
+            "clockwise.a: here should be a list of names, not a text",
+        ),
+        (
+            "[clockwise]\na = [true]",
+            "clockwise.a: here should be a name, not true or false",
+        ),
+        (
+            "{\"doors\": {\"a\": [null]}}",
+            "doors.a: here should be a name, not null",
+        ),
+        (
+            "doors = 1979-05-27",
+            "doors: here should be a table, not a date",
+        ),
+    ] {
+        assert_eq!(message(text), expected);
+    }
+    assert_eq!(
+        message(&PLAN.replace("[4.0, 0.0]", "[4.0]")),
+        "junctions.east: here should be a list of two numbers, x and y, not a list of another length"
+    );
+    assert_eq!(
+        message(&PLAN.replace("[4.0, 0.0]", "[4.0, \"0\"]")),
+        "junctions.east: here should be a number, not a text"
+    );
+}
+
+#[test]
+fn names_have_few_characters() {
+    let names = "is no name; a name is made of A-Z, a-z, 0-9, _ and -";
+    for (text, place, name) in [
+        ("name = \"a b\"", "name", "a b"),
+        ("[clockwise]\n\"a:b\" = []", "clockwise", "a:b"),
+        ("[clockwise]\na = [\"\"]", "clockwise.a", ""),
+        ("[doors]\na = [\"\\u00e9\\n\"]", "doors.a", "é\\n"),
+    ] {
+        assert_eq!(message(text), format!("{place}: `{name}` {names}"));
+    }
+}
+
+#[test]
+fn a_world_is_told_in_one_way() {
+    assert_eq!(
+        message("name = \"a\""),
+        "there is no world: one of [clockwise], [doors] and [floor] must stand in the file"
+    );
+    assert_eq!(
+        message("[doors]\n[junctions]"),
+        "there are both [doors] and [floor]; a world is told by one of them"
+    );
+}
+
+#[test]
+fn lists_that_are_no_embedded_graph_are_told_with_their_vertex() {
+    for (text, expected) in [
+        (
+            "[clockwise]\na = [\"b\"]\nb = []",
+            "clockwise.a: vertex `a` lists the neighbour `b`, which does not list `a` back",
+        ),
+        (
+            "[clockwise]\na = [\"q\"]",
+            "clockwise.a: vertex `a` lists the neighbour `q`, which is no vertex",
+        ),
+        (
+            "[clockwise]\na = [\"b\", \"b\"]\nb = [\"a\", \"a\"]",
+            "clockwise.a: vertex `a` lists the neighbour `b` twice; \
+             parallel edges need edge names, in [doors]",
+        ),
+        (
+            "[clockwise]\na = [\"a\"]",
+            "clockwise.a: vertex `a` lists itself; loops need edge names, in [doors]",
+        ),
+        (
+            "[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]",
+            "doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+        ),
+        (
+            "[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]",
+            "clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+        ),
+        (
+            "[clockwise]",
+            "clockwise: there is no edge; a world has at least one",
+        ),
+        (
+            "[doors]\na = []",
+            "doors: there is no edge; a world has at least one",
+        ),
+    ] {
+        assert_eq!(message(text), expected);
+    }
+}
+
+#[test]
+fn a_start_that_is_not_there_is_told_with_its_key() {
+    assert_eq!(
+        message(&TRIANGLE.replace("facing = \"z\"", "facing = \"a\"")),
+        "start.facing: vertex `a` has no neighbour `a`; it has m, z"
+    );
+    assert_eq!(
+        message(&TRIANGLE.replace("at = \"a\"", "at = \"q\"")),
+        "start.at: there is no vertex `q`"
+    );
+    assert_eq!(
+        message(&DOORS.replace("a:2", "a")),
+        "start.facing: edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
+    );
+}
+
+#[test]
+fn a_wrong_floor_plan_is_told_with_its_key() {
+    for (text, instead, expected) in [
+        (
+            "1.6",
+            "nan",
+            "floor.hallway_width: the hallway width is NaN; it must be a positive number of metres",
+        ),
+        (
+            "[4.0, 0.0]",
+            "[inf, 0.0]",
+            "junctions.east: junction `east` is at (inf, 0); both must be finite numbers of metres",
+        ),
+        (
+            "[4.0, 0.0]",
+            "[3.0, 0.0]",
+            "junctions: junctions `corner` and `east` are 3.00 m apart; \
+             it must be two hallway widths, 3.20 m",
+        ),
+        (
+            "from = \"east\"",
+            "from = \"q\"",
+            "hallways[1]: there is no junction `q`",
+        ),
+        (
+            "[4.0, 0.0]",
+            "[4.0, 1.0]",
+            "hallways: hallway `east` - `corner` runs neither north-south nor east-west",
+        ),
+    ] {
+        assert_eq!(message(&PLAN.replace(text, instead)), expected);
+    }
+}
+
+#[test]
+fn any_character_can_stand_in_about() {
+    let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
+    let all: String = ('\0'..='\u{ff}')
+        .chain("\u{feff}\u{2028}\u{1f600}".chars())
+        .collect();
+    reads_back(&NamedWorld::discovered("", &all, &graph, None));
+}
+
+fn reads_back(world: &NamedWorld) {
+    for text in [
+        to_toml(world),
+        to_json_text(world),
+        to_json(world).to_string(),
+    ] {
+        assert_eq!(&read(text.as_bytes()).unwrap(), world, "{text}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_was_written_reads_back(
+        graph in any_graph(Class::Multigraph, 30),
+        start in proptest::option::of(any::<u32>()),
+        name in "[A-Za-z0-9_-]{0,9}",
+        about in any::<String>(),
+    ) {
+        let darts = graph.dart_count() as u32;
+        let start = start.map(|start| Dart(start % darts));
+        reads_back(&NamedWorld::discovered(&name, &about, &graph, start));
+        let elsewhere = start.map(|start| Dart(darts - 1 - start.0));
+        reads_back(&NamedWorld {
+            start: elsewhere,
+            ..NamedWorld::discovered(&name, &about, &graph, None)
+        });
+    }
+
+    #[test]
+    fn simple_graphs_are_written_by_neighbours(graph in any_graph(Class::Simple, 30)) {
+        let world = NamedWorld::discovered("", "", &graph, None);
+        prop_assert!(to_toml(&world).contains("[clockwise]"));
+        reads_back(&world);
+    }
+
+    #[test]
+    fn positions_read_back_to_the_bit(x in -1e9..1e9_f64, y in any::<f64>(), width in 1e-3..1e3_f64) {
+        let junctions = [("a".to_owned(), [x, y]), ("b".to_owned(), [x + 4e3, y])];
+        let hallways = [("a".to_owned(), "b".to_owned())];
+        if let Ok(plan) = FloorPlan::new(width, &junctions, &hallways) {
+            reads_back(&NamedWorld {
+                vertex_names: vec!["a".to_owned(), "b".to_owned()],
+                positions: Some(junctions.iter().map(|(_, position)| *position).collect()),
+                plan: Some(plan.clone()),
+                ..NamedWorld::discovered("", "", plan.graph(), None)
+            });
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_the_reader_panic(bytes in vec(any::<u8>(), 0..200)) {
+        let _ = read(&bytes);
+    }
+
+    #[test]
+    fn no_edit_of_a_file_makes_the_reader_panic(
+        file in 0..4_usize, at in any::<usize>(), cut in 0..9_usize, insert in "[ -~\n]{0,4}"
+    ) {
+        let text = [TRIANGLE, TRIANGLE_IN_JSON, DOORS, PLAN][file];
+        let at = at % text.len();
+        let end = (at + cut).min(text.len());
+        let edited = [&text[..at], &insert, &text[end..]].concat();
+        if let Ok(world) = read(edited.as_bytes()) {
+            reads_back(&world);
+        }
+    }
+
+    #[test]
+    fn no_lines_make_the_reader_panic(
+        lines in vec("(\\[(clockwise|doors|floor|junctions|start|\\[hallways\\])\\]|(a|b|at|facing|from|to|hallway_width) = (\"[ab]\"|\\[\"[ab]\", \"[ab]\"\\]|\\[[0-9], 4\\]|[0-9]))", 0..9)
+    ) {
+        let _ = read(lines.join("\n").as_bytes());
+    }
+}
+
+#[test]
+fn deep_nesting_is_refused() {
+    for open in ["[", "{\"a\":"] {
+        let deep = open.repeat(100_000);
+        assert!(read(deep.as_bytes()).is_err());
+        assert!(read(format!("a = {deep}").as_bytes()).is_err());
+    }
+    assert!(read("a.".repeat(100_000).as_bytes()).is_err());
+}
+
+#[test]
+fn a_world_is_written_the_same_whoever_made_it() {
+    let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
+    let world = NamedWorld::discovered("loop", "", &graph, Some(Dart(1)));
+    assert_eq!(
+        to_toml(&world),
+        "name = \"loop\"\n\n[doors]\nv0 = [\"e0\", \"e0\"]\n\n[start]\nat = \"v0\"\nfacing = \"e0:1\"\n"
+    );
+}

@@ -1,0 +1,177 @@
+//! The world files of `worlds/`: each is what its name and its README say.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{
+    collections::HashSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use toposlam_model::{
+    floor_plan::JunctionKind,
+    format::{
+        named_world::NamedWorld,
+        plantri::{self, Code},
+        world_file,
+    },
+    percept::Door,
+};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds")
+}
+
+fn read(name: &str) -> NamedWorld {
+    let path = folder().join(format!("{name}.toml"));
+    let bytes = fs::read(&path).unwrap();
+    world_file::read(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The names of all worlds, in order.
+fn names() -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn every_world_is_named_told_and_begun() {
+    let readme = fs::read_to_string(folder().join("README.md")).unwrap();
+    for name in names() {
+        let world = read(&name);
+        assert_eq!(world.name, name);
+        assert!(!world.about.is_empty(), "{name}");
+        assert!(world.start.is_some(), "{name}");
+        assert!(readme.contains(&format!("[{name}]({name}.toml)")), "{name}");
+    }
+}
+
+#[test]
+fn every_world_is_written_as_it_was_read() {
+    for name in names() {
+        let world = read(&name);
+        let toml = world_file::to_toml(&world);
+        assert_eq!(world_file::read(toml.as_bytes()).unwrap(), world);
+        let json = world_file::to_json_text(&world);
+        assert_eq!(world_file::read(json.as_bytes()).unwrap(), world);
+        let file = fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap();
+        assert_eq!(toml, file, "{name} is not as the tools would write it");
+    }
+}
+
+#[test]
+fn every_world_survives_plantri_s_codes() {
+    for name in names() {
+        let graph = read(&name).graph;
+        for code in [Code::Planar, Code::Edge] {
+            match plantri::write(std::slice::from_ref(&graph), code) {
+                Ok(bytes) => {
+                    let back: Result<Vec<_>, _> = plantri::read(&bytes).collect();
+                    assert_eq!(back.unwrap(), std::slice::from_ref(&graph), "{name}");
+                }
+                Err(error) => {
+                    assert_eq!(code, Code::Planar, "{name}: {error}");
+                    assert!(!graph.is_simple(), "{name}: {error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_world_has_the_size_and_the_genus_that_its_name_says() {
+    let sizes: Vec<_> = names()
+        .into_iter()
+        .map(|name| {
+            let graph = read(&name).graph;
+            let size = (graph.vertex_count(), graph.edge_count(), graph.genus());
+            (name, size)
+        })
+        .collect();
+    let expected = [
+        ("building-12", (12, 14, 0)),
+        ("building-25", (25, 31, 0)),
+        ("chain-5", (6, 5, 0)),
+        ("cycle-12", (12, 12, 0)),
+        ("cycle-3", (3, 3, 0)),
+        ("cycle-4", (4, 4, 0)),
+        ("figure-1a", (5, 8, 0)),
+        ("figure-1b", (5, 8, 1)),
+        ("k4-plane", (4, 6, 0)),
+        ("k4-torus", (4, 6, 1)),
+        ("petersen", (10, 15, 1)),
+        ("shape-6", (6, 6, 0)),
+        ("shape-8", (6, 7, 0)),
+        ("star-5", (6, 5, 0)),
+        ("theta-plane", (2, 3, 0)),
+        ("theta-torus", (2, 3, 1)),
+        ("two-loops-plane", (1, 2, 0)),
+        ("two-loops-torus", (1, 2, 1)),
+    ]
+    .map(|(name, size)| (name.to_owned(), size));
+    assert_eq!(sizes, expected);
+}
+
+#[test]
+fn figure_1_is_one_graph_whose_rim_is_reversed() {
+    let (a, b) = (read("figure-1a"), read("figure-1b"));
+    for vertex in a.graph.vertices() {
+        let around = |world: &NamedWorld, reversed: bool| {
+            let mut names: Vec<_> = world
+                .graph
+                .darts_of(vertex)
+                .map(|dart| world.at_text(world.graph.opposite(dart)).to_lowercase())
+                .collect();
+            if reversed {
+                names.reverse();
+            }
+            let least = names.iter().min().cloned();
+            let first = names.iter().position(|name| Some(name) == least.as_ref());
+            names.rotate_left(first.unwrap());
+            names
+        };
+        let is_rim = a.vertex_names[vertex.at()] != "x";
+        assert_eq!(around(&a, is_rim), around(&b, false));
+    }
+}
+
+#[test]
+fn figure_1_is_indistinguishable_from_its_starts() {
+    let (a, b) = (read("figure-1a"), read("figure-1b"));
+    let degree = |world: &NamedWorld, pose| world.graph.degree(world.graph.vertex(pose));
+    let mut open = vec![(a.start.unwrap(), b.start.unwrap())];
+    let mut reached = HashSet::new();
+    while let Some((here, there)) = open.pop() {
+        if reached.insert((here, there)) {
+            assert_eq!(degree(&a, here), degree(&b, there));
+            let doors = (0..degree(&a, here)).map(Door);
+            open.extend(doors.map(|door| (a.graph.after(here, door), b.graph.after(there, door))));
+        }
+    }
+    assert_eq!(reached.len(), 32);
+}
+
+#[test]
+fn buildings_have_all_three_kinds_of_junction() {
+    for (name, kinds) in [
+        ("shape-6", [1, 4, 1]),
+        ("shape-8", [0, 4, 2]),
+        ("building-12", [2, 4, 6]),
+        ("building-25", [6, 1, 18]),
+    ] {
+        let plan = read(name).plan.unwrap();
+        let count = |kind| plan.junctions().iter().filter(|j| j.kind == kind).count();
+        let counts = [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T].map(count);
+        assert_eq!(counts, kinds, "{name}");
+        assert!((plan.hallway_width() - 1.6).abs() < 1e-12);
+    }
+}
