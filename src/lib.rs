@@ -3,4 +3,6 @@
 //! This package is the front of the house: it passes on the specification ([`model`]), draws worlds
 //! and holds what the command line `toposlam` prints.
 
+pub mod picture;
+
 pub use toposlam_model as model;
