@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::geometry::{turn, wrapped};
 
 /// How strongly the doors of one disc are drawn towards an even spread.
-const SPREAD: f64 = 0.12;
+const SPREAD: f64 = 0.3;
 /// Directions from which the search for the best turn of the disc sets out.
 const SET_OUTS: usize = 72;
 /// Sweeps over the doors of one disc.

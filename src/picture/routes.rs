@@ -111,7 +111,7 @@ impl Room<'_> {
     fn plain(&self, errand: &Errand) -> Curve {
         let [from, to] = self.doors(errand);
         if errand.vertices[0] == errand.vertices[1] {
-            let handle = 2.0 * self.size.discs[errand.vertices[0]];
+            let handle = 3.0 * self.size.discs[errand.vertices[0]];
             return Curve::cubic(from, to, [handle, handle]);
         }
         if errand.bends.is_empty() {
@@ -139,13 +139,13 @@ impl Room<'_> {
         let clockwise = turn(errand.directions[0], errand.directions[1]);
         for gap in [clockwise, clockwise - TAU] {
             if gap.abs() < 2.3 {
-                for reach in [1.4, 1.8, 2.3, 2.9, 3.6, 4.4, 5.5] {
+                for reach in [3.2, 3.7, 4.3, 5.0, 6.0] {
                     let handle = reach * self.size.base;
                     curves.push(Curve::cubic(from, to, [handle, handle]));
                 }
             }
             let stops = (gap.abs() / 1.3).ceil().max(1.0);
-            for level in [1.1, 1.5, 2.0, 2.6, 3.3, 4.2, 5.2] {
+            for level in [1.7, 2.1, 2.5, 3.1, 3.8, 4.6, 5.6] {
                 let way: Vec<_> = (0..stops as usize)
                     .map(|stop| {
                         let share = (stop as f64 + 0.5) / stops;
@@ -268,7 +268,7 @@ impl Room<'_> {
         for place in crossings(curve, other) {
             cost += 1.6;
             for (vertex, &centre) in self.centres.iter().enumerate() {
-                let lack = self.size.discs[vertex] + 1.1 * self.size.base - place.distance(centre);
+                let lack = self.size.discs[vertex] + 1.6 * self.size.base - place.distance(centre);
                 cost += 1.5 * (lack / self.size.base).max(0.0);
             }
         }

@@ -35,8 +35,8 @@ impl Size {
             .map(|name| text::width(name, 1.0))
             .fold(0.5, f64::max);
         // A name has to fit between the knobs to its left and right.
-        let room = |base: f64| 2.0 * (base - knob - 1.5);
-        let wish = (longest * 12.0 / 2.0 + knob + 1.5).clamp(DISC[0], DISC[1]);
+        let room = |base: f64| 2.0 * (base - knob - 3.0);
+        let wish = (longest * 12.0 / 2.0 + knob + 3.0).clamp(DISC[0], DISC[1]);
         let name = (room(wish) / longest).clamp(NAME[0], NAME[1]);
         let discs = graph
             .vertices()
@@ -65,17 +65,13 @@ impl Size {
 
     /// Whether the name fits into the vertex's disc.
     pub(super) fn holds(&self, vertex: usize, name: &str) -> bool {
-        let rim = if self.knob > 0.0 {
-            self.knob + 1.0
-        } else {
-            1.0
-        };
+        let rim = if self.knob > 0.0 { self.knob } else { 1.0 };
         text::width(name, self.name) <= 2.0 * (self.discs[vertex] - rim)
     }
 
     /// The least angle between two doors of the vertex.
     pub(super) fn doors_apart(&self, vertex: usize) -> f64 {
-        let chord = (self.knob * 2.06).max(2.5);
+        let chord = (self.knob * 2.0 - 0.8).max(2.5);
         2.0 * (chord / 2.0 / self.discs[vertex]).min(1.0).asin()
     }
 }

@@ -55,7 +55,8 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         .ceil();
     let above = title.len() as f64 * TITLE[1] + if title.is_empty() { 0.0 } else { 10.0 };
     let bar = if drawing.metre.is_some() { 34.0 } else { 0.0 };
-    let captions = caption.len() as f64 * CAPTION[1] + legend.len() as f64 * LEGEND[1];
+    let between = if caption.is_empty() { 0.0 } else { 5.0 };
+    let captions = caption.len() as f64 * CAPTION[1] + legend.len() as f64 * LEGEND[1] + between;
     let below = bar + captions + if captions > 0.0 { 14.0 } else { 0.0 };
     let width = widest + 2.0 * MARGIN;
     let height = (extent.size().y + above + below).ceil() + 2.0 * MARGIN;
@@ -89,6 +90,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         let at = Point::new(middle, baseline - 4.0);
         page.text(line, at, CAPTION[0], INK, "caption");
     }
+    baseline += between;
     for (number, line) in legend.iter().enumerate() {
         baseline += LEGEND[1];
         let with_sign = number == 0 && picture.start.is_some();
@@ -284,9 +286,9 @@ impl Page {
 
     /// A bar of a round number of metres, and where north is.
     fn scale_bar(&mut self, metre: f64, room: f64, middle: Point) {
-        let fits = |length: &&f64| **length * metre <= (room * 0.6).max(60.0);
+        let fits = |length: &&f64| **length * metre <= (room * 0.75).max(60.0);
         let lengths = [0.1, 0.2, 0.5, 1.0, 2.0, 4.0, 10.0, 20.0, 50.0, 100.0, 500.0];
-        let wish = |length: &&f64| **length * metre <= 140.0;
+        let wish = |length: &&f64| **length * metre <= 200.0;
         let length = lengths.iter().rev().filter(fits).find(wish).unwrap_or(&0.1);
         let half = length * metre / 2.0;
         let (left, right) = (middle.x - half, middle.x + half);

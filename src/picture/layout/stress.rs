@@ -1,7 +1,7 @@
 //! Layouts in which the distance of two vertices is the length of their shortest path ("stress";
 //! Gansner, Koren, North, "Graph drawing by stress majorization", 2004).
 
-use std::{collections::VecDeque, f64::consts::TAU};
+use std::{cmp::Reverse, collections::VecDeque, f64::consts::TAU};
 
 use crate::model::embedded_graph::{EmbeddedGraph, Vertex};
 
@@ -16,6 +16,8 @@ use super::{
 
 /// Vertices beyond which even the plain layout does not compare all pairs.
 const ALL_PAIRS: usize = 3000;
+/// Faces that are tried as the outer one.
+const FRAMES: usize = 6;
 /// Starting places that are tried, each also as its mirror image.
 const TRIES: u32 = 24;
 
@@ -24,15 +26,23 @@ pub(super) fn best(graph: &EmbeddedGraph) -> Vec<Point> {
     let count = graph.vertex_count();
     let distances = distances(graph);
     let web = Subdivision::without_bends(graph);
-    let mut best = (f64::INFINITY, Vec::new());
+    let framed = framed(&web);
+    let mut layouts = framed.clone();
     for attempt in 0..TRIES {
         let mut points = set_out(graph, attempt);
         for _ in 0..150 {
             majorize(&mut points, &distances);
         }
+        layouts.push(points);
+    }
+    let mut best = (f64::INFINITY, Vec::new());
+    let refined = layouts.clone().into_iter().map(|mut points| {
         if count > 2 {
             refine(&web, &mut points, Keep::Nothing);
         }
+        points
+    });
+    for mut points in refined.chain(framed) {
         for mirrored in [false, true] {
             if mirrored {
                 points.iter_mut().for_each(|point| point.x = -point.x);
@@ -44,6 +54,40 @@ pub(super) fn best(graph: &EmbeddedGraph) -> Vec<Point> {
         }
     }
     best.1
+}
+
+/// For each of the first longest faces: the face as a regular polygon, and every other vertex in
+/// the middle of its neighbours.
+fn framed(web: &Subdivision) -> Vec<Vec<Point>> {
+    let mut faces = web.faces();
+    faces.retain(|face| {
+        let mut nodes: Vec<_> = face.iter().map(|&dart| web.node[dart]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.len() == face.len() && face.len() > 2
+    });
+    faces.sort_by_key(|face| Reverse(face.len()));
+    faces.truncate(FRAMES);
+    let darts = web.darts_of_nodes();
+    let layout = |face: &Vec<usize>| {
+        let radius = face.len() as f64 / TAU * 1.6;
+        let mut points = vec![Point::default(); web.nodes];
+        let mut inside = vec![true; web.nodes];
+        for (place, &dart) in face.iter().enumerate() {
+            let node = web.node[dart];
+            inside[node] = false;
+            points[node] = Point::polar(TAU * place as f64 / face.len() as f64, radius);
+        }
+        for _ in 0..300 {
+            for node in (0..web.nodes).filter(|&node| inside[node]) {
+                let far = darts[node].iter().map(|&dart| points[web.far(dart)]);
+                let sum = far.fold(Point::default(), |sum, point| sum + point);
+                points[node] = sum * (1.0 / darts[node].len() as f64);
+            }
+        }
+        points
+    };
+    faces.iter().map(layout).collect()
 }
 
 /// One layout, quickly.
@@ -151,7 +195,7 @@ fn cost(graph: &EmbeddedGraph, points: &[Point]) -> f64 {
         for &(c, d) in &lines[..at] {
             let apart = a != c && a != d && b != c && b != d;
             if apart && crossing(points[a], points[b], points[c], points[d]).is_some() {
-                cost += 1.0;
+                cost += 0.7;
             }
         }
         let length = points[a].distance(points[b]);
@@ -174,7 +218,7 @@ fn cost(graph: &EmbeddedGraph, points: &[Point]) -> f64 {
         let doors = door_directions(&wanted, 0.5);
         for (door, wanted) in doors.iter().zip(&wanted) {
             let miss = wanted.map_or(0.0, |wanted| wrapped(door - wanted));
-            cost += 0.6 * miss * miss;
+            cost += 1.2 * miss * miss;
         }
     }
     cost

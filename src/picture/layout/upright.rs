@@ -96,6 +96,17 @@ fn score(vertices: &[Point], edges: &[(usize, usize)]) -> f64 {
         let late = (number as f64 + 0.5) / count - 0.5;
         reading += late * (from_middle.x + 2.0 * from_middle.y) / count;
     }
+    // Numbers that grow clockwise, where they go around.
+    let around: f64 = (0..vertices.len())
+        .map(|at| {
+            let next = vertices[(at + 1) % vertices.len()];
+            (vertices[at] - centre).cross(next - centre)
+        })
+        .sum();
     let wide = (size.x - size.y) / scale;
-    2.0 * aligned / (edges.len().max(1) as f64) + 0.5 * wide + 0.6 * below + 0.4 * reading
+    2.0 * aligned / (edges.len().max(1) as f64)
+        + 0.5 * wide
+        + 0.6 * below
+        + 0.4 * reading
+        + 0.1 * (around / (scale * scale)).clamp(-1.0, 1.0)
 }
