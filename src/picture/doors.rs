@@ -83,7 +83,9 @@ fn settle(angles: &mut [f64], targets: &[Option<f64>], apart: f64) -> f64 {
             let (miss, cared) = misses(angles, targets);
             if cared > 0 {
                 let step = miss / f64::from(cared);
-                angles.iter_mut().for_each(|angle| *angle += step);
+                for angle in angles.iter_mut() {
+                    *angle += step;
+                }
             }
         }
     }

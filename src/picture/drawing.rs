@@ -9,7 +9,7 @@ use super::{
     geometry::{Extent, Point},
     labels::{self, Label},
     layout::{self, Layout},
-    routes::{self, Errand},
+    routes::{self, Crossings, Errand},
     size::Size,
 };
 
@@ -65,7 +65,12 @@ impl Drawing {
                 bends: bends.clone(),
             })
             .collect();
-        let curves = routes::routes(&errands, &layout.vertices, &size);
+        let crossings = if graph.genus() == 0 && positions.is_none() {
+            Crossings::Needless
+        } else {
+            Crossings::Needed
+        };
+        let curves = routes::routes(&errands, &layout.vertices, &size, crossings);
         let mut drawing = Self {
             inks: inks(&curves),
             edges: graph

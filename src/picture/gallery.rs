@@ -385,24 +385,14 @@ fn crossings(world: &NamedWorld) -> usize {
 #[test]
 fn a_world_in_the_plane_is_drawn_without_crossings() {
     let mut planar = 0;
-    let many = (0..400_u64).map(|seed| {
+    let many = (0..250_u64).map(|seed| {
         let vertices = 1 + (seed as usize * 5) % 11;
         random(1000 + seed, vertices, vertices + (seed as usize) % 3)
     });
     for world in gallery().into_iter().chain(many) {
         if world.graph.genus() == 0 {
             planar += 1;
-            let found = crossings(&world);
-            if found > 0 {
-                println!("XX {} {found}", world.name);
-                if let Some(d) = std::env::var_os("PICTURES") {
-                    std::fs::write(
-                        std::path::Path::new(&d).join(format!("XX{planar}.png")),
-                        png(&svg(&Picture::from(&world))).unwrap(),
-                    )
-                    .unwrap();
-                }
-            }
+            assert_eq!(crossings(&world), 0, "{}", world.name);
         }
     }
     assert!(planar > 100, "{planar}");

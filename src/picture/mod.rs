@@ -7,6 +7,11 @@
 //! [`labels`]; the [`drawing`] puts them together, and [`svg`](mod@svg) and [`png`](mod@png) write
 //! it.
 
+#![expect(
+    clippy::cast_precision_loss,
+    reason = "numbers of vertices and places along a curve are far below 2^52"
+)]
+
 mod curves;
 mod doors;
 mod drawing;

@@ -14,6 +14,15 @@ const WEIGHED: usize = 200;
 /// How often every edge may choose anew.
 const ROUNDS: usize = 4;
 
+/// Whether a drawing without crossings exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Crossings {
+    /// The layout has none.
+    Needless,
+    /// Some edges have to cross.
+    Needed,
+}
+
 /// An edge that wants a curve.
 #[derive(Clone, Debug)]
 pub(super) struct Errand {
@@ -26,8 +35,20 @@ pub(super) struct Errand {
 }
 
 /// A curve for each edge.
-pub(super) fn routes(errands: &[Errand], centres: &[Point], size: &Size) -> Vec<Curve> {
-    let room = Room { centres, size };
+pub(super) fn routes(
+    errands: &[Errand],
+    centres: &[Point],
+    size: &Size,
+    crossings: Crossings,
+) -> Vec<Curve> {
+    let room = Room {
+        crossing: match crossings {
+            Crossings::Needed => 1.6,
+            Crossings::Needless => 40.0,
+        },
+        centres,
+        size,
+    };
     let mut chosen: Vec<Curve> = errands.iter().map(|errand| room.plain(errand)).collect();
     if errands.len() > WEIGHED {
         return chosen;
@@ -91,6 +112,7 @@ pub(super) fn crossings(one: &Curve, other: &Curve) -> Vec<Point> {
 }
 
 struct Room<'a> {
+    crossing: f64,
     centres: &'a [Point],
     size: &'a Size,
 }
@@ -123,6 +145,17 @@ impl Room<'_> {
 
     fn candidates(&self, errand: &Errand) -> Vec<Curve> {
         let mut curves = vec![self.plain(errand)];
+        if !errand.bends.is_empty() {
+            let [from, to] = self.doors(errand);
+            let middle = (from.at + to.at) * 0.5;
+            for stretch in [1.0, 1.15, 1.3, 1.5] {
+                let bends = errand.bends.iter();
+                let way: Vec<_> = bends
+                    .map(|&bend| middle + (bend - middle) * stretch)
+                    .collect();
+                curves.push(Curve::by_way_of(from, &way, to));
+            }
+        }
         if errand.vertices[0] == errand.vertices[1] {
             self.petals(errand, &mut curves);
         } else {
@@ -266,7 +299,7 @@ impl Room<'_> {
         }
         let mut cost = 0.0;
         for place in crossings(curve, other) {
-            cost += 1.6;
+            cost += self.crossing;
             for (vertex, &centre) in self.centres.iter().enumerate() {
                 let lack = self.size.discs[vertex] + 1.6 * self.size.base - place.distance(centre);
                 cost += 1.5 * (lack / self.size.base).max(0.0);

@@ -70,7 +70,7 @@ fn framed(web: &Subdivision) -> Vec<Vec<Point>> {
     faces.truncate(FRAMES);
     let darts = web.darts_of_nodes();
     let layout = |face: &Vec<usize>| {
-        let radius = face.len() as f64 / TAU * 1.6;
+        let radius = face.len() as f64 / TAU * 1.9;
         let mut points = vec![Point::default(); web.nodes];
         let mut inside = vec![true; web.nodes];
         for (place, &dart) in face.iter().enumerate() {
@@ -84,6 +84,11 @@ fn framed(web: &Subdivision) -> Vec<Vec<Point>> {
                 let sum = far.fold(Point::default(), |sum, point| sum + point);
                 points[node] = sum * (1.0 / darts[node].len() as f64);
             }
+        }
+        // The middle is crowded: spread it outwards.
+        for node in (0..web.nodes).filter(|&node| inside[node]) {
+            let share = points[node].length() / radius;
+            points[node] = points[node].direction() * (radius * share.powf(0.55));
         }
         points
     };
@@ -199,7 +204,7 @@ fn cost(graph: &EmbeddedGraph, points: &[Point]) -> f64 {
             }
         }
         let length = points[a].distance(points[b]);
-        cost += 0.5 * (length - 1.0).abs();
+        cost += 0.25 * (length - 1.0).abs();
         for (vertex, point) in points.iter().enumerate() {
             if vertex != a && vertex != b {
                 let room = point.distance_to_segment(points[a], points[b]);
