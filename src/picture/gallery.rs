@@ -308,7 +308,10 @@ fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
         let at = |place: usize| [path[2 * place], path[2 * place + 1]];
         let last = path.len() / 2 - 1;
         for (dart, end, control) in [(darts[0], at(0), at(1)), (darts[1], at(last), at(last - 1))] {
-            let dart = Dart(dart as u32);
+            let dart = graph
+                .darts()
+                .find(|known| f64::from(known.0) == dart)
+                .unwrap();
             let [x, y, r] = centres[graph.vertex(dart).at()];
             let angle = (end[1] - y).atan2(end[0] - x);
             // On the border, and straight out.

@@ -102,6 +102,7 @@ pub(super) fn turn(from: f64, to: f64) -> f64 {
 }
 
 /// Where the segments from `a` to `b` and from `c` to `d` cross in their insides.
+#[expect(clippy::many_single_char_names, reason = "the usual names of the ends")]
 pub(super) fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
     let (along, other) = (b - a, d - c);
     let denominator = along.cross(other);

@@ -177,11 +177,14 @@ impl Room<'_> {
                     curves.push(Curve::cubic(from, to, [handle, handle]));
                 }
             }
-            let stops = (gap.abs() / 1.3).ceil().max(1.0);
+            let stops = 1
+                + (1..5)
+                    .filter(|&stops| gap.abs() > 1.3 * f64::from(stops))
+                    .count();
             for level in [1.7, 2.1, 2.5, 3.1, 3.8, 4.6, 5.6] {
-                let way: Vec<_> = (0..stops as usize)
+                let way: Vec<_> = (0..stops)
                     .map(|stop| {
-                        let share = (stop as f64 + 0.5) / stops;
+                        let share = (stop as f64 + 0.5) / stops as f64;
                         let angle = errand.directions[0] + gap * share;
                         centre + Point::polar(angle, radius + level * self.size.base)
                     })
@@ -282,6 +285,10 @@ impl Room<'_> {
                 let lack = clear - point.distance(centre);
                 if lack > 0.0 && !own(point) {
                     cost += 0.5 + 2.5 * lack / base;
+                    // Through the disc itself, or a knob: only if there is no other way.
+                    if lack > 0.3 * base {
+                        cost += 8.0;
+                    }
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! of its paths. The unit is the length of a usual edge; y points down.
 
 mod planar;
+mod planar_part;
 mod refine;
 mod stress;
 mod subdivision;
@@ -34,7 +35,9 @@ pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     } else if graph.genus() == 0 {
         in_the_plane(graph)
     } else {
-        straight(stress::best(graph), graph)
+        let part = planar_part::planar_part(graph);
+        let in_part = part.map(|part| in_the_plane(&part).vertices);
+        straight(stress::best(graph, in_part), graph)
     };
     upright::turn_upright(graph, &mut layout);
     layout

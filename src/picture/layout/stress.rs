@@ -21,8 +21,9 @@ const FRAMES: usize = 6;
 /// Starting places that are tried, each also as its mirror image.
 const TRIES: u32 = 24;
 
-/// The best of several layouts: few crossings, and doors near the straight lines.
-pub(super) fn best(graph: &EmbeddedGraph) -> Vec<Point> {
+/// The best of several layouts: few crossings, and doors near the straight lines. `in_part`: one
+/// more layout, that of the part of the graph that lies in the plane.
+pub(super) fn best(graph: &EmbeddedGraph, in_part: Option<Vec<Point>>) -> Vec<Point> {
     let count = graph.vertex_count();
     let distances = distances(graph);
     let web = Subdivision::without_bends(graph);
@@ -42,10 +43,12 @@ pub(super) fn best(graph: &EmbeddedGraph) -> Vec<Point> {
         }
         points
     });
-    for mut points in refined.chain(framed) {
+    for mut points in refined.chain(framed).chain(in_part) {
         for mirrored in [false, true] {
             if mirrored {
-                points.iter_mut().for_each(|point| point.x = -point.x);
+                for point in &mut points {
+                    point.x = -point.x;
+                }
             }
             let cost = cost(graph, &points);
             if cost < best.0 - 1e-6 {
