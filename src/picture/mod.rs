@@ -2,9 +2,9 @@
 //!
 //! A vertex is a disc; its doors are knobs on the border of the disc, in their clockwise order; an
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
-//! picture, even where edges have to cross. From the ground up: [`geometry`], [`text`],
-//! [`doors`] and [`size`]; then the [`layout`] of the vertices, [`curves`] and their [`routes`],
-//! [`labels`]; the [`drawing`] puts them together, and [`svg`](mod@svg) and [`png`](mod@png) write
+//! picture, even where edges have to cross. From the ground up: `geometry`, `text`,
+//! `doors` and `size`; then the `layout` of the vertices, `curves` and their `routes`,
+//! `labels`; the `drawing` puts them together, and `svg` and `png` write
 //! it.
 
 #![expect(
