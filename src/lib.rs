@@ -5,4 +5,6 @@
 
 pub mod paper;
 
+pub mod picture;
+
 pub use toposlam_model as model;

@@ -1,0 +1,115 @@
+//! Curves from door to door: cubic Béziers that leave and arrive straight through the doors.
+
+use super::geometry::{Extent, Point};
+
+/// Straight steps by which one cubic is followed.
+const STEPS: usize = 14;
+
+/// A chain of cubics.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    pub(super) start: Point,
+    /// Two control points and the end of each piece.
+    pub(super) pieces: Vec<[Point; 3]>,
+    /// Points along the curve, to measure with.
+    pub(super) trace: Vec<Point>,
+    /// The box around the trace.
+    pub(super) extent: Extent,
+}
+
+/// A place where a curve begins or ends: on the border of a disc, facing outwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Door {
+    /// The place on the border.
+    pub(super) at: Point,
+    /// The direction outwards, of length 1.
+    pub(super) out: Point,
+}
+
+impl Door {
+    pub(super) fn new(centre: Point, radius: f64, angle: f64) -> Self {
+        let out = Point::polar(angle, 1.0);
+        Self {
+            at: centre + out * radius,
+            out,
+        }
+    }
+}
+
+impl Curve {
+    /// One cubic with handles of the given lengths.
+    pub(super) fn cubic(from: Door, to: Door, handles: [f64; 2]) -> Self {
+        let controls = [from.at + from.out * handles[0], to.at + to.out * handles[1]];
+        Self::new(from.at, vec![[controls[0], controls[1], to.at]])
+    }
+
+    /// A smooth chain of cubics by way of the given points.
+    pub(super) fn by_way_of(from: Door, way: &[Point], to: Door) -> Self {
+        let points: Vec<_> = [from.at]
+            .into_iter()
+            .chain(way.iter().copied())
+            .chain([to.at])
+            .collect();
+        let last = points.len() - 1;
+        let heading = |index: usize| match index {
+            0 => from.out,
+            end if end == last => to.out * -1.0,
+            _ => (points[index + 1] - points[index - 1]).direction(),
+        };
+        let pieces = (0..last)
+            .map(|index| {
+                let (a, b) = (points[index], points[index + 1]);
+                let handle = 0.38 * a.distance(b);
+                [
+                    a + heading(index) * handle,
+                    b - heading(index + 1) * handle,
+                    b,
+                ]
+            })
+            .collect();
+        Self::new(from.at, pieces)
+    }
+
+    fn new(start: Point, pieces: Vec<[Point; 3]>) -> Self {
+        let mut trace = vec![start];
+        let mut from = start;
+        for &[one, two, to] in &pieces {
+            trace.extend((1..=STEPS).map(|step| {
+                let t = step as f64 / STEPS as f64;
+                let s = 1.0 - t;
+                from * (s * s * s)
+                    + one * (3.0 * s * s * t)
+                    + two * (3.0 * s * t * t)
+                    + to * (t * t * t)
+            }));
+            from = to;
+        }
+        let extent = Extent::of(trace.iter().copied());
+        Self {
+            start,
+            pieces,
+            trace,
+            extent,
+        }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.trace
+            .windows(2)
+            .map(|two| two[0].distance(two[1]))
+            .sum()
+    }
+
+    /// The point at the given share of the length.
+    pub(super) fn at(&self, share: f64) -> Point {
+        let mut left = share * self.length();
+        for two in self.trace.windows(2) {
+            let step = two[0].distance(two[1]);
+            if step >= left && step > 0.0 {
+                return two[0] + (two[1] - two[0]) * (left / step);
+            }
+            left -= step;
+        }
+        self.trace.last().copied().unwrap_or(self.start)
+    }
+}

@@ -1,0 +1,71 @@
+//! Where the vertices go, and by which bends loops and parallel edges keep apart.
+//!
+//! A graph in the plane is laid out as it lies there, without a crossing; any other by the lengths
+//! of its paths. The unit is the length of a usual edge; y points down.
+
+mod planar;
+mod planar_part;
+mod refine;
+mod stress;
+mod subdivision;
+mod upright;
+
+use crate::model::embedded_graph::EmbeddedGraph;
+
+use super::geometry::Point;
+use refine::Keep;
+use subdivision::Subdivision;
+
+/// Vertices up to which a layout is polished; larger ones are plain.
+pub(super) const POLISHED: usize = 120;
+
+/// Where everything is.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// One point a vertex.
+    pub(super) vertices: Vec<Point>,
+    /// The bends of each edge, in the order of `EmbeddedGraph::edges`, from its first dart on.
+    pub(super) bends: Vec<Vec<Point>>,
+}
+
+/// A layout of the graph.
+pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
+    let mut layout = if graph.edge_count() > 2 * POLISHED {
+        straight(stress::plain(graph), graph)
+    } else if graph.genus() == 0 {
+        in_the_plane(graph)
+    } else {
+        let part = planar_part::planar_part(graph);
+        let in_part = part.map(|part| in_the_plane(&part).vertices);
+        straight(stress::best(graph, in_part), graph)
+    };
+    upright::turn_upright(graph, &mut layout);
+    layout
+}
+
+/// The layout of a floor plan: metres, y to the north.
+pub(super) fn floor_plan(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
+    let vertices = positions.iter().map(|&[x, y]| Point::new(x, -y)).collect();
+    straight(vertices, graph)
+}
+
+fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
+    let subdivision = Subdivision::of(graph);
+    let mut points = planar::without_crossings(&subdivision);
+    refine::refine(&subdivision, &mut points, Keep::Embedding);
+    Layout {
+        vertices: points[..graph.vertex_count()].to_vec(),
+        bends: subdivision
+            .bends
+            .iter()
+            .map(|nodes| nodes.iter().map(|&node| points[node]).collect())
+            .collect(),
+    }
+}
+
+fn straight(vertices: Vec<Point>, graph: &EmbeddedGraph) -> Layout {
+    Layout {
+        vertices,
+        bends: vec![Vec::new(); graph.edge_count()],
+    }
+}

@@ -1,0 +1,100 @@
+//! SVG to PNG, with the font that is shipped, and no other.
+
+use std::sync::Arc;
+
+use resvg::{tiny_skia, usvg};
+use thiserror::Error;
+
+/// DejaVu Sans, reduced to Latin, Greek, Cyrillic and some symbols; its licence stands beside it.
+const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+
+/// Pixels in a unit of the picture.
+const PIXELS: f32 = 2.0;
+
+/// The longest side of an image, in pixels; larger pictures get fewer pixels in a unit.
+const LONGEST: f32 = 6000.0;
+
+/// Why a picture could not be made.
+#[derive(Debug, Error)]
+pub enum PictureError {
+    /// The SVG is not one.
+    #[error("the SVG cannot be read: {0}")]
+    Svg(#[from] usvg::Error),
+    /// The image has no size, or one that does not fit in memory.
+    #[error("an image of {width} x {height} pixels cannot be made")]
+    Size {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+    },
+    /// The pixels could not be written as PNG.
+    #[error("the image cannot be written as PNG: {0}")]
+    Png(String),
+}
+
+/// The SVG as a PNG image: two pixels in a unit, or as many as keep its longer side below 6000.
+/// Text is set in DejaVu Sans, whatever fonts the system has.
+///
+/// # Errors
+/// Where the text is no SVG, or the image would have no pixels.
+pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(FONT.to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    let options = usvg::Options {
+        font_family: "DejaVu Sans".to_owned(),
+        fontdb: Arc::new(fonts),
+        ..usvg::Options::default()
+    };
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let size = tree.size();
+    let scale = PIXELS.min(LONGEST / size.width().max(size.height()));
+    let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));
+    let mut image =
+        tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
+    let transform = tiny_skia::Transform::from_scale(scale, scale);
+    resvg::render(&tree, transform, &mut image.as_mut());
+    image
+        .encode_png()
+        .map_err(|error| PictureError::Png(error.to_string()))
+}
+
+#[expect(clippy::cast_sign_loss, reason = "the sizes of an SVG are positive")]
+fn pixels(length: f32) -> u32 {
+    length.ceil() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dark_pixels(png: &[u8]) -> usize {
+        let image = tiny_skia::Pixmap::decode_png(png).unwrap();
+        image.pixels().iter().filter(|p| p.red() < 128).count()
+    }
+
+    fn with_text(text: &str) -> Vec<u8> {
+        png(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"80\" height=\"20\" \
+             font-family=\"{}\"><rect width=\"80\" height=\"20\" fill=\"#ffffff\"/>\
+             <text x=\"4\" y=\"15\" font-size=\"14\">{text}</text></svg>",
+            super::super::text::FAMILY
+        ))
+        .unwrap()
+    }
+
+    #[test]
+    fn text_appears_without_any_font_of_the_system() {
+        assert_eq!(dark_pixels(&with_text("")), 0);
+        for text in ["corner", "7", "\u{e9}", "\u{3b1}", "\u{416}", "\u{2192}"] {
+            assert!(dark_pixels(&with_text(text)) > 20, "{text}");
+        }
+        assert_ne!(with_text("corner"), with_text("tee"));
+    }
+
+    #[test]
+    fn what_is_no_svg_is_refused() {
+        assert!(matches!(png("a world"), Err(PictureError::Svg(_))));
+    }
+}
