@@ -4,7 +4,6 @@
 //! traces the paper ([`paper`]) and holds what the command line `toposlam` prints.
 
 pub mod paper;
-
 pub mod picture;
 
 pub use toposlam_model as model;

@@ -1,6 +1,8 @@
 //! The exhaustive check holds, its numbers are pinned, and it fails on broken variants of
 //! Algorithm 1.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 use toposlam_model::{
     check::{Algorithm, Algorithm1, Choice, Failure, Shard, Sweep, Tally, every_way, move_bound},
     embedded_graph::{Dart, EmbeddedGraph},

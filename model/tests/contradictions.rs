@@ -1,5 +1,7 @@
 //! Algorithm 1 ends on every world, also on one that breaks, lies, or has no end.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},

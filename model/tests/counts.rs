@@ -1,5 +1,7 @@
 //! The enumeration against published counts (OEIS), by number of edges.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 use std::ops::ControlFlow;
 
 use toposlam_model::{

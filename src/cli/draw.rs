@@ -43,8 +43,7 @@ impl Arguments {
         let format = self.format()?;
         let mut world = input::read_world(&self.world)?;
         if let Some(text) = &self.start {
-            let start = world.resolve_start(text);
-            world.start = Some(start.map_err(|error| Failure::at("--start", error))?);
+            world.start = Some(input::start_of(&world, Some(text))?);
         }
         let drawn = svg(&Picture::from(&world));
         let bytes = match format {
@@ -61,7 +60,7 @@ impl Arguments {
     /// What to write. A format that contradicts the ending of the file is refused.
     fn format(&self) -> Result<Format, Failure> {
         let ending = self.out.as_deref().and_then(Path::extension);
-        let said = match ending.map(|ending| ending.to_ascii_lowercase()) {
+        let said = match ending.map(std::ffi::OsStr::to_ascii_lowercase) {
             Some(ending) if ending == "png" => Some(Format::Png),
             Some(ending) if ending == "svg" => Some(Format::Svg),
             _ => None,

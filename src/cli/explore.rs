@@ -14,7 +14,7 @@ use toposlam_model::{
     check::{Flaw, every_way, judge, move_bound},
     embedded_graph::Dart,
     format::{named_world::NamedWorld, world_file},
-    isomorphism::Bijection,
+    isomorphism::{Bijection, Candidate},
     mapping::{DEFAULT_DART_BOUND, Exploration, FACING, MappingError, Nearest, map_world},
     world::GraphWorld,
 };
@@ -96,7 +96,10 @@ impl Arguments {
             story.finish()?;
             run
         };
-        let result = run.map_err(Flaw::from).and_then(|()| judge(&exploration, facing, &robot));
+        let mut candidate = Candidate::default();
+        let result = run
+            .map_err(Flaw::from)
+            .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
         let ending = Ending { world: &world, facing, exploration: &exploration, result };
         if self.json {
             ending.tell_json(&mut out, self.choices == "all")?;
@@ -110,7 +113,7 @@ impl Arguments {
             }
             if let Some(path) = &self.svg {
                 let caption = format!("mapped in {} moves", exploration.moves());
-                let drawn = Picture { caption: &caption, ..Picture::of(&map) };
+                let drawn = Picture { caption: &caption, ..Picture::from(&map) };
                 output::write_whole(path, picture::svg(&drawn).as_bytes())?;
             }
         }
@@ -123,7 +126,7 @@ struct Ending<'a> {
     world: &'a NamedWorld,
     facing: Dart,
     exploration: &'a Exploration,
-    result: Result<Bijection, Flaw>,
+    result: Result<&'a Bijection, Flaw>,
 }
 
 impl Ending<'_> {
@@ -138,7 +141,8 @@ impl Ending<'_> {
     /// The map as a world, where it is complete.
     fn map(&self) -> Option<NamedWorld> {
         let name = format!("{}-map", self.world.name);
-        let about = format!("The map of {}, made in {} moves", self.world.name, self.exploration.moves());
+        let about =
+            format!("The map of {}, made in {} moves", self.world.name, self.exploration.moves());
         let graph = self.exploration.map().complete()?;
         Some(NamedWorld::discovered(&name, &about, graph, Some(FACING)))
     }
@@ -147,7 +151,7 @@ impl Ending<'_> {
         let map = self.exploration.map();
         let mut line = json!({
             "moves": self.exploration.moves(),
-            "edges": map.complete().map(|graph| graph.edge_count()),
+            "edges": map.complete().map(toposlam_model::embedded_graph::EmbeddedGraph::edge_count),
             "vertices": map.vertex_count(),
             "isomorphic": self.result.is_ok(),
             "map": self.map().as_ref().map(world_file::to_json),
@@ -197,7 +201,8 @@ impl Ending<'_> {
         let image = |dart: Dart| bijection.image(dart).unwrap_or(self.facing);
         write!(out, "It is isomorphic to the world:")?;
         for (place, vertex) in exploration.map().vertices().enumerate() {
-            let name = exploration.map().darts_of(vertex).next().map(|dart| world.at_text(image(dart)));
+            let name =
+                exploration.map().darts_of(vertex).next().map(|dart| world.at_text(image(dart)));
             let break_ = if place % 6 == 0 { "\n " } else { "" };
             write!(out, "{break_} v{} = {},", vertex.0, name.unwrap_or_default())?;
         }

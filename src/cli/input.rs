@@ -13,20 +13,18 @@ use super::Failure;
 pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
     let bytes = read(path)?;
     if plantri_code(path, &bytes).is_some() {
-        return Err(Failure::in_file(path, "this holds plantri's code; a world file is needed here"));
+        return Err(Failure::in_file(
+            path,
+            "this holds plantri's code; a world file is needed here",
+        ));
     }
     world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.
-pub(crate) fn start_of(
-    world: &NamedWorld,
-    start: Option<&str>,
-) -> Result<Dart, Failure> {
+pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, Failure> {
     match start {
-        Some(text) => {
-            world.start_from_text(text).map_err(|error| Failure::at("--start", error))
-        }
+        Some(text) => world.start_from_text(text).map_err(|error| Failure::at("--start", error)),
         None => Ok(world.start.unwrap_or(Dart(0))),
     }
 }

@@ -1,6 +1,11 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod check;
+mod compare;
 mod completions;
+mod draw;
+mod explore;
+mod input;
 mod outcome;
 mod output;
 mod paper;
@@ -25,8 +30,12 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
-    Completions(completions::Arguments),
+    Check(check::Arguments),
+    Explore(explore::Arguments),
+    Compare(compare::Arguments),
+    Draw(draw::Arguments),
     Paper(paper::Arguments),
+    Completions(completions::Arguments),
 }
 
 /// Runs the verb that the command line names.
@@ -34,8 +43,12 @@ pub(crate) fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let mut out = io::stdout().lock();
     let result = match arguments.verb {
-        Some(Verb::Completions(verb)) => verb.run(&mut out),
+        Some(Verb::Check(verb)) => verb.run(&mut out),
+        Some(Verb::Explore(verb)) => verb.run(&mut out),
+        Some(Verb::Compare(verb)) => verb.run(&mut out),
+        Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
+        Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };
     match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {

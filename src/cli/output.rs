@@ -1,8 +1,12 @@
 //! Files are written whole or not at all.
 
-use std::{ffi::OsString, fs, io, path::Path};
+use std::{
+    ffi::{OsStr, OsString},
+    fs, io,
+    path::Path,
+};
 
-use toposlam_model::format::{named_world::NamedWorld, world_file};
+use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
 use super::Failure;
 
@@ -38,13 +42,19 @@ pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes a world file: JSON where the name ends in `.json`, else TOML.
+/// What a world file is written as, by the ending of its name: `.json`, plantri's `.pc` and `.ec`
+/// (also `.planar_code` and `.edge_code`), Graphviz's `.dot`, and TOML for any other.
 pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure> {
-    let text = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("json") => world_file::to_json_text(world),
-        _ => world_file::to_toml(world),
+    let graph = std::slice::from_ref(&world.graph);
+    let coded = |code| plantri::write(graph, code).map_err(|error| Failure::in_file(path, error));
+    let bytes = match path.extension().and_then(OsStr::to_str) {
+        Some("json") => world_file::to_json_text(world).into_bytes(),
+        Some("pc" | "plc" | "planar_code") => coded(plantri::Code::Planar)?,
+        Some("ec" | "edge_code") => coded(plantri::Code::Edge)?,
+        Some("dot") => dot::write(world).into_bytes(),
+        _ => world_file::to_toml(world).into_bytes(),
     };
-    write_whole(path, text.as_bytes())
+    write_whole(path, &bytes)
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> Failure {

@@ -29,10 +29,7 @@ pub(super) struct Door {
 impl Door {
     pub(super) fn new(centre: Point, radius: f64, angle: f64) -> Self {
         let out = Point::polar(angle, 1.0);
-        Self {
-            at: centre + out * radius,
-            out,
-        }
+        Self { at: centre + out * radius, out }
     }
 }
 
@@ -45,11 +42,8 @@ impl Curve {
 
     /// A smooth chain of cubics by way of the given points.
     pub(super) fn by_way_of(from: Door, way: &[Point], to: Door) -> Self {
-        let points: Vec<_> = [from.at]
-            .into_iter()
-            .chain(way.iter().copied())
-            .chain([to.at])
-            .collect();
+        let points: Vec<_> =
+            [from.at].into_iter().chain(way.iter().copied()).chain([to.at]).collect();
         let last = points.len() - 1;
         let heading = |index: usize| match index {
             0 => from.out,
@@ -60,11 +54,7 @@ impl Curve {
             .map(|index| {
                 let (a, b) = (points[index], points[index + 1]);
                 let handle = 0.38 * a.distance(b);
-                [
-                    a + heading(index) * handle,
-                    b - heading(index + 1) * handle,
-                    b,
-                ]
+                [a + heading(index) * handle, b - heading(index + 1) * handle, b]
             })
             .collect();
         Self::new(from.at, pieces)
@@ -85,19 +75,11 @@ impl Curve {
             from = to;
         }
         let extent = Extent::of(trace.iter().copied());
-        Self {
-            start,
-            pieces,
-            trace,
-            extent,
-        }
+        Self { start, pieces, trace, extent }
     }
 
     pub(super) fn length(&self) -> f64 {
-        self.trace
-            .windows(2)
-            .map(|two| two[0].distance(two[1]))
-            .sum()
+        self.trace.windows(2).map(|two| two[0].distance(two[1])).sum()
     }
 
     /// The point at the given share of the length.

@@ -121,9 +121,7 @@ mod tests {
     fn directions_in_the_wrong_order_are_pushed_into_the_right_one() {
         let wanted = [Some(0.0), Some(-1.5), Some(1.5), None, Some(0.1)];
         let doors = door_directions(&wanted, 0.4);
-        let gaps: Vec<_> = (0..5)
-            .map(|at| turn(doors[at], doors[(at + 1) % 5]))
-            .collect();
+        let gaps: Vec<_> = (0..5).map(|at| turn(doors[at], doors[(at + 1) % 5])).collect();
         assert!((gaps.iter().sum::<f64>() - TAU).abs() < 1e-9, "{gaps:?}");
         assert!(gaps.iter().all(|&gap| gap > 0.4 - 1e-9), "{gaps:?}");
     }

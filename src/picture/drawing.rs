@@ -40,19 +40,14 @@ impl Drawing {
     pub(super) fn of(picture: &Picture) -> Self {
         let graph = picture.graph;
         let size = Size::of(graph, picture.vertex_names);
-        let positions = picture
-            .positions
-            .filter(|positions| positions.len() == graph.vertex_count());
+        let positions =
+            picture.positions.filter(|positions| positions.len() == graph.vertex_count());
         let mut layout = match positions {
             Some(positions) => layout::floor_plan(graph, positions),
             None => layout::lay_out(graph),
         };
         let unit = scale(graph, &layout, &size, positions.is_some());
-        for point in layout
-            .vertices
-            .iter_mut()
-            .chain(layout.bends.iter_mut().flatten())
-        {
+        for point in layout.vertices.iter_mut().chain(layout.bends.iter_mut().flatten()) {
             *point = *point * unit;
         }
         let doors = doors(graph, &layout, &size);
@@ -159,10 +154,7 @@ fn doors(graph: &EmbeddedGraph, layout: &Layout, size: &Size) -> Vec<f64> {
     graph
         .vertices()
         .flat_map(|vertex| {
-            let wanted: Vec<_> = graph
-                .darts_of(vertex)
-                .map(|dart| towards[dart.at()])
-                .collect();
+            let wanted: Vec<_> = graph.darts_of(vertex).map(|dart| towards[dart.at()]).collect();
             door_directions(&wanted, size.doors_apart(vertex.at()))
         })
         .collect()
@@ -181,11 +173,8 @@ fn inks(curves: &[Curve]) -> Vec<usize> {
             })
             .collect();
         if !crossed.is_empty() {
-            let free = (1..=INKS).find(|ink| {
-                crossed
-                    .iter()
-                    .all(|&other| other > edge || inks[other] != *ink)
-            });
+            let free = (1..=INKS)
+                .find(|ink| crossed.iter().all(|&other| other > edge || inks[other] != *ink));
             inks[edge] = free.unwrap_or(1 + edge % INKS);
         }
     }

@@ -20,6 +20,7 @@ fn world(name: &str, graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWo
         vertex_names,
         edge_names: None,
         positions: None,
+        plan: None,
     }
 }
 
@@ -27,11 +28,7 @@ fn world(name: &str, graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWo
 fn simple(name: &str, text: &str) -> NamedWorld {
     let lists = lists(text);
     let names = lists.iter().map(|(name, _)| name.clone()).collect();
-    world(
-        name,
-        EmbeddedGraph::from_neighbour_lists(&lists).unwrap(),
-        names,
-    )
+    world(name, EmbeddedGraph::from_neighbour_lists(&lists).unwrap(), names)
 }
 
 /// A world whose edges have names.
@@ -81,10 +78,7 @@ fn plan(name: &str, junctions: &[(&str, f64, f64)], hallways: &[(&str, &str)]) -
         ..world(
             name,
             EmbeddedGraph::from_neighbour_lists(&lists).unwrap(),
-            junctions
-                .iter()
-                .map(|&(name, ..)| name.to_owned())
-                .collect(),
+            junctions.iter().map(|&(name, ..)| name.to_owned()).collect(),
         )
     }
 }
@@ -132,10 +126,8 @@ struct Dice(u64);
 
 impl Dice {
     fn below(&mut self, bound: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % bound
     }
 }
@@ -143,9 +135,8 @@ impl Dice {
 /// A random connected world: a tree, and further edges put in at random places.
 fn random(seed: u64, vertices: usize, edges: usize) -> NamedWorld {
     let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-    let mut lists: Vec<(String, Vec<String>)> = (0..vertices)
-        .map(|at| (format!("v{at}"), Vec::new()))
-        .collect();
+    let mut lists: Vec<(String, Vec<String>)> =
+        (0..vertices).map(|at| (format!("v{at}"), Vec::new())).collect();
     for edge in 0..edges {
         let (u, v) = if edge + 1 < vertices {
             (dice.below(edge + 1), edge + 1)
@@ -179,14 +170,8 @@ fn gallery() -> Vec<NamedWorld> {
     let long_names = "the-hall: kitchen archive stairs, kitchen: the-hall archive, \
                       archive: the-hall kitchen, stairs: the-hall";
     let mut worlds = vec![
-        simple(
-            "figure-1a",
-            "x: a b d c, a: b x c, b: d x a, d: b c x, c: a x d",
-        ),
-        simple(
-            "figure-1b",
-            "X: A B D C, A: C X B, B: A X D, D: X C B, C: D X A",
-        ),
+        simple("figure-1a", "x: a b d c, a: b x c, b: d x a, d: b c x, c: a x d"),
+        simple("figure-1b", "X: A B D C, A: C X B, B: A X D, D: X C B, C: D X A"),
         cycle(3),
         cycle(4),
         cycle(12),
@@ -252,12 +237,7 @@ fn gallery() -> Vec<NamedWorld> {
             ],
         ),
         grid("floor plan of 12 junctions", 4, 3, &[3, 8, 11]),
-        grid(
-            "floor plan of 25 junctions",
-            5,
-            5,
-            &[2, 6, 9, 13, 14, 22, 27, 30, 35],
-        ),
+        grid("floor plan of 25 junctions", 5, 5, &[2, 6, 9, 13, 14, 22, 27, 30, 35]),
         tree(14),
         tree(38),
         random(1, 4, 7),
@@ -290,9 +270,7 @@ fn numbers(path: &str) -> Vec<f64> {
 fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
     let document = Document::parse(svg).unwrap();
     let of_class = |class: &'static str| {
-        document
-            .descendants()
-            .filter(move |node| node.attribute("class") == Some(class))
+        document.descendants().filter(move |node| node.attribute("class") == Some(class))
     };
     let centres: Vec<[f64; 3]> = of_class("vertex")
         .map(|node| ["cx", "cy", "r"].map(|name| attribute(node, name)))
@@ -308,18 +286,11 @@ fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
         let at = |place: usize| [path[2 * place], path[2 * place + 1]];
         let last = path.len() / 2 - 1;
         for (dart, end, control) in [(darts[0], at(0), at(1)), (darts[1], at(last), at(last - 1))] {
-            let dart = graph
-                .darts()
-                .find(|known| (f64::from(known.0) - dart).abs() < 0.5)
-                .unwrap();
+            let dart = graph.darts().find(|known| (f64::from(known.0) - dart).abs() < 0.5).unwrap();
             let [x, y, r] = centres[graph.vertex(dart).at()];
             let angle = (end[1] - y).atan2(end[0] - x);
             // On the border, and straight out.
-            assert!(
-                ((end[1] - y).hypot(end[0] - x) - r).abs() < 0.2,
-                "{}",
-                world.name
-            );
+            assert!(((end[1] - y).hypot(end[0] - x) - r).abs() < 0.2, "{}", world.name);
             let out = (control[1] - end[1]).atan2(control[0] - end[0]);
             assert!((out - angle).cos() > 0.99, "{}: {dart:?}", world.name);
             assert_eq!(angles[dart.at()].replace(angle), None);

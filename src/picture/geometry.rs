@@ -40,11 +40,7 @@ impl Point {
     /// The step of length 1 in the same direction; nothing where there is no direction.
     pub(super) fn direction(self) -> Self {
         let length = self.length();
-        if length > 0.0 {
-            self * (1.0 / length)
-        } else {
-            Self::default()
-        }
+        if length > 0.0 { self * (1.0 / length) } else { Self::default() }
     }
 
     /// A quarter turn clockwise.
@@ -123,23 +119,14 @@ pub(super) struct Extent {
 
 impl Extent {
     pub(super) const EMPTY: Self = Self {
-        least: Point {
-            x: f64::INFINITY,
-            y: f64::INFINITY,
-        },
-        most: Point {
-            x: f64::NEG_INFINITY,
-            y: f64::NEG_INFINITY,
-        },
+        least: Point { x: f64::INFINITY, y: f64::INFINITY },
+        most: Point { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY },
     };
 
     /// The box with this centre and these half sides.
     pub(super) fn around(centre: Point, half_width: f64, half_height: f64) -> Self {
         let half = Point::new(half_width, half_height);
-        Self {
-            least: centre - half,
-            most: centre + half,
-        }
+        Self { least: centre - half, most: centre + half }
     }
 
     pub(super) fn of(points: impl IntoIterator<Item = Point>) -> Self {

@@ -35,12 +35,7 @@ pub(super) struct Label {
 impl Label {
     fn new(text: &str, centre: Point, size: f64, kind: Kind) -> Self {
         let text = text.to_owned();
-        Self {
-            text,
-            centre,
-            size,
-            kind,
-        }
+        Self { text, centre, size, kind }
     }
 
     /// The box that the text fills.
@@ -79,12 +74,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
             let half = text::width(name, 11.0) / 2.0;
             let step = Point::polar(angle, away);
             let aside = Point::new(angle.cos() * half, 0.0);
-            Label::new(
-                name,
-                drawing.centres[vertex] + step + aside,
-                11.0,
-                Kind::Beside,
-            )
+            Label::new(name, drawing.centres[vertex] + step + aside, 11.0, Kind::Beside)
         });
         labels.extend(roomiest(drawing, picture, &labels, None, places));
     }
@@ -93,9 +83,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
             let Some(name) = names.get(dart.at()) else {
                 continue;
             };
-            let shares = [
-                0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65, 0.3, 0.7, 0.25, 0.75, 0.2, 0.8,
-            ];
+            let shares = [0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65, 0.3, 0.7, 0.25, 0.75, 0.2, 0.8];
             let places =
                 shares.map(|share| Label::new(name, curve.at(share), EDGE_SIZE, Kind::Edge));
             labels.extend(roomiest(drawing, picture, &labels, Some(number), places));

@@ -55,9 +55,7 @@ pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
         tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
-    image
-        .encode_png()
-        .map_err(|error| PictureError::Png(error.to_string()))
+    image.encode_png().map_err(|error| PictureError::Png(error.to_string()))
 }
 
 #[expect(clippy::cast_sign_loss, reason = "the sizes of an SVG are positive")]

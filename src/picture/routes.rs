@@ -121,11 +121,7 @@ impl Room<'_> {
     fn doors(&self, errand: &Errand) -> [Door; 2] {
         [0, 1].map(|end| {
             let vertex = errand.vertices[end];
-            Door::new(
-                self.centres[vertex],
-                self.size.discs[vertex],
-                errand.directions[end],
-            )
+            Door::new(self.centres[vertex], self.size.discs[vertex], errand.directions[end])
         })
     }
 
@@ -150,9 +146,7 @@ impl Room<'_> {
             let middle = (from.at + to.at) * 0.5;
             for stretch in [1.0, 1.15, 1.3, 1.5] {
                 let bends = errand.bends.iter();
-                let way: Vec<_> = bends
-                    .map(|&bend| middle + (bend - middle) * stretch)
-                    .collect();
+                let way: Vec<_> = bends.map(|&bend| middle + (bend - middle) * stretch).collect();
                 curves.push(Curve::by_way_of(from, &way, to));
             }
         }
@@ -177,10 +171,7 @@ impl Room<'_> {
                     curves.push(Curve::cubic(from, to, [handle, handle]));
                 }
             }
-            let stops = 1
-                + (1..5)
-                    .filter(|&stops| gap.abs() > 1.3 * f64::from(stops))
-                    .count();
+            let stops = 1 + (1..5).filter(|&stops| gap.abs() > 1.3 * f64::from(stops)).count();
             for level in [1.7, 2.1, 2.5, 3.1, 3.8, 4.6, 5.6] {
                 let way: Vec<_> = (0..stops)
                     .map(|stop| {

@@ -30,10 +30,7 @@ impl Size {
             return Self::plain(graph);
         }
         let knob = 6.0;
-        let longest = names
-            .iter()
-            .map(|name| text::width(name, 1.0))
-            .fold(0.5, f64::max);
+        let longest = names.iter().map(|name| text::width(name, 1.0)).fold(0.5, f64::max);
         // A name has to fit between the knobs to its left and right.
         let room = |base: f64| 2.0 * (base - knob - 3.0);
         let wish = (longest * 12.0 / 2.0 + knob + 3.0).clamp(DISC[0], DISC[1]);
@@ -42,12 +39,7 @@ impl Size {
             .vertices()
             .map(|vertex| wish.max(f64::from(graph.degree(vertex)) * 2.35 * knob / TAU))
             .collect();
-        Self {
-            base: wish,
-            discs,
-            knob,
-            name,
-        }
+        Self { base: wish, discs, knob, name }
     }
 
     fn plain(graph: &EmbeddedGraph) -> Self {
@@ -55,12 +47,7 @@ impl Size {
             .vertices()
             .map(|vertex| 9.0_f64.max(f64::from(graph.degree(vertex)) * 3.0 / TAU))
             .collect();
-        Self {
-            base: 9.0,
-            discs,
-            knob: 0.0,
-            name: 6.5,
-        }
+        Self { base: 9.0, discs, knob: 0.0, name: 6.5 }
     }
 
     /// Whether the name fits into the vertex's disc.

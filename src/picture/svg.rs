@@ -29,9 +29,8 @@ const FAINT: &str = "#6b7280";
 const FLOOR: &str = "#ebe6db";
 const START: &str = "#c8281e";
 /// Inks of edges: the usual one, and those of edges that cross others.
-const EDGES: [&str; INKS + 1] = [
-    "#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c",
-];
+const EDGES: [&str; INKS + 1] =
+    ["#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c"];
 
 /// The picture as an SVG document.
 pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
@@ -46,11 +45,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
     let widest = [(&title, TITLE[0]), (&caption, CAPTION[0])]
         .into_iter()
         .flat_map(|(lines, size)| lines.iter().map(move |line| text::width(line, size)))
-        .chain(
-            legend
-                .iter()
-                .map(|line| text::width(line, LEGEND[0]) + 18.0),
-        )
+        .chain(legend.iter().map(|line| text::width(line, LEGEND[0]) + 18.0))
         .fold(extent.size().x, f64::max)
         .ceil();
     let above = title.len() as f64 * TITLE[1] + if title.is_empty() { 0.0 } else { 10.0 };
@@ -72,9 +67,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         text::FAMILY,
     ));
     page.line(&format!("<title>{}</title>", text::escaped(picture.title)));
-    page.line(&format!(
-        "<rect width=\"100%\" height=\"100%\" fill=\"{PAPER}\"/>"
-    ));
+    page.line(&format!("<rect width=\"100%\" height=\"100%\" fill=\"{PAPER}\"/>"));
     for (number, line) in title.iter().enumerate() {
         let baseline = MARGIN + TITLE[0] + number as f64 * TITLE[1] - 2.0;
         page.text(line, Point::new(middle, baseline), TITLE[0], INK, "title");
@@ -119,12 +112,7 @@ fn legend(picture: &Picture, drawing: &Drawing) -> Vec<String> {
             graph.index(start)
         ));
     }
-    if drawing.size.knob > 0.0
-        && picture
-            .graph
-            .vertices()
-            .any(|v| picture.graph.degree(v) > 1)
-    {
+    if drawing.size.knob > 0.0 && picture.graph.vertices().any(|v| picture.graph.degree(v) > 1) {
         lines.push("doors are numbered clockwise from each vertex's first".to_owned());
     }
     lines
@@ -248,11 +236,8 @@ impl Page {
             let rim = Point::polar(drawing.doors[dart.at()], drawing.size.discs[vertex.at()]);
             let at = drawing.centres[vertex.at()] + rim + shift;
             let facing = picture.start == Some(dart);
-            let (fill, stroke, ink) = if facing {
-                (START, START, "#ffffff")
-            } else {
-                ("#ffffff", INK, INK)
-            };
+            let (fill, stroke, ink) =
+                if facing { (START, START, "#ffffff") } else { ("#ffffff", INK, INK) };
             let number = graph.index(dart);
             self.line(&format!(
                 "<circle class=\"door\" data-door=\"{number}\" cx=\"{}\" cy=\"{}\" r=\"{}\" \

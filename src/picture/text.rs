@@ -17,9 +17,7 @@ const ADVANCES: [u16; 95] = [
 pub(super) fn width(text: &str, size: f64) -> f64 {
     let advance = |letter: char| {
         let place = (letter as usize).checked_sub(0x20);
-        place
-            .and_then(|place| ADVANCES.get(place))
-            .map_or(1000, |&advance| u32::from(advance))
+        place.and_then(|place| ADVANCES.get(place)).map_or(1000, |&advance| u32::from(advance))
     };
     f64::from(text.chars().map(advance).sum::<u32>()) * size / 1000.0
 }

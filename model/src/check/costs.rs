@@ -26,6 +26,7 @@ impl Costs {
     }
 
     /// The costs, ascending.
+    #[must_use]
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = u64> + '_ {
         (0..self.0.len() as u64 * 64).filter(|&cost| self.contains(cost))
     }

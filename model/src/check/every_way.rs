@@ -31,10 +31,9 @@ pub fn every_way(graph: &EmbeddedGraph, facing: Dart) -> Result<EveryWay, Flaw> 
     let mut world = GraphWorld::new(graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
     exploration.begin(&mut world, &mut ())?;
-    let mut search =
-        Search { facing, from_line_4: HashMap::new(), candidate: Candidate::default() };
-    let Futures { runs, costs } = search.from_line_4(&world, &exploration)?;
-    Ok(EveryWay { states: search.from_line_4.len() as u64, runs, costs })
+    let mut search = Search { facing, known: HashMap::new(), candidate: Candidate::default() };
+    let Futures { runs, costs } = search.line_4(&world, &exploration)?;
+    Ok(EveryWay { states: search.known.len() as u64, runs, costs })
 }
 
 /// What can come after a state: how many runs, and how many more moves they take.
@@ -53,7 +52,7 @@ impl Futures {
 
 struct Search {
     facing: Dart,
-    from_line_4: HashMap<(PartialMap, Vertex), Futures>,
+    known: HashMap<(PartialMap, Vertex), Futures>,
     candidate: Candidate,
 }
 
@@ -81,14 +80,10 @@ impl Choices for ThisHypothesis {
 
 impl Search {
     /// Every choice at line 5.
-    fn from_line_4(
-        &mut self,
-        world: &GraphWorld,
-        exploration: &Exploration,
-    ) -> Result<Futures, Flaw> {
+    fn line_4(&mut self, world: &GraphWorld, exploration: &Exploration) -> Result<Futures, Flaw> {
         let map = exploration.map();
         let state = (map.clone(), map.vertex(exploration.robot()));
-        if let Some(known) = self.from_line_4.get(&state) {
+        if let Some(known) = self.known.get(&state) {
             return Ok(known.clone());
         }
         let mut futures = Futures::default();
@@ -100,16 +95,16 @@ impl Search {
             let (mut world, mut next) = (world.clone(), exploration.clone());
             if let Some(edge) = next.next_edge(&mut ThisEdge(edge)) {
                 next.explore(edge, &mut world, &mut ())?;
-                let after = self.from_line_8(&world, &next, &mut HashMap::new())?;
+                let after = self.line_8(&world, &next, &mut HashMap::new())?;
                 futures.include(&after, next.moves() - exploration.moves());
             }
         }
-        self.from_line_4.insert(state, futures.clone());
+        self.known.insert(state, futures.clone());
         Ok(futures)
     }
 
     /// Every choice at line 9. What is left of H decides the state within the round.
-    fn from_line_8(
+    fn line_8(
         &mut self,
         world: &GraphWorld,
         exploration: &Exploration,
@@ -122,7 +117,7 @@ impl Search {
         if exploration.hypotheses().is_empty() {
             let mut next = exploration.clone();
             next.add_place(&mut ())?;
-            futures = self.from_line_4(world, &next)?;
+            futures = self.line_4(world, &next)?;
         }
         for place in 0..exploration.hypotheses().len() {
             let (mut world, mut next) = (world.clone(), exploration.clone());
@@ -130,9 +125,9 @@ impl Search {
                 let after = match try_path(&mut next, hypothesis, &mut world, &mut ())? {
                     Verdict::Confirmed => {
                         next.close_loop(hypothesis, &mut ());
-                        self.from_line_4(&world, &next)?
+                        self.line_4(&world, &next)?
                     }
-                    Verdict::Rejected => self.from_line_8(&world, &next, known)?,
+                    Verdict::Rejected => self.line_8(&world, &next, known)?,
                 };
                 futures.include(&after, next.moves() - exploration.moves());
             }

@@ -226,7 +226,7 @@ impl EmbeddedGraph {
     }
 
     /// The graph with these degrees and this `opposite`, which the caller has checked.
-    fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
+    pub(crate) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
         let mut graph = Self::unfinished();
         for &degree in degrees {
             graph.add_vertex(degree);

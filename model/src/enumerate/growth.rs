@@ -46,6 +46,12 @@ pub(super) fn new_vertex(degree: u8) -> u8 {
     u8::MAX - degree
 }
 
+/// Whether `free` free darts and `edges` edges to come can come out even: only the last edge may
+/// leave no dart free, and each uses up two at most.
+fn can_end(free: usize, edges: usize) -> bool {
+    (free == 0) == (edges == 0) && free <= 2 * edges
+}
+
 /// The numbers of the bits that are set, from the lowest.
 fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -89,7 +95,7 @@ impl Growth {
             return self.grow_edge(edges, visit);
         }
         for degree in (1..=self.highest_degree()).rev() {
-            if self.can_end(degree, self.target) {
+            if can_end(degree, self.target) {
                 self.add_vertex(degree);
                 self.grow_edge(edges, visit)?;
                 self.remove_vertex();
@@ -107,12 +113,6 @@ impl Growth {
         of_root.min(self.class.max_degree() as usize)
     }
 
-    /// Whether `free` free darts and `edges` edges to come can come out even: only the last edge
-    /// may leave no dart free, and each uses up two at most.
-    fn can_end(&self, free: usize, edges: usize) -> bool {
-        (free == 0) == (edges == 0) && free <= 2 * edges
-    }
-
     fn grow_edge(
         &mut self,
         edges: usize,
@@ -125,7 +125,7 @@ impl Growth {
         let free = self.free.count_ones() as usize;
         let left = self.target - self.edges - 1;
         let rivals = self.rivals;
-        if self.can_end(free - 2.min(free), left) && free >= 2 {
+        if can_end(free - 2.min(free), left) && free >= 2 {
             for other in bits(self.partners(dart)) {
                 self.join(dart, other, other as u8);
                 if self.can_still_end(left) && self.may_be_least() {
@@ -136,7 +136,7 @@ impl Growth {
             }
         }
         for degree in (1..=self.highest_degree().min(2 * left + 2 - free.min(2 * left + 2))).rev() {
-            if self.can_end(free + degree - 2, left) {
+            if can_end(free + degree - 2, left) {
                 let entry = self.darts;
                 self.add_vertex(degree);
                 self.join(dart, entry, new_vertex(degree as u8));
@@ -188,7 +188,7 @@ impl Growth {
     }
 
     /// Whether the class leaves a way to use up the free darts in `left` more edges. (A necessary
-    /// condition; that of [`can_end`](Self::can_end) has been checked.)
+    /// condition; that of [`can_end`] has been checked.)
     fn can_still_end(&self, left: usize) -> bool {
         // As many edges as free darts are always enough: a dead end at each.
         if !self.class.is_simple() || self.free.count_ones() as usize <= left {

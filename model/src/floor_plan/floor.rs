@@ -33,10 +33,7 @@ impl Rectangle {
     /// Whether the position is in the rectangle or on its border.
     #[must_use]
     pub fn holds(&self, position: [f64; 2]) -> bool {
-        let point = Self {
-            least: position,
-            greatest: position,
-        };
+        let point = Self { least: position, greatest: position };
         self.meets(&point)
     }
 
@@ -54,9 +51,7 @@ impl FloorPlan {
     /// widened by half the hallway width on all sides. Walls stand on the border of their union.
     #[must_use]
     pub fn floor(&self) -> impl ExactSizeIterator<Item = Rectangle> + '_ {
-        self.hallways
-            .iter()
-            .map(|&hallway| self.middle(hallway).widened(self.hallway_width / 2.0))
+        self.hallways.iter().map(|&hallway| self.middle(hallway).widened(self.hallway_width / 2.0))
     }
 
     /// The hallway's middle line, a rectangle without width.

@@ -128,9 +128,7 @@ impl FloorPlan {
         hallways: &[(String, String)],
     ) -> Result<Self, FloorPlanError> {
         if !(hallway_width.is_finite() && hallway_width > 0.0) {
-            return Err(FloorPlanError::HallwayWidth {
-                width: hallway_width,
-            });
+            return Err(FloorPlanError::HallwayWidth { width: hallway_width });
         }
         let hallways = between_known_junctions(junctions, hallways)?;
         let doors = doors(junctions, &hallways)?;
@@ -138,11 +136,7 @@ impl FloorPlan {
             .iter()
             .zip(&doors)
             .map(|((name, position), doors)| {
-                Ok(Junction {
-                    kind: kind(name, doors)?,
-                    name: name.clone(),
-                    position: *position,
-                })
+                Ok(Junction { kind: kind(name, doors)?, name: name.clone(), position: *position })
             })
             .collect::<Result<Vec<_>, FloorPlanError>>()?;
         let lists: Vec<(&str, Vec<&str>)> = junctions
@@ -160,13 +154,7 @@ impl FloorPlan {
             .flat_map(|doors| Direction::ALL.into_iter().zip(doors))
             .filter_map(|(direction, door)| door.map(|_| direction))
             .collect();
-        let plan = Self {
-            hallway_width,
-            junctions,
-            hallways,
-            graph,
-            directions,
-        };
+        let plan = Self { hallway_width, junctions, hallways, graph, directions };
         floor::check(&plan)?;
         Ok(plan)
     }
@@ -217,15 +205,10 @@ fn between_known_junctions(
     for (number, (name, position)) in junctions.iter().enumerate() {
         let junction = || name.clone();
         if !position.iter().all(|coordinate| coordinate.is_finite()) {
-            return Err(FloorPlanError::Position {
-                junction: junction(),
-                position: *position,
-            });
+            return Err(FloorPlanError::Position { junction: junction(), position: *position });
         }
         if vertices.insert(name, Vertex(number as u32)).is_some() {
-            return Err(FloorPlanError::JunctionTwice {
-                junction: junction(),
-            });
+            return Err(FloorPlanError::JunctionTwice { junction: junction() });
         }
     }
     let known = |number, name| {
@@ -239,10 +222,7 @@ fn between_known_junctions(
         .iter()
         .enumerate()
         .map(|(number, (from, to))| {
-            Ok(Hallway {
-                from: known(number, from)?,
-                to: known(number, to)?,
-            })
+            Ok(Hallway { from: known(number, from)?, to: known(number, to)? })
         })
         .collect()
 }
@@ -256,26 +236,18 @@ fn doors(
     let mut doors = vec![[None; 4]; junctions.len()];
     for &Hallway { from, to } in hallways {
         if from == to {
-            return Err(FloorPlanError::NoLength {
-                junction: name(from),
-            });
+            return Err(FloorPlanError::NoLength { junction: name(from) });
         }
         let Some(direction) = Direction::between(junctions[from.at()].1, junctions[to.at()].1)
         else {
-            return Err(FloorPlanError::NotAlongAxis {
-                from: name(from),
-                to: name(to),
-            });
+            return Err(FloorPlanError::NotAlongAxis { from: name(from), to: name(to) });
         };
         let ends = [(from, to, direction), (to, from, direction.reversed())];
         for (here, there, direction) in ends {
             match doors[here.at()][direction as usize].replace(there) {
                 None => {}
                 Some(earlier) if earlier == there => {
-                    return Err(FloorPlanError::HallwayTwice {
-                        from: name(from),
-                        to: name(to),
-                    });
+                    return Err(FloorPlanError::HallwayTwice { from: name(from), to: name(to) });
                 }
                 Some(earlier) => {
                     return Err(FloorPlanError::SameDirection {
@@ -294,18 +266,14 @@ fn doors(
 fn kind(name: &str, doors: &[Option<Vertex>; 4]) -> Result<JunctionKind, FloorPlanError> {
     let junction = || name.to_owned();
     match doors.iter().flatten().count() {
-        0 => Err(FloorPlanError::NoDoor {
-            junction: junction(),
-        }),
+        0 => Err(FloorPlanError::NoDoor { junction: junction() }),
         1 => Ok(JunctionKind::DeadEnd),
-        2 if doors[0].is_some() == doors[2].is_some() => Err(FloorPlanError::StraightThrough {
-            junction: junction(),
-        }),
+        2 if doors[0].is_some() == doors[2].is_some() => {
+            Err(FloorPlanError::StraightThrough { junction: junction() })
+        }
         2 => Ok(JunctionKind::L),
         3 => Ok(JunctionKind::T),
-        _ => Err(FloorPlanError::FourDoors {
-            junction: junction(),
-        }),
+        _ => Err(FloorPlanError::FourDoors { junction: junction() }),
     }
 }
 

@@ -7,14 +7,10 @@ fn plan(junctions: &[(&str, [f64; 2])], hallways: &[(&str, &str)]) -> Plan {
 }
 
 fn wide(width: f64, junctions: &[(&str, [f64; 2])], hallways: &[(&str, &str)]) -> Plan {
-    let junctions: Vec<_> = junctions
-        .iter()
-        .map(|&(name, position)| (name.to_owned(), position))
-        .collect();
-    let hallways: Vec<_> = hallways
-        .iter()
-        .map(|&(from, to)| (from.to_owned(), to.to_owned()))
-        .collect();
+    let junctions: Vec<_> =
+        junctions.iter().map(|&(name, position)| (name.to_owned(), position)).collect();
+    let hallways: Vec<_> =
+        hallways.iter().map(|&(from, to)| (from.to_owned(), to.to_owned())).collect();
     FloorPlan::new(width, &junctions, &hallways)
 }
 
@@ -60,11 +56,7 @@ fn doors_stand_clockwise_from_north() {
         .collect();
     assert_eq!(
         doors,
-        [
-            (Direction::North, "corner"),
-            (Direction::East, "ne"),
-            (Direction::South, "sw")
-        ]
+        [(Direction::North, "corner"), (Direction::East, "ne"), (Direction::South, "sw")]
     );
     for dart in graph.darts() {
         let back = plan.direction(graph.opposite(dart));
@@ -87,12 +79,7 @@ fn the_floor_reaches_half_a_width_beyond_the_junctions() {
 
 #[test]
 fn numbers_must_be_finite_and_the_width_positive() {
-    for (width, shown) in [
-        (0.0, "0"),
-        (-1.0, "-1"),
-        (f64::NAN, "NaN"),
-        (f64::INFINITY, "inf"),
-    ] {
+    for (width, shown) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         assert_eq!(
             message(wide(width, &[], &[])),
             format!("the hallway width is {shown}; it must be a positive number of metres")
@@ -108,14 +95,8 @@ fn numbers_must_be_finite_and_the_width_positive() {
 fn names_must_be_known_and_stand_once() {
     let (a, b) = (("a", [0.0, 0.0]), ("b", [4.0, 0.0]));
     assert_eq!(message(plan(&[a, a], &[])), "junction `a` stands twice");
-    assert_eq!(
-        message(plan(&[a, b], &[("a", "b"), ("b", "q")])),
-        "there is no junction `q`"
-    );
-    assert_eq!(
-        message(plan(&[a, b], &[("a", "b"), ("b", "a")])),
-        "hallway `b` - `a` stands twice"
-    );
+    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "q")])), "there is no junction `q`");
+    assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "a")])), "hallway `b` - `a` stands twice");
 }
 
 #[test]
@@ -125,10 +106,7 @@ fn hallways_have_a_length_along_an_axis() {
         message(plan(&askew, &[("a", "b")])),
         "hallway `a` - `b` runs neither north-south nor east-west"
     );
-    assert_eq!(
-        message(plan(&askew, &[("a", "a")])),
-        "the hallway from `a` to `a` has no length"
-    );
+    assert_eq!(message(plan(&askew, &[("a", "a")])), "the hallway from `a` to `a` has no length");
     let rounded = [("a", [0.0, 0.1 + 0.2]), ("b", [4.0, 0.3])];
     assert!(plan(&rounded, &[("a", "b")]).is_ok());
 }
@@ -144,10 +122,7 @@ fn other_junctions_than_the_three_kinds_are_named() {
     ];
     let kinds = "it must be a dead end, an L or a T";
     assert_eq!(
-        message(plan(
-            &cross,
-            &[("x", "n"), ("x", "e"), ("x", "s"), ("x", "w")]
-        )),
+        message(plan(&cross, &[("x", "n"), ("x", "e"), ("x", "s"), ("x", "w")])),
         format!("junction `x` has four doors; {kinds}")
     );
     for straight in [[("n", "x"), ("x", "s")], [("e", "x"), ("x", "w")]] {
@@ -172,10 +147,7 @@ fn hallways_neither_cross_nor_overlap() {
         ("sw", [-4.0, -4.0]),
     ];
     assert_eq!(
-        message(plan(
-            &cross,
-            &[("n", "s"), ("s", "sw"), ("sw", "w"), ("w", "e")]
-        )),
+        message(plan(&cross, &[("n", "s"), ("s", "sw"), ("sw", "w"), ("w", "e")])),
         "hallways `n` - `s` and `w` - `e` cross"
     );
     let line = [("a", [0.0, 0.0]), ("b", [4.0, 0.0]), ("c", [8.0, 0.0])];
@@ -223,28 +195,17 @@ fn no_junction_lies_on_a_foreign_hallway() {
         ("e", [4.0, 0.5]),
     ];
     assert_eq!(
-        message(plan(
-            &junctions,
-            &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")]
-        )),
+        message(plan(&junctions, &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")])),
         "junction `e` lies on hallway `a` - `b`, which does not end there"
     );
 }
 
 #[test]
 fn a_plan_is_connected_and_not_empty() {
-    let junctions = [
-        ("a", [0.0, 0.0]),
-        ("b", [8.0, 0.0]),
-        ("c", [8.0, 4.0]),
-        ("d", [4.0, 4.0]),
-    ];
+    let junctions = [("a", [0.0, 0.0]), ("b", [8.0, 0.0]), ("c", [8.0, 4.0]), ("d", [4.0, 4.0])];
     assert_eq!(
         message(plan(&junctions, &[("a", "b"), ("c", "d")])),
         "the world is not connected: vertex `c` cannot be reached from `a`"
     );
-    assert_eq!(
-        message(plan(&[], &[])),
-        "there is no edge; a world has at least one"
-    );
+    assert_eq!(message(plan(&[], &[])), "there is no edge; a world has at least one");
 }

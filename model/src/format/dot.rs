@@ -40,10 +40,7 @@ pub fn write(world: &NamedWorld) -> String {
         attributes.extend(facing(world.start, dart, other));
         let ends = [dart, other].map(|end| quoted(world.at_text(end)));
         let attributes = bracketed(&attributes);
-        line(
-            &mut text,
-            &format!("{} -- {}{attributes}", ends[0], ends[1]),
-        );
+        line(&mut text, &format!("{} -- {}{attributes}", ends[0], ends[1]));
     }
     text.push_str("}\n");
     text
@@ -64,11 +61,7 @@ fn points(metres: f64) -> f64 {
 }
 
 fn bracketed(attributes: &[String]) -> String {
-    if attributes.is_empty() {
-        String::new()
-    } else {
-        format!(" [{}]", attributes.join(", "))
-    }
+    if attributes.is_empty() { String::new() } else { format!(" [{}]", attributes.join(", ")) }
 }
 
 fn line(text: &mut String, statement: &str) {
@@ -126,10 +119,7 @@ mod tests {
         let plan = "[floor]\nhallway_width = 1\n[junctions]\na = [0, 0]\nb = [-4, 0]\n\
                     [[hallways]]\nfrom = \"a\"\nto = \"b\"\n[start]\nat = \"a\"\nfacing = \"b\"";
         let text = write(&world_file::read(plan.as_bytes()).unwrap());
-        assert!(
-            text.contains(r#""a" [shape=doublecircle, pos="0,0"];"#),
-            "{text}"
-        );
+        assert!(text.contains(r#""a" [shape=doublecircle, pos="0,0"];"#), "{text}");
         assert!(text.contains(r#""b" [pos="-72,0"];"#), "{text}");
         assert!(text.contains("style=bold, dir=forward"), "{text}");
     }

@@ -115,9 +115,8 @@ impl NamedWorld {
     /// # Errors
     /// Where there is no colon, or no such dart.
     pub fn start_from_text(&self, text: &str) -> Result<Dart, StartError> {
-        let (at, facing) = text.split_once(':').ok_or_else(|| StartError::NoColon {
-            text: text.to_owned(),
-        })?;
+        let (at, facing) =
+            text.split_once(':').ok_or_else(|| StartError::NoColon { text: text.to_owned() })?;
         self.start_from_names(at, facing)
     }
 
@@ -130,9 +129,7 @@ impl NamedWorld {
     pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
         let vertex = self
             .vertex_named(at)
-            .ok_or_else(|| StartError::UnknownVertex {
-                vertex: at.to_owned(),
-            })?;
+            .ok_or_else(|| StartError::UnknownVertex { vertex: at.to_owned() })?;
         let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
         let mut bare_loop = false;
         for dart in self.graph.darts_of(vertex) {
@@ -153,18 +150,10 @@ impl NamedWorld {
             StartError::BareLoop { edge: facing }
         } else if self.edge_names.is_some() {
             let listed = self.listed(&vertex);
-            StartError::NoSuchEdge {
-                vertex,
-                facing,
-                listed,
-            }
+            StartError::NoSuchEdge { vertex, facing, listed }
         } else {
             let listed = self.listed(&vertex);
-            StartError::NoSuchNeighbour {
-                vertex,
-                facing,
-                listed,
-            }
+            StartError::NoSuchNeighbour { vertex, facing, listed }
         })
     }
 
@@ -186,11 +175,7 @@ impl NamedWorld {
     pub fn facing_text(&self, dart: Dart) -> String {
         let name = self.leads_to(dart);
         if self.is_named_loop(dart) {
-            let end = if dart < self.graph.opposite(dart) {
-                1
-            } else {
-                2
-            };
+            let end = if dart < self.graph.opposite(dart) { 1 } else { 2 };
             format!("{name}:{end}")
         } else {
             name.to_owned()
@@ -218,10 +203,7 @@ impl NamedWorld {
         };
         let darts = self.graph.darts_of(vertex);
         let more = if darts.len() > SHOWN { ", ..." } else { "" };
-        let shown: Vec<_> = darts
-            .take(SHOWN)
-            .map(|dart| self.facing_text(dart))
-            .collect();
+        let shown: Vec<_> = darts.take(SHOWN).map(|dart| self.facing_text(dart)).collect();
         shown.join(", ") + more
     }
 }
@@ -251,10 +233,7 @@ fn in_order_of_discovery(graph: &EmbeddedGraph, start: Dart) -> EmbeddedGraph {
         meet(graph.opposite(order[next]), &mut order);
         next += 1;
     }
-    let opposite = order
-        .iter()
-        .map(|&dart| number[graph.opposite(dart).at()])
-        .collect();
+    let opposite = order.iter().map(|&dart| number[graph.opposite(dart).at()]).collect();
     EmbeddedGraph::from_degrees(&degrees, opposite)
 }
 
@@ -289,14 +268,9 @@ mod tests {
     #[test]
     fn a_start_faces_a_neighbour_or_an_edge_or_an_end_of_a_loop() {
         let world = with_loop();
-        for (text, dart) in [
-            ("u:a:1", 0),
-            ("u:b", 1),
-            ("u:a:2", 2),
-            ("u:c", 3),
-            ("v:b", 4),
-            ("v:c", 5),
-        ] {
+        for (text, dart) in
+            [("u:a:1", 0), ("u:b", 1), ("u:a:2", 2), ("u:c", 3), ("v:b", 4), ("v:c", 5)]
+        {
             assert_eq!(world.start_from_text(text), Ok(Dart(dart)));
             assert_eq!(world.start_text(Dart(dart)), text);
         }
@@ -309,10 +283,7 @@ mod tests {
             world.start_from_text(text).unwrap_err().to_string()
         }
         let world = with_loop();
-        assert_eq!(
-            message(&world, "u"),
-            "`u` is no start; write `vertex:facing`"
-        );
+        assert_eq!(message(&world, "u"), "`u` is no start; write `vertex:facing`");
         assert_eq!(message(&world, "w:a"), "there is no vertex `w`");
         assert_eq!(
             message(&world, "u:a"),
@@ -324,21 +295,14 @@ mod tests {
                 format!("no edge `{wrong}` ends at vertex `u`; there end a:1, b, a:2, c")
             );
         }
-        assert_eq!(
-            message(&path(), "v1:v1"),
-            "vertex `v1` has no neighbour `v1`; it has v0, v2"
-        );
+        assert_eq!(message(&path(), "v1:v1"), "vertex `v1` has no neighbour `v1`; it has v0, v2");
     }
 
     #[test]
     fn a_long_list_of_neighbours_is_cut() {
         let leaves: Vec<String> = (0..9).map(|leaf| format!("l{leaf}")).collect();
         let mut lists = vec![("hub".to_owned(), leaves.clone())];
-        lists.extend(
-            leaves
-                .into_iter()
-                .map(|leaf| (leaf, vec!["hub".to_owned()])),
-        );
+        lists.extend(leaves.into_iter().map(|leaf| (leaf, vec!["hub".to_owned()])));
         let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
         let star = NamedWorld::discovered("", "", &graph, None);
         assert_eq!(
@@ -353,15 +317,9 @@ mod tests {
         // darts are, clockwise, a, b, a.
         let graph = with_loop().graph;
         let world = NamedWorld::discovered("made", "by a test", &graph, Some(Dart(5)));
-        assert_eq!(
-            (world.name.as_str(), world.about.as_str()),
-            ("made", "by a test")
-        );
+        assert_eq!((world.name.as_str(), world.about.as_str()), ("made", "by a test"));
         assert_eq!(world.vertex_names, ["v0", "v1"]);
-        assert_eq!(
-            world.edge_names.as_deref().unwrap(),
-            ["e0", "e1", "e0", "e2", "e1", "e2"]
-        );
+        assert_eq!(world.edge_names.as_deref().unwrap(), ["e0", "e1", "e0", "e2", "e1", "e2"]);
         assert_eq!(world.start_text(world.start.unwrap()), "v0:e0");
         assert_eq!(path().edge_names, None);
     }

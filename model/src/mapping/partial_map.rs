@@ -81,6 +81,7 @@ impl PartialMap {
     }
 
     /// The unexplored darts of one vertex, in the order of their numbers.
+    #[must_use]
     pub fn unexplored_at(&self, vertex: Vertex) -> impl DoubleEndedIterator<Item = Dart> + '_ {
         let darts = self.known.darts_of(vertex);
         darts.filter(|&dart| self.known.joined(dart).is_none())
@@ -128,6 +129,7 @@ impl PartialMap {
     }
 
     /// The darts of a vertex in the order of their indices.
+    #[must_use]
     pub fn darts_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + use<> {
         self.known.darts_of(vertex)
     }
@@ -165,6 +167,7 @@ impl PartialMap {
     }
 
     /// All known vertices in the order of discovery.
+    #[must_use]
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> + DoubleEndedIterator + use<> {
         self.known.vertices()
     }

@@ -17,12 +17,11 @@ pub(super) struct Report<'o> {
     choice: Choice,
     header: bool,
     total: Tally,
-    unsound: bool,
 }
 
 impl<'o> Report<'o> {
     pub(super) fn new(out: &'o mut dyn Write, json: bool, choice: Choice) -> Self {
-        Self { out, json, choice, header: false, total: Tally::default(), unsound: false }
+        Self { out, json, choice, header: false, total: Tally::default() }
     }
 
     /// One number of edges.
@@ -174,7 +173,7 @@ fn holds(tally: &Tally) -> bool {
 
 fn failed_world(failure: &Failed) -> NamedWorld {
     let about = format!("Algorithm 1 fails here: {}", failure.flaw);
-    NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
+    NamedWorld::discovered("failed", &about, &failure.graph, Some(failure.facing))
 }
 
 /// The step at which it went wrong.
@@ -187,7 +186,7 @@ fn grouped(number: u128) -> String {
     let digits = number.to_string();
     let mut out = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             out.push(',');
         }
         out.push(digit);

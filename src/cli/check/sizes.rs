@@ -17,7 +17,8 @@ impl FromStr for Sizes {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| {
-            text.parse::<usize>().map_err(|_| format!("write a number as in 6, or 1..=6, not `{text}`"))
+            text.parse::<usize>()
+                .map_err(|_| format!("write a number as in 6, or 1..=6, not `{text}`"))
         };
         let range = if let Some((first, last)) = text.split_once("..=") {
             number(first)?..=number(last)?

@@ -66,24 +66,19 @@ impl<'o, W: Write> Story<'o, W> {
                 self.round += 1;
                 self.rejected = 0;
                 let edge = dart(map, edge);
+                let moves = self.count_moves(exploration);
                 writeln!(
                     self.out,
-                    "\n{:>3}  behind {edge}, after {}: {}",
+                    "\n{:>3}  behind {edge}, after {moves}: {}",
                     self.round,
-                    self.count_moves(exploration),
                     seen(percept)
                 )?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
-                    (_, 0) => writeln!(
-                        self.out,
-                        "     which contradicts all {contradicted} other unexplored darts at once"
-                    ),
-                    _ => writeln!(
-                        self.out,
-                        "     which could be {hypotheses} of the {} other unexplored darts",
-                        contradicted + hypotheses
-                    ),
+                    (others, fit) => {
+                        let others = counted(others + fit, "other unexplored dart");
+                        writeln!(self.out, "     {fit} of {others} could be its other end")
+                    }
                 }
             }
             Event::Rejected { hypothesis, followed, expected, perceived } => {
@@ -94,7 +89,7 @@ impl<'o, W: Write> Story<'o, W> {
                 }
                 writeln!(
                     self.out,
-                    "     {}? no: door {followed} of its path shows {}, not {} ({moves} there and back)",
+                    "     {}? no, its path fails at move {followed}: {} instead of {} ({moves})",
                     dart(map, hypothesis),
                     seen(perceived),
                     seen(expected),
@@ -110,12 +105,22 @@ impl<'o, W: Write> Story<'o, W> {
                 writeln!(self.out, "     {}? yes: {how}", dart(map, hypothesis))
             }
             Event::LoopClosed { edge, other } => {
-                writeln!(self.out, "     so {} and {} are one edge", dart(map, edge), dart(map, other))?;
+                writeln!(
+                    self.out,
+                    "     so {} and {} are one edge",
+                    dart(map, edge),
+                    dart(map, other)
+                )?;
                 self.tell_map(map)
             }
             Event::VertexAdded { edge, vertex } => {
                 self.tell_untold()?;
-                writeln!(self.out, "     so {} leads to a new vertex, v{}", dart(map, edge), vertex.0)?;
+                writeln!(
+                    self.out,
+                    "     so {} leads to a new vertex, v{}",
+                    dart(map, edge),
+                    vertex.0
+                )?;
                 self.tell_map(map)
             }
         }
@@ -136,17 +141,19 @@ impl<'o, W: Write> Story<'o, W> {
             writeln!(self.out, "     doors: {}", doors.join(" "))?;
         }
         let unexplored = map.unexplored_count();
-        let edges = (map.dart_count() as u32 - unexplored) / 2;
+        let edges = (map.dart_count() - unexplored as usize) / 2;
         writeln!(
             self.out,
-            "     known: {} vertices, {edges} edges; unexplored: {unexplored} darts",
-            map.vertex_count(),
+            "     known: {}, {}; unexplored: {}",
+            vertices(map.vertex_count()),
+            counted(edges, "edge"),
+            counted(unexplored as usize, "dart"),
         )
     }
 
     fn count_moves(&mut self, exploration: &Exploration) -> String {
         let moves = exploration.moves() - std::mem::replace(&mut self.moves, exploration.moves());
-        format!("{moves} move{}", if moves == 1 { "" } else { "s" })
+        counted(moves as usize, "move")
     }
 }
 
@@ -165,12 +172,18 @@ fn dart(map: &PartialMap, dart: Dart) -> String {
 
 /// A percept.
 fn seen(percept: Percept) -> String {
-    let doors = match percept.degree {
-        1 => "1 door".to_owned(),
-        degree => format!("{degree} doors"),
-    };
+    let doors = counted(percept.degree as usize, "door");
     match percept.sighting {
         Sighting::Nothing => doors,
-        Sighting::Pointing(door) => format!("{doors} and the marker along door {}", door.0),
+        Sighting::Pointing(door) => format!("{doors}, marker along door {}", door.0),
     }
+}
+
+/// So many of something.
+fn counted(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+fn vertices(number: usize) -> String {
+    if number == 1 { "1 vertex".to_owned() } else { format!("{number} vertices") }
 }

@@ -64,8 +64,5 @@ fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
 }
 
 fn straight(vertices: Vec<Point>, graph: &EmbeddedGraph) -> Layout {
-    Layout {
-        vertices,
-        bends: vec![Vec::new(); graph.edge_count()],
-    }
+    Layout { vertices, bends: vec![Vec::new(); graph.edge_count()] }
 }

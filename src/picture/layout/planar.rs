@@ -65,10 +65,7 @@ impl Filled {
         for dart in 0..web.node.len() {
             neighbours[web.node[dart]].push(web.far(dart));
         }
-        Self {
-            fixed: vec![None; web.nodes],
-            neighbours,
-        }
+        Self { fixed: vec![None; web.nodes], neighbours }
     }
 
     fn node(&mut self, fixed: Option<Point>) -> usize {
@@ -131,9 +128,7 @@ impl Filled {
                     continue;
                 }
                 let near = &self.neighbours[node];
-                let sum = near
-                    .iter()
-                    .fold(Point::default(), |sum, &other| sum + points[other]);
+                let sum = near.iter().fold(Point::default(), |sum, &other| sum + points[other]);
                 let middle = sum * (1.0 / near.len() as f64);
                 furthest = furthest.max(middle.distance(points[node]));
                 points[node] = middle;

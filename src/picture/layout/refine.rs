@@ -58,13 +58,7 @@ impl<'a> Field<'a> {
             .map(|dart| (web.node[dart], web.far(dart)))
             .filter(|(a, b)| a != b)
             .collect();
-        Self {
-            darts: web.darts_of_nodes(),
-            web,
-            points,
-            keep,
-            segments,
-        }
+        Self { darts: web.darts_of_nodes(), web, points, keep, segments }
     }
 
     /// Moves one node downhill, and answers how far.
@@ -76,10 +70,7 @@ impl<'a> Field<'a> {
             self.points[node] = here + Point::new(dx, dy);
             self.energy(node)
         };
-        let slope = Point::new(
-            at(TOUCH, 0.0) - at(-TOUCH, 0.0),
-            at(0.0, TOUCH) - at(0.0, -TOUCH),
-        );
+        let slope = Point::new(at(TOUCH, 0.0) - at(-TOUCH, 0.0), at(0.0, TOUCH) - at(0.0, -TOUCH));
         let downhill = slope.direction() * -1.0;
         for _ in 0..4 {
             self.points[node] = here + downhill * *step;
@@ -184,13 +175,8 @@ impl<'a> Field<'a> {
         self.segments.iter().all(|&(c, d)| {
             let apart = a != c && a != d && b != c && b != d;
             !apart
-                || crossing(
-                    self.points[a],
-                    self.points[b],
-                    self.points[c],
-                    self.points[d],
-                )
-                .is_none()
+                || crossing(self.points[a], self.points[b], self.points[c], self.points[d])
+                    .is_none()
         })
     }
 }

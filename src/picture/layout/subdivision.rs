@@ -56,14 +56,8 @@ impl Subdivision {
             nodes: graph.vertex_count(),
             vertices: graph.vertex_count(),
             node: graph.darts().map(|dart| graph.vertex(dart).at()).collect(),
-            opposite: graph
-                .darts()
-                .map(|dart| graph.opposite(dart).at())
-                .collect(),
-            clockwise: graph
-                .darts()
-                .map(|dart| graph.clockwise(dart).at())
-                .collect(),
+            opposite: graph.darts().map(|dart| graph.opposite(dart).at()).collect(),
+            clockwise: graph.darts().map(|dart| graph.clockwise(dart).at()).collect(),
             wish: vec![1.0; graph.dart_count()],
             bends: Vec::with_capacity(graph.edge_count()),
         };

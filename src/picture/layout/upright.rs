@@ -27,11 +27,8 @@ pub(super) fn turn_upright(graph: &EmbeddedGraph, layout: &mut Layout) {
     };
     let mut best = (f64::NEG_INFINITY, layout.vertices.clone(), 0.0, false);
     for &reflected in reflections {
-        let vertices: Vec<_> = layout
-            .vertices
-            .iter()
-            .map(|&point| reflect(point, reflected))
-            .collect();
+        let vertices: Vec<_> =
+            layout.vertices.iter().map(|&point| reflect(point, reflected)).collect();
         for angle in candidates(&vertices, &edges) {
             let turned: Vec<_> = vertices.iter().map(|&point| turned(point, angle)).collect();
             let score = score(&turned, &edges);
@@ -48,11 +45,7 @@ pub(super) fn turn_upright(graph: &EmbeddedGraph, layout: &mut Layout) {
 }
 
 fn reflect(point: Point, reflected: bool) -> Point {
-    if reflected {
-        Point::new(-point.x, point.y)
-    } else {
-        point
-    }
+    if reflected { Point::new(-point.x, point.y) } else { point }
 }
 
 fn turned(point: Point, angle: f64) -> Point {

@@ -49,14 +49,7 @@ pub fn read(bytes: &[u8]) -> Worlds<'_> {
 /// header stands.
 #[must_use]
 pub fn read_headerless(bytes: &[u8], code: Code) -> Worlds<'_> {
-    Worlds {
-        bytes,
-        next: 0,
-        read: 0,
-        code,
-        order: ByteOrder::Untold,
-        done: false,
-    }
+    Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Untold, done: false }
 }
 
 impl Iterator for Worlds<'_> {
@@ -67,11 +60,7 @@ impl Iterator for Worlds<'_> {
             return None;
         }
         let result = self.take_header().and_then(|()| self.world());
-        let error = |(offset, cause)| PlantriError {
-            offset,
-            world: self.read + 1,
-            cause,
-        };
+        let error = |(offset, cause)| PlantriError { offset, world: self.read + 1, cause };
         match result.map_err(error).transpose()? {
             Ok((graph, next)) => {
                 self.next = next;
@@ -121,10 +110,7 @@ impl Worlds<'_> {
     }
 
     fn planar_code(&self) -> Result<(EmbeddedGraph, usize), Failure> {
-        let mut cursor = Cursor {
-            bytes: self.bytes,
-            at: self.next,
-        };
+        let mut cursor = Cursor { bytes: self.bytes, at: self.next };
         if cursor.bytes[cursor.at] != 0 {
             return planar_code(cursor, 1, ByteOrder::Big);
         }
@@ -140,20 +126,14 @@ impl Worlds<'_> {
     }
 
     fn edge_code(&self) -> Result<(EmbeddedGraph, usize), Failure> {
-        let mut cursor = Cursor {
-            bytes: self.bytes,
-            at: self.next,
-        };
+        let mut cursor = Cursor { bytes: self.bytes, at: self.next };
         let (length, edge_bytes) = match cursor.number(1, ByteOrder::Big)? {
             0 => {
                 let sizes_at = cursor.at;
                 let sizes = cursor.number(1, ByteOrder::Big)? as u8;
                 let (length_bytes, edge_bytes) = (sizes >> 4, sizes & 15);
                 if length_bytes == 0 || edge_bytes == 0 {
-                    let cause = Cause::Sizes {
-                        length_bytes,
-                        edge_bytes,
-                    };
+                    let cause = Cause::Sizes { length_bytes, edge_bytes };
                     return Err((sizes_at, cause));
                 }
                 let length = cursor.number(length_bytes.into(), ByteOrder::Big)?;
@@ -181,10 +161,7 @@ struct Cursor<'a> {
 impl Cursor<'_> {
     /// The next number; one that does not fit is as high as can be.
     fn number(&mut self, size: usize, order: ByteOrder) -> Result<u64, Failure> {
-        let bytes = self
-            .at
-            .checked_add(size)
-            .and_then(|end| self.bytes.get(self.at..end));
+        let bytes = self.at.checked_add(size).and_then(|end| self.bytes.get(self.at..end));
         let bytes = bytes.ok_or((self.bytes.len(), Cause::Truncated))?;
         self.at += size;
         let add = |number: u64, &byte: &u8| match number.checked_mul(256) {
@@ -218,11 +195,7 @@ fn planar_code(
                 break;
             }
             if neighbour > vertices {
-                let cause = Cause::UnknownNeighbour {
-                    vertex: vertex + 1,
-                    neighbour,
-                    vertices,
-                };
+                let cause = Cause::UnknownNeighbour { vertex: vertex + 1, neighbour, vertices };
                 return Err((at, cause));
             }
             darts.push((vertex as u32, neighbour as u32 - 1));
@@ -286,15 +259,9 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
     let mut opposite = vec![UNMET; ends.len()];
     for (dart, &edge) in ends.iter().enumerate() {
         let edges = first_end.len();
-        let Some(first) = usize::try_from(edge)
-            .ok()
-            .and_then(|edge| first_end.get_mut(edge))
+        let Some(first) = usize::try_from(edge).ok().and_then(|edge| first_end.get_mut(edge))
         else {
-            let cause = Cause::UnknownEdge {
-                vertex: vertex(dart) + 1,
-                edge,
-                edges,
-            };
+            let cause = Cause::UnknownEdge { vertex: vertex(dart) + 1, edge, edges };
             return Err((place(dart), cause));
         };
         let other = *first as usize;

@@ -32,9 +32,8 @@ fn path(vertices: usize) -> EmbeddedGraph {
 }
 
 /// The example of plantri's source: the octahedron.
-const OCTAHEDRON: [u8; 31] = [
-    6, 4, 3, 2, 5, 0, 3, 6, 5, 1, 0, 1, 4, 6, 2, 0, 5, 6, 3, 1, 0, 4, 1, 2, 6, 0, 4, 5, 2, 3, 0,
-];
+const OCTAHEDRON: [u8; 31] =
+    [6, 4, 3, 2, 5, 0, 3, 6, 5, 1, 0, 1, 4, 6, 2, 0, 5, 6, 3, 1, 0, 4, 1, 2, 6, 0, 4, 5, 2, 3, 0];
 
 #[test]
 fn plantri_s_own_example_is_the_octahedron_in_the_plane() {
@@ -75,10 +74,7 @@ fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
     let numbers = |order: fn(u16) -> [u8; 2]| {
         let list = |vertex: u16| {
             let neighbours = [vertex - 1, vertex + 1];
-            neighbours
-                .into_iter()
-                .filter(|&n| (1..=300).contains(&n))
-                .chain([0])
+            neighbours.into_iter().filter(|&n| (1..=300).contains(&n)).chain([0])
         };
         let numbers = [300].into_iter().chain((1..=300).flat_map(list));
         let mut bytes = vec![0];
@@ -101,17 +97,11 @@ fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
     for cut in [&little[..little.len() - 1], &big[..big.len() - 1]] {
         assert_eq!(
             message(cut),
-            format!(
-                "byte {}, world 1: the file ends in the middle of a world",
-                cut.len()
-            )
+            format!("byte {}, world 1: the file ends in the middle of a world", cut.len())
         );
     }
     let written = write(&[path(300)], Code::Planar).unwrap();
-    assert_eq!(
-        written,
-        [b">>planar_code le<<".as_slice(), &little].concat()
-    );
+    assert_eq!(written, [b">>planar_code le<<".as_slice(), &little].concat());
 }
 
 #[test]
@@ -156,20 +146,14 @@ fn a_long_edge_code_tells_its_sizes() {
 #[test]
 fn each_fault_of_planar_code_has_its_byte() {
     assert_eq!(message(b""), "byte 0, world 1: there is no world");
-    assert_eq!(
-        message(b">>planar_code<<"),
-        "byte 15, world 1: there is no world"
-    );
+    assert_eq!(message(b">>planar_code<<"), "byte 15, world 1: there is no world");
     assert_eq!(
         message(b">>sparse6<<"),
         "byte 0, world 1: unknown header; \
          known are planar_code, planar_code le, planar_code be and edge_code"
     );
     let second = [&OCTAHEDRON[..], &OCTAHEDRON[..30]].concat();
-    assert_eq!(
-        message(&second),
-        "byte 61, world 2: the file ends in the middle of a world"
-    );
+    assert_eq!(message(&second), "byte 61, world 2: the file ends in the middle of a world");
     assert_eq!(
         message(&[2, 2, 0, 3, 0]),
         "byte 3, world 1: vertex 2 lists the neighbour 3, but there are 2 vertices"
@@ -187,18 +171,12 @@ fn each_fault_of_planar_code_has_its_byte() {
         message(&[2, 2, 0, 1, 2, 2, 0]),
         format!("byte 4, world 1: vertex 2 lists 2 again or itself; {not_simple}")
     );
-    assert_eq!(
-        message(&[3, 2, 0, 1, 0, 0]),
-        "byte 0, world 1: vertex 3 has no edge"
-    );
+    assert_eq!(message(&[3, 2, 0, 1, 0, 0]), "byte 0, world 1: vertex 3 has no edge");
     assert_eq!(
         message(&[4, 2, 0, 1, 0, 4, 0, 3, 0]),
         "byte 0, world 1: the world is not connected: vertex 3 cannot be reached from 1"
     );
-    assert_eq!(
-        message(&[1, 0]),
-        "byte 0, world 1: there is no edge; a world has at least one"
-    );
+    assert_eq!(message(&[1, 0]), "byte 0, world 1: there is no edge; a world has at least one");
 }
 
 #[test]
@@ -227,10 +205,7 @@ fn each_fault_of_edge_code_has_its_byte() {
         edge_message(&[5, 0, 0, 255, 0, 1]),
         "byte 4, world 1: edge 0 stands here for the third time; every edge has two ends"
     );
-    assert_eq!(
-        edge_message(&[4, 0, 255, 0, 255]),
-        "byte 1, world 1: vertex 3 has no edge"
-    );
+    assert_eq!(edge_message(&[4, 0, 255, 0, 255]), "byte 1, world 1: vertex 3 has no edge");
     assert_eq!(
         edge_message(&[5, 0, 0, 255, 1, 1]),
         "byte 1, world 1: the world is not connected: vertex 2 cannot be reached from 1"

@@ -25,11 +25,8 @@ pub fn write(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, WriteError
 
 fn write_planar_code(worlds: &[EmbeddedGraph]) -> Result<Vec<u8>, WriteError> {
     let is_large = |graph: &EmbeddedGraph| graph.vertex_count() > 255;
-    let header: &[u8] = if worlds.iter().any(is_large) {
-        b">>planar_code le<<"
-    } else {
-        b">>planar_code<<"
-    };
+    let header: &[u8] =
+        if worlds.iter().any(is_large) { b">>planar_code le<<" } else { b">>planar_code<<" };
     let mut bytes = header.to_vec();
     for (number, graph) in worlds.iter().enumerate() {
         let world = number + 1;
@@ -89,7 +86,5 @@ fn push_edge_code(bytes: &mut Vec<u8>, graph: &EmbeddedGraph) {
 
 /// How many bytes hold every edge's number so that its first byte is not 255.
 fn bytes_of_edges(edges: usize) -> usize {
-    (1..4)
-        .find(|&size| edges <= 255 << (8 * (size - 1)))
-        .unwrap_or(4)
+    (1..4).find(|&size| edges <= 255 << (8 * (size - 1))).unwrap_or(4)
 }

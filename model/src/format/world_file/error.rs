@@ -108,18 +108,12 @@ pub enum Cause {
 impl Cause {
     /// The error that has this cause at the path of a key.
     pub(super) fn at(self, path: impl Into<String>) -> WorldFileError {
-        WorldFileError {
-            place: Place::Key(path.into()),
-            cause: self,
-        }
+        WorldFileError { place: Place::Key(path.into()), cause: self }
     }
 
     /// The error that has this cause in the file as a whole.
     pub(super) fn in_file(self) -> WorldFileError {
-        WorldFileError {
-            place: Place::File,
-            cause: self,
-        }
+        WorldFileError { place: Place::File, cause: self }
     }
 
     /// The error that has this cause at a byte of the text.

@@ -21,16 +21,8 @@ type Lists = Vec<(String, Vec<String>)>;
 /// # Errors
 /// The first thing that is wrong, with its place. No bytes make it panic.
 pub fn read(bytes: &[u8]) -> Result<NamedWorld, WorldFileError> {
-    const KEYS: [&str; 8] = [
-        "name",
-        "about",
-        "clockwise",
-        "doors",
-        "floor",
-        "junctions",
-        "hallways",
-        "start",
-    ];
+    const KEYS: [&str; 8] =
+        ["name", "about", "clockwise", "doors", "floor", "junctions", "hallways", "start"];
     let mut file = Table::new("", Tree::parse(bytes)?, &KEYS)?;
     let name = match file.take("name") {
         Some(tree) => world_name("name", tree)?,
@@ -63,10 +55,7 @@ fn by_neighbours(lists: Lists) -> Result<NamedWorld, WorldFileError> {
 fn by_edges(lists: Lists) -> Result<NamedWorld, WorldFileError> {
     let graph = EmbeddedGraph::from_edge_lists(&lists).map_err(|error| in_lists("doors", error))?;
     let (vertex_names, edge_names): (_, Vec<_>) = lists.into_iter().unzip();
-    Ok(NamedWorld {
-        edge_names: Some(edge_names.concat()),
-        ..unnamed(graph, vertex_names)
-    })
+    Ok(NamedWorld { edge_names: Some(edge_names.concat()), ..unnamed(graph, vertex_names) })
 }
 
 fn by_plan(file: &mut Table) -> Result<NamedWorld, WorldFileError> {
@@ -102,12 +91,10 @@ fn start(world: &NamedWorld, tree: Tree) -> Result<Dart, WorldFileError> {
     let mut start = Table::new("start", tree, &["at", "facing"])?;
     let at = text("start.at", start.need("at")?)?;
     let facing = text("start.facing", start.need("facing")?)?;
-    world
-        .start_from_names(&at, &facing)
-        .map_err(|error| match error {
-            StartError::UnknownVertex { .. } => Cause::from(error).at("start.at"),
-            _ => Cause::from(error).at("start.facing"),
-        })
+    world.start_from_names(&at, &facing).map_err(|error| match error {
+        StartError::UnknownVertex { .. } => Cause::from(error).at("start.at"),
+        _ => Cause::from(error).at("start.facing"),
+    })
 }
 
 fn unnamed(graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {
@@ -185,11 +172,7 @@ impl Table {
     fn need(&mut self, key: &'static str) -> Result<Tree, WorldFileError> {
         self.take(key).ok_or_else(|| {
             let cause = Cause::MissingKey { key };
-            if self.path.is_empty() {
-                cause.in_file()
-            } else {
-                cause.at(&self.path)
-            }
+            if self.path.is_empty() { cause.in_file() } else { cause.at(&self.path) }
         })
     }
 
@@ -200,9 +183,7 @@ impl Table {
 
     /// The one table that tells the graph; `floor` for a floor plan.
     fn told_by(&self) -> Result<&'static str, WorldFileError> {
-        let is_plan = ["floor", "junctions", "hallways"]
-            .iter()
-            .any(|key| self.has(key));
+        let is_plan = ["floor", "junctions", "hallways"].iter().any(|key| self.has(key));
         let mut told = [
             (self.has("clockwise"), "clockwise"),
             (self.has("doors"), "doors"),
@@ -294,11 +275,9 @@ fn position(path: &str, tree: Tree) -> Result<[f64; 2], WorldFileError> {
     const EXPECTED: &str = "a list of two numbers, x and y";
     match list(path, tree, EXPECTED)?.as_slice() {
         [x, y] => Ok([number(path, x)?, number(path, y)?]),
-        _ => Err(Cause::WrongKind {
-            expected: EXPECTED,
-            found: "a list of another length",
+        _ => {
+            Err(Cause::WrongKind { expected: EXPECTED, found: "a list of another length" }.at(path))
         }
-        .at(path)),
     }
 }
 
@@ -314,9 +293,5 @@ fn not_a_name(path: &str, name: &str) -> WorldFileError {
 
 fn join(path: &str, key: &str) -> String {
     let key = key.escape_debug();
-    if path.is_empty() {
-        key.to_string()
-    } else {
-        format!("{path}.{key}")
-    }
+    if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
 }

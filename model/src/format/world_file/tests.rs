@@ -79,10 +79,7 @@ fn vertices_stand_in_the_order_of_the_file() {
     let world = read(TRIANGLE.as_bytes()).unwrap();
     assert_eq!(world.vertex_names, ["z", "a", "m"]);
     assert_eq!(world.start, Some(Dart(3)));
-    assert_eq!(
-        (world.name.as_str(), world.about.as_str()),
-        ("triangle", "Three corners")
-    );
+    assert_eq!((world.name.as_str(), world.about.as_str()), ("triangle", "Three corners"));
     assert_eq!(world.edge_names, None);
     assert_eq!(read(TRIANGLE_IN_JSON.as_bytes()).unwrap(), world);
     assert_eq!(to_toml(&world), TRIANGLE);
@@ -92,10 +89,7 @@ fn vertices_stand_in_the_order_of_the_file() {
 #[test]
 fn a_file_of_doors_names_its_edges() {
     let world = read(DOORS.as_bytes()).unwrap();
-    assert_eq!(
-        world.edge_names.as_deref().unwrap(),
-        ["a", "b", "a", "c", "b", "c"]
-    );
+    assert_eq!(world.edge_names.as_deref().unwrap(), ["a", "b", "a", "c", "b", "c"]);
     assert_eq!(world.start, Some(Dart(2)));
     assert_eq!(world.name, "");
     assert_eq!(to_toml(&world), DOORS);
@@ -105,10 +99,7 @@ fn a_file_of_doors_names_its_edges() {
 fn a_floor_plan_gives_its_graph_and_keeps_its_geometry() {
     let world = read(PLAN.as_bytes()).unwrap();
     assert_eq!(world.vertex_names, ["south", "corner", "east"]);
-    assert_eq!(
-        world.positions.as_deref(),
-        Some(&[[0.0, -4.5], [0.0, 0.0], [4.0, 0.0]][..])
-    );
+    assert_eq!(world.positions.as_deref(), Some(&[[0.0, -4.5], [0.0, 0.0], [4.0, 0.0]][..]));
     assert_eq!(world.start_text(world.start.unwrap()), "corner:east");
     assert_eq!(to_toml(&world), PLAN);
     assert_eq!(
@@ -144,10 +135,7 @@ fn a_file_without_text_is_told_so() {
     assert_eq!(message(""), "the file is empty");
     assert_eq!(message(" \n"), "the file is empty");
     let error = read(b"name = \"a\"\nab\xff").unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "line 2, column 3: this is not UTF-8 text"
-    );
+    assert_eq!(error.to_string(), "line 2, column 3: this is not UTF-8 text");
 }
 
 #[test]
@@ -160,10 +148,7 @@ fn broken_text_is_told_with_its_place() {
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\na = []\n"),
         "line 4, column 1: duplicate key"
     );
-    assert_eq!(
-        message("{\n \"name\": }"),
-        "line 2, column 10: expected value"
-    );
+    assert_eq!(message("{\n \"name\": }"), "line 2, column 10: expected value");
     assert_eq!(
         message("{\"clockwise\": {\"a\": [],\n\"a\": []}}"),
         "line 2, column 3: duplicate key `a`"
@@ -191,10 +176,7 @@ fn unknown_and_missing_keys_are_named() {
         "a\\nb: unknown key; here can stand: \
          name, about, clockwise, doors, floor, junctions, hallways, start"
     );
-    assert_eq!(
-        message("[floor]\nhallway_width = 1"),
-        "the key `junctions` is missing"
-    );
+    assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
     assert_eq!(
         message(&PLAN.replace("to = \"corner\"\n\n[start]", "[start]")),
         "hallways[1]: the key `to` is missing"
@@ -205,30 +187,12 @@ fn unknown_and_missing_keys_are_named() {
 fn values_of_the_wrong_kind_are_named() {
     for (text, expected) in [
         ("name = 3", "name: here should be a name, not a number"),
-        (
-            "about = []\n[doors]",
-            "about: here should be a text, not a list",
-        ),
-        (
-            "clockwise = []",
-            "clockwise: here should be a table, not a list",
-        ),
-        (
-            "[clockwise]\na = \"b\"",
-            "clockwise.a: here should be a list of names, not a text",
-        ),
-        (
-            "[clockwise]\na = [true]",
-            "clockwise.a: here should be a name, not true or false",
-        ),
-        (
-            "{\"doors\": {\"a\": [null]}}",
-            "doors.a: here should be a name, not null",
-        ),
-        (
-            "doors = 1979-05-27",
-            "doors: here should be a table, not a date",
-        ),
+        ("about = []\n[doors]", "about: here should be a text, not a list"),
+        ("clockwise = []", "clockwise: here should be a table, not a list"),
+        ("[clockwise]\na = \"b\"", "clockwise.a: here should be a list of names, not a text"),
+        ("[clockwise]\na = [true]", "clockwise.a: here should be a name, not true or false"),
+        ("{\"doors\": {\"a\": [null]}}", "doors.a: here should be a name, not null"),
+        ("doors = 1979-05-27", "doors: here should be a table, not a date"),
     ] {
         assert_eq!(message(text), expected);
     }
@@ -295,14 +259,8 @@ fn lists_that_are_no_embedded_graph_are_told_with_their_vertex() {
             "[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]",
             "clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
         ),
-        (
-            "[clockwise]",
-            "clockwise: there is no edge; a world has at least one",
-        ),
-        (
-            "[doors]\na = []",
-            "doors: there is no edge; a world has at least one",
-        ),
+        ("[clockwise]", "clockwise: there is no edge; a world has at least one"),
+        ("[doors]\na = []", "doors: there is no edge; a world has at least one"),
     ] {
         assert_eq!(message(text), expected);
     }
@@ -343,11 +301,7 @@ fn a_wrong_floor_plan_is_told_with_its_key() {
             "junctions: junctions `corner` and `east` are 3.00 m apart; \
              it must be two hallway widths, 3.20 m",
         ),
-        (
-            "from = \"east\"",
-            "from = \"q\"",
-            "hallways[1]: there is no junction `q`",
-        ),
+        ("from = \"east\"", "from = \"q\"", "hallways[1]: there is no junction `q`"),
         (
             "[4.0, 0.0]",
             "[4.0, 1.0]",
@@ -361,18 +315,12 @@ fn a_wrong_floor_plan_is_told_with_its_key() {
 #[test]
 fn any_character_can_stand_in_about() {
     let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
-    let all: String = ('\0'..='\u{ff}')
-        .chain("\u{feff}\u{2028}\u{1f600}".chars())
-        .collect();
+    let all: String = ('\0'..='\u{ff}').chain("\u{feff}\u{2028}\u{1f600}".chars()).collect();
     reads_back(&NamedWorld::discovered("", &all, &graph, None));
 }
 
 fn reads_back(world: &NamedWorld) {
-    for text in [
-        to_toml(world),
-        to_json_text(world),
-        to_json(world).to_string(),
-    ] {
+    for text in [to_toml(world), to_json_text(world), to_json(world).to_string()] {
         assert_eq!(&read(text.as_bytes()).unwrap(), world, "{text}");
     }
 }

@@ -62,9 +62,8 @@ pub fn to_json_text(world: &NamedWorld) -> String {
     let entries: Vec<String> = object(&file)
         .map(|(key, value)| match value {
             Value::Object(table) => {
-                let lines = table
-                    .iter()
-                    .map(|(key, value)| format!("{}: {}", json!(key), inline(value)));
+                let lines =
+                    table.iter().map(|(key, value)| format!("{}: {}", json!(key), inline(value)));
                 block(key, '{', lines, '}')
             }
             Value::Array(tables) => block(key, '[', tables.iter().map(inline), ']'),
@@ -90,9 +89,8 @@ fn inline(value: &Value) -> String {
             format!("[{}]", items.join(", "))
         }
         Value::Object(table) => {
-            let entries = table
-                .iter()
-                .map(|(key, value)| format!("{}: {}", json!(key), inline(value)));
+            let entries =
+                table.iter().map(|(key, value)| format!("{}: {}", json!(key), inline(value)));
             format!("{{{}}}", entries.collect::<Vec<_>>().join(", "))
         }
         scalar => scalar.to_string(),
@@ -111,10 +109,7 @@ fn lists(world: &NamedWorld) -> Value {
     let lists = world.graph.vertices().zip(&world.vertex_names);
     let lists = lists.map(|(vertex, name)| {
         let darts = world.graph.darts_of(vertex);
-        (
-            name.clone(),
-            darts.map(|dart| json!(world.leads_to(dart))).collect(),
-        )
+        (name.clone(), darts.map(|dart| json!(world.leads_to(dart))).collect())
     });
     Value::Object(lists.collect())
 }
@@ -132,10 +127,7 @@ fn plan_tables(plan: &FloorPlan) -> Map<String, Value> {
         .map(|hallway| json!({ "from": name(hallway.from), "to": name(hallway.to) }))
         .collect();
     let mut tables = Map::new();
-    tables.insert(
-        "floor".to_owned(),
-        json!({ "hallway_width": plan.hallway_width() }),
-    );
+    tables.insert("floor".to_owned(), json!({ "hallway_width": plan.hallway_width() }));
     tables.insert("junctions".to_owned(), Value::Object(junctions));
     tables.insert("hallways".to_owned(), Value::Array(hallways));
     tables
