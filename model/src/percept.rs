@@ -92,6 +92,7 @@ impl EmbeddedGraph {
     }
 
     /// The pose at the end of a door sequence.
+    // paper: motion.path
     #[must_use]
     pub fn walk(&self, pose: Dart, doors: &[Door]) -> Dart {
         doors.iter().fold(pose, |pose, &door| self.after(pose, door))

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// All that a robot can sense of its world, and all that it can do in it.
-// paper: percept.no-metric, motion.door
+// paper: world.interface, percept.no-metric
 pub trait World {
     /// What can go wrong with sensing or moving.
     type Error;
@@ -21,6 +21,7 @@ pub trait World {
     /// Where the world cannot be sensed.
     fn percept(&mut self) -> Result<Percept, Self::Error>;
 
+    // paper: motion.door, motion.arrival
     /// Leaves by a door and goes to the other end of the edge.
     ///
     /// # Errors

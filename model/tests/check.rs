@@ -256,6 +256,7 @@ fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
         .expect("the check catches it")
 }
 
+// paper: alg1.validation, alg1.hypotheses
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {

@@ -137,6 +137,7 @@ proptest! {
 }
 
 /// The story tells every move and every decision.
+// paper: cost.moves
 // paper: alg1.2, alg1.3, alg1.7, alg1.18, alg1.19, alg1.20, alg1.21, alg1.22, alg1.23, alg1.return
 #[test]
 fn the_story_of_a_triangle_with_a_tail() {

@@ -157,6 +157,7 @@ fn figure_1_is_indistinguishable_from_its_starts() {
     assert_eq!(reached.len(), 32);
 }
 
+// paper: env.hallways, env.junction-types
 #[test]
 fn buildings_have_all_three_kinds_of_junction() {
     for (name, kinds) in [

@@ -6,7 +6,8 @@
 pub enum Kind {
     /// In code.
     Code,
-    /// In a test: in a file under a folder `tests`, or below the line `#[cfg(test)]` of a file.
+    /// In a test: in a file `tests.rs` or under a folder `tests`, or below the line `#[cfg(test)]`
+    /// of a file.
     Test,
 }
 
@@ -26,8 +27,11 @@ pub struct Citation<'a> {
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
 /// the end of a line: `// paper: id`, or several ids with commas between them.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
-    let mut kind =
-        if file.split('/').any(|folder| folder == "tests") { Kind::Test } else { Kind::Code };
+    let mut kind = if file.split('/').any(|part| part == "tests" || part == "tests.rs") {
+        Kind::Test
+    } else {
+        Kind::Code
+    };
     text.lines().zip(1..).flat_map(move |(source, line)| {
         if source.starts_with("#[cfg(test)]") {
             kind = Kind::Test;
@@ -76,6 +80,7 @@ mod tests {
         let kinds = |file| citations(file, text).map(|c| c.kind).collect::<Vec<_>>();
         assert_eq!(kinds("model/src/a.rs"), [Kind::Code, Kind::Test]);
         assert_eq!(kinds("model/tests/a.rs"), [Kind::Test, Kind::Test]);
+        assert_eq!(kinds("model/src/a/tests.rs"), [Kind::Test, Kind::Test]);
         assert_eq!(kinds("src/latests/a.rs"), [Kind::Code, Kind::Test]);
     }
 

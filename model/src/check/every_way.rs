@@ -12,6 +12,7 @@ use crate::{
 };
 
 /// All runs of Algorithm 1 on one start.
+// paper: cost.shape-6, cost.shape-8
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EveryWay {
     /// Distinct states at line 4: the map, numbered by discovery, and the robot's vertex in it.

@@ -237,6 +237,7 @@ mod tests {
         EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
     }
 
+    // paper: world.graph, world.embedding
     #[test]
     fn three_parallel_edges_lie_in_the_plane_or_on_the_torus() {
         assert_eq!((theta(false).face_count(), theta(false).genus()), (3, 0));

@@ -99,6 +99,7 @@ fn names_must_be_known_and_stand_once() {
     assert_eq!(message(plan(&[a, b], &[("a", "b"), ("b", "a")])), "hallway `b` - `a` stands twice");
 }
 
+// paper: env.right-angles
 #[test]
 fn hallways_have_a_length_along_an_axis() {
     let askew = [("a", [0.0, 0.0]), ("b", [4.0, 0.01])];
@@ -111,6 +112,7 @@ fn hallways_have_a_length_along_an_axis() {
     assert!(plan(&rounded, &[("a", "b")]).is_ok());
 }
 
+// paper: env.junction-types
 #[test]
 fn other_junctions_than_the_three_kinds_are_named() {
     let cross = [

@@ -45,6 +45,7 @@ impl Bijection {
     /// It looks at every dart: that its image exists, and that `opposite` and `clockwise` are kept.
     /// This makes it a bijection too: the images are closed under both, so in a connected graph they
     /// are all of its darts, and there are as many of the one as of the other.
+    // paper: world.isomorphic
     #[must_use]
     pub fn verify(&self, from: &EmbeddedGraph, to: &EmbeddedGraph) -> bool {
         from.dart_count() == to.dart_count()

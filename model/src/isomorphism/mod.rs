@@ -60,6 +60,7 @@ mod tests {
     }
 
     proptest! {
+        // paper: world.isomorphic
         #[test]
         fn a_relabelled_copy_is_recognised((graph, copy, number) in relabelled()) {
             prop_assert!(isomorphism(&graph, &copy).unwrap().verify(&graph, &copy));

@@ -22,6 +22,7 @@ pub enum Verdict {
 /// # Errors
 /// The world's own; a contradiction, where no world could be so; or more known darts than the
 /// bound of the exploration. The exploration then tells how far it came.
+// paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21, alg1.return, alg1.terminates
 pub fn map_world<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
@@ -63,6 +64,7 @@ pub fn map_world<W: World>(
 ///
 /// # Errors
 /// The world's own, or a contradiction on the way back.
+// paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17, alg1.validation
 pub fn try_path<W: World>(
     exploration: &mut Exploration,
     hypothesis: Dart,

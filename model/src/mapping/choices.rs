@@ -20,6 +20,7 @@ pub trait Choices {
 
 /// The default: everything by the fewest hops; then the vertex discovered first; then the lowest
 /// index. So every run of everyone is the same run.
+// paper: cost.cycle, cost.chain
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Nearest;
 

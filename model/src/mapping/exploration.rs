@@ -89,6 +89,7 @@ impl Exploration {
 
     /// The robot's pose in the map: the dart by which it has come in. At line 8, when it is at no
     /// known place, the last known one.
+    // paper: alg1.located
     #[inline]
     #[must_use]
     pub fn robot(&self) -> Dart {
@@ -96,6 +97,7 @@ impl Exploration {
     }
 
     /// The moves made so far.
+    // paper: cost.moves, cost.lower-bound
     #[inline]
     #[must_use]
     pub fn moves(&self) -> u64 {
@@ -182,6 +184,7 @@ impl Exploration {
         Ok(())
     }
 
+    // paper: alg1.hypotheses
     fn raise_hypotheses(&mut self) -> Result<(), Contradiction> {
         let Self { map, arrival, hypotheses, edge, .. } = self;
         hypotheses.clear();
