@@ -104,17 +104,20 @@ impl Sweep {
             watch.part_done(&tally);
             tally
         };
-        #[cfg(feature = "rayon")]
-        let tallies: Vec<_> = {
-            use rayon::prelude::*;
-            parts.par_iter().with_max_len(1).map(check).collect()
-        };
-        #[cfg(not(feature = "rayon"))]
-        let tallies = parts.iter().map(check);
-        tallies.into_iter().fold(Tally::default(), |mut sum, tally| {
-            sum.merge(tally);
+        let merge = |mut sum: Tally, later: Tally| {
+            sum.merge(later);
             sum
-        })
+        };
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            // Neighbours are merged in their order, whoever checked them.
+            parts.par_iter().with_max_len(1).map(check).reduce(Tally::default, merge)
+        }
+        #[cfg(not(feature = "rayon"))]
+        {
+            parts.iter().map(check).fold(Tally::default(), merge)
+        }
     }
 
     fn check_part(&self, part: &Part, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {

@@ -14,6 +14,18 @@ pub(super) const DARTS: usize = 2 * MAX_EDGES;
 /// Stands as the opposite of a free dart.
 pub(super) const FREE: u8 = u8::MAX;
 
+/// How many edges the beginnings have by which an enumeration is parted.
+pub(super) const BEGINNING: usize = 4;
+
+/// The first steps of a history of growth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beginning {
+    /// The degree of the start vertex.
+    degree: u8,
+    words: [u8; BEGINNING],
+    edges: u8,
+}
+
 /// A history of growth: the graph so far, and its code so far.
 #[derive(Clone, Debug)]
 pub(super) struct Growth {
@@ -41,7 +53,7 @@ pub(super) struct Growth {
     pub(super) rivals: u64,
 }
 
-/// The word of an edge to a new vertex.
+/// The word of an edge to a new vertex of some degree; and the degree, from the word.
 pub(super) fn new_vertex(degree: u8) -> u8 {
     u8::MAX - degree
 }
@@ -81,8 +93,27 @@ impl Growth {
         }
     }
 
-    pub(super) fn edges_at_the_end(&self) -> usize {
-        self.target
+    /// The first steps of the history, of which there have been no more than [`BEGINNING`].
+    pub(super) fn beginning(&self) -> Beginning {
+        let mut words = [0; BEGINNING];
+        words[..self.edges].copy_from_slice(&self.words[..self.edges]);
+        Beginning { degree: self.degree[0], words, edges: self.edges as u8 }
+    }
+
+    /// Takes the first steps of a history again.
+    pub(super) fn resume(&mut self, beginning: Beginning) {
+        self.add_vertex(beginning.degree as usize);
+        for &word in &beginning.words[..beginning.edges as usize] {
+            let dart = self.free.trailing_zeros() as usize;
+            if (word as usize) < self.darts {
+                self.join(dart, word as usize, word);
+            } else {
+                let entry = self.darts;
+                self.add_vertex(new_vertex(word) as usize);
+                self.join(dart, entry, word);
+            }
+            self.may_be_least();
+        }
     }
 
     /// Grows on in every way until there are `edges` edges, and shows each result.

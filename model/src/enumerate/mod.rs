@@ -17,7 +17,7 @@ use thiserror::Error;
 pub use class::{Class, UnknownClass};
 
 use crate::embedded_graph::EmbeddedGraph;
-use growth::{Growth, MAX_EDGES};
+use growth::{BEGINNING, Beginning, Growth, MAX_EDGES};
 
 /// What is enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,11 +58,11 @@ pub struct Found<'g> {
 
 /// A part of an enumeration: all histories that begin alike. The parts are disjoint, and together
 /// they are the whole.
-#[derive(Clone, Debug)]
-pub struct Part(Growth);
-
-/// How many edges the beginnings that separate the parts have.
-const BEGINNING: usize = 4;
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    whole: Enumeration,
+    beginning: Beginning,
+}
 
 impl Enumeration {
     /// An enumeration of a class.
@@ -83,7 +83,7 @@ impl Enumeration {
         let mut parts = Vec::new();
         let beginning = BEGINNING.min(self.edges);
         let _ = Growth::new(self.class, self.edges, self.each).grow_to(beginning, &mut |growth| {
-            parts.push(Part(growth.clone()));
+            parts.push(Part { whole: *self, beginning: growth.beginning() });
             ControlFlow::Continue(())
         });
         parts
@@ -101,8 +101,9 @@ impl Part {
     /// Shows all that belongs to the part, in order, until `visit` breaks off.
     pub fn for_each(&self, visit: &mut impl FnMut(Found) -> ControlFlow<()>) -> ControlFlow<()> {
         let mut graph = EmbeddedGraph::unfinished();
-        let mut growth = self.0.clone();
-        let edges = growth.edges_at_the_end();
+        let Enumeration { class, edges, each } = self.whole;
+        let mut growth = Growth::new(class, edges, each);
+        growth.resume(self.beginning);
         growth.grow_to(edges, &mut |growth| growth.show(&mut graph, visit))
     }
 }

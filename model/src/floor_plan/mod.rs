@@ -184,6 +184,7 @@ impl FloorPlan {
     }
 
     /// The embedded graph that the plan is; it lies in the plane.
+    // paper: env.hallways
     #[must_use]
     pub fn graph(&self) -> &EmbeddedGraph {
         &self.graph

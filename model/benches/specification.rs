@@ -1,0 +1,140 @@
+//! How fast the specification runs. `cargo bench -p toposlam-model` (one thread), or with
+//! `--features rayon` (the checks on all processors).
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use std::ops::ControlFlow;
+
+use divan::{Bencher, counter::ItemsCount};
+use toposlam_model::{
+    check::{Algorithm1, Choice, Shard, Sweep, judge},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
+    isomorphism::{Candidate, isomorphism},
+    mapping::{Exploration, Nearest, map_world},
+    world::GraphWorld,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// Embedded graphs up to isomorphism, none looked at.
+#[divan::bench(args = [
+    ("multigraph", 8, 1_863_359),
+    ("simple", 10, 99_642),
+    ("corridor", 12, 40_592),
+    ("planar", 12, 926_786),
+], sample_count = 5)]
+fn enumerate(bencher: Bencher, (class, edges, worlds): (&str, usize, u64)) {
+    let class: Class = class.parse().unwrap();
+    bencher.counter(ItemsCount::new(worlds)).bench(|| {
+        let mut count = 0;
+        let _ = Enumeration::new(Each::World, class, edges).unwrap().for_each(&mut |_| {
+            count += 1;
+            ControlFlow::Continue(())
+        });
+        assert_eq!(count, worlds);
+    });
+}
+
+/// Algorithm 1 on every start, each map verified.
+#[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
+fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
+    let enumeration = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
+    let sweep = Sweep { enumeration, shard: Shard::WHOLE, choice: Choice::Default };
+    bencher.counter(ItemsCount::new(starts)).bench(|| {
+        assert_eq!(sweep.run(&Algorithm1, &()).mapped, starts);
+    });
+}
+
+/// Algorithm 1 with all choices on every start; the items are states.
+#[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
+fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
+    let enumeration = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
+    let sweep = Sweep { enumeration, shard: Shard::WHOLE, choice: Choice::All };
+    bencher.counter(ItemsCount::new(states)).bench(|| {
+        assert_eq!(sweep.run(&Algorithm1, &()).states, states);
+    });
+}
+
+/// Algorithm 1 on a random world of 2,000 vertices and 3,000 edges; the items are moves.
+#[divan::bench(sample_count = 5)]
+fn map_large_world(bencher: Bencher) {
+    let graph = random_cubic(2000, &mut Random(1));
+    let run = || {
+        let mut exploration = Exploration::new(graph.dart_count());
+        let mut world = GraphWorld::new(&graph, Dart(0));
+        map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
+        judge(&exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
+        exploration.moves()
+    };
+    bencher.counter(ItemsCount::new(run())).bench(run);
+}
+
+/// Two random relabelled copies of a world: with random orders, and with the most symmetry.
+#[divan::bench(args = ["random", "cycle"], sample_count = 5)]
+fn recognise_10_000_edges(bencher: Bencher, world: &str) {
+    let mut random = Random(2);
+    let graph = match world {
+        "random" => random_cubic(6_666, &mut random),
+        _ => cycle(10_000),
+    };
+    let (one, other) = (relabelled(&graph, &mut random), relabelled(&graph, &mut random));
+    bencher.bench(|| {
+        assert!(isomorphism(&one, &other).unwrap().verify(&one, &other));
+    });
+}
+
+/// Marsaglia's xorshift: the same worlds on every run.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        for shift in [13, -7, 17] {
+            self.0 ^= if shift > 0 { self.0 << shift } else { self.0 >> -shift };
+        }
+        (self.0 % bound as u64) as usize
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for end in (1..items.len()).rev() {
+            items.swap(end, self.below(end + 1));
+        }
+    }
+}
+
+/// A connected world of vertices with three darts each, joined at random.
+fn random_cubic(vertices: u32, random: &mut Random) -> EmbeddedGraph {
+    let clockwise: Vec<u32> = (0..3 * vertices).map(|d| d - d % 3 + (d + 1) % 3).collect();
+    loop {
+        let mut darts: Vec<u32> = (0..3 * vertices).collect();
+        random.shuffle(&mut darts);
+        let mut opposite = vec![0; darts.len()];
+        for pair in darts.chunks(2) {
+            opposite[pair[0] as usize] = pair[1];
+            opposite[pair[1] as usize] = pair[0];
+        }
+        if let Ok((graph, _)) = EmbeddedGraph::from_permutations(&opposite, &clockwise) {
+            return graph;
+        }
+    }
+}
+
+fn cycle(edges: u32) -> EmbeddedGraph {
+    let darts = 2 * edges;
+    let opposite: Vec<u32> = (0..darts)
+        .map(|d| if d % 2 == 1 { (d + 1) % darts } else { (d + darts - 1) % darts })
+        .collect();
+    let clockwise: Vec<u32> = (0..darts).map(|d| d ^ 1).collect();
+    EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
+}
+
+fn relabelled(graph: &EmbeddedGraph, random: &mut Random) -> EmbeddedGraph {
+    let mut firsts: Vec<Dart> = graph
+        .vertices()
+        .filter_map(|vertex| graph.dart(vertex, random.below(graph.degree(vertex) as usize) as u32))
+        .collect();
+    random.shuffle(&mut firsts);
+    graph.relabelled(&firsts).unwrap().0
+}
