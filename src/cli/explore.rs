@@ -8,11 +8,11 @@ use std::{
     path::PathBuf,
 };
 
-use serde_json::json;
+use serde::Serialize;
 use toposlam::picture::{self, Picture};
 use toposlam_model::{
-    check::{Flaw, every_way, judge, move_bound},
-    embedded_graph::Dart,
+    check::{EveryWay, Flaw, every_way, judge, move_bound},
+    embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     isomorphism::{Bijection, Candidate},
     mapping::{DEFAULT_DART_BOUND, Exploration, FACING, MappingError, Nearest, map_world},
@@ -101,10 +101,15 @@ impl Arguments {
             .map_err(Flaw::from)
             .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
         let ending = Ending { world: &world, facing, exploration: &exploration, result };
+        let ways = match self.choices.as_str() {
+            "all" => Some(every_way(&world.graph, facing)),
+            _ => None,
+        };
+        let ways = ways.transpose().map_err(|flaw| Failure::at("--choices all", flaw))?;
         if self.json {
-            ending.tell_json(&mut out, self.choices == "all")?;
+            ending.tell_json(&mut out, ways.as_ref())?;
         } else {
-            ending.tell(&mut out, self.choices == "all")?;
+            ending.tell(&mut out, ways.as_ref())?;
         }
         out.flush()?;
         if let Some(map) = ending.map() {
@@ -119,6 +124,25 @@ impl Arguments {
         }
         Ok(ending.outcome())
     }
+}
+
+/// What `--json` prints after the doors.
+#[derive(Serialize)]
+struct Rest {
+    moves: u64,
+    edges: Option<usize>,
+    vertices: usize,
+    isomorphic: bool,
+    map: Option<serde_json::Value>,
+    start: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    states: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    runs: Option<u128>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    costs: Option<Vec<u64>>,
 }
 
 /// How the run ended.
@@ -147,44 +171,36 @@ impl Ending<'_> {
         Some(NamedWorld::discovered(&name, &about, graph, Some(FACING)))
     }
 
-    fn tell_json(&self, out: &mut dyn Write, all: bool) -> Result<(), Failure> {
+    /// The object whose beginning, with the doors, has been written during the run.
+    fn tell_json(&self, out: &mut dyn Write, ways: Option<&EveryWay>) -> Result<(), Failure> {
         let map = self.exploration.map();
-        let mut line = json!({
-            "moves": self.exploration.moves(),
-            "edges": map.complete().map(toposlam_model::embedded_graph::EmbeddedGraph::edge_count),
-            "vertices": map.vertex_count(),
-            "isomorphic": self.result.is_ok(),
-            "map": self.map().as_ref().map(world_file::to_json),
-            "start": self.world.start_text(self.facing),
-        });
-        if let Err(flaw) = &self.result {
-            line["error"] = json!(flaw.to_string());
-        }
-        if all {
-            let ways = every_way(&self.world.graph, self.facing);
-            let ways = ways.map_err(|flaw| Failure::at("--choices all", flaw))?;
-            line["states"] = json!(ways.states);
-            line["runs"] = json!(ways.runs.to_string());
-            line["costs"] = ways.costs.iter().collect();
-        }
-        // The doors stand before this, in the same object.
-        let rest = line.to_string();
+        let rest = Rest {
+            moves: self.exploration.moves(),
+            edges: map.complete().map(EmbeddedGraph::edge_count),
+            vertices: map.vertex_count(),
+            isomorphic: self.result.is_ok(),
+            map: self.map().as_ref().map(world_file::to_json),
+            start: self.world.start_text(self.facing),
+            error: self.result.as_ref().err().map(ToString::to_string),
+            states: ways.map(|ways| ways.states),
+            runs: ways.map(|ways| ways.runs),
+            costs: ways.map(|ways| ways.costs.iter().collect()),
+        };
+        let rest = serde_json::to_string(&rest).map_err(io::Error::from)?;
         writeln!(out, "{}", rest.strip_prefix('{').unwrap_or(&rest))?;
         Ok(())
     }
 
-    fn tell(&self, out: &mut dyn Write, all: bool) -> Result<(), Failure> {
-        let Self { world, exploration, .. } = self;
+    fn tell(&self, out: &mut dyn Write, ways: Option<&EveryWay>) -> Result<(), Failure> {
+        let Self { exploration, .. } = self;
         match &self.result {
             Err(flaw) => writeln!(out, "\nAfter {} moves: {flaw}", exploration.moves())?,
             Ok(bijection) => self.tell_map(bijection, out)?,
         }
-        if all {
-            let ways = every_way(&world.graph, self.facing);
-            let ways = ways.map_err(|flaw| Failure::at("--choices all", flaw))?;
-            let costs: Vec<_> = ways.costs.iter().map(|cost| cost.to_string()).collect();
-            writeln!(out, "\nWith all choices: {} states, {} runs,", ways.states, ways.runs)?;
-            writeln!(out, "which take this many moves: {}", costs.join(" "))?;
+        if let Some(EveryWay { states, runs, costs }) = ways {
+            let costs: Vec<_> = costs.iter().map(|cost| cost.to_string()).collect();
+            writeln!(out, "\nWith all choices there are {states} states and {runs} runs,")?;
+            writeln!(out, "which take this many moves: {}.", costs.join(" "))?;
         }
         Ok(())
     }

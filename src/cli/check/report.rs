@@ -1,8 +1,11 @@
 //! What a check prints: a row, or a JSON object, for each number of edges, and a verdict.
 
-use std::{io::Write, time::Duration};
+use std::{
+    io::{self, Write},
+    time::Duration,
+};
 
-use serde_json::json;
+use serde::Serialize;
 use toposlam_model::{
     check::{Choice, Failure as Failed, Shard, Tally},
     format::{named_world::NamedWorld, world_file},
@@ -49,41 +52,37 @@ impl<'o> Report<'o> {
         shard: Option<Shard>,
         tally: &Tally,
     ) -> Result<(), Failure> {
-        let mut line = json!({
-            "schema": 1,
-            "edges": edges,
-            "class": class,
-            "marker": "directional",
-            "worlds": tally.worlds,
-            "starts": tally.starts,
-            "mapped": tally.mapped,
-            "failed": tally.failed(),
-            "moves_total": tally.moves_total,
-            "moves_max": tally.moves_max(),
-            "largest_ratio": tally.largest_ratio(edges),
-            "holds": holds(tally),
-        });
-        if let Some(shard) = shard.filter(|&shard| shard != Shard::WHOLE) {
-            line["shard"] = json!(shard.to_string());
-        }
-        if tally.interrupted {
-            line["interrupted"] = json!(true);
-        }
-        if let (Choice::All, Some((least, most))) = (self.choice, tally.extremes) {
-            line["states"] = json!(tally.states);
-            line["runs"] = json!(tally.runs);
-            line["every_run_moves_min"] = json!(least);
-            line["every_run_moves_max"] = json!(most);
-        }
-        if let Some(failure) = &tally.failure {
-            line["failure"] = json!({
-                "cause": failure.flaw.to_string(),
-                "step": step(failure),
-                "moves": failure.moves,
-                "world": world_file::to_json(&failed_world(failure)),
-            });
-        }
-        writeln!(self.out, "{line}")?;
+        let extremes = tally.extremes.filter(|_| self.choice == Choice::All);
+        let line = Line {
+            schema: 1,
+            edges,
+            class,
+            marker: "directional",
+            worlds: tally.worlds,
+            starts: tally.starts,
+            mapped: tally.mapped,
+            failed: tally.failed(),
+            moves_total: tally.moves_total,
+            moves_max: tally.moves_max(),
+            largest_ratio: tally.largest_ratio(edges),
+            every_way: extremes.map(|(moves_least, moves_most)| EveryWayLine {
+                states: tally.states,
+                runs: tally.runs,
+                moves_least,
+                moves_most,
+            }),
+            shard: shard.filter(|&shard| shard != Shard::WHOLE).map(|shard| shard.to_string()),
+            interrupted: tally.interrupted,
+            failure: tally.failure.as_ref().map(|failure| FailureLine {
+                cause: failure.flaw.to_string(),
+                step: step(failure),
+                moves: failure.moves,
+                world: world_file::to_json(&failed_world(failure)),
+            }),
+            holds: holds(tally),
+        };
+        serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
+        writeln!(self.out)?;
         Ok(())
     }
 
@@ -166,6 +165,49 @@ impl<'o> Report<'o> {
     }
 }
 
+/// What `--json` prints for a number of edges.
+#[derive(Serialize)]
+struct Line<'a> {
+    schema: u32,
+    edges: usize,
+    class: &'a str,
+    marker: &'a str,
+    worlds: u64,
+    starts: u64,
+    mapped: u64,
+    failed: u64,
+    moves_total: u64,
+    moves_max: u64,
+    largest_ratio: f64,
+    #[serde(flatten)]
+    every_way: Option<EveryWayLine>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shard: Option<String>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    interrupted: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<FailureLine>,
+    holds: bool,
+}
+
+/// With all choices: distinct states, runs, and the fewest and most moves of any run.
+#[derive(Serialize)]
+struct EveryWayLine {
+    states: u64,
+    runs: u128,
+    moves_least: u64,
+    moves_most: u64,
+}
+
+/// The first start that was mapped wrongly.
+#[derive(Serialize)]
+struct FailureLine {
+    cause: String,
+    step: String,
+    moves: u64,
+    world: serde_json::Value,
+}
+
 /// An empty check never holds, and one that was broken off does not either.
 fn holds(tally: &Tally) -> bool {
     tally.failed() == 0 && tally.starts > 0 && !tally.interrupted
@@ -192,4 +234,25 @@ fn grouped(number: u128) -> String {
         out.push(digit);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_grouped() {
+        let texts = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
+        assert_eq!(texts, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
+    }
+
+    #[test]
+    fn runs_beyond_64_bits_are_printed_whole() {
+        let mut out = Vec::new();
+        let mut report = Report::new(&mut out, true, Choice::All);
+        let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
+        report.size(1, "multigraph", None, &tally).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(text.contains(r#""runs":340282366920938463463374607431768211455,"#), "{text}");
+    }
 }
