@@ -104,7 +104,7 @@ impl Arguments {
         if let (Some(path), Some(worst)) = (&self.worst, worst) {
             let moves = worst.moves;
             let about = format!("The start that took the most moves, {moves}, in a check");
-            let world = NamedWorld::discovered("worst", &about, &worst.graph, Some(worst.facing));
+            let world = NamedWorld::discovered("worst", &about, &worst.graph, worst.facing);
             output::write_world(path, &world)?;
         }
         Ok(outcome)

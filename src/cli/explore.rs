@@ -168,7 +168,7 @@ impl Ending<'_> {
         let about =
             format!("The map of {}, made in {} moves", self.world.name, self.exploration.moves());
         let graph = self.exploration.map().complete()?;
-        Some(NamedWorld::discovered(&name, &about, graph, Some(FACING)))
+        Some(NamedWorld::numbered(&name, &about, graph.clone(), Some(FACING)))
     }
 
     /// The object whose beginning, with the doors, has been written during the run.

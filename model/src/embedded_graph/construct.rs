@@ -226,7 +226,7 @@ impl EmbeddedGraph {
     }
 
     /// The graph with these degrees and this `opposite`, which the caller has checked.
-    pub(crate) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
+    fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
         let mut graph = Self::unfinished();
         for &degree in degrees {
             graph.add_vertex(degree);
@@ -256,27 +256,40 @@ impl EmbeddedGraph {
     /// every vertex.
     #[must_use]
     pub fn relabelled(&self, firsts: &[Dart]) -> Option<(Self, Vec<Dart>)> {
-        let mut number = vec![UNPAIRED; self.dart_count()];
         let mut order = Vec::with_capacity(self.dart_count());
-        let mut degrees = Vec::with_capacity(firsts.len());
+        let mut taken = vec![false; self.vertex_count()];
         for &first in firsts {
-            if *number.get(first.at())? != UNPAIRED {
+            let vertex = *self.vertex.get(first.at())?;
+            if std::mem::replace(&mut taken[vertex.at()], true) {
                 return None;
             }
-            let before = order.len();
-            let mut dart = first;
-            while number[dart.at()] == UNPAIRED {
-                number[dart.at()] = Dart(order.len() as u32);
-                order.push(dart);
-                dart = self.clockwise(dart);
-            }
-            degrees.push((order.len() - before) as u32);
+            let around = std::iter::successors(Some(first), |&dart| Some(self.clockwise(dart)));
+            order.extend(around.take(self.degree(vertex) as usize));
         }
-        if order.len() != self.dart_count() {
-            return None;
+        (order.len() == self.dart_count()).then(|| {
+            let mut number = vec![UNPAIRED; order.len()];
+            for (place, dart) in order.iter().enumerate() {
+                number[dart.at()] = Dart(place as u32);
+            }
+            (self.renumbered(&order), number)
+        })
+    }
+
+    /// The same embedded graph with its darts in the given order, in which the darts of each vertex
+    /// stand side by side, clockwise.
+    pub(crate) fn renumbered(&self, order: &[Dart]) -> Self {
+        let mut number = vec![UNPAIRED; order.len()];
+        let mut degrees = Vec::with_capacity(self.vertex_count());
+        let mut last = None;
+        for (place, &dart) in order.iter().enumerate() {
+            number[dart.at()] = Dart(place as u32);
+            let vertex = self.vertex(dart);
+            if last.replace(vertex) != Some(vertex) {
+                degrees.push(self.degree(vertex));
+            }
         }
         let opposite = order.iter().map(|&dart| number[self.opposite(dart).at()]).collect();
-        Some((Self::from_degrees(&degrees, opposite), number))
+        Self::from_degrees(&degrees, opposite)
     }
 }
 

@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn names_cannot_break_out_of_their_quotes() {
         let graph = EmbeddedGraph::from_neighbour_lists(&[("a", vec!["b"]), ("b", vec!["a"])]);
-        let world = NamedWorld::discovered("q\"; x", "1\\N\n2\r&", &graph.unwrap(), None);
+        let world = NamedWorld::numbered("q\"; x", "1\\N\n2\r&", graph.unwrap(), None);
         let text = write(&world);
         assert!(text.starts_with(r#"graph "q\"; x" {"#), "{text}");
         assert!(text.contains(r#"label="1\\N\n2 &amp;";"#), "{text}");

@@ -6,6 +6,7 @@ use thiserror::Error;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     floor_plan::FloorPlan,
+    isomorphism::as_discovered,
 };
 
 /// A world as a file tells it.
@@ -74,18 +75,14 @@ pub enum StartError {
 }
 
 impl NamedWorld {
-    /// A world that the tools made: vertices `v0`, `v1`, ... and edges `e0`, `e1`, ... in the order
-    /// in which a robot discovers them that looks at the darts of each vertex clockwise from the
-    /// one by which it first came. It begins at `start`, or at dart 0 where there is none.
-    ///
-    /// Edges have names exactly when the graph is not simple. The graph is renumbered in that
-    /// order, so that a start becomes dart 0.
+    /// A world that the tools made, with vertices `v0`, `v1`, ... as they are numbered, and edges
+    /// `e0`, `e1`, ... in the order of their lower darts. Edges have names exactly when the graph is
+    /// not simple.
     #[must_use]
-    pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, start: Option<Dart>) -> Self {
-        let graph_as_discovered = in_order_of_discovery(graph, start.unwrap_or(Dart(0)));
+    pub fn numbered(name: &str, about: &str, graph: EmbeddedGraph, start: Option<Dart>) -> Self {
         let edge_names = (!graph.is_simple()).then(|| {
             let mut names = vec![String::new(); graph.dart_count()];
-            for (edge, (dart, other)) in graph_as_discovered.edges().enumerate() {
+            for (edge, (dart, other)) in graph.edges().enumerate() {
                 names[dart.at()] = format!("e{edge}");
                 names[other.at()] = format!("e{edge}");
             }
@@ -94,13 +91,21 @@ impl NamedWorld {
         Self {
             name: name.to_owned(),
             about: about.to_owned(),
-            start: start.map(|_| Dart(0)),
+            start,
             vertex_names: (0..graph.vertex_count()).map(|n| format!("v{n}")).collect(),
             edge_names,
             positions: None,
             plan: None,
-            graph: graph_as_discovered,
+            graph,
         }
+    }
+
+    /// The world of a start, [`numbered`](Self::numbered) in the order in which a robot discovers
+    /// it that looks at the darts of each vertex clockwise from the one by which it first came. The
+    /// facing dart becomes dart 0.
+    #[must_use]
+    pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, facing: Dart) -> Self {
+        Self::numbered(name, about, as_discovered(graph, facing), Some(Dart(0)))
     }
 
     /// The vertex of this name.
@@ -208,35 +213,6 @@ impl NamedWorld {
     }
 }
 
-/// The same embedded graph, its vertices and darts numbered in the order in which they are
-/// discovered from `start`, which becomes dart 0.
-fn in_order_of_discovery(graph: &EmbeddedGraph, start: Dart) -> EmbeddedGraph {
-    const UNSEEN: Dart = Dart(u32::MAX);
-    let mut number = vec![UNSEEN; graph.dart_count()];
-    let mut order = Vec::with_capacity(graph.dart_count());
-    let mut degrees = Vec::with_capacity(graph.vertex_count());
-    let mut meet = |entry: Dart, order: &mut Vec<Dart>| {
-        if number[entry.at()] != UNSEEN {
-            return;
-        }
-        let mut dart = entry;
-        while number[dart.at()] == UNSEEN {
-            number[dart.at()] = Dart(order.len() as u32);
-            order.push(dart);
-            dart = graph.clockwise(dart);
-        }
-        degrees.push(graph.degree(graph.vertex(entry)));
-    };
-    meet(start, &mut order);
-    let mut next = 0;
-    while next < order.len() {
-        meet(graph.opposite(order[next]), &mut order);
-        next += 1;
-    }
-    let opposite = order.iter().map(|&dart| number[graph.opposite(dart).at()]).collect();
-    EmbeddedGraph::from_degrees(&degrees, opposite)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -252,7 +228,7 @@ mod tests {
         NamedWorld {
             edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
             vertex_names: vec!["u".to_owned(), "v".to_owned()],
-            ..NamedWorld::discovered("", "", &graph, None)
+            ..NamedWorld::numbered("", "", graph, None)
         }
     }
 
@@ -262,7 +238,7 @@ mod tests {
             ("v1", vec!["v0", "v2"]),
             ("v2", vec!["v1"]),
         ]);
-        NamedWorld::discovered("", "", &graph.unwrap(), None)
+        NamedWorld::numbered("", "", graph.unwrap(), None)
     }
 
     #[test]
@@ -304,7 +280,7 @@ mod tests {
         let mut lists = vec![("hub".to_owned(), leaves.clone())];
         lists.extend(leaves.into_iter().map(|leaf| (leaf, vec!["hub".to_owned()])));
         let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        let star = NamedWorld::discovered("", "", &graph, None);
+        let star = NamedWorld::numbered("", "", graph, None);
         assert_eq!(
             star.start_from_text("v0:q").unwrap_err().to_string(),
             "vertex `v0` has no neighbour `q`; it has v1, v2, v3, v4, v5, v6, v7, v8, ..."
@@ -316,7 +292,7 @@ mod tests {
         // From v facing c: its darts clockwise are c, b; c leads to u, entered by c, whose other
         // darts are, clockwise, a, b, a.
         let graph = with_loop().graph;
-        let world = NamedWorld::discovered("made", "by a test", &graph, Some(Dart(5)));
+        let world = NamedWorld::discovered("made", "by a test", &graph, Dart(5));
         assert_eq!((world.name.as_str(), world.about.as_str()), ("made", "by a test"));
         assert_eq!(world.vertex_names, ["v0", "v1"]);
         assert_eq!(world.edge_names.as_deref().unwrap(), ["e0", "e1", "e0", "e2", "e1", "e2"]);
@@ -327,7 +303,7 @@ mod tests {
     proptest! {
         #[test]
         fn the_text_of_a_start_tells_it(graph in any_graph(Class::Multigraph, 12)) {
-            let world = NamedWorld::discovered("", "", &graph, None);
+            let world = NamedWorld::numbered("", "", graph, None);
             for dart in world.graph.darts() {
                 prop_assert_eq!(world.start_from_text(&world.start_text(dart)), Ok(dart));
             }
@@ -338,7 +314,7 @@ mod tests {
             graph in any_graph(Class::Multigraph, 12), start in any::<u32>()
         ) {
             let start = Dart(start % graph.dart_count() as u32);
-            let world = NamedWorld::discovered("", "", &graph, Some(start));
+            let world = NamedWorld::discovered("", "", &graph, start);
             prop_assert_eq!(world.edge_names.is_none(), graph.is_simple());
             // The renumbering is the one that carries the start along all walks.
             let mut image = vec![None; graph.dart_count()];
@@ -353,7 +329,7 @@ mod tests {
                 }
             }
             // Numbering it again changes nothing.
-            let again = NamedWorld::discovered("", "", &world.graph, world.start);
+            let again = NamedWorld::discovered("", "", &world.graph, Dart(0));
             prop_assert_eq!(again, world);
         }
     }

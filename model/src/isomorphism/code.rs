@@ -42,6 +42,16 @@ pub fn code(graph: &EmbeddedGraph, facing: Dart) -> Code {
     Code(words)
 }
 
+/// The same embedded graph with its darts numbered as a robot meets them from a start, the facing
+/// dart first. Isomorphic starts become equal graphs.
+#[must_use]
+pub fn as_discovered(graph: &EmbeddedGraph, facing: Dart) -> EmbeddedGraph {
+    let mut numbering = Numbering::new(graph);
+    numbering.begin(graph, facing);
+    while numbering.next_word(graph).is_some() {}
+    graph.renumbered(&numbering.order)
+}
+
 /// The numbering of a graph's darts from a start, made one edge at a time. Can be begun again
 /// without clearing.
 pub(super) struct Numbering {

@@ -215,7 +215,7 @@ fn holds(tally: &Tally) -> bool {
 
 fn failed_world(failure: &Failed) -> NamedWorld {
     let about = format!("Algorithm 1 fails here: {}", failure.flaw);
-    NamedWorld::discovered("failed", &about, &failure.graph, Some(failure.facing))
+    NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
 /// The step at which it went wrong.
