@@ -22,3 +22,6 @@ pub mod mapping;
 pub mod marker;
 pub mod percept;
 pub mod world;
+
+#[cfg(test)]
+mod any_graph;

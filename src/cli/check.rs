@@ -14,7 +14,7 @@ use toposlam_model::{
 
 use super::{Failure, Outcome, input, output};
 use progress::Progress;
-use report::Report;
+use report::{Report, Size};
 use sizes::Sizes;
 
 /// Run Algorithm 1 on every start of every world up to a size; is every map right?
@@ -81,22 +81,21 @@ impl Arguments {
         let begun = Instant::now();
         let mut report = Report::new(out, self.json, self.choice());
         let mut worst: Option<WorstStart> = None;
-        match &self.from {
-            Some(path) => {
-                let class = path.display().to_string();
-                for (edges, tally) in self.check_file(path)? {
-                    report.size(edges, &class, None, &tally)?;
-                    keep_worse(&mut worst, tally.worst);
-                }
+        if let Some(path) = &self.from {
+            let class = path.display().to_string();
+            for (edges, tally) in self.check_file(path)? {
+                let (class, shard) = (class.as_str(), Shard::WHOLE);
+                report.size(&Size { edges, class, shard, tally: &tally })?;
+                keep_worse(&mut worst, tally.worst);
             }
-            None => {
-                for edges in self.edges.iter() {
-                    let tally = self.check_size(edges)?;
-                    report.size(edges, self.class.name(), Some(self.shard), &tally)?;
-                    keep_worse(&mut worst, tally.worst);
-                    if tally.interrupted {
-                        break;
-                    }
+        } else {
+            let (class, shard) = (self.class.name(), self.shard);
+            for edges in self.edges.iter() {
+                let tally = self.check_size(edges)?;
+                report.size(&Size { edges, class, shard, tally: &tally })?;
+                keep_worse(&mut worst, tally.worst);
+                if tally.interrupted {
+                    break;
                 }
             }
         }

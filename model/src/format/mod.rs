@@ -4,6 +4,3 @@ pub mod dot;
 pub mod named_world;
 pub mod plantri;
 pub mod world_file;
-
-#[cfg(test)]
-mod any_graph;

@@ -218,7 +218,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::format::any_graph::{Class, any_graph};
+    use crate::any_graph::{Class, any_graph};
 
     /// A loop `a` and two edges `b`, `c` to a second vertex.
     fn with_loop() -> NamedWorld {

@@ -16,25 +16,13 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::embedded_graph::{Dart, EmbeddedGraph};
-
-    /// A world with `edges` edges, decided by the numbers: each joins two free places or opens a
-    /// vertex.
-    fn arbitrary_graph(edges: usize) -> impl Strategy<Value = EmbeddedGraph> {
-        let pairs = Just((0..2 * edges as u32).collect::<Vec<_>>()).prop_shuffle();
-        let cycles = Just((0..2 * edges as u32).collect::<Vec<_>>()).prop_shuffle();
-        (pairs, cycles).prop_filter_map("not connected", |(pairs, clockwise)| {
-            let mut opposite = vec![0; pairs.len()];
-            for pair in pairs.chunks(2) {
-                opposite[pair[0] as usize] = pair[1];
-                opposite[pair[1] as usize] = pair[0];
-            }
-            EmbeddedGraph::from_permutations(&opposite, &clockwise).ok().map(|(graph, _)| graph)
-        })
-    }
+    use crate::{
+        any_graph::{Class, any_graph},
+        embedded_graph::{Dart, EmbeddedGraph},
+    };
 
     fn relabelled() -> impl Strategy<Value = (EmbeddedGraph, EmbeddedGraph, Vec<Dart>)> {
-        (1..12usize).prop_flat_map(arbitrary_graph).prop_flat_map(|graph| {
+        any_graph(Class::Multigraph, 11).prop_flat_map(|graph| {
             let order = Just(graph.vertices().collect::<Vec<_>>()).prop_shuffle();
             let turns = proptest::collection::vec(0..64u32, graph.vertex_count());
             (order, turns).prop_map(move |(order, turns)| {
@@ -71,8 +59,8 @@ mod tests {
 
         #[test]
         fn starts_have_the_same_code_exactly_when_the_bijection_verifies(
-            graph in (1..6usize).prop_flat_map(arbitrary_graph),
-            other in (1..6usize).prop_flat_map(arbitrary_graph),
+            graph in any_graph(Class::Multigraph, 5),
+            other in any_graph(Class::Multigraph, 5),
         ) {
             for dart in other.darts() {
                 let bijection = Bijection::of_starts((&graph, Dart(0)), (&other, dart));
@@ -85,7 +73,7 @@ mod tests {
 
         #[test]
         fn the_least_start_is_the_least_and_its_orbit_counts_the_automorphisms(
-            graph in (1..9usize).prop_flat_map(arbitrary_graph),
+            graph in any_graph(Class::Multigraph, 8),
         ) {
             let form = canonical(&graph);
             let codes: Vec<_> = graph.darts().map(|dart| code(&graph, dart)).collect();
@@ -102,7 +90,7 @@ mod tests {
         }
 
         #[test]
-        fn the_mirror_image_is_named(graph in (1..12usize).prop_flat_map(arbitrary_graph)) {
+        fn the_mirror_image_is_named(graph in any_graph(Class::Multigraph, 11)) {
             let bijection = mirror_isomorphism(&graph, &graph.mirror_image()).unwrap();
             prop_assert!(bijection.verify(&graph, &graph));
         }

@@ -13,6 +13,16 @@ use toposlam_model::{
 
 use crate::cli::{Failure, Outcome};
 
+/// What was checked of one number of edges.
+pub(super) struct Size<'a> {
+    pub(super) edges: usize,
+    /// The class of worlds, or the file that they are from.
+    pub(super) class: &'a str,
+    /// The share of them.
+    pub(super) shard: Shard,
+    pub(super) tally: &'a Tally,
+}
+
 /// Prints as it goes.
 pub(super) struct Report<'o> {
     out: &'o mut dyn Write,
@@ -28,30 +38,19 @@ impl<'o> Report<'o> {
     }
 
     /// One number of edges.
-    pub(super) fn size(
-        &mut self,
-        edges: usize,
-        class: &str,
-        shard: Option<Shard>,
-        tally: &Tally,
-    ) -> Result<(), Failure> {
+    pub(super) fn size(&mut self, size: &Size) -> Result<(), Failure> {
         if self.json {
-            self.json_line(edges, class, shard, tally)?;
+            self.json_line(size)?;
         } else {
-            self.row(edges, class, shard, tally)?;
+            self.row(size)?;
         }
         self.out.flush()?;
-        self.total.merge(tally.clone());
+        self.total.merge(size.tally.clone());
         Ok(())
     }
 
-    fn json_line(
-        &mut self,
-        edges: usize,
-        class: &str,
-        shard: Option<Shard>,
-        tally: &Tally,
-    ) -> Result<(), Failure> {
+    fn json_line(&mut self, size: &Size) -> Result<(), Failure> {
+        let &Size { edges, class, shard, tally } = size;
         let extremes = tally.extremes.filter(|_| self.choice == Choice::All);
         let line = Line {
             schema: 1,
@@ -71,7 +70,7 @@ impl<'o> Report<'o> {
                 moves_least,
                 moves_most,
             }),
-            shard: shard.filter(|&shard| shard != Shard::WHOLE).map(|shard| shard.to_string()),
+            shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
             interrupted: tally.interrupted,
             failure: tally.failure.as_ref().map(|failure| FailureLine {
                 cause: failure.flaw.to_string(),
@@ -86,17 +85,14 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    fn row(
-        &mut self,
-        edges: usize,
-        class: &str,
-        shard: Option<Shard>,
-        tally: &Tally,
-    ) -> Result<(), Failure> {
+    fn row(&mut self, size: &Size) -> Result<(), Failure> {
+        let &Size { edges, class, shard, tally } = size;
         let all = self.choice == Choice::All;
         if !std::mem::replace(&mut self.header, true) {
-            let share = shard.filter(|&shard| shard != Shard::WHOLE);
-            let share = share.map_or(String::new(), |shard| format!(", shard {shard}"));
+            let share = match shard {
+                Shard::WHOLE => String::new(),
+                shard => format!(", shard {shard}"),
+            };
             writeln!(self.out, "Algorithm 1, directional marker, class {class}{share}\n")?;
             write!(
                 self.out,
@@ -251,7 +247,7 @@ mod tests {
         let mut out = Vec::new();
         let mut report = Report::new(&mut out, true, Choice::All);
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
-        report.size(1, "multigraph", None, &tally).unwrap();
+        report.size(&Size { edges: 1, class: "file", shard: Shard::WHOLE, tally: &tally }).unwrap();
         let text = String::from_utf8(out).unwrap();
         assert!(text.contains(r#""runs":340282366920938463463374607431768211455,"#), "{text}");
     }

@@ -2,8 +2,8 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
+    any_graph::{Class, any_graph},
     embedded_graph::{Dart, EmbeddedGraph},
-    format::any_graph::{Class, any_graph},
 };
 
 fn all(bytes: &[u8]) -> Result<Vec<EmbeddedGraph>, PlantriError> {

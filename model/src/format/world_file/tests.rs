@@ -2,12 +2,10 @@ use proptest::{collection::vec, prelude::*};
 
 use super::*;
 use crate::{
+    any_graph::{Class, any_graph},
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
-    format::{
-        any_graph::{Class, any_graph},
-        named_world::NamedWorld,
-    },
+    format::named_world::NamedWorld,
 };
 
 fn message(text: &str) -> String {

@@ -6,13 +6,13 @@ use crate::embedded_graph::EmbeddedGraph;
 
 /// Which embedded graphs a test wants.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Class {
+pub(crate) enum Class {
     Multigraph,
     Simple,
 }
 
 /// Any connected embedded graph of the class with up to `most` edges, of any genus.
-pub(super) fn any_graph(class: Class, most: usize) -> impl Strategy<Value = EmbeddedGraph> {
+pub(crate) fn any_graph(class: Class, most: usize) -> impl Strategy<Value = EmbeddedGraph> {
     // Each edge: a corner that it leaves, whether it leads to a new vertex, a corner where it ends.
     let edge = (any::<u16>(), any::<bool>(), any::<u16>());
     vec(edge, 1..=most).prop_map(move |edges| grown(class, &edges))
