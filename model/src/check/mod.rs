@@ -11,3 +11,75 @@ pub use every_way::{EveryWay, every_way};
 pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
 pub use sweep::{Choice, Shard, ShardError, Sweep, Watch, check_world};
 pub use tally::{Failure, Tally, WorstStart};
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{Class, any_graph},
+        embedded_graph::Dart,
+        isomorphism::Candidate,
+        mapping::{Choices, Exploration, PartialMap, Tree, map_world},
+        world::GraphWorld,
+    };
+
+    /// Chooses as the numbers say.
+    struct Drawn<'n> {
+        numbers: &'n [u16],
+        next: usize,
+    }
+
+    impl Drawn<'_> {
+        fn below(&mut self, bound: usize) -> usize {
+            self.next = (self.next + 1) % self.numbers.len();
+            usize::from(self.numbers[self.next]) % bound
+        }
+    }
+
+    impl Choices for Drawn<'_> {
+        fn next_edge(&mut self, map: &PartialMap, _: &mut Tree) -> Option<Dart> {
+            let place = self.below(map.unexplored_count() as usize);
+            map.unexplored().nth(place)
+        }
+
+        fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+            self.below(hypotheses.len())
+        }
+    }
+
+    proptest! {
+        // paper: alg1.5, alg1.9, alg1.isomorphic, alg1.located
+        #[test]
+        fn larger_worlds_are_mapped_right_whatever_the_choices(
+            graph in any_graph(Class::Multigraph, 40),
+            facing in any::<u32>(),
+            numbers in proptest::collection::vec(any::<u16>(), 1..20),
+        ) {
+            let facing = Dart(facing % graph.dart_count() as u32);
+            let mut world = GraphWorld::new(&graph, facing);
+            let mut exploration = Exploration::new(graph.dart_count());
+            let mut choices = Drawn { numbers: &numbers, next: 0 };
+            map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
+            prop_assert!(judge(&exploration, facing, &world, &mut Candidate::default()).is_ok());
+        }
+
+        /// The default choices look at nothing but the map, so the numbers of a world do not matter.
+        #[test]
+        fn isomorphic_starts_cost_the_same(
+            graph in any_graph(Class::Multigraph, 30),
+            facing in any::<u32>(),
+        ) {
+            let facing = Dart(facing % graph.dart_count() as u32);
+            let copy = crate::isomorphism::as_discovered(&graph, facing);
+            let moves = |graph, facing| {
+                let mut exploration = Exploration::new(60);
+                let mut world = GraphWorld::new(graph, facing);
+                Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
+                exploration.moves()
+            };
+            prop_assert_eq!(moves(&graph, facing), moves(&copy, Dart(0)));
+        }
+    }
+}
