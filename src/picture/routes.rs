@@ -289,10 +289,7 @@ impl Room<'_> {
     /// What a curve costs because of another.
     fn cost_against(&self, curve: &Curve, other: &Curve) -> f64 {
         let near = 0.36 * self.size.base;
-        let mut reach = curve.extent;
-        reach.least = reach.least - Point::new(near, near);
-        reach.most = reach.most + Point::new(near, near);
-        if !reach.meets(&other.extent) {
+        if !curve.extent.widened(near).meets(&other.extent) {
             return 0.0;
         }
         let mut cost = 0.0;

@@ -43,8 +43,8 @@ pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     layout
 }
 
-/// The layout of a floor plan: metres, y to the north.
-pub(super) fn floor_plan(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
+/// The layout with each vertex at its given position; there, y points up.
+pub(super) fn given(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
     let vertices = positions.iter().map(|&[x, y]| Point::new(x, -y)).collect();
     straight(vertices, graph)
 }
