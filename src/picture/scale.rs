@@ -23,13 +23,12 @@ pub(super) enum Purpose {
 /// The longer side that given positions may have, in discs, however near two of them are.
 const LONGEST: f64 = 600.0;
 
+/// The longer side up to which given positions are drawn larger than they have to be, and how much
+/// larger at most.
+const SMALL: [f64; 2] = [520.0, 1.4];
+
 /// Units of the picture in a unit of the layout.
-pub(super) fn scale(
-    graph: &EmbeddedGraph,
-    places: &[Point],
-    size: &Size,
-    purpose: Purpose,
-) -> f64 {
+pub(super) fn scale(graph: &EmbeddedGraph, places: &[Point], size: &Size, purpose: Purpose) -> f64 {
     let lines: Vec<_> = graph
         .edges()
         .map(|(dart, other)| [graph.vertex(dart).at(), graph.vertex(other).at()])
@@ -64,7 +63,7 @@ fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) 
     }
     // Along an edge: the marker fits between the doors, or there is room for a bow.
     let between = match purpose {
-        Purpose::FloorPlan => 22.0,
+        Purpose::FloorPlan => 24.0,
         _ => 1.2 * size.base,
     };
     for &[u, v] in lines {
@@ -72,7 +71,11 @@ fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) 
     }
     let sides = Extent::of(places.iter().copied()).size();
     let side = sides.x.max(sides.y);
-    if scale > 0.0 && side > 0.0 { scale.min(LONGEST * size.base / side) } else { 1.0 }
+    if scale == 0.0 || side == 0.0 {
+        return 1.0;
+    }
+    let larger = (SMALL[0] / side).min(scale * SMALL[1]);
+    scale.max(larger).min(LONGEST * size.base / side)
 }
 
 /// As edges of length 1 look well, or larger where vertices are nearer than that.
@@ -83,7 +86,7 @@ fn usual(graph: &EmbeddedGraph, places: &[Point], size: &Size, lines: &[[usize; 
         (_, 0) => 5.4,
         _ => 6.4,
     };
-    let usual = size.base * discs;
+    let usual = size.base * if places.len() > layout::POLISHED { 4.0 } else { discs };
     let mut tightest = 1.0_f64;
     for &[u, v] in lines {
         let length = places[u].distance(places[v]).max(1e-6);
@@ -118,8 +121,9 @@ mod tests {
             let places = [0.0, 4.0, far].map(|x| Point::new(x, 0.0));
             scale(&graph, &places, &size, Purpose::FloorPlan)
         };
-        assert_eq!(metre(40.0).to_bits(), metre(8.0).to_bits());
-        assert!((4.0 * metre(8.0) - (2.0 * (size.discs[0] + size.knob) + 22.0)).abs() < 1e-9);
+        assert_eq!(metre(40.0).to_bits(), metre(80.0).to_bits());
+        assert!((4.0 * metre(40.0) - (2.0 * (size.discs[0] + size.knob) + 24.0)).abs() < 1e-9);
+        assert!(metre(8.0) > metre(40.0));
         // However near two positions are, the picture stays finite.
         assert!(metre(4.000_000_1) < 1e5);
     }

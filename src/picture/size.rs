@@ -12,7 +12,7 @@ use super::{layout, text};
 pub(super) enum Names {
     /// In their discs, each in one line.
     Inside,
-    /// In their discs; those that are too long for one line are broken in two.
+    /// In their discs, each in two lines where it can be broken.
     Broken,
     /// Next to their discs.
     Beside,
@@ -36,17 +36,17 @@ pub(super) struct Size {
 }
 
 /// Radii between which a usual disc may be.
-const DISC: [f64; 2] = [23.0, 40.0];
+const DISC: [f64; 2] = [25.0, 44.0];
 /// A disc that is widened for names in one line; beyond it they are broken.
-const ONE_LINE: f64 = 34.0;
+const ONE_LINE: f64 = 35.0;
 /// The radius of a disc without a name in it.
-const EMPTY: f64 = 18.0;
+const EMPTY: f64 = 19.0;
 /// Font sizes: the largest of a name in its disc, the one that is aimed at, and the smallest.
 const NAME: [f64; 3] = [15.0, 12.0, 9.5];
 /// The font size of names beside discs.
 const BESIDE: f64 = 12.0;
 /// The radius of a knob.
-const KNOB: f64 = 6.0;
+const KNOB: f64 = 6.5;
 /// Between a name and the knobs to its left and right.
 const CLEAR: f64 = 2.0;
 
@@ -59,7 +59,7 @@ impl Size {
             let lines = names.iter().flat_map(|name| lines(name));
             lines.map(|line| text::width(&line, 1.0)).fold(0.5, f64::max)
         };
-        let whole = widest(&|name| vec![name.to_owned()]);
+        let whole = widest(&|name: &str| vec![name.to_owned()]);
         let broken = widest(&text::in_two);
         let radius = |width: f64| width * NAME[1] / 2.0 + KNOB + CLEAR;
         let (base, name, names) = if radius(whole) <= ONE_LINE {
@@ -97,9 +97,8 @@ impl Size {
 
     /// The name in the lines in which it is drawn.
     pub(super) fn lines(&self, name: &str) -> Vec<String> {
-        let fits = text::width(name, self.name) <= room(self.base) + 1e-9;
         match self.names {
-            Names::Broken if !fits => text::in_two(name),
+            Names::Broken => text::in_two(name),
             _ => vec![name.to_owned()],
         }
     }

@@ -65,7 +65,7 @@ impl Page {
     }
 
     fn edges(&mut self, drawing: &Drawing, shift: Point) {
-        let thick = if drawing.size.knob > 0.0 { 2.2 } else { 1.2 };
+        let thick = thickness(drawing);
         self.line("<g fill=\"none\">");
         for ((dart, other, curve), &ink) in drawing.edges.iter().zip(&drawing.inks) {
             let path = path(curve, shift);
@@ -77,8 +77,11 @@ impl Page {
             }
             self.line(&format!(
                 "<path class=\"edge\" data-darts=\"{} {}\" d=\"{path}\" stroke=\"{}\" \
-                 stroke-width=\"{thick}\"/>",
-                dart.0, other.0, EDGES[ink]
+                 stroke-width=\"{}\"/>",
+                dart.0,
+                other.0,
+                EDGES[ink],
+                short(thick),
             ));
         }
         self.line("</g>");
@@ -115,8 +118,7 @@ impl Page {
             let baseline = short(first + number as f64 * LINE * label.size);
             let line = text::escaped(line);
             // Writing to a string does not fail.
-            let _ =
-                write!(spans, "<tspan x=\"{}\" y=\"{baseline}\">{line}</tspan>", short(at.x));
+            let _ = write!(spans, "<tspan x=\"{}\" y=\"{baseline}\">{line}</tspan>", short(at.x));
         }
         self.line(&format!(
             "<text class=\"{class}\" font-size=\"{}\" fill=\"{fill}\" \
@@ -143,11 +145,20 @@ impl Page {
                 short(at.y),
                 short(drawing.size.knob - 0.5),
             ));
-            let font = if number < 10 { 8.0 } else { 6.5 };
+            let font = drawing.size.knob * if number < 10 { 1.35 } else { 1.1 };
             let baseline = at + Point::new(0.0, font * 0.365);
             self.text(&number.to_string(), baseline, font, ink, "door-number");
         }
     }
+}
+
+/// How thick edges are: so that they are seen when the whole of a large picture is.
+fn thickness(drawing: &Drawing) -> f64 {
+    if drawing.size.knob > 0.0 {
+        return 2.2;
+    }
+    let sides = drawing.extent().size();
+    (sides.x.max(sides.y) / 3000.0).clamp(1.2, 0.6 * drawing.size.base)
 }
 
 /// The curve as path data.
