@@ -9,9 +9,10 @@ use super::{
     geometry::{Extent, Point},
     labels::{self, Label},
     layout::{self, Layout},
-    routes::{self, Crossings, Errand},
+    routes::{self, Crossings},
     scale::{Purpose, scale},
     size::Size,
+    ways::Errand,
 };
 
 /// Everything at its place.

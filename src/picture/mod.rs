@@ -2,10 +2,10 @@
 //!
 //! A vertex is a disc; its doors are knobs on the border of the disc, in their clockwise order; an
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
-//! picture, even where edges have to cross. From the ground up: `geometry`, `text`,
-//! `doors` and `size`; then the `layout` of the vertices, `curves` and their `routes`,
-//! `labels`; the `drawing` puts them together, and `svg` and `png` write
-//! it.
+//! picture, even where edges have to cross. From the ground up: `geometry`, `text`, `doors` and
+//! `size`; the `layout` of the vertices and its `scale`; the `curves`, the `ways` that an edge may
+//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together, and `svg` and
+//! `png` write it.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -24,6 +24,7 @@ mod scale;
 mod size;
 mod svg;
 mod text;
+mod ways;
 
 #[cfg(test)]
 mod gallery;

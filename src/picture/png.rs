@@ -66,7 +66,7 @@ fn scale(side: f32) -> f32 {
 
 #[expect(clippy::cast_sign_loss, reason = "the sizes of an SVG are positive")]
 fn pixels(length: f32) -> u32 {
-    length.ceil() as u32
+    length.round() as u32
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ static GALLERY: LazyLock<Vec<Drawn>> = LazyLock::new(|| {
         let picture = Picture::from(&world);
         let drawing = Drawing::of(&picture);
         let svg = svg::document(&picture, &drawing);
-        Drawn { drawing, svg, world }
+        Drawn { world, drawing, svg }
     };
     worlds::gallery().into_iter().map(draw).collect()
 });
@@ -198,7 +198,8 @@ fn names_of_vertices_do_not_overlap_and_stand_on_the_canvas() {
                 extent.include(at + Point::new(-half, -0.76 * size));
                 extent.include(at + Point::new(half, 0.24 * size));
             }
-            let name: String = name.descendants().filter_map(|node| node.text()).collect();
+            let name: String =
+                name.descendants().filter(Node::is_text).filter_map(|node| node.text()).collect();
             assert!(extent.least.x >= 0.0 && extent.least.y >= 0.0, "{}: {name}", world.name);
             assert!(extent.most.x <= canvas[0] && extent.most.y <= canvas[1], "{name}");
             let covered = boxes.iter().any(|other| extent.shared_area(other) > 0.0);

@@ -50,13 +50,13 @@ fn lists(text: &str) -> Vec<(String, Vec<String>)> {
 
 /// A floor plan.
 fn plan(name: &str, junctions: &[(&str, f64, f64)], hallways: &[(&str, &str)]) -> NamedWorld {
-    let mut text = "[floor]\nhallway_width = 1.6\n[junctions]\n".to_owned();
-    for (junction, x, y) in junctions {
-        text += &format!("{junction} = [{x}, {y}]\n");
-    }
-    for (from, to) in hallways {
-        text += &format!("[[hallways]]\nfrom = \"{from}\"\nto = \"{to}\"\n");
-    }
+    let places = junctions.iter().map(|(name, x, y)| format!("{name} = [{x}, {y}]\n"));
+    let places: String = places.collect();
+    let ways = hallways
+        .iter()
+        .map(|(from, to)| format!("[[hallways]]\nfrom = \"{from}\"\nto = \"{to}\"\n"));
+    let ways: String = ways.collect();
+    let text = format!("[floor]\nhallway_width = 1.6\n[junctions]\n{places}{ways}");
     let read = world_file::read(text.as_bytes()).unwrap();
     NamedWorld { name: name.to_owned(), start: Some(Dart(0)), ..read }
 }
@@ -137,8 +137,8 @@ pub(super) fn gallery() -> Vec<NamedWorld> {
                         kitchen: theAssemblyHallOfTheHouse archiveOfTheLibrary, \
                         archiveOfTheLibrary: theAssemblyHallOfTheHouse kitchen, \
                         stairs: theAssemblyHallOfTheHouse";
-    let long_names = "the-hall: kitchen archive stairs, kitchen: the-hall archive, \
-                      archive: the-hall kitchen, stairs: the-hall";
+    let long_names = "the-great-hall: kitchen archive stairs, kitchen: the-great-hall archive, \
+                      archive: the-great-hall kitchen, stairs: the-great-hall";
     let mut worlds = vec![
         simple("figure-1a", "x: a b d c, a: b x c, b: d x a, d: b c x, c: a x d"),
         simple("figure-1b", "X: A B D C, A: C X B, B: A X D, D: X C B, C: D X A"),

@@ -19,12 +19,13 @@ pub(super) fn short(number: f64) -> String {
 pub(super) struct Page(pub(super) String);
 
 impl Page {
+    /// A line of the document's text.
     pub(super) fn line(&mut self, line: &str) {
         self.0.push_str(line);
         self.0.push('\n');
     }
 
-    /// One line of text, its middle at `at`.
+    /// Words in one line, their middle at `at`.
     pub(super) fn text(&mut self, text: &str, at: Point, size: f64, fill: &str, class: &str) {
         self.line(&format!(
             "<text class=\"{class}\" x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{fill}\" \
