@@ -9,6 +9,8 @@ use clap::ValueEnum;
 
 use toposlam::picture::{Picture, png, svg};
 
+use toposlam_model::format::dot;
+
 use super::{Failure, Outcome, input, output};
 
 /// Draw a world: its vertices with their doors in clockwise order, and its start
@@ -22,10 +24,10 @@ pub(super) struct Arguments {
     /// Where the marker lies and points, instead of the file's [start]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// The file to write; without it, the SVG goes to standard output
+    /// The file to write, its format by its ending: .svg, .png or .dot; without it, standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// What to write; by default what the ending of the file says, and SVG where it says nothing
+    /// The format, where the ending of the file does not say it; SVG by default
     #[arg(long, value_enum)]
     format: Option<Format>,
 }
@@ -36,6 +38,8 @@ enum Format {
     Svg,
     /// An image
     Png,
+    /// A text that Graphviz draws
+    Dot,
 }
 
 impl Arguments {
@@ -45,10 +49,11 @@ impl Arguments {
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = svg(&Picture::from(&world));
+        let drawn = || svg(&Picture::from(&world));
         let bytes = match format {
-            Format::Svg => drawn.into_bytes(),
-            Format::Png => png(&drawn).map_err(|error| Failure::in_file(&self.world, error))?,
+            Format::Svg => drawn().into_bytes(),
+            Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,
+            Format::Dot => dot::write(&world).into_bytes(),
         };
         match &self.out {
             Some(path) => output::write_whole(path, &bytes)?,
@@ -63,6 +68,7 @@ impl Arguments {
         let said = match ending.map(std::ffi::OsStr::to_ascii_lowercase) {
             Some(ending) if ending == "png" => Some(Format::Png),
             Some(ending) if ending == "svg" => Some(Format::Svg),
+            Some(ending) if ending == "dot" => Some(Format::Dot),
             _ => None,
         };
         match (self.format, said, &self.out) {
@@ -72,7 +78,7 @@ impl Arguments {
             )),
             (None, None, Some(path)) if ending.is_some() => Err(Failure::in_file(
                 path,
-                "a picture's name ends in .svg or .png, or --format says what it is",
+                "a picture's name ends in .svg, .png or .dot, or --format says what it is",
             )),
             (Some(format), ..) | (None, Some(format), _) => Ok(format),
             (None, None, _) => Ok(Format::Svg),

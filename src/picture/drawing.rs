@@ -3,14 +3,16 @@
 use crate::model::embedded_graph::{Dart, EmbeddedGraph};
 
 use super::{
-    Picture,
+    Picture, Place,
     curves::Curve,
     doors::door_directions,
     geometry::{Extent, Point},
     labels::{self, Label},
     layout::{self, Layout},
-    routes::{self, Crossings, Errand},
+    routes::{self, Crossings},
+    scale::{Purpose, scale},
     size::Size,
+    ways::Errand,
 };
 
 /// Everything at its place.
@@ -23,30 +25,42 @@ pub(super) struct Drawing {
     pub(super) doors: Vec<f64>,
     /// The darts and the curve of each edge, from its first dart.
     pub(super) edges: Vec<(Dart, Dart, Curve)>,
+    /// The vertices at the ends of each edge.
+    pub(super) ends: Vec<[usize; 2]>,
     /// The ink of each edge: 0, or one that no edge that it crosses has.
     pub(super) inks: Vec<usize>,
     pub(super) labels: Vec<Label>,
-    /// Units of the picture in a metre, for floor plans.
-    pub(super) metre: Option<f64>,
+    /// The ground, for floor plans.
+    pub(super) floor: Option<Floor>,
+}
+
+/// What the picture shows of the ground.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Floor {
+    /// Units of the picture in a metre.
+    pub(super) metre: f64,
+    /// Units of the picture in the width of a hallway.
+    pub(super) width: f64,
 }
 
 /// The inks there are for edges that cross others.
 pub(super) const INKS: usize = 7;
 
-/// The longest hallway that is drawn, in discs: a larger plan is drawn smaller.
-const LONGEST: f64 = 40.0;
-
 impl Drawing {
     pub(super) fn of(picture: &Picture) -> Self {
         let graph = picture.graph;
         let size = Size::of(graph, picture.vertex_names);
-        let positions =
-            picture.positions.filter(|positions| positions.len() == graph.vertex_count());
-        let mut layout = match positions {
-            Some(positions) => layout::floor_plan(graph, positions),
+        let place = picture.place.of_all(graph.vertex_count());
+        let mut layout = match place.positions() {
+            Some(positions) => layout::given(graph, positions),
             None => layout::lay_out(graph),
         };
-        let unit = scale(graph, &layout, &size, positions.is_some());
+        let purpose = match place {
+            Place::Free => Purpose::Usual,
+            Place::At(_) => Purpose::Given,
+            Place::FloorPlan { .. } => Purpose::FloorPlan,
+        };
+        let unit = scale(graph, &layout.vertices, &size, purpose);
         for point in layout.vertices.iter_mut().chain(layout.bends.iter_mut().flatten()) {
             *point = *point * unit;
         }
@@ -60,7 +74,7 @@ impl Drawing {
                 bends: bends.clone(),
             })
             .collect();
-        let crossings = if graph.genus() == 0 && positions.is_none() {
+        let crossings = if graph.genus() == 0 && place == Place::Free {
             Crossings::Needless
         } else {
             Crossings::Needed
@@ -68,6 +82,7 @@ impl Drawing {
         let curves = routes::routes(&errands, &layout.vertices, &size, crossings);
         let mut drawing = Self {
             inks: inks(&curves),
+            ends: errands.iter().map(|errand| errand.vertices).collect(),
             edges: graph
                 .edges()
                 .zip(curves)
@@ -76,11 +91,26 @@ impl Drawing {
             centres: layout.vertices,
             doors,
             labels: Vec::new(),
-            metre: positions.map(|_| unit),
+            floor: match place {
+                Place::FloorPlan { hallway_width, .. } => {
+                    Some(Floor { metre: unit, width: unit * hallway_width })
+                }
+                Place::Free | Place::At(_) => None,
+            },
             size,
         };
         drawing.labels = labels::labels(&drawing, picture);
         drawing
+    }
+
+    /// The floor of each hallway of a floor plan.
+    pub(super) fn hallways(&self) -> impl Iterator<Item = Extent> + '_ {
+        self.floor.into_iter().flat_map(move |floor| {
+            self.ends.iter().map(move |ends| {
+                let middle = Extent::of(ends.map(|vertex| self.centres[vertex]));
+                middle.widened(floor.width / 2.0)
+            })
+        })
     }
 
     /// The box around all that is drawn.
@@ -90,52 +120,17 @@ impl Drawing {
             let radius = disc + self.size.knob + 1.0;
             extent.join(Extent::around(*centre, radius, radius));
         }
+        for hallway in self.hallways() {
+            extent.join(hallway);
+        }
         for (_, _, curve) in &self.edges {
-            let half = curve.extent.size() * 0.5 + Point::new(3.0, 3.0);
-            extent.join(Extent::around(curve.extent.centre(), half.x, half.y));
+            extent.join(curve.extent.widened(3.0));
         }
         for label in &self.labels {
             extent.join(label.extent());
         }
         extent
     }
-}
-
-/// Units of the picture in a unit of the layout.
-fn scale(graph: &EmbeddedGraph, layout: &Layout, size: &Size, plan: bool) -> f64 {
-    let mut largest = 0.0_f64;
-    let mut tightest = 1.0_f64;
-    // Curves that cross want more room than straight ones.
-    let usual = size.base * if !plan && graph.genus() > 0 { 6.4 } else { 5.4 };
-    for (dart, other) in graph.edges() {
-        let (u, v) = (graph.vertex(dart).at(), graph.vertex(other).at());
-        if u != v {
-            let length = layout.vertices[u].distance(layout.vertices[v]).max(1e-6);
-            let discs = size.discs[u] + size.discs[v];
-            tightest = tightest.max((discs + 2.0 * size.base) / (length * usual));
-            largest = largest.max(length);
-        }
-    }
-    if plan {
-        // All hallways to one scale: the shortest decides, as long as the longest stays in sight.
-        let shortest = tightest * usual;
-        let lengths = graph.edges().map(|(dart, other)| {
-            let ends = [dart, other].map(|end| layout.vertices[graph.vertex(end).at()]);
-            ends[0].distance(ends[1])
-        });
-        let least = lengths.fold(f64::INFINITY, f64::min).max(1e-6);
-        let wish = (usual / least).max(shortest.min(usual / least));
-        return wish.min(LONGEST * size.base / largest.max(1e-6));
-    }
-    if layout.vertices.len() <= layout::POLISHED {
-        for (at, one) in layout.vertices.iter().enumerate() {
-            for other in &layout.vertices[..at] {
-                let distance = one.distance(*other).max(1e-6);
-                tightest = tightest.max(3.4 * size.base / (distance * usual));
-            }
-        }
-    }
-    usual * tightest.min(2.5)
 }
 
 /// The direction of each dart's door: as its edge would leave, where the clockwise order allows.

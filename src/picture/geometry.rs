@@ -168,6 +168,12 @@ impl Extent {
         width.max(0.0) * height.max(0.0)
     }
 
+    /// The box that is larger by a margin on all sides.
+    pub(super) fn widened(&self, margin: f64) -> Self {
+        let margin = Point::new(margin, margin);
+        Self { least: self.least - margin, most: self.most + margin }
+    }
+
     pub(super) fn size(&self) -> Point {
         self.most - self.least
     }

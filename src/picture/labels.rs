@@ -7,6 +7,7 @@ use super::{
     Picture,
     drawing::Drawing,
     geometry::{Extent, Point},
+    size::Names,
     text,
 };
 
@@ -24,7 +25,7 @@ pub(super) enum Kind {
 /// A text at its place.
 #[derive(Clone, Debug)]
 pub(super) struct Label {
-    pub(super) text: String,
+    pub(super) lines: Vec<String>,
     /// The middle of the text.
     pub(super) centre: Point,
     /// The font size.
@@ -32,51 +33,46 @@ pub(super) struct Label {
     pub(super) kind: Kind,
 }
 
-impl Label {
-    fn new(text: &str, centre: Point, size: f64, kind: Kind) -> Self {
-        let text = text.to_owned();
-        Self { text, centre, size, kind }
-    }
+/// From one line of a text to the next, in font sizes.
+pub(super) const LINE: f64 = 1.15;
 
+impl Label {
     /// The box that the text fills.
     pub(super) fn extent(&self) -> Extent {
-        let width = text::width(&self.text, self.size);
-        Extent::around(self.centre, width / 2.0 + 1.5, self.size * 0.58)
+        let widths = self.lines.iter().map(|line| text::width(line, self.size));
+        let width = widths.fold(0.0, f64::max);
+        let height = self.size * (1.16 + LINE * (self.lines.len() as f64 - 1.0));
+        Extent::around(self.centre, width / 2.0 + 1.5, height / 2.0)
     }
 }
 
 /// The font size of names of edges.
 const EDGE_SIZE: f64 = 11.0;
+/// How far from a disc its name may stand.
+const AWAY: [f64; 5] = [3.0, 8.0, 16.0, 28.0, 44.0];
+/// What it costs to cover a name that stands already, whatever is covered of it.
+const COVERED: f64 = 300.0;
 
 /// The labels of vertices and edges.
 pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
     let mut labels = Vec::new();
-    let mut homeless = Vec::new();
     let size = &drawing.size;
-    for (vertex, name) in picture.vertex_names.iter().enumerate() {
-        let Some(&centre) = drawing.centres.get(vertex) else {
-            break;
-        };
-        if size.holds(vertex, name) {
-            labels.push(Label::new(name, centre, size.name, Kind::Inside));
-        } else {
-            homeless.push(vertex);
+    let named = drawing.centres.iter().zip(picture.vertex_names).enumerate();
+    for (vertex, (&centre, name)) in named {
+        match size.names {
+            Names::Nowhere => {}
+            Names::Inside | Names::Broken => {
+                let lines = size.lines(name);
+                labels.push(Label { lines, centre, size: size.name, kind: Kind::Inside });
+            }
+            Names::Beside => {
+                let places = beside(centre, size.discs[vertex] + size.knob, name, size.name);
+                labels.extend(roomiest(drawing, picture, &labels, None, places));
+            }
         }
     }
     if size.knob == 0.0 {
         return labels;
-    }
-    for vertex in homeless {
-        let name = &picture.vertex_names[vertex];
-        let places = (0..48).map(|turn| {
-            let angle = TAU * f64::from(turn % 24) / 24.0;
-            let away = size.discs[vertex] + size.knob + if turn < 24 { 9.0 } else { 22.0 };
-            let half = text::width(name, 11.0) / 2.0;
-            let step = Point::polar(angle, away);
-            let aside = Point::new(angle.cos() * half, 0.0);
-            Label::new(name, drawing.centres[vertex] + step + aside, 11.0, Kind::Beside)
-        });
-        labels.extend(roomiest(drawing, picture, &labels, None, places));
     }
     if let Some(names) = picture.edge_names {
         for (number, (dart, _, curve)) in drawing.edges.iter().enumerate() {
@@ -84,12 +80,35 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
                 continue;
             };
             let shares = [0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65, 0.3, 0.7, 0.25, 0.75, 0.2, 0.8];
-            let places =
-                shares.map(|share| Label::new(name, curve.at(share), EDGE_SIZE, Kind::Edge));
+            let places = shares.map(|share| Label {
+                lines: vec![name.clone()],
+                centre: curve.at(share),
+                size: EDGE_SIZE,
+                kind: Kind::Edge,
+            });
             labels.extend(roomiest(drawing, picture, &labels, Some(number), places));
         }
     }
     labels
+}
+
+/// Places of a name around a disc of the given reach, the near ones first.
+fn beside(centre: Point, reach: f64, name: &str, size: f64) -> Vec<Label> {
+    let mut places = Vec::new();
+    for away in AWAY {
+        for lines in [vec![name.to_owned()], text::in_two(name)] {
+            for turn in 0..24 {
+                let angle = TAU * f64::from(turn) / 24.0;
+                let kind = Kind::Beside;
+                let mut label = Label { lines: lines.clone(), centre, size, kind };
+                let half = label.extent().size() * 0.5;
+                let aside = Point::new(angle.cos() * half.x, angle.sin() * half.y);
+                label.centre = centre + Point::polar(angle, reach + away) + aside;
+                places.push(label);
+            }
+        }
+    }
+    places
 }
 
 /// The place that covers least; the first among equals.
@@ -102,7 +121,7 @@ fn roomiest(
 ) -> Option<Label> {
     let mut best: Option<(f64, Label)> = None;
     for (rank, label) in places.into_iter().enumerate() {
-        let cost = covered(drawing, picture, taken, own, &label) + 0.3 * rank as f64;
+        let cost = covered(drawing, picture, taken, own, &label) + 0.1 * rank as f64;
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, label));
         }
@@ -119,11 +138,16 @@ fn covered(
     label: &Label,
 ) -> f64 {
     let extent = label.extent();
-    let half = extent.size() * 0.5 + Point::new(3.0, 3.0);
-    let roomy = Extent::around(extent.centre(), half.x, half.y);
+    let roomy = extent.widened(3.0);
     let mut cost = 0.0;
     for other in taken {
-        cost += extent.shared_area(&other.extent());
+        let shared = extent.shared_area(&other.extent());
+        cost += if shared > 0.0 { COVERED + shared } else { 0.0 };
+    }
+    if label.kind == Kind::Beside {
+        for hallway in drawing.hallways() {
+            cost += extent.shared_area(&hallway);
+        }
     }
     for (centre, disc) in drawing.centres.iter().zip(&drawing.size.discs) {
         let radius = disc + drawing.size.knob;

@@ -2,10 +2,10 @@
 //!
 //! A vertex is a disc; its doors are knobs on the border of the disc, in their clockwise order; an
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
-//! picture, even where edges have to cross. From the ground up: `geometry`, `text`,
-//! `doors` and `size`; then the `layout` of the vertices, `curves` and their `routes`,
-//! `labels`; the `drawing` puts them together, and `svg` and `png` write
-//! it.
+//! picture, even where edges have to cross. From the ground up: `geometry`, `text`, `doors` and
+//! `size`; the `layout` of the vertices and its `scale`; the `curves`, the `ways` that an edge may
+//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together, and `svg` and
+//! `png` write it.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -20,9 +20,11 @@ mod labels;
 mod layout;
 mod png;
 mod routes;
+mod scale;
 mod size;
 mod svg;
 mod text;
+mod ways;
 
 #[cfg(test)]
 mod gallery;
@@ -45,12 +47,62 @@ pub struct Picture<'a> {
     pub edge_names: Option<&'a [String]>,
     /// The facing dart; the marker lies at its vertex and points along it.
     pub start: Option<Dart>,
-    /// Where each vertex is, for a floor plan: metres, x to the east, y to the north.
-    pub positions: Option<&'a [[f64; 2]]>,
+    /// Where the vertices are.
+    pub place: Place<'a>,
     /// Stands above the picture; may be empty.
     pub title: &'a str,
     /// Stands below the picture, the cost of exploring it for example; may be empty.
     pub caption: &'a str,
+}
+
+/// Where the vertices of a picture are.
+///
+/// Positions that are not finite, or not one a vertex, count as [`Place::Free`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Place<'a> {
+    /// Wherever the picture is clearest.
+    #[default]
+    Free,
+    /// At the given positions, in a unit that means nothing; x to the right, y up.
+    At(&'a [[f64; 2]]),
+    /// On the ground: the picture shows the hallways at their width, and a scale.
+    FloorPlan {
+        /// Metres, x to the east, y to the north.
+        positions: &'a [[f64; 2]],
+        /// Metres.
+        hallway_width: f64,
+    },
+}
+
+impl<'a> Place<'a> {
+    /// The positions, where there are any.
+    #[must_use]
+    pub fn positions(self) -> Option<&'a [[f64; 2]]> {
+        match self {
+            Self::Free => None,
+            Self::At(positions) | Self::FloorPlan { positions, .. } => Some(positions),
+        }
+    }
+
+    /// The same place, if it tells where each of `count` vertices is.
+    fn of_all(self, count: usize) -> Self {
+        let told = self.positions().is_some_and(|positions| {
+            positions.len() == count && positions.iter().flatten().all(|at| at.is_finite())
+        });
+        if told { self } else { Self::Free }
+    }
+}
+
+impl<'a> From<&'a NamedWorld> for Place<'a> {
+    fn from(world: &'a NamedWorld) -> Self {
+        match (&world.positions, &world.plan) {
+            (None, _) => Self::Free,
+            (Some(positions), None) => Self::At(positions),
+            (Some(positions), Some(plan)) => {
+                Self::FloorPlan { positions, hallway_width: plan.hallway_width() }
+            }
+        }
+    }
 }
 
 impl<'a> From<&'a NamedWorld> for Picture<'a> {
@@ -61,7 +113,7 @@ impl<'a> From<&'a NamedWorld> for Picture<'a> {
             vertex_names: &world.vertex_names,
             edge_names: world.edge_names.as_deref(),
             start: world.start,
-            positions: world.positions.as_deref(),
+            place: Place::from(world),
             title: &world.name,
             caption: &world.about,
         }

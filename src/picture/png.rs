@@ -8,11 +8,12 @@ use thiserror::Error;
 /// DejaVu Sans, reduced to Latin, Greek, Cyrillic and some symbols; its licence stands beside it.
 const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 
-/// Pixels in a unit of the picture.
+/// Pixels in a unit of a small picture.
 const PIXELS: f32 = 2.0;
-
-/// The longest side of an image, in pixels; larger pictures get fewer pixels in a unit.
-const LONGEST: f32 = 6000.0;
+/// The longest side of a usual image, in pixels; larger pictures get fewer pixels in a unit.
+const USUAL: f32 = 2000.0;
+/// The longest side of any image: what would get less than a pixel in a unit may grow up to here.
+const LONGEST: f32 = 4000.0;
 
 /// Why a picture could not be made.
 #[derive(Debug, Error)]
@@ -33,8 +34,8 @@ pub enum PictureError {
     Png(String),
 }
 
-/// The SVG as a PNG image: two pixels in a unit, or as many as keep its longer side below 6000.
-/// Text is set in DejaVu Sans, whatever fonts the system has.
+/// The SVG as a PNG image: two pixels in a unit, or as many as keep its longer side at 2000, but if
+/// that is less than one, then one, up to a side of 4000. Text is set in DejaVu Sans, whatever fonts the system has.
 ///
 /// # Errors
 /// Where the text is no SVG, or the image would have no pixels.
@@ -49,7 +50,7 @@ pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
     };
     let tree = usvg::Tree::from_str(svg, &options)?;
     let size = tree.size();
-    let scale = PIXELS.min(LONGEST / size.width().max(size.height()));
+    let scale = scale(size.width().max(size.height()));
     let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));
     let mut image =
         tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
@@ -58,9 +59,14 @@ pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
     image.encode_png().map_err(|error| PictureError::Png(error.to_string()))
 }
 
+/// Pixels in a unit of a picture whose longer side is given.
+fn scale(side: f32) -> f32 {
+    PIXELS.min((USUAL / side).max((LONGEST / side).min(1.0)))
+}
+
 #[expect(clippy::cast_sign_loss, reason = "the sizes of an SVG are positive")]
 fn pixels(length: f32) -> u32 {
-    length.ceil() as u32
+    length.round() as u32
 }
 
 #[cfg(test)]
@@ -89,6 +95,13 @@ mod tests {
             assert!(dark_pixels(&with_text(text)) > 20, "{text}");
         }
         assert_ne!(with_text("corner"), with_text("tee"));
+    }
+
+    #[test]
+    fn large_pictures_get_fewer_pixels_in_a_unit() {
+        for (side, pixels) in [(400.0, 800.0), (1400.0, 2000.0), (3000.0, 3000.0), (9e3, 4e3)] {
+            assert!((scale(side) * side - pixels).abs() < 0.5, "{side}");
+        }
     }
 
     #[test]

@@ -1,10 +1,24 @@
-//! How large things are drawn, in picture units (pixels of an SVG at its natural size).
+//! How large things are drawn, in picture units (pixels of an SVG at its natural size), and where
+//! the names of the vertices stand: all of them inside their discs, or all of them beside.
 
 use std::f64::consts::TAU;
 
 use crate::model::embedded_graph::EmbeddedGraph;
 
 use super::{layout, text};
+
+/// Where the names of the vertices stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Names {
+    /// In their discs, each in one line.
+    Inside,
+    /// In their discs, each in two lines where it can be broken.
+    Broken,
+    /// Next to their discs.
+    Beside,
+    /// Nowhere: there is no room.
+    Nowhere,
+}
 
 /// The sizes that fit one graph and its names.
 #[derive(Clone, Debug)]
@@ -15,50 +29,114 @@ pub(super) struct Size {
     pub(super) discs: Vec<f64>,
     /// The radius of a door's knob; 0 where the graph is too large for knobs.
     pub(super) knob: f64,
-    /// The font size of names in discs.
+    /// The font size of the names of vertices.
     pub(super) name: f64,
+    /// Where these names stand.
+    pub(super) names: Names,
 }
 
 /// Radii between which a usual disc may be.
-const DISC: [f64; 2] = [23.0, 34.0];
-/// Font sizes between which names may be.
-const NAME: [f64; 2] = [9.5, 15.0];
+const DISC: [f64; 2] = [25.0, 44.0];
+/// A disc that is widened for names in one line; beyond it they are broken.
+const ONE_LINE: f64 = 35.0;
+/// The radius of a disc without a name in it.
+const EMPTY: f64 = 19.0;
+/// Font sizes: the largest of a name in its disc, the one that is aimed at, and the smallest.
+const NAME: [f64; 3] = [15.0, 12.0, 9.5];
+/// The font size of names beside discs.
+const BESIDE: f64 = 12.0;
+/// The radius of a knob.
+const KNOB: f64 = 6.5;
+/// Between a name and the knobs to its left and right.
+const CLEAR: f64 = 2.0;
 
 impl Size {
     pub(super) fn of(graph: &EmbeddedGraph, names: &[String]) -> Self {
         if graph.vertex_count() > layout::POLISHED || graph.edge_count() > 2 * layout::POLISHED {
-            return Self::plain(graph);
+            return Self::plain(graph, names);
         }
-        let knob = 6.0;
-        let longest = names.iter().map(|name| text::width(name, 1.0)).fold(0.5, f64::max);
-        // A name has to fit between the knobs to its left and right.
-        let room = |base: f64| 2.0 * (base - knob - 3.0);
-        let wish = (longest * 12.0 / 2.0 + knob + 3.0).clamp(DISC[0], DISC[1]);
-        let name = (room(wish) / longest).clamp(NAME[0], NAME[1]);
+        let widest = |lines: &dyn Fn(&str) -> Vec<String>| {
+            let lines = names.iter().flat_map(|name| lines(name));
+            lines.map(|line| text::width(&line, 1.0)).fold(0.5, f64::max)
+        };
+        let whole = widest(&|name: &str| vec![name.to_owned()]);
+        let broken = widest(&text::in_two);
+        let radius = |width: f64| width * NAME[1] / 2.0 + KNOB + CLEAR;
+        let (base, name, names) = if radius(whole) <= ONE_LINE {
+            let base = radius(whole).max(DISC[0]);
+            (base, room(base) / whole, Names::Inside)
+        } else {
+            let base = radius(broken).clamp(DISC[0], DISC[1]);
+            (base, room(base) / broken, Names::Broken)
+        };
+        let (base, name, names) = if name < NAME[2] {
+            (EMPTY, BESIDE, Names::Beside)
+        } else {
+            (base, name.min(NAME[0]), names)
+        };
         let discs = graph
             .vertices()
-            .map(|vertex| wish.max(f64::from(graph.degree(vertex)) * 2.35 * knob / TAU))
+            .map(|vertex| base.max(f64::from(graph.degree(vertex)) * 2.35 * KNOB / TAU))
             .collect();
-        Self { base: wish, discs, knob, name }
+        Self { base, discs, knob: KNOB, name, names }
     }
 
-    fn plain(graph: &EmbeddedGraph) -> Self {
+    /// The sizes of a graph that is too large for knobs: small discs, and names only where all fit.
+    fn plain(graph: &EmbeddedGraph, names: &[String]) -> Self {
+        const RADIUS: f64 = 9.0;
+        const NAME: [f64; 2] = [6.5, 4.5];
+        let widest = names.iter().map(|name| text::width(name, 1.0)).fold(0.5, f64::max);
+        let name = (2.0 * (RADIUS - 1.0) / widest).min(NAME[0]);
         let discs = graph
             .vertices()
-            .map(|vertex| 9.0_f64.max(f64::from(graph.degree(vertex)) * 3.0 / TAU))
+            .map(|vertex| RADIUS.max(f64::from(graph.degree(vertex)) * 3.0 / TAU))
             .collect();
-        Self { base: 9.0, discs, knob: 0.0, name: 6.5 }
+        let names = if name < NAME[1] { Names::Nowhere } else { Names::Inside };
+        Self { base: RADIUS, discs, knob: 0.0, name, names }
     }
 
-    /// Whether the name fits into the vertex's disc.
-    pub(super) fn holds(&self, vertex: usize, name: &str) -> bool {
-        let rim = if self.knob > 0.0 { self.knob } else { 1.0 };
-        text::width(name, self.name) <= 2.0 * (self.discs[vertex] - rim)
+    /// The name in the lines in which it is drawn.
+    pub(super) fn lines(&self, name: &str) -> Vec<String> {
+        match self.names {
+            Names::Broken => text::in_two(name),
+            _ => vec![name.to_owned()],
+        }
     }
 
     /// The least angle between two doors of the vertex.
     pub(super) fn doors_apart(&self, vertex: usize) -> f64 {
         let chord = (self.knob * 2.0 - 0.8).max(2.5);
         2.0 * (chord / 2.0 / self.discs[vertex]).min(1.0).asin()
+    }
+}
+
+/// The room for a name between the knobs to its left and right.
+fn room(disc: f64) -> f64 {
+    2.0 * (disc - KNOB - CLEAR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn size(names: &[&str]) -> Size {
+        let lists = names.iter().enumerate().map(|(at, name)| {
+            let near = [at.wrapping_sub(1), at + 1];
+            (*name, near.iter().filter_map(|&at| names.get(at)).copied().collect())
+        });
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists.collect::<Vec<(_, Vec<_>)>>());
+        let names: Vec<_> = names.iter().map(|&name| name.to_owned()).collect();
+        Size::of(&graph.unwrap(), &names)
+    }
+
+    #[test]
+    fn all_names_stand_inside_or_all_beside() {
+        let short = size(&["a", "v-1", "corner"]);
+        assert_eq!((short.names, short.lines("v-1").len()), (Names::Inside, 1));
+        let long = size(&["a", "offices-west", "lift"]);
+        assert_eq!(long.names, Names::Broken);
+        assert_eq!(long.lines("offices-west"), ["offices-", "west"]);
+        assert_eq!(long.lines("lift"), ["lift"]);
+        assert_eq!(size(&["a", "b", "aNameWithoutAnyBreak"]).names, Names::Beside);
     }
 }

@@ -55,6 +55,17 @@ pub(super) fn lines(text: &str, size: f64, widest: f64) -> Vec<String> {
     lines
 }
 
+/// A name in two lines as even as may be, broken behind a `-` or a `_`; in one where it has none.
+pub(super) fn in_two(name: &str) -> Vec<String> {
+    let ends = name.char_indices().filter(|(_, letter)| ['-', '_'].contains(letter));
+    let breaks = ends.map(|(at, _)| name.split_at(at + 1)).filter(|(_, rest)| !rest.is_empty());
+    let widest = |two: &(&str, &str)| width(two.0, 1.0).max(width(two.1, 1.0));
+    match breaks.min_by(|one, other| widest(one).total_cmp(&widest(other))) {
+        Some((first, second)) => vec![first.to_owned(), second.to_owned()],
+        None => vec![name.to_owned()],
+    }
+}
+
 /// The text with what XML reads as markup written as references, and without the characters that
 /// XML does not allow.
 pub(super) fn escaped(text: &str) -> String {
@@ -83,6 +94,14 @@ mod tests {
         assert_eq!(lines("aa aa aa", 10.0, 32.0), ["aa aa", "aa"]);
         assert_eq!(lines("aaaaaa", 10.0, 20.0), ["aaa", "aaa"]);
         assert!(lines("", 10.0, 20.0).is_empty());
+    }
+
+    #[test]
+    fn names_break_behind_their_signs() {
+        assert_eq!(in_two("north-west"), ["north-", "west"]);
+        assert_eq!(in_two("a_b_room"), ["a_b_", "room"]);
+        assert_eq!(in_two("corner"), ["corner"]);
+        assert_eq!(in_two("corner-"), ["corner-"]);
     }
 
     #[test]

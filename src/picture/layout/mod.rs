@@ -5,6 +5,7 @@
 
 mod planar;
 mod planar_part;
+mod radial;
 mod refine;
 mod stress;
 mod subdivision;
@@ -13,6 +14,7 @@ mod upright;
 use crate::model::embedded_graph::EmbeddedGraph;
 
 use super::geometry::Point;
+use planar::Weights;
 use refine::Keep;
 use subdivision::Subdivision;
 
@@ -28,10 +30,13 @@ pub(super) struct Layout {
     pub(super) bends: Vec<Vec<Point>>,
 }
 
+/// Nodes, bends included, up to which a layout in the plane is affordable.
+const PLANAR: usize = 6000;
+
 /// A layout of the graph.
 pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     let mut layout = if graph.edge_count() > 2 * POLISHED {
-        straight(stress::plain(graph), graph)
+        large(graph)
     } else if graph.genus() == 0 {
         in_the_plane(graph)
     } else {
@@ -43,23 +48,39 @@ pub(super) fn lay_out(graph: &EmbeddedGraph) -> Layout {
     layout
 }
 
-/// The layout of a floor plan: metres, y to the north.
-pub(super) fn floor_plan(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
+/// The layout of a graph that is too large for the best one.
+fn large(graph: &EmbeddedGraph) -> Layout {
+    if graph.edge_count() + 1 == graph.vertex_count() {
+        return straight(radial::tree(graph), graph);
+    }
+    if graph.genus() == 0 {
+        let subdivision = Subdivision::of(graph);
+        if subdivision.nodes <= PLANAR {
+            let points = planar::without_crossings(&subdivision, Weights::Evening);
+            return layout_of(graph, &subdivision, &points);
+        }
+    }
+    straight(stress::plain(graph), graph)
+}
+
+/// The layout with each vertex at its given position; there, y points up.
+pub(super) fn given(graph: &EmbeddedGraph, positions: &[[f64; 2]]) -> Layout {
     let vertices = positions.iter().map(|&[x, y]| Point::new(x, -y)).collect();
     straight(vertices, graph)
 }
 
 fn in_the_plane(graph: &EmbeddedGraph) -> Layout {
     let subdivision = Subdivision::of(graph);
-    let mut points = planar::without_crossings(&subdivision);
+    let mut points = planar::without_crossings(&subdivision, Weights::Same);
     refine::refine(&subdivision, &mut points, Keep::Embedding);
+    layout_of(graph, &subdivision, &points)
+}
+
+fn layout_of(graph: &EmbeddedGraph, subdivision: &Subdivision, points: &[Point]) -> Layout {
+    let bends = subdivision.bends.iter();
     Layout {
         vertices: points[..graph.vertex_count()].to_vec(),
-        bends: subdivision
-            .bends
-            .iter()
-            .map(|nodes| nodes.iter().map(|&node| points[node]).collect())
-            .collect(),
+        bends: bends.map(|nodes| nodes.iter().map(|&node| points[node]).collect()).collect(),
     }
 }
 

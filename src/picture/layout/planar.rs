@@ -2,7 +2,8 @@
 //!
 //! The largest face lies outside. Every other face is filled with triangles, so that the whole is
 //! three-connected; then each node goes to the middle of its neighbours (W. T. Tutte, "How to draw
-//! a graph", 1963).
+//! a graph", 1963). That crowds the inside of a large graph. As every positive weight of the
+//! segments gives a layout without crossings, longer segments then get more weight, round by round.
 
 use std::f64::consts::TAU;
 
@@ -13,8 +14,22 @@ const SWEEPS: usize = 4000;
 /// A sweep that moves no node further than this is the last.
 const STILL: f64 = 1e-10;
 
+/// Rounds in which the weights are made anew.
+const ROUNDS: usize = 12;
+/// Sweeps of each of these rounds.
+const ROUND_SWEEPS: usize = 250;
+
+/// Whether long segments are drawn together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Weights {
+    /// All segments weigh the same.
+    Same,
+    /// Long segments weigh more.
+    Evening,
+}
+
 /// One point a node, scaled so that the mean segment has length 1.
-pub(super) fn without_crossings(web: &Subdivision) -> Vec<Point> {
+pub(super) fn without_crossings(web: &Subdivision, weights: Weights) -> Vec<Point> {
     let faces = web.faces();
     let outer = largest(web, &faces);
     let mut filled = Filled::new(web);
@@ -25,7 +40,7 @@ pub(super) fn without_crossings(web: &Subdivision) -> Vec<Point> {
             filled.fill(web, face);
         }
     }
-    let mut points = filled.relax();
+    let mut points = filled.relax(weights);
     points.truncate(web.nodes);
     let lengths = (0..web.node.len()).map(|dart| {
         let segment = points[web.far(dart)] - points[web.node[dart]];
@@ -119,17 +134,38 @@ impl Filled {
         ring
     }
 
-    fn relax(self) -> Vec<Point> {
+    fn relax(self, weights: Weights) -> Vec<Point> {
         let mut points: Vec<_> = self.fixed.iter().map(|at| at.unwrap_or_default()).collect();
-        for _ in 0..SWEEPS {
+        let mut pulls: Vec<Vec<f64>> =
+            self.neighbours.iter().map(|near| vec![1.0; near.len()]).collect();
+        self.settle(&mut points, &pulls, SWEEPS);
+        if weights == Weights::Evening {
+            for _ in 0..ROUNDS {
+                for (node, near) in self.neighbours.iter().enumerate() {
+                    for (pull, &other) in pulls[node].iter_mut().zip(near) {
+                        *pull *= points[node].distance(points[other]).max(1e-9).sqrt();
+                    }
+                }
+                self.settle(&mut points, &pulls, ROUND_SWEEPS);
+            }
+        }
+        points
+    }
+
+    /// Moves each node to the middle of its neighbours, weighed by their pulls, until all are there.
+    fn settle(&self, points: &mut [Point], pulls: &[Vec<f64>], sweeps: usize) {
+        for _ in 0..sweeps {
             let mut furthest = 0.0_f64;
             for node in 0..points.len() {
                 if self.fixed[node].is_some() {
                     continue;
                 }
-                let near = &self.neighbours[node];
-                let sum = near.iter().fold(Point::default(), |sum, &other| sum + points[other]);
-                let middle = sum * (1.0 / near.len() as f64);
+                let near = self.neighbours[node].iter().zip(&pulls[node]);
+                let (sum, weight) = near
+                    .fold((Point::default(), 0.0), |(sum, weight), (&other, &pull)| {
+                        (sum + points[other] * pull, weight + pull)
+                    });
+                let middle = sum * (1.0 / weight);
                 furthest = furthest.max(middle.distance(points[node]));
                 points[node] = middle;
             }
@@ -137,6 +173,5 @@ impl Filled {
                 break;
             }
         }
-        points
     }
 }

@@ -175,7 +175,8 @@ fn distances(graph: &EmbeddedGraph) -> Vec<Vec<u32>> {
     graph.vertices().map(|vertex| hops(graph, vertex)).collect()
 }
 
-fn hops(graph: &EmbeddedGraph, from: Vertex) -> Vec<u32> {
+/// The length of the shortest path to each vertex.
+pub(super) fn hops(graph: &EmbeddedGraph, from: Vertex) -> Vec<u32> {
     let mut hops = vec![u32::MAX; graph.vertex_count()];
     let mut queue = VecDeque::from([from]);
     hops[from.at()] = 0;

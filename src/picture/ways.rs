@@ -1,0 +1,153 @@
+//! The curves that an edge may take: all leave through its own doors, straight on, in bows, around
+//! discs, or as petals.
+
+use std::f64::consts::TAU;
+
+use super::{
+    curves::{Curve, Door},
+    geometry::{Point, turn, wrapped},
+    size::Size,
+};
+
+/// An edge that wants a curve.
+#[derive(Clone, Debug)]
+pub(super) struct Errand {
+    /// The vertices at its ends.
+    pub(super) vertices: [usize; 2],
+    /// The directions of its doors.
+    pub(super) directions: [f64; 2],
+    /// The bends that the layout gave it.
+    pub(super) bends: Vec<Point>,
+}
+
+/// The discs among which edges find their ways.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Discs<'a> {
+    /// The middle of each.
+    pub(super) centres: &'a [Point],
+    pub(super) size: &'a Size,
+}
+
+impl Discs<'_> {
+    /// The doors at the ends of an edge.
+    pub(super) fn doors(&self, errand: &Errand) -> [Door; 2] {
+        [0, 1].map(|end| {
+            let vertex = errand.vertices[end];
+            Door::new(self.centres[vertex], self.size.discs[vertex], errand.directions[end])
+        })
+    }
+
+    /// The curve that an edge takes where nothing is weighed.
+    pub(super) fn plain(&self, errand: &Errand) -> Curve {
+        let [from, to] = self.doors(errand);
+        if errand.vertices[0] == errand.vertices[1] {
+            let handle = 3.0 * self.size.discs[errand.vertices[0]];
+            return Curve::cubic(from, to, [handle, handle]);
+        }
+        if errand.bends.is_empty() {
+            let handle = from.at.distance(to.at) / 3.0;
+            return Curve::cubic(from, to, [handle, handle]);
+        }
+        Curve::by_way_of(from, &errand.bends, to)
+    }
+
+    /// All curves that are offered, the plain one first.
+    pub(super) fn candidates(&self, errand: &Errand) -> Vec<Curve> {
+        let mut curves = vec![self.plain(errand)];
+        if !errand.bends.is_empty() {
+            let [from, to] = self.doors(errand);
+            let middle = (from.at + to.at) * 0.5;
+            for stretch in [1.0, 1.15, 1.3, 1.5] {
+                let bends = errand.bends.iter();
+                let way: Vec<_> = bends.map(|&bend| middle + (bend - middle) * stretch).collect();
+                curves.push(Curve::by_way_of(from, &way, to));
+            }
+        }
+        if errand.vertices[0] == errand.vertices[1] {
+            self.petals(errand, &mut curves);
+        } else {
+            self.bows(errand, &mut curves);
+        }
+        curves
+    }
+
+    /// Loops: wide and narrow, around either side of the disc.
+    fn petals(&self, errand: &Errand, curves: &mut Vec<Curve>) {
+        let [from, to] = self.doors(errand);
+        let vertex = errand.vertices[0];
+        let (centre, radius) = (self.centres[vertex], self.size.discs[vertex]);
+        let clockwise = turn(errand.directions[0], errand.directions[1]);
+        for gap in [clockwise, clockwise - TAU] {
+            if gap.abs() < 2.3 {
+                for reach in [3.2, 3.7, 4.3, 5.0, 6.0] {
+                    let handle = reach * self.size.base;
+                    curves.push(Curve::cubic(from, to, [handle, handle]));
+                }
+            }
+            let stops = 1 + (1..5).filter(|&stops| gap.abs() > 1.3 * f64::from(stops)).count();
+            for level in [1.7, 2.1, 2.5, 3.1, 3.8, 4.6, 5.6] {
+                let way: Vec<_> = (0..stops)
+                    .map(|stop| {
+                        let share = (stop as f64 + 0.5) / stops as f64;
+                        let angle = errand.directions[0] + gap * share;
+                        centre + Point::polar(angle, radius + level * self.size.base)
+                    })
+                    .collect();
+                curves.push(Curve::by_way_of(from, &way, to));
+            }
+        }
+    }
+
+    /// Edges between two vertices: straight on, in a bow to either side, or around their own discs.
+    fn bows(&self, errand: &Errand, curves: &mut Vec<Curve>) {
+        let [from, to] = self.doors(errand);
+        let span = from.at.distance(to.at);
+        for one in [0.33, 0.5, 0.75, 1.1] {
+            for two in [0.33, 0.5, 0.75, 1.1] {
+                let least = 0.8 * self.size.base;
+                let handles = [(one * span).max(least), (two * span).max(least)];
+                curves.push(Curve::cubic(from, to, handles));
+            }
+        }
+        let along = to.at - from.at;
+        for share in [0.3, 0.5, 0.7] {
+            for bow in [-1.1, -0.8, -0.55, -0.35, -0.2, 0.2, 0.35, 0.55, 0.8, 1.1] {
+                let by = from.at + along * share + along.quarter_turn() * bow;
+                curves.push(Curve::by_way_of(from, &[by], to));
+            }
+        }
+        let swings = [self.swings(errand, 0), self.swings(errand, 1)];
+        for first in &swings[0] {
+            for second in &swings[1] {
+                let way: Vec<_> = first.iter().chain(second.iter().rev()).copied().collect();
+                if !way.is_empty() {
+                    curves.push(Curve::by_way_of(from, &way, to));
+                }
+            }
+        }
+    }
+
+    /// Ways around the disc from which the edge leaves in the wrong direction.
+    fn swings(&self, errand: &Errand, end: usize) -> Vec<Vec<Point>> {
+        let vertex = errand.vertices[end];
+        let (centre, radius) = (self.centres[vertex], self.size.discs[vertex]);
+        let out = errand.directions[end];
+        let straight = (self.centres[errand.vertices[1 - end]] - centre).angle();
+        let mut ways = vec![Vec::new()];
+        let off = wrapped(straight - out).abs();
+        if off > 0.7 {
+            for side in [-1.0, 1.0] {
+                for level in [0.9, 1.3, 1.8] {
+                    let at = |angle: f64| {
+                        centre + Point::polar(out + side * angle, radius + level * self.size.base)
+                    };
+                    ways.push(vec![at(0.9)]);
+                    if off > 1.6 {
+                        ways.push(vec![at(0.7), at(1.7)]);
+                    }
+                }
+            }
+        }
+        ways
+    }
+}
