@@ -15,6 +15,7 @@ use toposlam_model::{
         plantri::{self, Code},
         world_file,
     },
+    isomorphism::{Difference, isomorphism, mirror_isomorphism},
     percept::Door,
 };
 
@@ -139,6 +140,14 @@ fn figure_1_is_one_graph_whose_rim_is_reversed() {
         let is_rim = a.vertex_names[vertex.at()] != "x";
         assert_eq!(around(&a, is_rim), around(&b, false));
     }
+}
+
+#[test]
+fn figure_1_shows_two_worlds() {
+    let (a, b) = (read("figure-1a").graph, read("figure-1b").graph);
+    assert_eq!((a.genus(), b.genus()), (0, 1));
+    assert_eq!(isomorphism(&a, &b), Err(Difference::Genus(0, 1)));
+    assert_eq!(mirror_isomorphism(&a, &b), None);
 }
 
 #[test]
