@@ -9,16 +9,26 @@ use toposlam_model::{
 
 use super::Failure;
 
-/// The world of a world file (TOML or JSON).
+/// The world of a world file (TOML or JSON), or the only one of a file in plantri's codes. Where the
+/// file does not name it, it has the file's name.
 pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
     let bytes = read(path)?;
-    if plantri_code(path, &bytes).is_some() {
-        return Err(Failure::in_file(
-            path,
-            "this holds plantri's code; a world file is needed here",
-        ));
+    let mut world = match plantri_code(path, &bytes) {
+        None => world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?,
+        Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
+            Ok([graph]) => NamedWorld::numbered("", "", graph, None),
+            Err(graphs) => {
+                let cause = format!("one world is needed here, and there are {}", graphs.len());
+                return Err(Failure::in_file(path, cause));
+            }
+        },
+    };
+    if world.name.is_empty() {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+        world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
     }
-    world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))
+    Ok(world)
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.
@@ -32,11 +42,21 @@ pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, 
 /// The embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
 pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, Failure> {
     let bytes = read(path)?;
-    let Some(code) = plantri_code(path, &bytes) else {
-        let world = world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?;
-        return Ok(vec![world.graph]);
-    };
-    let graphs: Result<Vec<_>, _> = plantri::read_headerless(&bytes, code).collect();
+    match plantri_code(path, &bytes) {
+        Some(code) => read_plantri(path, &bytes, code),
+        None => {
+            let world = world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?;
+            Ok(vec![world.graph])
+        }
+    }
+}
+
+fn read_plantri(
+    path: &Path,
+    bytes: &[u8],
+    code: plantri::Code,
+) -> Result<Vec<EmbeddedGraph>, Failure> {
+    let graphs: Result<Vec<_>, _> = plantri::read_headerless(bytes, code).collect();
     match graphs {
         Ok(graphs) if graphs.is_empty() => Err(Failure::in_file(path, "there is no world in it")),
         Ok(graphs) => Ok(graphs),

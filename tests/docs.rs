@@ -1,0 +1,45 @@
+//! What the README shows is what the program prints and draws.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{fs, path::Path, process::Command};
+
+use toposlam::{
+    model::format::{named_world::NamedWorld, world_file},
+    picture::{Picture, svg},
+};
+
+fn read(path: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+fn toposlam(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_toposlam"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_first_screen_shows_what_check_prints() {
+    let readme = read("README.md");
+    let (_, from_block) = readme.split_once("```text\n").unwrap();
+    let (shown, _) = from_block.split_once("```").unwrap();
+    assert_eq!(shown, toposlam(&["check"]));
+}
+
+/// Draw them again with the commands of the README, look at them, and commit them.
+#[test]
+fn the_pictures_are_what_the_program_draws() {
+    for name in ["figure-1a", "figure-1b"] {
+        let world: NamedWorld =
+            world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap();
+        assert!(svg(&Picture::from(&world)) == read(&format!("docs/{name}.svg")), "{name}");
+    }
+    let map = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shape-8-map.svg");
+    toposlam(&["explore", "worlds/shape-8.toml", "--svg", map.to_str().unwrap()]);
+    assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));
+}
