@@ -61,7 +61,7 @@ pub(super) struct Arguments {
     worst: Option<PathBuf>,
 
     /// Threads; the result does not depend on them [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     threads: Option<u16>,
 
     /// Print one JSON object for each number of edges
@@ -69,15 +69,22 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// More threads than this help nobody, and starting them would take longer than the check.
+const MAX_THREADS: i64 = 1024;
+
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(worst) = &self.worst {
-            output::check_folder(worst)?;
+            output::check_place(worst)?;
         }
         if let Some(threads) = self.threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
             pool.build_global().map_err(|error| Failure::at("--threads", error))?;
         }
+        let sizes: Vec<_> = match self.from {
+            Some(_) => Vec::new(),
+            None => self.edges.iter().map(|edges| self.sweep(edges)).collect::<Result<_, _>>()?,
+        };
         let begun = Instant::now();
         let mut report = Report::new(out, self.json, self.choice());
         let mut worst: Option<WorstStart> = None;
@@ -90,8 +97,10 @@ impl Arguments {
                 }
             }
             None => {
-                for edges in self.edges.iter() {
-                    let tally = self.check_size(edges)?;
+                for (edges, sweep) in self.edges.iter().zip(sizes) {
+                    let progress = Progress::new(edges)?;
+                    let tally = sweep.run(&Algorithm1, &progress);
+                    progress.finish();
                     report.size(edges, self.class.name(), Some(self.shard), &tally)?;
                     keep_worse(&mut worst, tally.worst);
                     if tally.interrupted {
@@ -114,14 +123,10 @@ impl Arguments {
         if self.choices == "all" { Choice::All } else { Choice::Default }
     }
 
-    fn check_size(&self, edges: usize) -> Result<Tally, Failure> {
+    fn sweep(&self, edges: usize) -> Result<Sweep, Failure> {
         let enumeration = Enumeration::new(Each::World, self.class, edges)
             .map_err(|error| Failure::at("--edges", error))?;
-        let sweep = Sweep { enumeration, shard: self.shard, choice: self.choice() };
-        let progress = Progress::new(edges)?;
-        let tally = sweep.run(&Algorithm1, &progress);
-        progress.finish();
-        Ok(tally)
+        Ok(Sweep { enumeration, shard: self.shard, choice: self.choice() })
     }
 
     /// The worlds of a file, by their number of edges.

@@ -71,7 +71,8 @@ impl<'o> Report<'o> {
         }
         if let (Choice::All, Some((least, most))) = (self.choice, tally.extremes) {
             line["states"] = json!(tally.states);
-            line["runs"] = json!(tally.runs);
+            // As in `explore --json`: more than a JSON number can be trusted with.
+            line["runs"] = json!(tally.runs.to_string());
             line["every_run_moves_min"] = json!(least);
             line["every_run_moves_max"] = json!(most);
         }
