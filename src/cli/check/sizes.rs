@@ -17,9 +17,9 @@ impl FromStr for Sizes {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |number: &str| {
-            number
-                .parse::<usize>()
-                .map_err(|_| format!("write a number as in 6, or several as in 1..=6, not `{text}`"))
+            number.parse::<usize>().map_err(|_| {
+                format!("write a number as in 6, or several as in 1..=6, not `{text}`")
+            })
         };
         let range = if let Some((first, last)) = text.split_once("..=") {
             number(first)?..=number(last)?
