@@ -17,8 +17,8 @@ use super::{Failure, Outcome, input};
 Example:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
 
-Isomorphic means: a bijection of edge ends keeps edges and clockwise orders. A mirror image has every
-order reversed. Both can be so at once. The starts of the files do not matter here.")]
+Isomorphic means: a bijection of edge ends keeps edges and clockwise orders. A mirror image has
+every order reversed. Both can be so at once. The starts of the files do not matter here.")]
 pub(super) struct Arguments {
     /// A world file
     a: PathBuf,

@@ -33,8 +33,8 @@ Examples:
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
   toposlam explore worlds/shape-8.toml --choices all
 
-In the story, v2.1 is dart 1 of the map's vertex v2: the one that stands one place clockwise from the
-dart by which v2 was first entered.
+In the story, v2.1 is dart 1 of the map's vertex v2: the one that stands one place clockwise from
+the dart by which v2 was first entered.
 
 Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 given up at --max-darts.")]
 pub(super) struct Arguments {
@@ -79,7 +79,7 @@ impl Arguments {
         let world = input::read_world(&self.world)?;
         let facing = input::start_of(&world, self.start.as_deref())?;
         for file in self.map.iter().chain(&self.svg) {
-            output::check_folder(file)?;
+            output::check_place(file)?;
         }
         let mut out = io::BufWriter::new(out);
         let mut exploration = Exploration::new(self.max_darts);
@@ -194,7 +194,10 @@ impl Ending<'_> {
     fn tell(&self, out: &mut dyn Write, ways: Option<&EveryWay>) -> Result<(), Failure> {
         let Self { exploration, .. } = self;
         match &self.result {
-            Err(flaw) => writeln!(out, "\nAfter {} moves: {flaw}", exploration.moves())?,
+            Err(flaw) => {
+                let moves = story::counted(exploration.moves() as usize, "move");
+                writeln!(out, "\nAfter {moves}: {flaw}")?;
+            }
             Ok(bijection) => self.tell_map(bijection, out)?,
         }
         if let Some(EveryWay { states, runs, costs }) = ways {

@@ -23,12 +23,13 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// Why a verb could not do its work: bad usage or bad input, exit code 2.
+/// Why a verb could not do its work: bad usage or bad input, exit code 2, unless said otherwise.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// One message that names place and cause.
     Input(String),
-    /// Standard output was closed by its reader: nothing to say, and nobody to say it to.
+    /// Standard output was closed by its reader: nothing to say, and nobody to say it to. Exit
+    /// code 3, for a check that nobody heard out does not hold.
     ReaderGone,
 }
 
@@ -50,7 +51,7 @@ impl Failure {
                 eprintln!("error: {message}");
                 ExitCode::from(2)
             }
-            Self::ReaderGone => ExitCode::SUCCESS,
+            Self::ReaderGone => Outcome::Incomplete.into(),
         }
     }
 }

@@ -31,8 +31,12 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// Refuses a path in a folder that does not exist, before long work begins.
-pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
+/// Refuses a path that cannot become a file, before long work begins: a folder, or in a folder that
+/// does not exist.
+pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::in_file(path, "this is a folder; name a file"));
+    }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder {
         Some(folder) if !folder.is_dir() => {

@@ -16,9 +16,10 @@ impl FromStr for Sizes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| {
-            text.parse::<usize>()
-                .map_err(|_| format!("write a number as in 6, or 1..=6, not `{text}`"))
+        let number = |number: &str| {
+            number.parse::<usize>().map_err(|_| {
+                format!("write a number as in 6, or several as in 1..=6, not `{text}`")
+            })
         };
         let range = if let Some((first, last)) = text.split_once("..=") {
             number(first)?..=number(last)?

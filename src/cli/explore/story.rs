@@ -91,8 +91,8 @@ impl<'o, W: Write> Story<'o, W> {
                     self.out,
                     "     {}? no, its path fails at move {followed}: {} instead of {} ({moves})",
                     dart(map, hypothesis),
-                    seen(perceived),
-                    seen(expected),
+                    seen_against(perceived, expected),
+                    seen_against(expected, perceived),
                 )
             }
             Event::Confirmed { hypothesis, followed } => {
@@ -179,8 +179,14 @@ fn seen(percept: Percept) -> String {
     }
 }
 
+/// A percept beside another: that there is no marker is told where it is what differs.
+fn seen_against(percept: Percept, other: Percept) -> String {
+    let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
+    format!("{}{}", seen(percept), if absent { ", no marker" } else { "" })
+}
+
 /// So many of something.
-fn counted(number: usize, what: &str) -> String {
+pub(super) fn counted(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 

@@ -1,0 +1,193 @@
+//! Bad usage and bad input: one message that names file and place, exit code 2, nothing written.
+
+use std::{fs, path::Path};
+
+use crate::{folder, names_in, run, stderr};
+
+const WORLD: &str = "worlds/shape-6.toml";
+
+/// Runs it and answers its one message.
+fn refusal(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(message.starts_with("error: "), "{arguments:?}: {message}");
+    assert_eq!(message.matches("error:").count(), 1, "{arguments:?}: {message}");
+    assert!(!message.contains("panicked"), "{arguments:?}: {message}");
+    message
+}
+
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> String {
+    let file = folder.join(name);
+    fs::write(&file, bytes).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_file_that_is_no_world_is_refused_with_its_place() {
+    let folder = folder("bad_worlds");
+    let files: [(&str, &[u8], &str); 11] = [
+        ("empty.toml", b"", ": the file is empty"),
+        ("broken.toml", b"name = \"x", ": line 1, column 10: invalid basic string"),
+        ("broken.json", b"{\"name\": ", ": line 1, column 9: EOF"),
+        ("binary.toml", b"\xff\xfe", ": line 1, column 1: this is not UTF-8 text"),
+        (
+            "key.toml",
+            b"colour = 1\n[clockwise]\na = [\"b\"]\nb = [\"a\"]\n",
+            ": colour: unknown key; here can stand: name, about, clockwise, doors",
+        ),
+        (
+            "one-sided.toml",
+            b"[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\"]\nc = [\"b\"]\n",
+            ": clockwise.a: vertex `a` lists the neighbour `c`, which does not list `a` back",
+        ),
+        (
+            "three.toml",
+            b"[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]\n",
+            ": doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+        ),
+        (
+            "pieces.toml",
+            b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]\n",
+            ": clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+        ),
+        (
+            "facing.toml",
+            b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\"\nfacing = \"z\"\n",
+            ": start.facing: vertex `a` has no neighbour `z`; it has b",
+        ),
+        ("nothing.toml", b"name = \"x\"\n", ": there is no world: one of [clockwise], [doors]"),
+        ("caf\u{e9} \u{2603}.toml", b" ", ": the file is empty"),
+    ];
+    let worst = folder.join("worst.toml");
+    for (name, bytes, place_and_cause) in files {
+        let file = write(&folder, name, bytes);
+        let message = format!("error: {file}{place_and_cause}");
+        let (file, worst) = (file.as_str(), worst.to_str().unwrap());
+        let runs: [&[&str]; 5] = [
+            &["explore", file, "--map", worst, "--svg", worst],
+            &["explore", file, "--json"],
+            &["check", "--from", file, "--worst", worst],
+            &["compare", WORLD, file],
+            &["draw", file],
+        ];
+        for arguments in runs {
+            let refusal = refusal(arguments);
+            assert!(refusal.starts_with(&message), "{refusal}");
+            assert_eq!(refusal.lines().count(), 1, "{refusal}");
+        }
+        fs::remove_file(file).unwrap();
+        assert_eq!(names_in(&folder), [""; 0]);
+    }
+    let missing = folder.join("missing.toml");
+    let refusal = refusal(&["explore", missing.to_str().unwrap()]);
+    assert!(refusal.contains("missing.toml: cannot be read: "), "{refusal}");
+}
+
+#[test]
+fn truncated_codes_are_refused_with_their_byte() {
+    let folder = folder("bad_codes");
+    let codes: [(&str, &[u8], &str); 3] = [
+        (
+            "short.pc",
+            b">>planar_code<<\x04\x02\x03",
+            ": byte 18, world 1: the file ends in the middle of a world",
+        ),
+        (
+            "short.ec",
+            b">>edge_code<<\x04\x00",
+            ": byte 15, world 1: the file ends in the middle of a world",
+        ),
+        ("none.pc", b">>planar_code<<", ": byte 15, world 1: there is no world"),
+    ];
+    for (name, bytes, cause) in codes {
+        let file = write(&folder, name, bytes);
+        assert_eq!(refusal(&["check", "--from", &file]), format!("error: {file}{cause}\n"));
+        let world = refusal(&["explore", &file]);
+        assert!(world.contains("this holds plantri's code; a world file is needed here"));
+    }
+}
+
+#[test]
+fn bad_arguments_are_refused_with_what_is_wanted() {
+    let cases: [(&[&str], &str); 21] = [
+        (&["check", "--edges", "0"], "a world has at least one edge"),
+        (&["check", "--edges", "0..=3"], "a world has at least one edge"),
+        (&["check", "--edges", "5..=3"], "the range is empty"),
+        (&["check", "--edges", "x"], "write a number as in 6, or several as in 1..=6, not `x`"),
+        (&["check", "--edges", "1.."], "not `1..`"),
+        (&["check", "--edges", "99"], "--edges: worlds with 99 edges are too many to enumerate"),
+        (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
+        (&["check", "--shard", "3/2"], "`3/2` is no shard; write i/n with i from 1 to n"),
+        (&["check", "--shard", "0/2"], "`0/2` is no shard; write i/n with i from 1 to n"),
+        (&["check", "--class", "tree"], "there are multigraph, simple, corridor and planar"),
+        (&["check", "--marker", "chalk"], "[possible values: directional]"),
+        (&["check", "--choices", "some"], "[possible values: default, all]"),
+        (&["check", "--threads", "0"], "0 is not in 1..=1024"),
+        (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
+        (&["explore", WORLD, "--start", "corner"], "--start: `corner` is no start"),
+        (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),
+        (
+            &["explore", WORLD, "--start", "corner:sw"],
+            "--start: vertex `corner` has no neighbour `sw`; it has end, tee",
+        ),
+        (&["draw", WORLD, "--start", "corner:sw"], "--start: vertex `corner` has no neighbour"),
+        (&["draw", WORLD, "--out", "w.jpg"], "w.jpg: a picture's name ends in .svg or .png"),
+        (&["chekc"], "a similar subcommand exists: 'check'"),
+        (&["fly"], "unrecognized subcommand 'fly'"),
+    ];
+    for (arguments, cause) in cases {
+        let refusal = refusal(arguments);
+        assert!(refusal.contains(cause), "{arguments:?}: {refusal}");
+    }
+}
+
+#[test]
+fn a_place_that_cannot_become_a_file_is_refused_before_the_work() {
+    let folder = folder("bad_places");
+    let (missing, itself) = (folder.join("no/such.svg"), folder.to_str().unwrap());
+    let missing = missing.to_str().unwrap();
+    let verbs: [&[&str]; 4] = [
+        &["check", "--edges", "1..=12", "--worst"],
+        &["explore", WORLD, "--map"],
+        &["explore", WORLD, "--svg"],
+        &["draw", WORLD, "--out"],
+    ];
+    for verb in verbs {
+        let refused = refusal(&[verb, &[missing]].concat());
+        assert!(refused.starts_with(&format!("error: {missing}: ")), "{refused}");
+        let refused = refusal(&[verb, &[itself]].concat());
+        assert!(refused.starts_with(&format!("error: {itself}: ")), "{refused}");
+        assert_eq!(names_in(&folder), [""; 0]);
+    }
+}
+
+#[test]
+fn no_bytes_make_it_panic() {
+    let folder = folder("nasty");
+    let deep = "[".repeat(100_000);
+    let nasty: [&[u8]; 12] = [
+        b"\0",
+        b"\xef\xbb\xbf",
+        b"{",
+        b"{}",
+        b"[]",
+        b"null",
+        b"[clockwise]",
+        b"[doors]\na = []",
+        b"clockwise = { a = [\"a\", \"a\"] }",
+        b">>edge_code<<\x00\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff",
+        b">>planar_code le<<\x00\xff\xff\x01\x00",
+        deep.as_bytes(),
+    ];
+    for bytes in nasty {
+        for name in ["w.toml", "w.json", "w.pc", "w.ec"] {
+            let file = write(&folder, name, bytes);
+            refusal(&["check", "--from", &file]);
+            refusal(&["explore", &file]);
+        }
+    }
+    let file = write(&folder, "w.json", format!("{{\"name\":{deep}").as_bytes());
+    refusal(&["explore", &file]);
+}

@@ -1,0 +1,159 @@
+//! `toposlam check`: the counts, the shares, files of worlds, the dearest start, and Ctrl-C.
+
+use std::fs;
+
+use serde_json::Value;
+use toposlam_model::format::plantri::{self, Code};
+
+use crate::{folder, objects, read_world, run, said, stderr, stdout, world_files};
+
+fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
+    lines.iter().map(|line| line[key].as_u64().unwrap()).collect()
+}
+
+// paper: cost.moves
+#[test]
+fn every_start_of_every_world_with_up_to_4_edges_is_mapped() {
+    let text = said(["check", "--json", "--edges", "1..=4"]);
+    let lines = objects(&text);
+    assert_eq!(numbers(&lines, "edges"), [1, 2, 3, 4]);
+    assert_eq!(numbers(&lines, "worlds"), [2, 5, 20, 107]);
+    assert_eq!(numbers(&lines, "starts"), [2, 10, 74, 706]);
+    assert_eq!(numbers(&lines, "mapped"), [2, 10, 74, 706]);
+    assert_eq!(numbers(&lines, "failed"), [0; 4]);
+    assert_eq!(numbers(&lines, "moves_total"), [2, 23, 289, 4182]);
+    assert_eq!(numbers(&lines, "moves_max"), [1, 3, 10, 21]);
+    for line in &lines {
+        assert_eq!(line["class"], "multigraph");
+        assert_eq!(line["marker"], "directional");
+        assert_eq!(line["holds"], true);
+        assert!(line.get("shard").is_none() && line.get("failure").is_none(), "{line}");
+    }
+}
+
+#[test]
+fn the_output_is_the_same_at_any_number_of_threads() {
+    let with = |threads: &str| said(["check", "--json", "--edges", "1..=5", "--threads", threads]);
+    assert_eq!(with("1"), with("2"));
+    let table = |threads: &str| said(["check", "--edges", "1..=5", "--threads", threads]);
+    assert_eq!(table("1"), table("2"));
+}
+
+#[test]
+fn every_class_is_checked_and_the_smaller_are_part_of_the_larger() {
+    let worlds = |class: &str| {
+        let lines = objects(&said(["check", "--json", "--edges", "1..=6", "--class", class]));
+        assert!(lines.iter().all(|line| line["class"] == class && line["holds"] == true));
+        numbers(&lines, "worlds")
+    };
+    let [all, simple, corridor, planar] =
+        ["multigraph", "simple", "corridor", "planar"].map(worlds);
+    assert_eq!(all.last(), Some(&9436));
+    for smaller in [&corridor, &planar] {
+        assert!(smaller.iter().zip(&simple).all(|(some, more)| some <= more));
+    }
+    assert!(simple.iter().zip(&all).all(|(some, more)| some < more));
+}
+
+#[test]
+fn two_shards_add_up_to_the_whole() {
+    let check = |shard: &str| objects(&said(["check", "--json", "--edges", "4", "--shard", shard]));
+    let (first, second, whole) = (check("1/2"), check("2/2"), check("1/1"));
+    assert_eq!((&first[0]["shard"], &second[0]["shard"]), (&"1/2".into(), &"2/2".into()));
+    for key in ["worlds", "starts", "mapped", "moves_total"] {
+        let sum = numbers(&first, key)[0] + numbers(&second, key)[0];
+        assert_eq!(sum, numbers(&whole, key)[0], "{key}");
+    }
+}
+
+#[test]
+fn an_empty_shard_never_holds() {
+    let output = run(["check", "--json", "--edges", "1", "--shard", "5/5"]);
+    assert_eq!(output.status.code(), Some(3));
+    let lines = objects(&stdout(&output));
+    assert_eq!((numbers(&lines, "starts"), &lines[0]["holds"]), (vec![0], &false.into()));
+    let told = stdout(&run(["check", "--edges", "1", "--shard", "5/5"]));
+    assert!(told.contains("incomplete, there was nothing to check"), "{told}");
+}
+
+#[test]
+fn all_choices_are_states_and_runs() {
+    let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--choices", "all"]));
+    assert_eq!(numbers(&lines, "states"), [4, 43, 725, 16471]);
+    let runs: Vec<_> = lines.iter().map(|line| line["runs"].as_str().unwrap()).collect();
+    assert_eq!(runs, ["3", "45", "1777", "502371"]);
+    assert_eq!(numbers(&lines, "every_run_moves_min"), [1, 2, 3, 4]);
+    assert_eq!(numbers(&lines, "every_run_moves_max"), [1, 4, 11, 22]);
+}
+
+#[test]
+fn every_world_of_the_repository_is_mapped_from_everywhere() {
+    for path in world_files() {
+        let file = path.to_str().unwrap();
+        let lines = objects(&said(["check", "--json", "--from", file]));
+        let graph = read_world(&path).graph;
+        assert_eq!(numbers(&lines, "edges"), [graph.edge_count() as u64], "{file}");
+        assert_eq!(numbers(&lines, "worlds"), [1]);
+        let starts = numbers(&lines, "starts")[0] as usize;
+        assert!(starts >= 1 && graph.dart_count().is_multiple_of(starts), "{file}: {starts}");
+    }
+}
+
+#[test]
+fn worlds_in_plantris_codes_are_checked_by_size() {
+    let folder = folder("check_plantri");
+    let graph_of = |name: &str| {
+        let file = world_files().into_iter().find(|path| path.ends_with(name)).unwrap();
+        read_world(&file).graph
+    };
+    let worlds = ["k4-plane.toml", "cycle-3.toml", "k4-torus.toml"].map(graph_of);
+    for (code, name) in [(Code::Planar, "three.pc"), (Code::Edge, "three.ec")] {
+        let file = folder.join(name);
+        fs::write(&file, plantri::write(&worlds, code).unwrap()).unwrap();
+        let lines = objects(&said(["check", "--json", "--from", file.to_str().unwrap()]));
+        assert_eq!(numbers(&lines, "edges"), [3, 6]);
+        assert_eq!(numbers(&lines, "worlds"), [1, 2]);
+        assert!(lines.iter().all(|line| line["holds"] == true));
+    }
+}
+
+// paper: cost.moves
+#[test]
+fn the_dearest_start_costs_the_same_when_it_is_explored() {
+    let folder = folder("check_worst");
+    for ending in ["toml", "json"] {
+        let file = folder.join(format!("worst.{ending}"));
+        let file = file.to_str().unwrap();
+        let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--worst", file]));
+        let explored = objects(&said(["explore", "--json", file]));
+        assert_eq!(explored[0]["moves"], lines[3]["moves_max"]);
+        assert_eq!(explored[0]["edges"], 4);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_check_prints_what_was_covered_and_does_not_hold() {
+    use std::{
+        io::{BufRead, BufReader, Read},
+        process::{Command, Stdio},
+    };
+
+    let mut check = crate::toposlam();
+    check.args(["check", "--json", "--edges", "3..=9"]);
+    let mut check = check.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut out = BufReader::new(check.stdout.take().unwrap());
+    // Its first line shows that it is at work.
+    let mut text = String::new();
+    out.read_line(&mut text).unwrap();
+    let killed = Command::new("kill").args(["-INT", &check.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    out.read_to_string(&mut text).unwrap();
+    let output = check.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let lines = objects(&text);
+    let (last, before) = lines.split_last().unwrap();
+    assert_eq!((&last["interrupted"], &last["holds"]), (&true.into(), &false.into()));
+    assert!(before.iter().all(|line| line["holds"] == true));
+    assert_eq!((&last["failed"], &last["starts"]), (&0.into(), &last["mapped"]));
+}

@@ -1,0 +1,24 @@
+//! `toposlam draw WORLD`.
+
+use std::fs;
+
+use crate::{folder, said};
+
+const WORLD: &str = "worlds/shape-6.toml";
+
+#[test]
+fn without_a_file_the_svg_goes_to_standard_output() {
+    let svg = said(["draw", WORLD]);
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    assert_eq!(svg, said(["draw", WORLD]));
+}
+
+#[test]
+fn the_ending_of_the_file_says_what_is_written() {
+    let folder = folder("draw");
+    let (svg, png) = (folder.join("w.svg"), folder.join("w.png"));
+    assert_eq!(said(["draw", WORLD, "--out", svg.to_str().unwrap()]), "");
+    assert_eq!(fs::read_to_string(&svg).unwrap(), said(["draw", WORLD]));
+    said(["draw", WORLD, "--out", png.to_str().unwrap()]);
+    assert!(fs::read(&png).unwrap().starts_with(b"\x89PNG\r\n\x1a\n"));
+}

@@ -1,0 +1,87 @@
+//! The command line, run as its users run it: what each verb prints and writes, and how it ends.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+mod bad_input;
+mod check;
+mod compare;
+mod draw;
+mod explore;
+mod help;
+
+use std::{
+    ffi::OsStr,
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+use toposlam_model::format::{named_world::NamedWorld, world_file};
+
+/// The program, not yet run.
+fn toposlam() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end.
+fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
+    toposlam().args(arguments).output().unwrap()
+}
+
+/// What a run that must end well says.
+fn said<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stdout(&output)
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// One JSON object a line, and nothing else.
+fn objects(text: &str) -> Vec<Value> {
+    let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    let objects: Vec<Value> = lines.collect();
+    assert!(text.ends_with('\n') && objects.iter().all(|object| object["schema"] == 1), "{text}");
+    objects
+}
+
+/// A fresh folder for a test of this name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The names in a folder.
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The world files of the repository.
+fn world_files() -> Vec<PathBuf> {
+    let worlds = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds");
+    let mut files: Vec<_> =
+        fs::read_dir(worlds).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension() == Some(OsStr::new("toml")));
+    files.sort();
+    assert!(files.len() >= 18);
+    files
+}
+
+fn read_world(path: &Path) -> NamedWorld {
+    world_file::read(&fs::read(path).unwrap()).unwrap()
+}
