@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
-    check::{Algorithm1, Choice, Shard, Sweep, judge},
+    check::{Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, isomorphism},
@@ -52,7 +52,11 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
 #[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
 fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
     let enumeration = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
-    let sweep = Sweep { enumeration, shard: Shard::WHOLE, choice: Choice::All };
+    let sweep = Sweep {
+        enumeration,
+        shard: Shard::WHOLE,
+        choice: Choice::All { budget: DEFAULT_STATE_BUDGET },
+    };
     bencher.counter(ItemsCount::new(states)).bench(|| {
         assert_eq!(sweep.run(&Algorithm1, &()).states, states);
     });

@@ -3,8 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, Choice, Failure, Shard, Sweep, Tally, every_way, move_bound},
+    check::{
+        Algorithm, Algorithm1, Choice, DEFAULT_STATE_BUDGET, Failure, Shard, Sweep, Tally, Watch,
+        check_worlds, every_way, move_bound,
+    },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::code,
@@ -50,12 +55,50 @@ fn every_start_with_up_to_six_edges_is_mapped_right() {
 fn every_way_of_every_start_is_mapped_right() {
     let states: Vec<_> = (1..=4)
         .map(|edges| {
-            let tally = sweep(Class::Multigraph, edges, Choice::All, &Algorithm1);
+            let tally = sweep(
+                Class::Multigraph,
+                edges,
+                Choice::All { budget: DEFAULT_STATE_BUDGET },
+                &Algorithm1,
+            );
             assert_eq!(tally.failure, None);
             tally.states
         })
         .collect();
     assert_eq!(states, [4, 43, 725, 16_471]);
+}
+
+#[test]
+fn a_start_with_more_states_than_the_budget_is_given_up() {
+    let graph = cycle(5);
+    let all = every_way(&graph, Dart(0), 1000).unwrap();
+    assert!(all.complete);
+    assert!(every_way(&graph, Dart(0), all.states).unwrap().complete);
+    let some = every_way(&graph, Dart(0), all.states - 1).unwrap();
+    assert_eq!((some.complete, some.states), (false, all.states - 1));
+    let choice = Choice::All { budget: 3 };
+    let tally = check_worlds(&[graph], choice, &Algorithm1, &());
+    assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
+}
+
+/// Asked to stop, a check says that it did not finish, and does no more.
+#[test]
+fn an_interrupted_check_says_so() {
+    struct AfterParts(AtomicUsize);
+    impl Watch for AfterParts {
+        fn part_done(&self, _: &Tally) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+        }
+        fn stop(&self) -> bool {
+            self.0.load(Ordering::Relaxed) > 2
+        }
+    }
+    let enumeration = Enumeration::new(Each::World, Class::Multigraph, 5).unwrap();
+    let sweep = Sweep { enumeration, shard: Shard::WHOLE, choice: Choice::Default };
+    let tally = sweep.run(&Algorithm1, &AfterParts(AtomicUsize::new(0)));
+    assert!(tally.interrupted);
+    assert!(tally.worlds < 870);
+    assert_eq!(tally.mapped, tally.starts);
 }
 
 #[test]
@@ -66,7 +109,7 @@ fn the_default_run_is_among_all_runs() {
         let mut exploration = Exploration::new(8);
         let mut world = GraphWorld::new(found.graph, Dart(0));
         Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
-        let ways = every_way(found.graph, Dart(0)).unwrap();
+        let ways = every_way(found.graph, Dart(0), DEFAULT_STATE_BUDGET).unwrap();
         assert!(ways.costs.contains(exploration.moves()));
         starts += 1;
         std::ops::ControlFlow::Continue(())
@@ -137,7 +180,7 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
             .collect();
         let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
-        let ways = every_way(&graph, Dart(0)).unwrap();
+        let ways = every_way(&graph, Dart(0), DEFAULT_STATE_BUDGET).unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
     }
 }
@@ -146,7 +189,12 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
 #[test]
 fn no_run_takes_fewer_moves_than_there_are_edges() {
     for edges in 1..=4 {
-        let tally = sweep(Class::Multigraph, edges, Choice::All, &Algorithm1);
+        let tally = sweep(
+            Class::Multigraph,
+            edges,
+            Choice::All { budget: DEFAULT_STATE_BUDGET },
+            &Algorithm1,
+        );
         assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
     }
 }

@@ -5,7 +5,7 @@
 use std::{fs, path::Path};
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, every_way},
+    check::{Algorithm, Algorithm1, DEFAULT_STATE_BUDGET, every_way},
     embedded_graph::Dart,
     format::{named_world::NamedWorld, world_file},
     mapping::Exploration,
@@ -32,7 +32,7 @@ fn rows(name: &str, paper: u64) -> Vec<String> {
         .graph
         .darts()
         .map(|facing| {
-            let ways = every_way(&world.graph, facing).unwrap();
+            let ways = every_way(&world.graph, facing, DEFAULT_STATE_BUDGET).unwrap();
             let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
             let among = if ways.costs.contains(paper) { "yes" } else { "no" };
             let (start, moves) = (world.start_text(facing), moves(&world, facing));

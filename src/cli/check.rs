@@ -4,15 +4,23 @@ mod progress;
 mod report;
 mod sizes;
 
-use std::{collections::BTreeMap, io::Write, path::PathBuf, time::Instant};
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 use toposlam_model::{
-    check::{Algorithm1, Choice, Shard, Sweep, Tally, WorstStart, check_world},
+    check::{
+        Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, WorstStart, check_worlds,
+    },
+    embedded_graph::EmbeddedGraph,
     enumerate::{Class, Each, Enumeration},
     format::named_world::NamedWorld,
 };
 
-use super::{Failure, Outcome, input, output};
+use super::{Choices, Failure, Outcome, input, output};
 use progress::Progress;
 use report::{Report, Size};
 use sizes::Sizes;
@@ -30,38 +38,44 @@ Examples:
   toposlam check --edges 1..=4 --choices all      every resolution of what Algorithm 1 leaves open
   toposlam check --from worlds/petersen.toml      every start of the worlds in a file
 
+Ctrl-C ends a check early, and prints what was checked.
+
 Exit codes: 0 every map is right, 1 one is wrong, 2 bad usage or input, 3 not all was checked.")]
 pub(super) struct Arguments {
     /// Numbers of edges: one, as in 6, or several, as in 1..=6
-    #[arg(long, default_value = "1..=6", value_name = "SIZES")]
+    #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
     edges: Sizes,
 
     /// Class of worlds: multigraph, simple, corridor or planar
     #[arg(long, default_value = "multigraph")]
     class: Class,
 
-    /// Marker with which the worlds are mapped: directional
-    #[arg(long, default_value = "directional", value_parser = ["directional"])]
-    marker: String,
+    /// Marker with which the worlds are mapped
+    #[arg(long, default_value = "directional", value_parser = marker)]
+    marker: &'static str,
 
     /// Runs of each start: default, or all that the open choices allow
-    #[arg(long, default_value = "default", value_parser = ["default", "all"])]
-    choices: String,
+    #[arg(long, default_value = "default", hide_possible_values = true)]
+    choices: Choices,
+
+    /// With --choices all: give up on a start that has more states
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_STATE_BUDGET)]
+    max_states: u64,
 
     /// Check one of n disjoint shares, as in 2/4
-    #[arg(long, default_value = "1/1", value_name = "I/N")]
+    #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
     shard: Shard,
 
     /// Check the worlds in a file (world file, planar_code, edge_code) instead
     #[arg(long, value_name = "FILE", conflicts_with_all = ["edges", "class", "shard"])]
     from: Option<PathBuf>,
 
-    /// Write the start that took the most moves, as a world file
+    /// Write the start that took the most moves: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     worst: Option<PathBuf>,
 
-    /// Threads; the result does not depend on them [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
     /// Print one JSON object for each number of edges
@@ -69,69 +83,98 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// The only marker with which Algorithm 1 maps.
+fn marker(name: &str) -> Result<&'static str, String> {
+    match name {
+        "directional" => Ok("directional"),
+        _ => Err(format!("`{name}` is no marker to map with; there is directional")),
+    }
+}
+
+/// What is checked for one number of edges.
+enum Work {
+    Sweep(Sweep),
+    Worlds(Vec<EmbeddedGraph>),
+}
+
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
-        if let Some(worst) = &self.worst {
-            output::check_folder(worst)?;
-        }
         if let Some(threads) = self.threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
             pool.build_global().map_err(|error| Failure::at("--threads", error))?;
         }
+        let work = match &self.from {
+            Some(path) => worlds_by_size(path)?,
+            None => self.sweeps()?,
+        };
+        if let Some(worst) = &self.worst {
+            output::check_world_place(worst, work.values().all(Work::is_simple))?;
+        }
         let begun = Instant::now();
-        let mut report = Report::new(out, self.json, self.choice());
+        let mut report = Report::new(out, self.json, self.marker, self.choice());
         let mut worst: Option<WorstStart> = None;
-        if let Some(path) = &self.from {
-            let class = path.display().to_string();
-            for (edges, tally) in self.check_file(path)? {
-                let (class, shard) = (class.as_str(), Shard::WHOLE);
-                report.size(&Size { edges, class, shard, tally: &tally })?;
-                keep_worse(&mut worst, tally.worst);
-            }
-        } else {
-            let (class, shard) = (self.class.name(), self.shard);
-            for edges in self.edges.iter() {
-                let tally = self.check_size(edges)?;
-                report.size(&Size { edges, class, shard, tally: &tally })?;
-                keep_worse(&mut worst, tally.worst);
-                if tally.interrupted {
-                    break;
-                }
+        for (edges, work) in work {
+            let tally = self.check(edges, &work)?;
+            let (class, from, shard) = (self.class, self.from.as_deref(), self.shard);
+            report.size(&Size { edges, class, from, shard, tally: &tally })?;
+            keep_worse(&mut worst, tally.worst);
+            if tally.interrupted {
+                break;
             }
         }
         let outcome = report.verdict(begun.elapsed())?;
-        if let (Some(path), Some(worst)) = (&self.worst, worst) {
-            let moves = worst.moves;
-            let about = format!("The start that took the most moves, {moves}, in a check");
-            let world = NamedWorld::discovered("worst", &about, &worst.graph, worst.facing);
-            output::write_world(path, &world)?;
+        if let Some(path) = &self.worst {
+            write_worst(path, worst)?;
         }
         Ok(outcome)
     }
 
     fn choice(&self) -> Choice {
-        if self.choices == "all" { Choice::All } else { Choice::Default }
+        match self.choices {
+            Choices::Default => Choice::Default,
+            Choices::All => Choice::All { budget: self.max_states },
+        }
     }
 
-    fn check_size(&self, edges: usize) -> Result<Tally, Failure> {
-        let enumeration = Enumeration::new(Each::World, self.class, edges)
-            .map_err(|error| Failure::at("--edges", error))?;
-        let sweep = Sweep { enumeration, shard: self.shard, choice: self.choice() };
+    /// A sweep for each number of edges.
+    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+        let sweep = |edges| {
+            let enumeration = Enumeration::new(Each::World, self.class, edges)
+                .map_err(|error| Failure::at("--edges", error))?;
+            let sweep = Sweep { enumeration, shard: self.shard, choice: self.choice() };
+            Ok((edges, Work::Sweep(sweep)))
+        };
+        self.edges.iter().map(sweep).collect()
+    }
+
+    fn check(&self, edges: usize, work: &Work) -> Result<Tally, Failure> {
         let progress = Progress::new(edges)?;
-        let tally = sweep.run(&Algorithm1, &progress);
+        let tally = match work {
+            Work::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
+            Work::Worlds(graphs) => check_worlds(graphs, self.choice(), &Algorithm1, &progress),
+        };
         progress.finish();
         Ok(tally)
     }
+}
 
-    /// The worlds of a file, by their number of edges.
-    fn check_file(&self, path: &std::path::Path) -> Result<BTreeMap<usize, Tally>, Failure> {
-        let mut tallies: BTreeMap<usize, Tally> = BTreeMap::new();
-        for graph in input::read_graphs(path)? {
-            let tally = check_world(&graph, self.choice(), &Algorithm1);
-            tallies.entry(graph.edge_count()).or_default().merge(tally);
+impl Work {
+    /// Whether no world in it has a loop or parallel edges.
+    fn is_simple(&self) -> bool {
+        match self {
+            Self::Sweep(sweep) => sweep.enumeration.class().is_simple(),
+            Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
-        Ok(tallies)
     }
+}
+
+/// The worlds of a file, by their number of edges.
+fn worlds_by_size(path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
+    let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
+    for graph in input::read_graphs(path)? {
+        sizes.entry(graph.edge_count()).or_default().push(graph);
+    }
+    Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
 }
 
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
@@ -139,4 +182,13 @@ fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
     if moves(&other) > moves(worst) {
         *worst = other;
     }
+}
+
+fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), Failure> {
+    let Some(WorstStart { graph, facing, moves }) = worst else {
+        eprintln!("{} is not written: no start was mapped", path.display());
+        return Ok(());
+    };
+    let about = format!("The start that took the most moves, {moves}, in a check");
+    output::write_world(path, &NamedWorld::discovered("worst", &about, &graph, facing))
 }

@@ -46,10 +46,10 @@ impl Arguments {
             writeln!(out, "{line}")?;
             return Ok(Outcome::Holds);
         }
-        for world in [&a, &b] {
+        for (letter, world) in [("A", &a), ("B", &b)] {
             writeln!(
                 out,
-                "{}: {} vertices, {} edges, {} faces, genus {}",
+                "{letter} is {}: {} vertices, {} edges, {} faces, genus {}",
                 world.name,
                 world.graph.vertex_count(),
                 world.graph.edge_count(),
@@ -59,7 +59,7 @@ impl Arguments {
         }
         match &same {
             Ok(bijection) => {
-                writeln!(out, "isomorphic, by the bijection")?;
+                writeln!(out, "isomorphic, by this bijection from A to B:")?;
                 for [from, to] in pairs(bijection, &a, &b) {
                     writeln!(out, "  {from} -> {to}")?;
                 }

@@ -1,6 +1,7 @@
 //! `toposlam draw WORLD`.
 
 use std::{
+    ffi::OsStr,
     io::Write,
     path::{Path, PathBuf},
 };
@@ -24,12 +25,12 @@ pub(super) struct Arguments {
     /// Where the marker lies and points, instead of the file's [start]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// The file to write, its format by its ending: .svg, .png or .dot; without it, standard output
+    /// The file to write, as its ending says: .svg, .png or .dot [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// The format, where the ending of the file does not say it; SVG by default
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    /// What goes to standard output: svg, png or dot
+    #[arg(long, default_value = "svg", hide_possible_values = true, conflicts_with = "out")]
+    format: Format,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -44,13 +45,15 @@ enum Format {
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
-        let format = self.format()?;
+        if let Some(path) = &self.out {
+            output::check_place(path, &["svg", "png", "dot"])?;
+        }
         let mut world = input::read_world(&self.world)?;
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
         let drawn = || svg(&Picture::from(&world));
-        let bytes = match format {
+        let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
             Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,
             Format::Dot => dot::write(&world).into_bytes(),
@@ -62,26 +65,14 @@ impl Arguments {
         Ok(Outcome::Holds)
     }
 
-    /// What to write. A format that contradicts the ending of the file is refused.
-    fn format(&self) -> Result<Format, Failure> {
-        let ending = self.out.as_deref().and_then(Path::extension);
-        let said = match ending.map(std::ffi::OsStr::to_ascii_lowercase) {
-            Some(ending) if ending == "png" => Some(Format::Png),
-            Some(ending) if ending == "svg" => Some(Format::Svg),
-            Some(ending) if ending == "dot" => Some(Format::Dot),
-            _ => None,
-        };
-        match (self.format, said, &self.out) {
-            (Some(asked), Some(said), Some(path)) if asked != said => Err(Failure::in_file(
-                path,
-                "--format and the ending of the file say different things",
-            )),
-            (None, None, Some(path)) if ending.is_some() => Err(Failure::in_file(
-                path,
-                "a picture's name ends in .svg, .png or .dot, or --format says what it is",
-            )),
-            (Some(format), ..) | (None, Some(format), _) => Ok(format),
-            (None, None, _) => Ok(Format::Svg),
+    /// What the ending of the file says, or else what was asked for.
+    fn format(&self) -> Format {
+        let ending = self.out.as_deref().and_then(Path::extension).and_then(OsStr::to_str);
+        match ending {
+            Some("svg") => Format::Svg,
+            Some("png") => Format::Png,
+            Some("dot") => Format::Dot,
+            _ => self.format,
         }
     }
 }

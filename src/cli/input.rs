@@ -1,6 +1,10 @@
 //! Worlds from files, whatever their format.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, Read},
+    path::Path,
+};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -42,13 +46,11 @@ pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, 
 /// The embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
 pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, Failure> {
     let bytes = read(path)?;
-    match plantri_code(path, &bytes) {
-        Some(code) => read_plantri(path, &bytes, code),
-        None => {
-            let world = world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?;
-            Ok(vec![world.graph])
-        }
+    if let Some(code) = plantri_code(path, &bytes) {
+        return read_plantri(path, &bytes, code);
     }
+    let world = world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?;
+    Ok(vec![world.graph])
 }
 
 fn read_plantri(
@@ -80,6 +82,13 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::Code> {
     }
 }
 
+/// The bytes of a file; `-` is standard input.
 fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    fs::read(path).map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(path)
+    };
+    bytes.map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))
 }

@@ -15,7 +15,7 @@ use std::{
     process::ExitCode,
 };
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 use outcome::{Failure, Outcome};
 
@@ -36,6 +36,15 @@ enum Verb {
     Draw(draw::Arguments),
     Paper(paper::Arguments),
     Completions(completions::Arguments),
+}
+
+/// How what Algorithm 1 leaves open is resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Choices {
+    /// By the default choices.
+    Default,
+    /// In every way.
+    All,
 }
 
 /// Runs the verb that the command line names.

@@ -32,30 +32,49 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Refuses a path that cannot become a file, before long work begins: a folder, or in a folder that
-/// does not exist.
-pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
+/// does not exist, or with an ending that is none of these.
+pub(crate) fn check_place(path: &Path, endings: &[&str]) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::in_file(path, "this is a folder; name a file"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => {
-            Err(Failure::in_file(path, format!("there is no folder {}", folder.display())))
-        }
-        _ => Ok(()),
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(Failure::in_file(path, format!("there is no folder {}", folder.display())));
+    }
+    // A device has no ending.
+    let fits = path.exists() && !path.is_file()
+        || path.extension().and_then(OsStr::to_str).is_some_and(|found| endings.contains(&found));
+    if fits {
+        Ok(())
+    } else {
+        let endings: Vec<_> = endings.iter().map(|ending| format!(".{ending}")).collect();
+        Err(Failure::in_file(path, format!("the name must end in {}", endings.join(" or "))))
     }
 }
 
-/// What a world file is written as, by the ending of its name: `.json`, plantri's `.pc` and `.ec`
-/// (also `.planar_code` and `.edge_code`), Graphviz's `.dot`, and TOML for any other.
+/// The endings of plantri's `planar_code`, which can tell simple graphs only.
+const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
+
+/// Refuses a path as [`check_place`] does, for a world that may or may not be simple.
+pub(crate) fn check_world_place(path: &Path, simple: bool) -> Result<(), Failure> {
+    let endings = ["toml", "json", "dot", "ec", "edge_code"];
+    if simple {
+        check_place(path, &[&endings[..], &PLANAR_CODE].concat())
+    } else {
+        check_place(path, &endings)
+    }
+}
+
+/// Writes a world as the ending of the name says: `.toml`, `.json`, Graphviz's `.dot`, plantri's
+/// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
 pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure> {
     let graph = std::slice::from_ref(&world.graph);
     let coded = |code| plantri::write(graph, code).map_err(|error| Failure::in_file(path, error));
     let bytes = match path.extension().and_then(OsStr::to_str) {
         Some("json") => world_file::to_json_text(world).into_bytes(),
-        Some("pc" | "plc" | "planar_code") => coded(plantri::Code::Planar)?,
-        Some("ec" | "edge_code") => coded(plantri::Code::Edge)?,
         Some("dot") => dot::write(world).into_bytes(),
+        Some("ec" | "edge_code") => coded(plantri::Code::Edge)?,
+        Some(ending) if PLANAR_CODE.contains(&ending) => coded(plantri::Code::Planar)?,
         _ => world_file::to_toml(world).into_bytes(),
     };
     write_whole(path, &bytes)

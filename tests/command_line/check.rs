@@ -73,17 +73,19 @@ fn an_empty_shard_never_holds() {
     let lines = objects(&stdout(&output));
     assert_eq!((numbers(&lines, "starts"), &lines[0]["holds"]), (vec![0], &false.into()));
     let told = stdout(&run(["check", "--edges", "1", "--shard", "5/5"]));
-    assert!(told.contains("incomplete, there was nothing to check"), "{told}");
+    assert!(told.contains("incomplete: there was nothing to check"), "{told}");
 }
 
 #[test]
 fn all_choices_are_states_and_runs() {
     let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--choices", "all"]));
     assert_eq!(numbers(&lines, "states"), [4, 43, 725, 16471]);
-    let runs: Vec<_> = lines.iter().map(|line| line["runs"].as_str().unwrap()).collect();
-    assert_eq!(runs, ["3", "45", "1777", "502371"]);
-    assert_eq!(numbers(&lines, "every_run_moves_min"), [1, 2, 3, 4]);
-    assert_eq!(numbers(&lines, "every_run_moves_max"), [1, 4, 11, 22]);
+    assert_eq!(numbers(&lines, "runs"), [3, 45, 1777, 502_371]);
+    assert_eq!(numbers(&lines, "moves_least"), [1, 2, 3, 4]);
+    assert_eq!(numbers(&lines, "moves_most"), [1, 4, 11, 22]);
+    let given_up = run(["check", "--edges", "4", "--choices", "all", "--max-states", "9"]);
+    assert_eq!(given_up.status.code(), Some(3));
+    assert!(stdout(&given_up).contains("have more states than --max-states"));
 }
 
 #[test]

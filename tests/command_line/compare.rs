@@ -34,7 +34,7 @@ fn a_world_is_the_mirror_image_of_its_mirror_image() {
     for path in world_files() {
         let world = read_world(&path);
         let mirror = folder.join("mirror.toml");
-        let image = NamedWorld::discovered("mirror", "", &world.graph.mirror_image(), None);
+        let image = NamedWorld::numbered("mirror", "", world.graph.mirror_image(), None);
         fs::write(&mirror, world_file::to_toml(&image)).unwrap();
         let files = [path.to_str().unwrap(), mirror.to_str().unwrap()];
         let line = &objects(&said(["compare", "--json", files[0], files[1]]))[0];

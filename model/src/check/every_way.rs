@@ -21,20 +21,31 @@ pub struct EveryWay {
     pub runs: u128,
     /// The numbers of moves that occur among the runs.
     pub costs: Costs,
+    /// Whether these are all: the budget of states was not used up.
+    pub complete: bool,
 }
 
+/// How many states of one start are explored where nobody says otherwise.
+pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
+
 /// Runs Algorithm 1 on a start with all choices, and judges the end of every run. States are
-/// explored once, runs are counted.
+/// explored once, runs are counted. After `budget` states no new one is begun.
 ///
 /// # Errors
 /// The first [`Flaw`].
-pub fn every_way(graph: &EmbeddedGraph, facing: Dart) -> Result<EveryWay, Flaw> {
+pub fn every_way(graph: &EmbeddedGraph, facing: Dart, budget: u64) -> Result<EveryWay, Flaw> {
     let mut world = GraphWorld::new(graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
     exploration.begin(&mut world, &mut ())?;
-    let mut search = Search { facing, known: HashMap::new(), candidate: Candidate::default() };
+    let mut search = Search {
+        facing,
+        budget,
+        complete: true,
+        known: HashMap::new(),
+        candidate: Candidate::default(),
+    };
     let Futures { runs, costs } = search.line_4(&world, &exploration)?;
-    Ok(EveryWay { states: search.known.len() as u64, runs, costs })
+    Ok(EveryWay { states: search.known.len() as u64, runs, costs, complete: search.complete })
 }
 
 /// What can come after a state: how many runs, and how many more moves they take.
@@ -53,6 +64,8 @@ impl Futures {
 
 struct Search {
     facing: Dart,
+    budget: u64,
+    complete: bool,
     known: HashMap<(PartialMap, Vertex), Futures>,
     candidate: Candidate,
 }
@@ -87,6 +100,12 @@ impl Search {
         if let Some(known) = self.known.get(&state) {
             return Ok(known.clone());
         }
+        if self.known.len() as u64 >= self.budget {
+            self.complete = false;
+            return Ok(Futures::default());
+        }
+        // It is known from here on, so that the budget counts it while its futures are explored.
+        self.known.insert(state.clone(), Futures::default());
         let mut futures = Futures::default();
         if map.unexplored_is_empty() {
             judge(exploration, self.facing, world, &mut self.candidate)?;

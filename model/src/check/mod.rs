@@ -7,9 +7,9 @@ mod sweep;
 mod tally;
 
 pub use costs::Costs;
-pub use every_way::{EveryWay, every_way};
+pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
 pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
-pub use sweep::{Choice, Shard, ShardError, Sweep, Watch, check_world};
+pub use sweep::{Choice, Shard, ShardError, Sweep, Watch, check_worlds};
 pub use tally::{Failure, Tally, WorstStart};
 
 #[cfg(test)]

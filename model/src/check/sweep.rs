@@ -19,7 +19,10 @@ pub enum Choice {
     /// That of the default choices.
     Default,
     /// That, and every other resolution of what the algorithm leaves open.
-    All,
+    All {
+        /// How many states of one start may be explored.
+        budget: u64,
+    },
 }
 
 /// One of several disjoint shares of a check that together are the whole.
@@ -98,49 +101,67 @@ impl Sweep {
     /// rayon's pool, or 1 without the feature `rayon`).
     pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
         let parts = self.shard.select(self.enumeration.parts());
-        watch.parts(parts.len());
-        let check = |part: &Part| {
-            let tally = self.check_part(part, algorithm, watch);
-            watch.part_done(&tally);
-            tally
-        };
-        let merge = |mut sum: Tally, later: Tally| {
-            sum.merge(later);
-            sum
-        };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            // Neighbours are merged in their order, whoever checked them.
-            parts.par_iter().with_max_len(1).map(check).reduce(Tally::default, merge)
-        }
-        #[cfg(not(feature = "rayon"))]
-        {
-            parts.iter().map(check).fold(Tally::default(), merge)
-        }
-    }
-
-    fn check_part(&self, part: &Part, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
-        let mut checker = Checker::new(algorithm, self.choice);
-        let mut tally = Tally::default();
-        let end = part.for_each(&mut |found| {
-            if watch.stop() {
-                return ControlFlow::Break(());
-            }
-            checker.check_starts(found.graph, found.automorphisms as usize, &mut tally);
-            ControlFlow::Continue(())
-        });
-        tally.interrupted = end.is_break();
-        tally
+        in_parts(&parts, watch, |part, tally| {
+            let mut checker = Checker::new(algorithm, self.choice);
+            part.for_each(&mut |found| {
+                checker.check_starts(found.graph, found.automorphisms as usize, tally);
+                go_on(watch)
+            })
+        })
     }
 }
 
-/// Runs the algorithm on every start of one world.
-pub fn check_world(graph: &EmbeddedGraph, choice: Choice, algorithm: &impl Algorithm) -> Tally {
-    let mut tally = Tally::default();
-    let automorphisms = canonical(graph).automorphisms;
-    Checker::new(algorithm, choice).check_starts(graph, automorphisms, &mut tally);
-    tally
+/// Runs the algorithm on every start of some worlds. As with a [`Sweep`], the result does not depend
+/// on the number of threads.
+pub fn check_worlds(
+    graphs: &[EmbeddedGraph],
+    choice: Choice,
+    algorithm: &impl Algorithm,
+    watch: &impl Watch,
+) -> Tally {
+    let parts: Vec<_> = graphs.chunks(64).collect();
+    in_parts(&parts, watch, |part, tally| {
+        let mut checker = Checker::new(algorithm, choice);
+        part.iter().try_for_each(|graph| {
+            checker.check_starts(graph, canonical(graph).automorphisms, tally);
+            go_on(watch)
+        })
+    })
+}
+
+fn go_on(watch: &impl Watch) -> ControlFlow<()> {
+    if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Checks the parts of a whole, at once where there are threads for it, and adds up the tallies in
+/// the order of the parts.
+fn in_parts<P: Sync>(
+    parts: &[P],
+    watch: &impl Watch,
+    check: impl Fn(&P, &mut Tally) -> ControlFlow<()> + Sync,
+) -> Tally {
+    watch.parts(parts.len());
+    let check = |part: &P| {
+        let mut tally = Tally::default();
+        let end = go_on(watch).is_break() || check(part, &mut tally).is_break();
+        tally.interrupted = end;
+        watch.part_done(&tally);
+        tally
+    };
+    let merge = |mut sum: Tally, later: Tally| {
+        sum.merge(later);
+        sum
+    };
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        // Neighbours are merged in their order, whoever checked them.
+        parts.par_iter().with_max_len(1).map(check).reduce(Tally::default, merge)
+    }
+    #[cfg(not(feature = "rayon"))]
+    {
+        parts.iter().map(check).fold(Tally::default(), merge)
+    }
 }
 
 /// What is used again from run to run.
@@ -182,8 +203,8 @@ impl<'a, A: Algorithm> Checker<'a, A> {
         self.exploration.set_bound(graph.dart_count());
         let result = self.run(graph, facing).and_then(|moves| {
             tally.count_run(graph, facing, moves);
-            if self.choice == Choice::All {
-                tally.count_every_way(&every_way(graph, facing)?);
+            if let Choice::All { budget } = self.choice {
+                tally.count_every_way(&every_way(graph, facing, budget)?);
             }
             Ok(())
         });

@@ -52,6 +52,8 @@ pub struct Tally {
     pub runs: u128,
     /// Where all choices were tried: the fewest and the most moves of any run.
     pub extremes: Option<(u64, u64)>,
+    /// Where all choices were tried: starts that have more states than the budget allowed.
+    pub gave_up: u64,
     /// Whether the check was broken off.
     pub interrupted: bool,
 }
@@ -89,6 +91,7 @@ impl Tally {
     pub(super) fn count_every_way(&mut self, ways: &EveryWay) {
         self.states += ways.states;
         self.runs = self.runs.saturating_add(ways.runs);
+        self.gave_up += u64::from(!ways.complete);
         self.count_extremes(ways.costs.min().zip(ways.costs.max()));
     }
 
@@ -112,6 +115,7 @@ impl Tally {
         self.mapped += later.mapped;
         self.moves_total += later.moves_total;
         self.states += later.states;
+        self.gave_up += later.gave_up;
         self.runs = self.runs.saturating_add(later.runs);
         self.interrupted |= later.interrupted;
         self.count_extremes(later.extremes);

@@ -77,6 +77,12 @@ impl Enumeration {
         }
     }
 
+    /// The class of worlds.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.class
+    }
+
     /// The parts of the enumeration, in its order; they do not depend on who works on them.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {

@@ -2,12 +2,14 @@
 
 use std::{
     io::{self, Write},
+    path::Path,
     time::Duration,
 };
 
 use serde::Serialize;
 use toposlam_model::{
     check::{Choice, Failure as Failed, Shard, Tally},
+    enumerate::Class,
     format::{named_world::NamedWorld, world_file},
 };
 
@@ -16,8 +18,9 @@ use crate::cli::{Failure, Outcome};
 /// What was checked of one number of edges.
 pub(super) struct Size<'a> {
     pub(super) edges: usize,
-    /// The class of worlds, or the file that they are from.
-    pub(super) class: &'a str,
+    /// The class of the worlds, where they are not from a file.
+    pub(super) class: Class,
+    pub(super) from: Option<&'a Path>,
     /// The share of them.
     pub(super) shard: Shard,
     pub(super) tally: &'a Tally,
@@ -27,20 +30,28 @@ pub(super) struct Size<'a> {
 pub(super) struct Report<'o> {
     out: &'o mut dyn Write,
     json: bool,
+    marker: &'static str,
     choice: Choice,
     header: bool,
     total: Tally,
 }
 
 impl<'o> Report<'o> {
-    pub(super) fn new(out: &'o mut dyn Write, json: bool, choice: Choice) -> Self {
-        Self { out, json, choice, header: false, total: Tally::default() }
+    pub(super) fn new(
+        out: &'o mut dyn Write,
+        json: bool,
+        marker: &'static str,
+        choice: Choice,
+    ) -> Self {
+        Self { out, json, marker, choice, header: false, total: Tally::default() }
     }
 
     /// One number of edges.
     pub(super) fn size(&mut self, size: &Size) -> Result<(), Failure> {
         if self.json {
-            self.json_line(size)?;
+            let line = Line::new(size, self.marker, self.choice);
+            serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
+            writeln!(self.out)?;
         } else {
             self.row(size)?;
         }
@@ -49,64 +60,36 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    fn json_line(&mut self, size: &Size) -> Result<(), Failure> {
-        let &Size { edges, class, shard, tally } = size;
-        let extremes = tally.extremes.filter(|_| self.choice == Choice::All);
-        let line = Line {
-            schema: 1,
-            edges,
-            class,
-            marker: "directional",
-            worlds: tally.worlds,
-            starts: tally.starts,
-            mapped: tally.mapped,
-            failed: tally.failed(),
-            moves_total: tally.moves_total,
-            moves_max: tally.moves_max(),
-            largest_ratio: tally.largest_ratio(edges),
-            every_way: extremes.map(|(moves_least, moves_most)| EveryWayLine {
-                states: tally.states,
-                runs: tally.runs,
-                moves_least,
-                moves_most,
-            }),
-            shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
-            interrupted: tally.interrupted,
-            failure: tally.failure.as_ref().map(|failure| FailureLine {
-                cause: failure.flaw.to_string(),
-                step: step(failure),
-                moves: failure.moves,
-                world: world_file::to_json(&failed_world(failure)),
-            }),
-            holds: holds(tally),
+    fn header(&mut self, size: &Size) -> Result<(), Failure> {
+        let worlds = match size.from {
+            Some(path) => format!("the worlds of {}", path.display()),
+            None => format!("class {}", size.class),
         };
-        serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
+        let share = match size.shard {
+            Shard::WHOLE => String::new(),
+            shard => format!(", shard {shard}"),
+        };
+        writeln!(self.out, "Algorithm 1, {} marker, {worlds}{share}\n", self.marker)?;
+        write!(
+            self.out,
+            "{:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>10}  {:>4}  {:>12}",
+            "edges", "worlds", "starts", "mapped", "failed", "mean moves", "most", "most/(m^2 n)"
+        )?;
+        if self.choice != Choice::Default {
+            write!(self.out, "  {:>11}  {:>20}  {:>9}", "states", "runs", "moves")?;
+        }
         writeln!(self.out)?;
         Ok(())
     }
 
     fn row(&mut self, size: &Size) -> Result<(), Failure> {
-        let &Size { edges, class, shard, tally } = size;
-        let all = self.choice == Choice::All;
+        let &Size { edges, tally, .. } = size;
         if !std::mem::replace(&mut self.header, true) {
-            let share = match shard {
-                Shard::WHOLE => String::new(),
-                shard => format!(", shard {shard}"),
-            };
-            writeln!(self.out, "Algorithm 1, directional marker, class {class}{share}\n")?;
-            write!(
-                self.out,
-                "{:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>6}  {:>5}  {:>12}",
-                "edges", "worlds", "starts", "mapped", "failed", "mean", "most", "most/(m^2 n)"
-            )?;
-            if all {
-                write!(self.out, "  {:>11}  {:>20}  {:>11}", "states", "runs", "any run")?;
-            }
-            writeln!(self.out)?;
+            self.header(size)?;
         }
         write!(
             self.out,
-            "{edges:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>6.1}  {:>5}  {:>12.3}",
+            "{edges:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>10.1}  {:>4}  {:>12.3}",
             grouped(tally.worlds.into()),
             grouped(tally.starts.into()),
             grouped(tally.mapped.into()),
@@ -115,13 +98,14 @@ impl<'o> Report<'o> {
             tally.moves_max(),
             tally.largest_ratio(edges),
         )?;
-        if all {
+        if self.choice != Choice::Default {
             let (least, most) = tally.extremes.unwrap_or_default();
+            let at_least = if tally.runs == u128::MAX || tally.gave_up > 0 { ">= " } else { "" };
             write!(
                 self.out,
-                "  {:>11}  {:>20}  {:>11}",
+                "  {:>11}  {:>20}  {:>9}",
                 grouped(tally.states.into()),
-                grouped(tally.runs),
+                format!("{at_least}{}", grouped(tally.runs)),
                 format!("{least} to {most}"),
             )?;
         }
@@ -134,28 +118,30 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    /// The last line, and the outcome.
+    /// The last line, and the outcome. An empty check does not hold, nor one that was broken off.
     pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
-        let total = self.total;
-        let outcome = match () {
-            () if total.failed() > 0 => Outcome::Violated,
-            () if total.interrupted || total.starts == 0 => Outcome::Incomplete,
-            () => Outcome::Holds,
+        let Tally { starts, mapped, gave_up, interrupted, .. } = self.total;
+        let (outcome, verdict) = match () {
+            () if mapped < starts => (Outcome::Violated, "violated"),
+            () if interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
+            () if starts == 0 => (Outcome::Incomplete, "incomplete: there was nothing to check"),
+            () if gave_up > 0 => (Outcome::Incomplete, "incomplete"),
+            () => (Outcome::Holds, "holds"),
         };
-        let verdict = match outcome {
-            Outcome::Holds => "holds",
-            Outcome::Violated => "violated",
-            Outcome::Incomplete if total.interrupted => "incomplete, interrupted",
-            Outcome::Incomplete => "incomplete, there was nothing to check",
-        };
-        if !self.json {
-            writeln!(
-                self.out,
-                "\n{verdict}: {} of {} starts mapped right, each map proved by a bijection",
-                grouped(total.mapped.into()),
-                grouped(total.starts.into()),
-            )?;
+        if self.json {
+            return Ok(outcome);
         }
+        write!(self.out, "\n{verdict}")?;
+        if starts > 0 {
+            let (mapped, starts) = (grouped(mapped.into()), grouped(starts.into()));
+            write!(self.out, ": {mapped} of {starts} starts mapped right, ")?;
+            write!(self.out, "each map proved by a bijection")?;
+        }
+        if gave_up > 0 {
+            let gave_up = grouped(gave_up.into());
+            write!(self.out, "; {gave_up} have more states than --max-states")?;
+        }
+        writeln!(self.out)?;
         eprintln!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
         Ok(outcome)
     }
@@ -166,7 +152,10 @@ impl<'o> Report<'o> {
 struct Line<'a> {
     schema: u32,
     edges: usize,
-    class: &'a str,
+    /// None where the worlds are from a file.
+    class: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    from: Option<String>,
     marker: &'a str,
     worlds: u64,
     starts: u64,
@@ -193,6 +182,8 @@ struct EveryWayLine {
     runs: u128,
     moves_least: u64,
     moves_most: u64,
+    /// Starts with more states than the budget.
+    gave_up: u64,
 }
 
 /// The first start that was mapped wrongly.
@@ -204,9 +195,44 @@ struct FailureLine {
     world: serde_json::Value,
 }
 
-/// An empty check never holds, and one that was broken off does not either.
-fn holds(tally: &Tally) -> bool {
-    tally.failed() == 0 && tally.starts > 0 && !tally.interrupted
+impl<'a> Line<'a> {
+    fn new(size: &Size<'a>, marker: &'a str, choice: Choice) -> Self {
+        let &Size { edges, class, from, shard, tally } = size;
+        let extremes = tally.extremes.filter(|_| choice != Choice::Default);
+        Self {
+            schema: 1,
+            edges,
+            class: from.is_none().then(|| class.name()),
+            from: from.map(|path| path.display().to_string()),
+            marker,
+            worlds: tally.worlds,
+            starts: tally.starts,
+            mapped: tally.mapped,
+            failed: tally.failed(),
+            moves_total: tally.moves_total,
+            moves_max: tally.moves_max(),
+            largest_ratio: tally.largest_ratio(edges),
+            every_way: extremes.map(|(moves_least, moves_most)| EveryWayLine {
+                states: tally.states,
+                runs: tally.runs,
+                moves_least,
+                moves_most,
+                gave_up: tally.gave_up,
+            }),
+            shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
+            interrupted: tally.interrupted,
+            failure: tally.failure.as_ref().map(|failure| FailureLine {
+                cause: failure.flaw.to_string(),
+                step: step(failure),
+                moves: failure.moves,
+                world: world_file::to_json(&failed_world(failure)),
+            }),
+            holds: tally.failed() == 0
+                && tally.starts > 0
+                && tally.gave_up == 0
+                && !tally.interrupted,
+        }
+    }
 }
 
 fn failed_world(failure: &Failed) -> NamedWorld {
@@ -244,11 +270,12 @@ mod tests {
 
     #[test]
     fn runs_beyond_64_bits_are_printed_whole() {
-        let mut out = Vec::new();
-        let mut report = Report::new(&mut out, true, Choice::All);
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
-        report.size(&Size { edges: 1, class: "file", shard: Shard::WHOLE, tally: &tally }).unwrap();
-        let text = String::from_utf8(out).unwrap();
-        assert!(text.contains(r#""runs":340282366920938463463374607431768211455,"#), "{text}");
+        let (class, shard) = (Class::Simple, Shard::WHOLE);
+        let size = Size { edges: 1, class, from: None, shard, tally: &tally };
+        let line =
+            serde_json::to_string(&Line::new(&size, "directional", Choice::All { budget: 9 }))
+                .unwrap();
+        assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");
     }
 }

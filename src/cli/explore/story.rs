@@ -75,9 +75,10 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
-                    (others, fit) => {
-                        let others = counted(others + fit, "other unexplored dart");
-                        writeln!(self.out, "     {fit} of {others} could be its other end")
+                    (_, 0) => writeln!(self.out, "     no other unexplored dart fits"),
+                    (_, fit) => {
+                        let others = counted(contradicted + fit, "other unexplored dart");
+                        writeln!(self.out, "     {fit} of the {others} may fit")
                     }
                 }
             }
@@ -190,6 +191,6 @@ pub(super) fn counted(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-fn vertices(number: usize) -> String {
+pub(super) fn vertices(number: usize) -> String {
     if number == 1 { "1 vertex".to_owned() } else { format!("{number} vertices") }
 }
