@@ -1,5 +1,5 @@
 //! When two worlds are the same: codes of starts, canonical forms, automorphisms, bijections.
-//! Section 2.1 ("isomorphic" in the sense of the paper's [8]).
+//! Section 2.1 ("isomorphic" in the sense of the paper's reference 8).
 
 mod bijection;
 mod canonical;
