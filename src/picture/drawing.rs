@@ -1,4 +1,5 @@
-//! The drawing: where discs, doors, curves and labels are, before it is written as SVG.
+//! The drawing: where discs, doors and curves are, before labels are put to it and it is written as
+//! SVG.
 
 use crate::model::embedded_graph::{Dart, EmbeddedGraph};
 
@@ -7,7 +8,6 @@ use super::{
     curves::Curve,
     doors::door_directions,
     geometry::{Extent, Point},
-    labels::{self, Label},
     layout::{self, Layout},
     routes::{self, Crossings},
     scale::{Purpose, scale},
@@ -29,7 +29,6 @@ pub(super) struct Drawing {
     pub(super) ends: Vec<[usize; 2]>,
     /// The ink of each edge: 0, or one that no edge that it crosses has.
     pub(super) inks: Vec<usize>,
-    pub(super) labels: Vec<Label>,
     /// The ground, for floor plans.
     pub(super) floor: Option<Floor>,
 }
@@ -80,7 +79,7 @@ impl Drawing {
             Crossings::Needed
         };
         let curves = routes::routes(&errands, &layout.vertices, &size, crossings);
-        let mut drawing = Self {
+        Self {
             inks: inks(&curves),
             ends: errands.iter().map(|errand| errand.vertices).collect(),
             edges: graph
@@ -90,7 +89,6 @@ impl Drawing {
                 .collect(),
             centres: layout.vertices,
             doors,
-            labels: Vec::new(),
             floor: match place {
                 Place::FloorPlan { hallway_width, .. } => {
                     Some(Floor { metre: unit, width: unit * hallway_width })
@@ -98,9 +96,7 @@ impl Drawing {
                 Place::Free | Place::At(_) => None,
             },
             size,
-        };
-        drawing.labels = labels::labels(&drawing, picture);
-        drawing
+        }
     }
 
     /// The floor of each hallway of a floor plan.
@@ -113,7 +109,7 @@ impl Drawing {
         })
     }
 
-    /// The box around all that is drawn.
+    /// The box around all that is drawn, but for labels.
     pub(super) fn extent(&self) -> Extent {
         let mut extent = Extent::EMPTY;
         for (centre, disc) in self.centres.iter().zip(&self.size.discs) {
@@ -125,9 +121,6 @@ impl Drawing {
         }
         for (_, _, curve) in &self.edges {
             extent.join(curve.extent.widened(3.0));
-        }
-        for label in &self.labels {
-            extent.join(label.extent());
         }
         extent
     }

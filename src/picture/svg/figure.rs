@@ -36,9 +36,6 @@ impl Page {
             let at = drawing.centres[vertex] + Point::polar(direction, away) + shift;
             self.arrow(at, direction, if size.knob > 0.0 { 1.35 } else { 0.9 });
         }
-        for label in &drawing.labels {
-            self.label(label, shift);
-        }
     }
 
     /// The hallways of a floor plan.
@@ -102,7 +99,7 @@ impl Page {
         }
     }
 
-    fn label(&mut self, label: &Label, shift: Point) {
+    pub(super) fn label(&mut self, label: &Label, shift: Point) {
         let (fill, class) = match label.kind {
             Kind::Inside | Kind::Beside => (INK, "name"),
             Kind::Edge => (FAINT, "edge-name"),

@@ -6,7 +6,7 @@
 mod figure;
 mod page;
 
-use super::{Picture, drawing::Drawing, geometry::Point, text};
+use super::{Picture, drawing::Drawing, geometry::Point, labels::labels, text};
 use page::{FAINT, INK, PAPER, Page, short};
 
 /// Room around everything.
@@ -20,7 +20,11 @@ const LEGEND: [f64; 2] = [11.0, 15.5];
 
 /// The picture as an SVG document.
 pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
-    let extent = drawing.extent();
+    let labels = labels(drawing, picture);
+    let mut extent = drawing.extent();
+    for label in &labels {
+        extent.join(label.extent());
+    }
     let column = extent.size().x.max(COLUMN);
     let title = text::lines(picture.title, TITLE[0], column);
     let caption = text::lines(picture.caption, CAPTION[0], column);
@@ -56,6 +60,9 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         page.text(line, Point::new(middle, baseline), TITLE[0], INK, "title");
     }
     page.drawing(picture, drawing, shift);
+    for label in &labels {
+        page.label(label, shift);
+    }
     let mut baseline = MARGIN + above + extent.size().y + 14.0;
     if let Some(floor) = drawing.floor {
         page.scale_bar(floor.metre, extent.size().x, Point::new(middle, baseline + 8.0));
