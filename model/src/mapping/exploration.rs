@@ -5,9 +5,12 @@
 
 use std::{cmp::Reverse, mem};
 
-use super::{Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, Tree};
+use super::{
+    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, Tree,
+    partial_map::START,
+};
 use crate::{
-    embedded_graph::{Dart, Vertex},
+    embedded_graph::Dart,
     percept::{Door, Percept, Sighting, retrace},
     world::World,
 };
@@ -188,10 +191,13 @@ impl Exploration {
     fn raise_hypotheses(&mut self) -> Result<(), Contradiction> {
         let Self { map, arrival, hypotheses, edge, .. } = self;
         hypotheses.clear();
-        for vertex in map.vertices() {
-            if map.is_frontier(vertex) && map.degree(vertex) == arrival.degree {
-                for dart in map.unexplored_at(vertex) {
-                    if dart != *edge && map.expected(dart) == *arrival {
+        let marked = arrival.sighting != Sighting::Nothing;
+        for vertex in map.vertices().rev() {
+            let fits = map.degree(vertex) == arrival.degree && (vertex == START) == marked;
+            if fits && map.is_frontier(vertex) {
+                for dart in map.unexplored_at(vertex).rev() {
+                    // Without a marker, all darts of a vertex look alike.
+                    if dart != *edge && (!marked || map.expected(dart) == *arrival) {
                         hypotheses.push(dart);
                     }
                 }
@@ -206,7 +212,7 @@ impl Exploration {
             };
         }
         if !mem::replace(&mut self.to_marker_is_current, true) {
-            self.to_marker.plant(map, Vertex(0));
+            self.to_marker.plant(map, START);
             self.to_marker.grow_whole(map);
         }
         let hops = |dart: Dart| self.to_marker.hops(map.vertex(dart));

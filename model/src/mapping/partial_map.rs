@@ -21,6 +21,9 @@ pub struct PartialMap {
 /// The facing dart, along which the marker points.
 pub const FACING: Dart = Dart(0);
 
+/// The start vertex, at which the marker lies.
+pub(super) const START: Vertex = Vertex(0);
+
 impl PartialMap {
     /// The map that knows nothing.
     pub(super) fn new() -> Self {
@@ -146,7 +149,7 @@ impl PartialMap {
     #[inline]
     #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {
-        let sighting = if self.vertex(pose) == Vertex(0) {
+        let sighting = if self.vertex(pose) == START {
             Sighting::Pointing(self.door(pose, FACING))
         } else {
             Sighting::Nothing
