@@ -23,7 +23,7 @@ fn sweep(class: Class, edges: usize, choice: Choice, algorithm: &impl Algorithm)
     Sweep { enumeration, shard: Shard::WHOLE, choice }.run(algorithm, &())
 }
 
-/// Starts: A000698. Moves: pinned from a first run, so that a silent change of the choices shows.
+/// Starts: A000698. Moves: by the independent implementation in `tests/oracle` of the workspace.
 // paper: marker.directional-sufficient, alg1.isomorphic, alg1.terminates, alg1.located, cost.bound
 #[test]
 fn every_start_with_up_to_six_edges_is_mapped_right() {
