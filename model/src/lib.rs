@@ -8,9 +8,32 @@
 //! * [`isomorphism`]: codes of starts, canonical forms, bijections as witnesses;
 //! * [`marker`]: what a marker adds to a percept (Sections 2.2, 2.3);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
+//! * [`enumerate`]: every start and every world of a size, once;
 //! * [`world`]: the trait that is all that a robot can sense and do;
+//! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
 //! * [`mapping`]: Algorithm 1, and what it stands on (Section 2.3);
-//! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out.
+//! * [`check`]: Algorithm 1 on every start, judged.
+//!
+//! ```
+//! use toposlam_model::{
+//!     embedded_graph::{Dart, EmbeddedGraph},
+//!     mapping::{DEFAULT_DART_BOUND, Exploration, Nearest, map_world},
+//!     world::GraphWorld,
+//! };
+//!
+//! // A triangle with a tail, each vertex with its neighbours in clockwise order.
+//! let graph = EmbeddedGraph::from_neighbour_lists(&[
+//!     ("end", vec!["a"]),
+//!     ("a", vec!["end", "b", "c"]),
+//!     ("b", vec!["a", "c"]),
+//!     ("c", vec!["b", "a"]),
+//! ])?;
+//! let mut world = GraphWorld::new(&graph, Dart(0));
+//! let mut exploration = Exploration::new(DEFAULT_DART_BOUND);
+//! map_world(&mut world, &mut Nearest, &mut exploration, &mut ())?;
+//! assert_eq!(exploration.moves(), 5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod check;
 pub mod embedded_graph;
