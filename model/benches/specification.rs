@@ -41,8 +41,7 @@ fn enumerate(bencher: Bencher, (class, edges, worlds): (&str, usize, u64)) {
 /// Algorithm 1 on every start, each map verified.
 #[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
 fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
-    let enumeration = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
-    let sweep = Sweep { enumeration, shard: Shard::WHOLE, choice: Choice::Default };
+    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
         assert_eq!(sweep.run(&Algorithm1, &()).mapped, starts);
     });
@@ -51,12 +50,13 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
 /// Algorithm 1 with all choices on every start; the items are states.
 #[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
 fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
-    let enumeration = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
-    let sweep = Sweep {
-        enumeration,
-        shard: Shard::WHOLE,
-        choice: Choice::All { budget: DEFAULT_STATE_BUDGET },
-    };
+    let sweep = Sweep::new(
+        Class::Multigraph,
+        edges,
+        Shard::WHOLE,
+        Choice::All { budget: DEFAULT_STATE_BUDGET },
+    )
+    .unwrap();
     bencher.counter(ItemsCount::new(states)).bench(|| {
         assert_eq!(sweep.run(&Algorithm1, &()).states, states);
     });

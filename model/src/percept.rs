@@ -17,7 +17,7 @@ impl Door {
     #[inline]
     #[must_use]
     pub fn between(from: u32, to: u32, degree: u32) -> Self {
-        Self(if to >= from { to - from } else { to + degree - from })
+        Self(if to >= from { to - from } else { degree.wrapping_sub(from - to) })
     }
 
     /// The door `-d`: the one that undoes this one, at a vertex of the given degree.

@@ -21,11 +21,11 @@ pub trait World {
     /// Where the world cannot be sensed.
     fn percept(&mut self) -> Result<Percept, Self::Error>;
 
-    // paper: motion.door, motion.arrival
     /// Leaves by a door and goes to the other end of the edge.
     ///
     /// # Errors
     /// Where the robot cannot go.
+    // paper: motion.door, motion.arrival
     fn traverse(&mut self, door: Door) -> Result<(), Self::Error>;
 }
 
@@ -49,7 +49,7 @@ pub struct GraphWorld<'g, M = Directional> {
 
 impl<'g> GraphWorld<'g> {
     /// The world of a start: the directional marker lies at the start vertex and points along the
-    /// facing dart, which is the robot's entry dart.
+    /// facing dart, which is one of the graph's, and the robot's entry dart.
     #[must_use]
     pub fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
         Self { graph, marker: Directional { along: facing }, pose: facing }

@@ -82,6 +82,14 @@ fn a_known_place_that_changed_is_a_contradiction() {
         perceived: marked(3, 0),
     };
     assert_eq!(scripted(&[marked(2, 0), plain(1), marked(3, 0)]), expected.into());
+    // The marker may not turn, either.
+    let turned = Contradiction::KnownPlace {
+        vertex: Vertex(0),
+        index: 0,
+        expected: marked(2, 0),
+        perceived: marked(2, 1),
+    };
+    assert_eq!(scripted(&[marked(2, 0), plain(1), marked(2, 1)]), turned.into());
     assert_eq!(
         MappingError::<NoSuchDoor>::from(expected).to_string(),
         "the world contradicts itself: at the known vertex v0, entered by its dart 0, there should \

@@ -16,7 +16,7 @@ use toposlam_model::{
         Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, WorstStart, check_worlds,
     },
     embedded_graph::EmbeddedGraph,
-    enumerate::{Class, Each, Enumeration},
+    enumerate::Class,
     format::named_world::NamedWorld,
 };
 
@@ -139,10 +139,8 @@ impl Arguments {
     /// A sweep for each number of edges.
     fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
         let sweep = |edges| {
-            let enumeration = Enumeration::new(Each::World, self.class, edges)
-                .map_err(|error| Failure::at("--edges", error))?;
-            let sweep = Sweep { enumeration, shard: self.shard, choice: self.choice() };
-            Ok((edges, Work::Sweep(sweep)))
+            let sweep = Sweep::new(self.class, edges, self.shard, self.choice());
+            Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
     }
@@ -162,7 +160,7 @@ impl Work {
     /// Whether no world in it has a loop or parallel edges.
     fn is_simple(&self) -> bool {
         match self {
-            Self::Sweep(sweep) => sweep.enumeration.class().is_simple(),
+            Self::Sweep(sweep) => sweep.class().is_simple(),
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }

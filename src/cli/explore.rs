@@ -113,7 +113,7 @@ impl Arguments {
             .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
         let ways = match self.choices {
             Choices::Default => None,
-            Choices::All => Some(every_way(&world.graph, facing, self.max_states)),
+            Choices::All => Some(every_way(&world.graph, facing, self.max_states, &())),
         };
         let ending = Ending { world: &world, facing, exploration: &exploration, result, ways };
         if self.json {

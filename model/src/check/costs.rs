@@ -66,6 +66,12 @@ mod tests {
         }
         let expected = [0, 1, 2, 63, 64, 65, 66, 127, 128, 129, 200, 201, 264, 265];
         assert_eq!(costs.iter().collect::<Vec<_>>(), expected);
+        for (cost, by) in [(63, 1), (63, 65), (40, 50)] {
+            let (mut from, mut to) = (Costs::default(), Costs::default());
+            from.include(&Costs::nothing(), cost);
+            to.include(&from, by);
+            assert_eq!(to.iter().collect::<Vec<_>>(), [cost + by]);
+        }
         assert_eq!((costs.min(), costs.max()), (Some(0), Some(265)));
         assert_eq!(Costs::default().max(), None);
     }

@@ -3,11 +3,11 @@
 
 use std::collections::HashMap;
 
-use super::{Costs, Flaw, judge::judge};
+use super::{Costs, Flaw, Watch, judge::judge, judge::move_bound};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     isomorphism::Candidate,
-    mapping::{Choices, Exploration, PartialMap, Tree, Verdict, try_path},
+    mapping::{Choices, Exploration, PartialMap, Verdict, try_path},
     world::GraphWorld,
 };
 
@@ -28,24 +28,44 @@ pub struct EveryWay {
 /// How many states of one start are explored where nobody says otherwise.
 pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
 
+/// The search is as deep as the world has edges. One with more is not begun: its states are beyond
+/// counting anyway.
+const MAX_EDGES: usize = 100;
+
 /// Runs Algorithm 1 on a start with all choices, and judges the end of every run. States are
-/// explored once, runs are counted. After `budget` states no new one is begun.
+/// explored once, runs are counted. After `budget` states, those within a round (what is left of H)
+/// included, or when the watch says stop, no new one is begun.
 ///
 /// # Errors
 /// The first [`Flaw`].
-pub fn every_way(graph: &EmbeddedGraph, facing: Dart, budget: u64) -> Result<EveryWay, Flaw> {
+pub fn every_way(
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    budget: u64,
+    watch: &impl Watch,
+) -> Result<EveryWay, Flaw> {
     let mut world = GraphWorld::new(graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
     exploration.begin(&mut world, &mut ())?;
+    let budget = if graph.edge_count() > MAX_EDGES { 0 } else { budget };
     let mut search = Search {
         facing,
         budget,
+        watch,
+        begun: 0,
         complete: true,
         known: HashMap::new(),
         candidate: Candidate::default(),
     };
     let Futures { runs, costs } = search.line_4(&world, &exploration)?;
-    Ok(EveryWay { states: search.known.len() as u64, runs, costs, complete: search.complete })
+    let bound = move_bound(graph.edge_count(), graph.vertex_count());
+    match costs.max() {
+        Some(moves) if moves > bound => Err(Flaw::TooManyMoves { moves, bound }),
+        _ => {
+            let states = search.known.len() as u64;
+            Ok(EveryWay { states, runs, costs, complete: search.complete })
+        }
+    }
 }
 
 /// What can come after a state: how many runs, and how many more moves they take.
@@ -62,11 +82,15 @@ impl Futures {
     }
 }
 
-struct Search {
+struct Search<'w, W> {
     facing: Dart,
     budget: u64,
+    watch: &'w W,
+    /// States begun, at line 4 and at line 8.
+    begun: u64,
     complete: bool,
-    known: HashMap<(PartialMap, Vertex), Futures>,
+    /// For each state at line 4 what can come after it, and where the robot truly was.
+    known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
     candidate: Candidate,
 }
 
@@ -77,35 +101,41 @@ struct ThisEdge(Dart);
 struct ThisHypothesis(usize);
 
 impl Choices for ThisEdge {
-    fn next_edge(&mut self, _: &PartialMap, _: &mut Tree) -> Option<Dart> {
-        Some(self.0)
+    fn next_edge(&mut self, _: &PartialMap, _: Dart, _: Dart) -> Dart {
+        self.0
     }
 }
 
 impl Choices for ThisHypothesis {
-    fn next_edge(&mut self, _: &PartialMap, _: &mut Tree) -> Option<Dart> {
-        None
-    }
-
     fn next_hypothesis(&mut self, _: &PartialMap, _: &[Dart]) -> usize {
         self.0
     }
 }
 
-impl Search {
+impl<W: Watch> Search<'_, W> {
+    /// Whether one more state may be begun.
+    fn begin(&mut self) -> bool {
+        let may = self.begun < self.budget && !self.watch.stop();
+        self.begun += u64::from(may);
+        self.complete &= may;
+        may
+    }
+
     /// Every choice at line 5.
     fn line_4(&mut self, world: &GraphWorld, exploration: &Exploration) -> Result<Futures, Flaw> {
         let map = exploration.map();
         let state = (map.clone(), map.vertex(exploration.robot()));
-        if let Some(known) = self.known.get(&state) {
-            return Ok(known.clone());
+        if let Some((futures, truly)) = self.known.get(&state) {
+            // One state, one place in the world; it may have been entered by another dart.
+            if world.graph().vertex(*truly) != world.graph().vertex(world.pose()) {
+                let believed = exploration.robot();
+                return Err(Flaw::WrongPose { believed, image: *truly, truly: world.pose() });
+            }
+            return Ok(futures.clone());
         }
-        if self.known.len() as u64 >= self.budget {
-            self.complete = false;
+        if !self.begin() {
             return Ok(Futures::default());
         }
-        // It is known from here on, so that the budget counts it while its futures are explored.
-        self.known.insert(state.clone(), Futures::default());
         let mut futures = Futures::default();
         if map.unexplored_is_empty() {
             judge(exploration, self.facing, world, &mut self.candidate)?;
@@ -119,7 +149,7 @@ impl Search {
                 futures.include(&after, next.moves() - exploration.moves());
             }
         }
-        self.known.insert(state, futures.clone());
+        self.known.insert(state, (futures.clone(), world.pose()));
         Ok(futures)
     }
 
@@ -132,6 +162,9 @@ impl Search {
     ) -> Result<Futures, Flaw> {
         if let Some(known) = known.get(exploration.hypotheses()) {
             return Ok(known.clone());
+        }
+        if !self.begin() {
+            return Ok(Futures::default());
         }
         let mut futures = Futures::default();
         if exploration.hypotheses().is_empty() {

@@ -86,7 +86,8 @@ pub enum Flaw {
 #[must_use]
 pub fn move_bound(edges: usize, vertices: usize) -> u64 {
     let (m, n) = (edges as u64, vertices as u64);
-    m.saturating_mul(n).saturating_add(m.saturating_mul(m).saturating_mul(2 * (n - 1)))
+    let paths = m.saturating_mul(m).saturating_mul(n.saturating_sub(1).saturating_mul(2));
+    m.saturating_mul(n).saturating_add(paths)
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is

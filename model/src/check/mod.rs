@@ -5,12 +5,14 @@ mod every_way;
 mod judge;
 mod sweep;
 mod tally;
+mod watch;
 
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
 pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
-pub use sweep::{Choice, Shard, ShardError, Sweep, Watch, check_worlds};
+pub use sweep::{Choice, Shard, ShardError, Sweep, check_worlds};
 pub use tally::{Failure, Tally, WorstStart};
+pub use watch::Watch;
 
 #[cfg(test)]
 mod tests {
@@ -21,7 +23,7 @@ mod tests {
         any_graph::{Class, any_graph},
         embedded_graph::Dart,
         isomorphism::Candidate,
-        mapping::{Choices, Exploration, PartialMap, Tree, map_world},
+        mapping::{Choices, Exploration, PartialMap, map_world},
         world::GraphWorld,
     };
 
@@ -39,9 +41,9 @@ mod tests {
     }
 
     impl Choices for Drawn<'_> {
-        fn next_edge(&mut self, map: &PartialMap, _: &mut Tree) -> Option<Dart> {
+        fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
             let place = self.below(map.unexplored_count() as usize);
-            map.unexplored().nth(place)
+            map.unexplored().nth(place).unwrap_or(nearest)
         }
 
         fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {

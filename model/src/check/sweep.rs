@@ -4,10 +4,10 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Algorithm, Failure, Flaw, Tally, every_way, first_false_step, judge::judge};
+use super::{Algorithm, Failure, Flaw, Tally, Watch, every_way, first_false_step, judge::judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Enumeration, Part},
+    enumerate::{Class, Each, Enumeration, Part, SizeError},
     isomorphism::{Candidate, canonical},
     mapping::Exploration,
     world::GraphWorld,
@@ -18,7 +18,7 @@ use crate::{
 pub enum Choice {
     /// That of the default choices.
     Default,
-    /// That, and every other resolution of what the algorithm leaves open.
+    /// That, and every other resolution of what Algorithm 1 leaves open.
     All {
         /// How many states of one start may be explored.
         budget: u64,
@@ -54,7 +54,11 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, ShardError> {
         let shard = text.split_once('/').and_then(|(index, of)| {
-            Some(Self { index: index.parse().ok()?, of: of.parse().ok()? })
+            let number = |text: &str| {
+                let digits = text.bytes().all(|byte| byte.is_ascii_digit());
+                digits.then(|| text.parse().ok()).flatten()
+            };
+            Some(Self { index: number(index)?, of: number(of)? })
         });
         shard
             .filter(|shard| (1..=shard.of).contains(&shard.index))
@@ -68,41 +72,40 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Watches a long check, from several threads at once.
-pub trait Watch: Sync {
-    /// The number of parts of the check.
-    fn parts(&self, _count: usize) {}
-
-    /// One of them is done.
-    fn part_done(&self, _tally: &Tally) {}
-
-    /// Whether to break off.
-    fn stop(&self) -> bool {
-        false
-    }
-}
-
-/// Nobody watches.
-impl Watch for () {}
-
 /// A check of every start of every world of a class with a number of edges.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep {
-    /// The worlds.
-    pub enumeration: Enumeration,
-    /// The share of them to check.
-    pub shard: Shard,
-    /// Which runs to make.
-    pub choice: Choice,
+    worlds: Enumeration,
+    shard: Shard,
+    choice: Choice,
 }
 
 impl Sweep {
+    /// A check of one share of the worlds.
+    ///
+    /// # Errors
+    /// Where the worlds cannot be enumerated.
+    pub fn new(
+        class: Class,
+        edges: usize,
+        shard: Shard,
+        choice: Choice,
+    ) -> Result<Self, SizeError> {
+        Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard, choice })
+    }
+
+    /// The class of worlds.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.worlds.class()
+    }
+
     /// Makes the check. The result does not depend on the number of threads (which is that of
     /// rayon's pool, or 1 without the feature `rayon`).
     pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
-        let parts = self.shard.select(self.enumeration.parts());
+        let parts = self.shard.select(self.worlds.parts());
         in_parts(&parts, watch, |part, tally| {
-            let mut checker = Checker::new(algorithm, self.choice);
+            let mut checker = Checker::new(algorithm, self.choice, watch);
             part.for_each(&mut |found| {
                 checker.check_starts(found.graph, found.automorphisms as usize, tally);
                 go_on(watch)
@@ -121,7 +124,7 @@ pub fn check_worlds(
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     in_parts(&parts, watch, |part, tally| {
-        let mut checker = Checker::new(algorithm, choice);
+        let mut checker = Checker::new(algorithm, choice, watch);
         part.iter().try_for_each(|graph| {
             checker.check_starts(graph, canonical(graph).automorphisms, tally);
             go_on(watch)
@@ -165,18 +168,20 @@ fn in_parts<P: Sync>(
 }
 
 /// What is used again from run to run.
-struct Checker<'a, A> {
+struct Checker<'a, A, W> {
     algorithm: &'a A,
     choice: Choice,
+    watch: &'a W,
     exploration: Exploration,
     candidate: Candidate,
 }
 
-impl<'a, A: Algorithm> Checker<'a, A> {
-    fn new(algorithm: &'a A, choice: Choice) -> Self {
+impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
+    fn new(algorithm: &'a A, choice: Choice, watch: &'a W) -> Self {
         Self {
             algorithm,
             choice,
+            watch,
             exploration: Exploration::new(0),
             candidate: Candidate::default(),
         }
@@ -199,32 +204,46 @@ impl<'a, A: Algorithm> Checker<'a, A> {
 
     fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
         tally.starts += 1;
-        // No true map has more darts than the world.
-        self.exploration.set_bound(graph.dart_count());
-        let result = self.run(graph, facing).and_then(|moves| {
-            tally.count_run(graph, facing, moves);
-            if let Choice::All { budget } = self.choice {
-                tally.count_every_way(&every_way(graph, facing, budget)?);
+        match self.run(graph, facing) {
+            Ok(moves) => tally.count_run(graph, facing, moves),
+            Err(flaw) => {
+                if tally.failure.is_none() {
+                    tally.failure = Some(self.failure(graph, facing, flaw));
+                }
+                return;
             }
-            Ok(())
-        });
-        match result {
-            Ok(()) => tally.mapped += 1,
-            Err(flaw) if tally.failure.is_none() => {
-                let moves = self.exploration.moves();
-                let graph = graph.clone();
-                let false_step =
-                    first_false_step(self.algorithm, &graph, facing, &mut self.exploration);
-                tally.failure = Some(Failure { graph, facing, flaw, moves, false_step });
-            }
-            Err(_) => {}
         }
+        if let Choice::All { budget } = self.choice {
+            match every_way(graph, facing, budget, self.watch) {
+                Ok(ways) => tally.count_every_way(&ways),
+                Err(flaw) => {
+                    // The run is not that of the default choices, whose story could be told.
+                    let (graph, moves) = (graph.clone(), None);
+                    let failure = Failure { graph, facing, flaw, moves, false_step: None };
+                    tally.failure.get_or_insert(failure);
+                    return;
+                }
+            }
+        }
+        tally.mapped += 1;
     }
 
     fn run(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Result<u64, Flaw> {
+        // No true map has more darts than the world.
+        self.exploration.set_bound(graph.dart_count());
+        self.exploration.clear();
         let mut world = GraphWorld::new(graph, facing);
         self.algorithm.run(&mut world, &mut self.exploration, &mut ())?;
         judge(&self.exploration, facing, &world, &mut self.candidate)?;
         Ok(self.exploration.moves())
+    }
+
+    fn failure(&mut self, graph: &EmbeddedGraph, facing: Dart, flaw: Flaw) -> Failure {
+        let moves = Some(self.exploration.moves());
+        let graph = graph.clone();
+        // With room for what is wrongly added.
+        self.exploration.set_bound(2 * graph.dart_count());
+        let false_step = first_false_step(self.algorithm, &graph, facing, &mut self.exploration);
+        Failure { graph, facing, flaw, moves, false_step }
     }
 }

@@ -23,8 +23,8 @@ pub struct Failure {
     pub facing: Dart,
     /// What was wrong at the end.
     pub flaw: Flaw,
-    /// The moves made by then.
-    pub moves: u64,
+    /// The moves made by then; none where the run is one of many.
+    pub moves: Option<u64>,
     /// The first wrong addition to the map, if there was one.
     pub false_step: Option<FalseStep>,
 }

@@ -2,78 +2,10 @@
 
 use std::collections::HashMap;
 
-use thiserror::Error;
-
 use super::{
-    Dart, EmbeddedGraph, Fault, MAX_EDGES, Vertex, fault::clockwise_fault, fault::opposite_fault,
+    Dart, EmbeddedGraph, Fault, ListError, MAX_EDGES, Vertex, fault::clockwise_fault,
+    fault::opposite_fault,
 };
-
-/// Why lists of names are not an embedded graph.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum ListError {
-    /// A vertex has two lists.
-    #[error("vertex `{vertex}` has two lists")]
-    VertexTwice {
-        /// The vertex.
-        vertex: String,
-    },
-    /// A neighbour list names something that has no list.
-    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is no vertex")]
-    UnknownNeighbour {
-        /// Whose list it is.
-        vertex: String,
-        /// The name that is no vertex.
-        neighbour: String,
-    },
-    /// A vertex lists a neighbour that does not list it back.
-    #[error(
-        "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
-    )]
-    OneSided {
-        /// Whose list it is.
-        vertex: String,
-        /// The neighbour.
-        neighbour: String,
-    },
-    /// A neighbour list names the same neighbour twice.
-    #[error(
-        "vertex `{vertex}` lists the neighbour `{neighbour}` twice; \
-         parallel edges need edge names, in [doors]"
-    )]
-    RepeatedNeighbour {
-        /// Whose list it is.
-        vertex: String,
-        /// The neighbour.
-        neighbour: String,
-    },
-    /// A neighbour list names its own vertex.
-    #[error("vertex `{vertex}` lists itself; loops need edge names, in [doors]")]
-    OwnNeighbour {
-        /// The vertex.
-        vertex: String,
-    },
-    /// An edge name does not stand exactly twice.
-    #[error("edge `{edge}` stands {times} times ({places}); an edge has two ends")]
-    NotTwoEnds {
-        /// The edge.
-        edge: String,
-        /// How often it stands.
-        times: usize,
-        /// The vertices in whose lists it stands.
-        places: String,
-    },
-    /// The graph falls into pieces.
-    #[error("the world is not connected: vertex `{vertex}` cannot be reached from `{from}`")]
-    NotConnected {
-        /// The first vertex out of reach.
-        vertex: String,
-        /// The first vertex of all.
-        from: String,
-    },
-    /// No edge, or too many.
-    #[error(transparent)]
-    Fault(#[from] Fault),
-}
 
 /// A dart that has not yet met its opposite.
 const UNPAIRED: Dart = Dart(u32::MAX);
@@ -226,7 +158,7 @@ impl EmbeddedGraph {
     }
 
     /// The graph with these degrees and this `opposite`, which the caller has checked.
-    fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
+    pub(super) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
         let mut graph = Self::unfinished();
         for &degree in degrees {
             graph.add_vertex(degree);
@@ -249,47 +181,6 @@ impl EmbeddedGraph {
             }
         }
         self.vertices().find(|vertex| !reached[vertex.at()])
-    }
-
-    /// The same embedded graph with its vertices in the given order and the first dart of each as
-    /// given, and the new number of each dart. `None` unless `firsts` names exactly one dart of
-    /// every vertex.
-    #[must_use]
-    pub fn relabelled(&self, firsts: &[Dart]) -> Option<(Self, Vec<Dart>)> {
-        let mut order = Vec::with_capacity(self.dart_count());
-        let mut taken = vec![false; self.vertex_count()];
-        for &first in firsts {
-            let vertex = *self.vertex.get(first.at())?;
-            if std::mem::replace(&mut taken[vertex.at()], true) {
-                return None;
-            }
-            let around = std::iter::successors(Some(first), |&dart| Some(self.clockwise(dart)));
-            order.extend(around.take(self.degree(vertex) as usize));
-        }
-        (order.len() == self.dart_count()).then(|| {
-            let mut number = vec![UNPAIRED; order.len()];
-            for (place, dart) in order.iter().enumerate() {
-                number[dart.at()] = Dart(place as u32);
-            }
-            (self.renumbered(&order), number)
-        })
-    }
-
-    /// The same embedded graph with its darts in the given order, in which the darts of each vertex
-    /// stand side by side, clockwise.
-    pub(crate) fn renumbered(&self, order: &[Dart]) -> Self {
-        let mut number = vec![UNPAIRED; order.len()];
-        let mut degrees = Vec::with_capacity(self.vertex_count());
-        let mut last = None;
-        for (place, &dart) in order.iter().enumerate() {
-            number[dart.at()] = Dart(place as u32);
-            let vertex = self.vertex(dart);
-            if last.replace(vertex) != Some(vertex) {
-                degrees.push(self.degree(vertex));
-            }
-        }
-        let opposite = order.iter().map(|&dart| number[self.opposite(dart).at()]).collect();
-        Self::from_degrees(&degrees, opposite)
     }
 }
 
@@ -388,20 +279,5 @@ mod tests {
         );
         assert_eq!(message(edges(&[("a", &[]), ("a", &[])])), "vertex `a` has two lists");
         assert_eq!(message(edges(&[("a", &[])])), "there is no edge; a world has at least one");
-    }
-
-    #[test]
-    fn relabelling_keeps_the_orders() {
-        let graph = edges(&[("u", &["a", "b", "a"]), ("v", &["b", "c"]), ("w", &["c"])]).unwrap();
-        let (relabelled, number) = graph.relabelled(&[Dart(5), Dart(4), Dart(1)]).unwrap();
-        for dart in graph.darts() {
-            let image = number[dart.at()];
-            assert_eq!(relabelled.opposite(image), number[graph.opposite(dart).at()]);
-            assert_eq!(relabelled.clockwise(image), number[graph.clockwise(dart).at()]);
-        }
-        assert_eq!(number[5], Dart(0));
-        for unfit in [&[Dart(5), Dart(4)][..], &[Dart(5), Dart(4), Dart(3)], &[Dart(6); 3]] {
-            assert_eq!(graph.relabelled(unfit), None);
-        }
     }
 }

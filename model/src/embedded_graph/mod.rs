@@ -8,10 +8,12 @@ mod construct;
 mod fault;
 mod grow;
 mod interop;
+mod list_error;
+mod relabel;
 
-pub use construct::ListError;
 pub use fault::{Fault, clockwise_fault, opposite_fault};
 pub use interop::PetgraphError;
+pub use list_error::ListError;
 
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -204,11 +206,12 @@ impl EmbeddedGraph {
     /// Whether the graph has neither a loop nor two edges between the same vertices.
     #[must_use]
     pub fn is_simple(&self) -> bool {
+        // Both ends of a loop meet its own vertex.
         let mut last_met_from = vec![None; self.vertex_count()];
         self.vertices().all(|vertex| {
             self.darts_of(vertex).all(|dart| {
                 let neighbour = self.vertex(self.opposite(dart));
-                neighbour != vertex && last_met_from[neighbour.at()].replace(vertex) != Some(vertex)
+                last_met_from[neighbour.at()].replace(vertex) != Some(vertex)
             })
         })
     }

@@ -256,7 +256,6 @@ impl Growth {
         let new = self.vertices;
         self.first[new] = self.darts as u8;
         self.degree[new] = degree as u8;
-        self.adjacent[new] = 0;
         self.vertex[self.darts..self.darts + degree].fill(new as u8);
         self.vertices += 1;
         self.darts += degree;

@@ -34,10 +34,7 @@ fn new_vertex(degree: u32) -> u32 {
 #[must_use]
 pub fn code(graph: &EmbeddedGraph, facing: Dart) -> Code {
     let mut numbering = Numbering::new(graph);
-    numbering.begin(graph, facing);
-    let root = new_vertex(graph.degree(graph.vertex(facing)));
-    let mut words = Vec::with_capacity(graph.edge_count() + 1);
-    words.push(root);
+    let mut words = vec![numbering.begin(graph, facing)];
     words.extend(std::iter::from_fn(|| numbering.next_word(graph)));
     Code(words)
 }

@@ -80,6 +80,8 @@ mod tests {
             prop_assert_eq!(&form.code, codes.iter().min().unwrap());
             prop_assert_eq!(form.automorphisms, automorphisms_by_trial(&graph));
             for one in graph.darts() {
+                let least = graph.darts().find(|other| codes[other.at()] == codes[one.at()]);
+                prop_assert_eq!(Some(form.orbit[one.at()]), least);
                 for other in graph.darts() {
                     prop_assert_eq!(
                         form.orbit[one.at()] == form.orbit[other.at()],

@@ -29,14 +29,10 @@ pub fn map_world<W: World>(
     exploration: &mut Exploration,
     observer: &mut impl Observer,
 ) -> Result<(), MappingError<W::Error>> {
-    // 1, 2, 3: the marker lies at v0; S is v0; U is its edges. paper: alg1.1, alg1.2, alg1.3
+    // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
     exploration.begin(world, observer)?;
-    // 4: while U is not empty.
-    while !exploration.map().unexplored_is_empty() {
-        // 5: remove an unexplored edge e from U.
-        let Some(edge) = exploration.next_edge(choices) else {
-            break;
-        };
+    // 4, 5: while U is not empty, remove an unexplored edge e from it.
+    while let Some(edge) = exploration.next_edge(choices) {
         // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
         exploration.explore(edge, world, observer)?;
         let mut confirmed = None;

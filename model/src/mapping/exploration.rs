@@ -6,11 +6,11 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, Tree,
-    partial_map::START,
+    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, partial_map::START,
+    tree::Tree,
 };
 use crate::{
-    embedded_graph::Dart,
+    embedded_graph::{Dart, MAX_EDGES},
     percept::{Door, Percept, Sighting, retrace},
     world::World,
 };
@@ -29,8 +29,8 @@ pub struct Exploration {
     /// known place, the last such.
     robot: Dart,
     here: Here,
-    /// The known end of the edge that is being explored.
-    edge: Dart,
+    /// The known end of the edge that is being explored; none at line 4.
+    edge: Option<Dart>,
     /// What the robot perceived at its unknown end.
     arrival: Percept,
     /// H, from the farthest to the nearest.
@@ -62,12 +62,12 @@ impl Exploration {
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
-            bound,
+            bound: bound.min(2 * MAX_EDGES),
             moves: 0,
             map: PartialMap::new(),
             robot: FACING,
             here: Here { percept: NOWHERE, entry: Door::BACK },
-            edge: FACING,
+            edge: None,
             arrival: NOWHERE,
             hypotheses: Vec::new(),
             trail: Vec::new(),
@@ -80,7 +80,7 @@ impl Exploration {
 
     /// Changes how many darts later runs may come to know.
     pub fn set_bound(&mut self, bound: usize) {
-        self.bound = bound;
+        self.bound = bound.min(2 * MAX_EDGES);
     }
 
     /// The map S, with the unexplored edges U.
@@ -114,6 +114,16 @@ impl Exploration {
         &self.hypotheses
     }
 
+    /// Forgets an earlier run.
+    pub(crate) fn clear(&mut self) {
+        self.moves = 0;
+        self.map.clear();
+        self.stand_at(FACING, NOWHERE);
+        self.edge = None;
+        self.hypotheses.clear();
+        self.trail.clear();
+    }
+
     /// Lines 1 to 3: the directional marker lies at v0, S is v0, and U is its edges.
     ///
     /// # Errors
@@ -124,8 +134,7 @@ impl Exploration {
         world: &mut W,
         observer: &mut impl Observer,
     ) -> Result<(), MappingError<W::Error>> {
-        self.moves = 0;
-        self.map.clear();
+        self.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
@@ -139,16 +148,22 @@ impl Exploration {
         Ok(())
     }
 
-    /// Line 5: the edge to explore next, as chosen; `None` if all is explored.
+    /// Lines 4 and 5: the edge to explore next, as chosen; `None` if all is explored.
     // paper: alg1.5
     pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        if self.map.unexplored_is_empty() {
+            return None;
+        }
         self.from_robot.plant(&self.map, self.map.vertex(self.robot));
-        choices.next_edge(&self.map, &mut self.from_robot)
+        let nearest = self.from_robot.nearest_unexplored(&self.map)?;
+        let chosen = choices.next_edge(&self.map, self.robot, nearest);
+        Some(if self.map.is_unexplored(chosen) { chosen } else { nearest })
     }
 
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
     /// to its unknown end, and raises the hypotheses about that: each unexplored dart by which the
-    /// robot may have come in, but those that its percept contradicts at once.
+    /// robot may have come in, but those that its percept contradicts at once. An edge that is
+    /// explored already is left alone.
     ///
     /// # Errors
     /// The world's own; where a known place is not as it was, or the marker appears where it cannot
@@ -160,8 +175,12 @@ impl Exploration {
         world: &mut W,
         observer: &mut impl Observer,
     ) -> Result<(), MappingError<W::Error>> {
+        if !self.map.is_unexplored(edge) {
+            return Ok(());
+        }
         self.set_out();
         let mut way = mem::take(&mut self.way);
+        self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
         self.from_robot.path_from_root(&self.map, self.map.vertex(edge), &mut way);
         for &dart in &way {
             let Some(next) = self.map.opposite(dart) else {
@@ -177,9 +196,9 @@ impl Exploration {
         }
         self.way = way;
         let arrival = self.take(self.map.door(self.robot, edge), world, observer)?;
-        self.edge = edge;
+        self.edge = Some(edge);
         self.arrival = arrival;
-        self.raise_hypotheses()?;
+        self.raise_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map.unexplored_count() as usize - 1 - hypotheses;
         let event = Event::Arrived { edge, percept: arrival, contradicted, hypotheses };
@@ -188,8 +207,8 @@ impl Exploration {
     }
 
     // paper: alg1.hypotheses
-    fn raise_hypotheses(&mut self) -> Result<(), Contradiction> {
-        let Self { map, arrival, hypotheses, edge, .. } = self;
+    fn raise_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
+        let Self { map, arrival, hypotheses, .. } = self;
         hypotheses.clear();
         let marked = arrival.sighting != Sighting::Nothing;
         for vertex in map.vertices().rev() {
@@ -197,14 +216,14 @@ impl Exploration {
             if fits && map.is_frontier(vertex) {
                 for dart in map.unexplored_at(vertex).rev() {
                     // Without a marker, all darts of a vertex look alike.
-                    if dart != *edge && (!marked || map.expected(dart) == *arrival) {
+                    if dart != edge && (!marked || map.expected(dart) == *arrival) {
                         hypotheses.push(dart);
                     }
                 }
             }
         }
         if hypotheses.is_empty() {
-            let (vertex, index) = (map.vertex(*edge), map.index(*edge));
+            let (vertex, index) = (map.vertex(edge), map.index(edge));
             let perceived = *arrival;
             return match perceived.sighting {
                 Sighting::Nothing => Ok(()),
@@ -227,7 +246,7 @@ impl Exploration {
             return None;
         }
         let chosen = choices.next_hypothesis(&self.map, &self.hypotheses);
-        Some(self.hypotheses.remove(chosen))
+        Some(self.hypotheses.remove(chosen.min(self.hypotheses.len() - 1)))
     }
 
     /// Line 10, one step at a time: the door towards the marker for a robot that came in by the
@@ -323,32 +342,39 @@ impl Exploration {
         self.here = Here { percept, entry: Door::BACK };
     }
 
-    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
+    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis. Where no edge is being
+    /// explored, or the hypothesis is no other unexplored dart, nothing happens.
     // paper: alg1.18, alg1.19, alg1.20
     pub fn close_loop(&mut self, hypothesis: Dart, observer: &mut impl Observer) {
-        self.map.join(self.edge, hypothesis);
-        self.to_marker_is_current &= self.to_marker.stays_with(&self.map, self.edge, hypothesis);
-        observer.event(self, Event::LoopClosed { edge: self.edge, other: hypothesis });
+        let possible = |edge: &Dart| *edge != hypothesis && self.map.is_unexplored(hypothesis);
+        let Some(edge) = self.edge.take().filter(possible) else { return };
+        self.map.join(edge, hypothesis);
+        self.to_marker_is_current &= self.to_marker.stays_with(&self.map, edge, hypothesis);
+        self.hypotheses.clear();
+        observer.event(self, Event::LoopClosed { edge, other: hypothesis });
     }
 
     /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
-    /// is still there.
+    /// is still there. Where no edge is being explored, nothing happens.
     ///
     /// # Errors
     /// The bound.
     // paper: alg1.21, alg1.22, alg1.23
     pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
+        let Some(edge) = self.edge else { return Ok(()) };
         self.check_bound(self.arrival.degree)?;
+        self.edge = None;
         let vertex = self.map.add_vertex(self.arrival.degree);
         let entry = self.map.first_dart(vertex);
-        self.map.join(self.edge, entry);
+        self.map.join(edge, entry);
         if self.to_marker_is_current {
             self.to_marker.add_leaf(&self.map, vertex);
         }
         // The robot may have come back by another dart than it first came in by.
         let really = Dart(entry.0 + self.here.entry.0);
         self.stand_at(really, self.map.expected(really));
-        observer.event(self, Event::VertexAdded { edge: self.edge, vertex });
+        self.hypotheses.clear();
+        observer.event(self, Event::VertexAdded { edge, vertex });
         Ok(())
     }
 

@@ -14,4 +14,3 @@ pub use contradiction::{Contradiction, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
 pub use partial_map::{FACING, PartialMap};
 pub use story::{Event, Observer};
-pub use tree::Tree;

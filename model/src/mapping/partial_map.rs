@@ -83,6 +83,13 @@ impl PartialMap {
         self.known.vertices().flat_map(|vertex| self.unexplored_at(vertex))
     }
 
+    /// Whether this is an unexplored dart of the map.
+    #[inline]
+    #[must_use]
+    pub fn is_unexplored(&self, dart: Dart) -> bool {
+        dart.at() < self.dart_count() && self.known.joined(dart).is_none()
+    }
+
     /// The unexplored darts of one vertex, in the order of their numbers.
     #[must_use]
     pub fn unexplored_at(&self, vertex: Vertex) -> impl DoubleEndedIterator<Item = Dart> + '_ {

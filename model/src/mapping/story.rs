@@ -68,7 +68,8 @@ pub enum Event {
 
 /// Listens to a run.
 pub trait Observer {
-    /// Something happened; the exploration is as it is after it.
+    /// Something happened; the exploration is as it is after it, but that at [`Event::Moved`] the
+    /// robot's pose in the map is still that before the move.
     fn event(&mut self, exploration: &Exploration, event: Event);
 }
 

@@ -9,7 +9,7 @@ use crate::{
 
 /// A breadth-first tree of the known map, grown as far as somebody asked.
 #[derive(Clone, Debug, Default)]
-pub struct Tree {
+pub(super) struct Tree {
     /// For each vertex the number of edges to the root.
     hops: Vec<u32>,
     /// For each vertex in the tree, but for the root, its dart that leads towards the root.
@@ -33,6 +33,13 @@ impl Tree {
         self.grown = 0;
         self.hops[root.at()] = 0;
         self.reached.push(root);
+    }
+
+    /// Begins a new tree, unless this is one of the map, from that root.
+    pub(super) fn plant_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
+        if self.reached.first() != Some(&root) || self.hops.len() != map.vertex_count() {
+            self.plant(map, root);
+        }
     }
 
     /// Looks around one more vertex; `false` if there is none.
@@ -77,7 +84,7 @@ impl Tree {
 
     /// The unexplored dart that is fewest hops from the root; then of the vertex discovered first;
     /// then with the lowest index. `None` if nothing is unexplored.
-    pub fn nearest_unexplored(&mut self, map: &PartialMap) -> Option<Dart> {
+    pub(super) fn nearest_unexplored(&mut self, map: &PartialMap) -> Option<Dart> {
         let mut level = 0;
         loop {
             let end = self.reached.len();
@@ -98,8 +105,7 @@ impl Tree {
 
     /// The number of edges from a vertex to the root; the vertex is in the tree.
     #[inline]
-    #[must_use]
-    pub fn hops(&self, vertex: Vertex) -> u32 {
+    pub(super) fn hops(&self, vertex: Vertex) -> u32 {
         self.hops[vertex.at()]
     }
 

@@ -111,7 +111,8 @@ impl<'o> Report<'o> {
         }
         writeln!(self.out, "{}", if tally.interrupted { "  (interrupted)" } else { "" })?;
         if let Some(failure) = &tally.failure {
-            writeln!(self.out, "\nWrong {}: {}", step(failure), failure.flaw)?;
+            let step = step(failure).map_or(String::new(), |step| format!(" {step}"));
+            writeln!(self.out, "\nWrong{step}: {}", failure.flaw)?;
             writeln!(self.out, "The start, as a world file for `toposlam explore`:\n")?;
             writeln!(self.out, "{}", world_file::to_toml(&failed_world(failure)))?;
         }
@@ -190,8 +191,8 @@ struct EveryWayLine {
 #[derive(Serialize)]
 struct FailureLine {
     cause: String,
-    step: String,
-    moves: u64,
+    step: Option<String>,
+    moves: Option<u64>,
     world: serde_json::Value,
 }
 
@@ -240,9 +241,10 @@ fn failed_world(failure: &Failed) -> NamedWorld {
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
-/// The step at which it went wrong.
-fn step(failure: &Failed) -> String {
-    failure.false_step.map_or_else(|| format!("after {} moves", failure.moves), |s| s.to_string())
+/// The step at which it went wrong, where it is known.
+fn step(failure: &Failed) -> Option<String> {
+    let step = failure.false_step.map(|step| step.to_string());
+    step.or_else(|| failure.moves.map(|moves| format!("after {moves} moves")))
 }
 
 /// A number with a comma between thousands.

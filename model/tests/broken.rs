@@ -1,0 +1,182 @@
+//! The check fails on broken variants of Algorithm 1, each on its smallest start.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use toposlam_model::{
+    check::{Algorithm, Choice, Failure, Shard, Sweep},
+    embedded_graph::Dart,
+    enumerate::Class,
+    isomorphism::code,
+    mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
+    percept::{Door, Percept, Sighting},
+    world::{GraphWorld, NoSuchDoor},
+};
+
+/// Algorithm 1 with something broken in lines 10 to 17.
+struct Broken(Flaw);
+
+#[derive(Clone, Copy)]
+enum Flaw {
+    /// Line 15 is left out.
+    NoRetrace,
+    /// Line 12 does not look where the marker points.
+    DirectionIgnored,
+    /// A hypothesis is confirmed by the first percept that matches: that on arrival.
+    FirstPerceptSuffices,
+    /// Line 10 expects the marker to point one door further than it does.
+    OffByOne,
+    /// No hypothesis that takes a path is ever confirmed.
+    NeverConfirmed,
+}
+
+impl Broken {
+    fn try_path(
+        &self,
+        exploration: &mut Exploration,
+        hypothesis: Dart,
+        world: &mut GraphWorld,
+        observer: &mut impl Observer,
+    ) -> Result<Verdict, MappingError<NoSuchDoor>> {
+        exploration.set_out();
+        let mut pose = hypothesis;
+        if matches!(self.0, Flaw::FirstPerceptSuffices) {
+            exploration.arrive_at_marker(pose);
+            return Ok(Verdict::Confirmed);
+        }
+        while let Some((door, next)) = exploration.toward_marker(pose) {
+            let expected = exploration.map().expected(next);
+            let perceived = exploration.take(door, world, observer)?;
+            if !self.matches(expected, perceived) {
+                match self.0 {
+                    Flaw::NoRetrace => {}
+                    _ => exploration.retrace(world, observer)?,
+                }
+                return Ok(Verdict::Rejected);
+            }
+            pose = next;
+        }
+        if matches!(self.0, Flaw::NeverConfirmed) && pose != hypothesis {
+            exploration.retrace(world, observer)?;
+            return Ok(Verdict::Rejected);
+        }
+        exploration.arrive_at_marker(pose);
+        Ok(Verdict::Confirmed)
+    }
+
+    fn matches(&self, expected: Percept, perceived: Percept) -> bool {
+        match (self.0, expected.sighting, perceived.sighting) {
+            (Flaw::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
+                expected.degree == perceived.degree
+            }
+            (Flaw::OffByOne, Sighting::Pointing(door), _) => {
+                let door = Door((door.0 + 1) % expected.degree);
+                Percept { sighting: Sighting::Pointing(door), ..expected } == perceived
+            }
+            _ => expected == perceived,
+        }
+    }
+}
+
+impl Algorithm for Broken {
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<NoSuchDoor>> {
+        exploration.begin(world, observer)?;
+        while let Some(edge) = exploration.next_edge(&mut Nearest) {
+            exploration.explore(edge, world, observer)?;
+            let mut confirmed = None;
+            while let Some(hypothesis) = exploration.next_hypothesis(&mut Nearest) {
+                if self.try_path(exploration, hypothesis, world, observer)? == Verdict::Confirmed {
+                    confirmed = Some(hypothesis);
+                    break;
+                }
+            }
+            match confirmed {
+                Some(hypothesis) => exploration.close_loop(hypothesis, observer),
+                None => exploration.add_place(observer)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first start on which a broken variant fails: its edges, its code, what was wrong.
+fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
+    (1..=4)
+        .find_map(|edges| {
+            let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default);
+            let tally = sweep.unwrap().run(&Broken(flaw), &());
+            assert_eq!(tally.failed() > 0, tally.failure.is_some());
+            let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;
+            let words = code(&graph, facing).words().to_vec();
+            let step = false_step
+                .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());
+            Some((edges, words, format!("{step}: {flaw}")))
+        })
+        .expect("the check catches it")
+}
+
+// paper: alg1.validation, alg1.hypotheses
+// paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
+#[test]
+fn every_broken_variant_is_caught_on_a_small_start() {
+    let flaws = [
+        Flaw::NoRetrace,
+        Flaw::DirectionIgnored,
+        Flaw::FirstPerceptSuffices,
+        Flaw::OffByOne,
+        Flaw::NeverConfirmed,
+    ];
+    let caught = flaws.map(smallest_failure);
+    // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
+    let bound = |darts: u32| {
+        format!("more than {darts} darts (edge ends) are known and there is no end in sight")
+    };
+    let new = |degree: u32| u32::MAX - degree;
+    let expected = [
+        (
+            3,
+            vec![new(1), new(5), 5, 4],
+            format!(
+                "after 4 moves the map's darts 2 and 4 are wrongly made one edge: {}",
+                bound(6)
+            ),
+        ),
+        (
+            4,
+            vec![new(2), new(6), 4, 7, 6],
+            format!(
+                "after 5 moves the map's darts 3 and 5 are wrongly made one edge: {}",
+                bound(8)
+            ),
+        ),
+        (
+            3,
+            vec![new(1), new(5), 5, 4],
+            "after 2 moves the map's darts 2 and 3 are wrongly made one edge: the world \
+             contradicts itself: behind the unexplored dart 3 of vertex v1 there is degree 1 with \
+             the marker along door 0, which agrees with no unexplored dart of the marked vertex"
+                .to_owned(),
+        ),
+        (
+            3,
+            vec![new(2), new(4), 3, 5],
+            format!(
+                "after 6 moves vertex v2 is wrongly added behind the map's dart 4: {}",
+                bound(6)
+            ),
+        ),
+        (
+            2,
+            vec![new(1), new(3), 3],
+            format!(
+                "after 4 moves vertex v2 is wrongly added behind the map's dart 2: {}",
+                bound(4)
+            ),
+        ),
+    ];
+    assert_eq!(caught, expected);
+}

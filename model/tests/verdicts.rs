@@ -1,0 +1,118 @@
+//! The judge refuses what is wrong, each thing by its own name.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use toposlam_model::{
+    check::{Algorithm1, Choice, Flaw, Shard, Sweep, Tally, judge, move_bound},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Class,
+    isomorphism::{Candidate, code},
+    mapping::{DEFAULT_DART_BOUND, Exploration, MappingError, Nearest, map_world},
+    percept::Door,
+    world::{GraphWorld, World},
+};
+
+fn theta(far: [&'static str; 3]) -> EmbeddedGraph {
+    EmbeddedGraph::from_edge_lists(&[("u", vec!["a", "b", "c"]), ("v", far.to_vec())]).unwrap()
+}
+
+fn mapped(graph: &EmbeddedGraph) -> (Exploration, GraphWorld<'_>) {
+    let mut exploration = Exploration::new(graph.dart_count());
+    let mut world = GraphWorld::new(graph, Dart(0));
+    map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
+    (exploration, world)
+}
+
+fn verdict(exploration: &Exploration, world: &GraphWorld) -> Option<Flaw> {
+    judge(exploration, Dart(0), world, &mut Candidate::default()).err()
+}
+
+// paper: alg1.isomorphic, alg1.located, cost.bound
+#[test]
+fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
+    let (plane, torus) = (theta(["c", "b", "a"]), theta(["a", "b", "c"]));
+    let (mut exploration, mut world) = mapped(&plane);
+    assert_eq!(verdict(&exploration, &world), None);
+    // The map of another world.
+    assert_eq!(verdict(&exploration, &GraphWorld::new(&torus, Dart(0))), Some(Flaw::WrongMap));
+    // A move that the robot knows nothing of.
+    let mut moved = world.clone();
+    moved.traverse(Door::BACK).unwrap();
+    assert!(matches!(verdict(&exploration, &moved), Some(Flaw::WrongPose { .. })));
+    // To and fro, until it is one move too many.
+    let bound = move_bound(3, 2);
+    while exploration.moves() <= bound {
+        assert_eq!(verdict(&exploration, &world), None);
+        for _ in 0..2 {
+            exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
+        }
+    }
+    let moves = exploration.moves();
+    assert_eq!(verdict(&exploration, &world), Some(Flaw::TooManyMoves { moves, bound }));
+    // Broken off.
+    let mut world = GraphWorld::new(&plane, Dart(0));
+    exploration.begin(&mut world, &mut ()).unwrap();
+    assert_eq!(verdict(&exploration, &world), Some(Flaw::Unfinished { unexplored: 3 }));
+}
+
+#[test]
+fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
+    let graph = EmbeddedGraph::from_edge_lists(&[("u", vec!["a"]), ("v", vec!["a"])]).unwrap();
+    let map = |bound| {
+        let mut world = GraphWorld::new(&graph, Dart(0));
+        map_world(&mut world, &mut Nearest, &mut Exploration::new(bound), &mut ())
+    };
+    assert_eq!(map(2), Ok(()));
+    assert_eq!(map(1), Err(MappingError::Bound { bound: 1 }));
+    assert_eq!(DEFAULT_DART_BOUND, 16_384);
+}
+
+/// Steps out of order change nothing, and nothing is left of an earlier run.
+#[test]
+fn steps_out_of_order_do_nothing() {
+    let graph = theta(["c", "b", "a"]);
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    let mut fresh = Exploration::new(6);
+    assert_eq!(fresh.next_edge(&mut Nearest), None);
+    assert_eq!(fresh.next_hypothesis(&mut Nearest), None);
+    fresh.explore(Dart(0), &mut world, &mut ()).unwrap();
+    fresh.close_loop(Dart(0), &mut ());
+    fresh.add_place::<()>(&mut ()).unwrap();
+    assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
+    let (mut done, mut world) = mapped(&graph);
+    let map = done.map().clone();
+    done.explore(Dart(0), &mut world, &mut ()).unwrap();
+    done.close_loop(Dart(1), &mut ());
+    done.add_place::<()>(&mut ()).unwrap();
+    assert_eq!(done.map(), &map);
+    // A start that is refused leaves nothing of the run before.
+    world.traverse(Door(1)).unwrap();
+    done.begin(&mut world, &mut ()).unwrap_err();
+    assert_eq!((done.robot(), done.moves(), done.map().dart_count()), (Dart(0), 0, 0));
+}
+
+/// The dearest run for its vertices, and the first start that takes the most moves.
+#[test]
+fn the_tally_keeps_the_extremes_of_small_worlds() {
+    let new = |degree: u32| u32::MAX - degree;
+    for (edges, dearest) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
+        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default);
+        let tally = sweep.unwrap().run(&Algorithm1, &());
+        assert_eq!(tally.dearest, Some(dearest));
+        if edges == 3 {
+            let worst = tally.worst.clone().unwrap();
+            let words = code(&worst.graph, worst.facing).words().to_vec();
+            assert_eq!(words, [new(1), new(5), 5, 4]);
+        }
+        // Of two equals the first stays.
+        let mut both = tally.clone();
+        let mut other = tally.clone();
+        other.worst.as_mut().unwrap().facing = Dart(99);
+        both.merge(other);
+        assert_eq!(both.worst, tally.worst);
+        assert_eq!((both.starts, both.runs), (2 * tally.starts, 0));
+    }
+    let mut runs = Tally { runs: 3, ..Tally::default() };
+    runs.merge(Tally { runs: u128::MAX, ..Tally::default() });
+    assert_eq!(runs.runs, u128::MAX);
+}
