@@ -1,7 +1,7 @@
 //! Deterministic topological SLAM that can be trusted.
 //!
-//! This package is the front of the house: it passes on the specification ([`model`]), draws worlds,
-//! traces the paper ([`paper`]) and holds what the command line `toposlam` prints.
+//! This package is the front of the house: it passes on the specification ([`model`]), draws worlds
+//! ([`picture`]) and traces the paper ([`paper`]).
 
 pub mod paper;
 pub mod picture;

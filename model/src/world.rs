@@ -52,11 +52,17 @@ impl<'g> GraphWorld<'g> {
     /// facing dart, which is one of the graph's, and the robot's entry dart.
     #[must_use]
     pub fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
-        Self { graph, marker: Directional { along: facing }, pose: facing }
+        Self::with_marker(graph, Directional { along: facing }, facing)
     }
 }
 
 impl<'g, M> GraphWorld<'g, M> {
+    /// A world with any marker that stays where it is, and a robot that has come in by a dart of it.
+    #[must_use]
+    pub fn with_marker(graph: &'g EmbeddedGraph, marker: M, facing: Dart) -> Self {
+        Self { graph, marker, pose: facing }
+    }
+
     /// The embedded graph.
     #[must_use]
     pub fn graph(&self) -> &'g EmbeddedGraph {

@@ -5,6 +5,7 @@
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    marker::Marker,
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, NoSuchDoor, World},
 };
@@ -61,6 +62,22 @@ fn a_directional_marker_shows_the_entry_at_its_vertex() {
     assert_eq!(from_the_junction(&[2]), [marked(4, 0), marked(4, 1)]);
     assert_eq!(from_the_junction(&[3]), [marked(4, 0), marked(4, 2)]);
     assert_eq!(from_the_junction(&[1, 0]), [marked(4, 0), plain(2), marked(4, 3)]);
+}
+
+/// Another marker makes another world of the same graph.
+#[test]
+fn any_marker_can_lie_in_a_graph() {
+    struct Everywhere;
+    impl Marker for Everywhere {
+        fn sighting(&self, _: &EmbeddedGraph, _: Dart) -> Sighting {
+            Sighting::Pointing(Door(0))
+        }
+    }
+    let graph = junction();
+    let mut world = GraphWorld::with_marker(&graph, Everywhere, Dart(0));
+    assert_eq!(world.percept(), Ok(marked(1, 0)));
+    world.traverse(Door(0)).unwrap();
+    assert_eq!(world.percept(), Ok(marked(4, 0)));
 }
 
 #[test]

@@ -142,6 +142,7 @@ fn figure_1_is_one_graph_whose_rim_is_reversed() {
     }
 }
 
+// paper: fig1.different
 #[test]
 fn figure_1_shows_two_worlds() {
     let (a, b) = (read("figure-1a").graph, read("figure-1b").graph);

@@ -12,9 +12,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, WorstStart, check_worlds,
-    },
+    check::{Algorithm1, Choice, Shard, Sweep, Tally, WorstStart, check_worlds},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -59,8 +57,9 @@ pub(super) struct Arguments {
     choices: Choices,
 
     /// With --choices all: give up on a start that has more states
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_STATE_BUDGET)]
-    max_states: u64,
+    /// [default: 1000000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_states: Option<u64>,
 
     /// Check one of n disjoint shares, as in 2/4
     #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
@@ -99,22 +98,23 @@ enum Work {
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let choice = self.choices.with_budget(self.max_states)?;
         if let Some(threads) = self.threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
             pool.build_global().map_err(|error| Failure::at("--threads", error))?;
         }
         let work = match &self.from {
             Some(path) => worlds_by_size(path)?,
-            None => self.sweeps()?,
+            None => self.sweeps(choice)?,
         };
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         let begun = Instant::now();
-        let mut report = Report::new(out, self.json, self.marker, self.choice());
+        let mut report = Report::new(out, self.json, self.marker, choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
-            let tally = self.check(edges, &work)?;
+            let tally = work.check(edges, choice)?;
             let (class, from, shard) = (self.class, self.from.as_deref(), self.shard);
             report.size(&Size { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
@@ -129,34 +129,27 @@ impl Arguments {
         Ok(outcome)
     }
 
-    fn choice(&self) -> Choice {
-        match self.choices {
-            Choices::Default => Choice::Default,
-            Choices::All => Choice::All { budget: self.max_states },
-        }
-    }
-
     /// A sweep for each number of edges.
-    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn sweeps(&self, choice: Choice) -> Result<BTreeMap<usize, Work>, Failure> {
         let sweep = |edges| {
-            let sweep = Sweep::new(self.class, edges, self.shard, self.choice());
+            let sweep = Sweep::new(self.class, edges, self.shard, choice);
             Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
     }
+}
 
-    fn check(&self, edges: usize, work: &Work) -> Result<Tally, Failure> {
+impl Work {
+    fn check(&self, edges: usize, choice: Choice) -> Result<Tally, Failure> {
         let progress = Progress::new(edges)?;
-        let tally = match work {
-            Work::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
-            Work::Worlds(graphs) => check_worlds(graphs, self.choice(), &Algorithm1, &progress),
+        let tally = match self {
+            Self::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
+            Self::Worlds(graphs) => check_worlds(graphs, choice, &Algorithm1, &progress),
         };
         progress.finish();
         Ok(tally)
     }
-}
 
-impl Work {
     /// Whether no world in it has a loop or parallel edges.
     fn is_simple(&self) -> bool {
         match self {

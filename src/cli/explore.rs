@@ -11,7 +11,7 @@ use std::{
 
 use toposlam::picture::{self, Picture};
 use toposlam_model::{
-    check::{DEFAULT_STATE_BUDGET, Flaw, every_way, judge},
+    check::{Choice, Flaw, every_way, judge},
     format::named_world::NamedWorld,
     isomorphism::Candidate,
     mapping::{DEFAULT_DART_BOUND, Exploration, Nearest, map_world},
@@ -51,8 +51,9 @@ pub(super) struct Arguments {
     choices: Choices,
 
     /// With --choices all: give up when there are more states
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_STATE_BUDGET)]
-    max_states: u64,
+    /// [default: 1000000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_states: Option<u64>,
 
     /// Give up when more edge ends are known
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
@@ -89,9 +90,7 @@ impl Arguments {
         if let Some(svg) = &self.svg {
             output::check_place(svg, &["svg"])?;
         }
-        if self.map.is_some() && self.map == self.svg {
-            return Err(Failure::at("--svg", "this is the file of --map, too"));
-        }
+        let choice = self.choices.with_budget(self.max_states)?;
         let mut out = io::BufWriter::new(out);
         let mut exploration = Exploration::new(self.max_darts);
         let mut robot = GraphWorld::new(&world.graph, facing);
@@ -111,9 +110,9 @@ impl Arguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
-        let ways = match self.choices {
-            Choices::Default => None,
-            Choices::All => Some(every_way(&world.graph, facing, self.max_states, &())),
+        let ways = match choice {
+            Choice::Default => None,
+            Choice::All { budget } => Some(every_way(&world.graph, facing, budget, &())),
         };
         let ending = Ending { world: &world, facing, exploration: &exploration, result, ways };
         if self.json {

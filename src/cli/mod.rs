@@ -16,13 +16,19 @@ use std::{
 };
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
+use toposlam_model::check::{Choice, DEFAULT_STATE_BUDGET};
 
 use outcome::{Failure, Outcome};
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of embedded
 /// graphs, percepts and Algorithm 1, and a checker that runs it on every small world.
 #[derive(Parser)]
-#[command(name = "toposlam", version, max_term_width = 100)]
+#[command(
+    name = "toposlam",
+    version,
+    max_term_width = 100,
+    after_help = "Example:\n  toposlam check        every start of every world with up to 6 edges"
+)]
 struct Arguments {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -45,6 +51,21 @@ enum Choices {
     Default,
     /// In every way.
     All,
+}
+
+impl Choices {
+    /// The choice, with a budget of states, which only all choices have.
+    fn with_budget(self, max_states: Option<u64>) -> Result<Choice, Failure> {
+        match (self, max_states) {
+            (Self::Default, None) => Ok(Choice::Default),
+            (Self::Default, Some(_)) => {
+                Err(Failure::at("--max-states", "this goes with --choices all"))
+            }
+            (Self::All, budget) => {
+                Ok(Choice::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
+            }
+        }
+    }
 }
 
 /// Runs the verb that the command line names.

@@ -111,7 +111,7 @@ fn truncated_codes_are_refused_with_their_byte() {
 
 #[test]
 fn bad_arguments_are_refused_with_what_is_wanted() {
-    let cases: [(&[&str], &str); 21] = [
+    let cases: [(&[&str], &str); 23] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
         (&["check", "--edges", "5..=3"], "the range is empty"),
@@ -125,6 +125,8 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["check", "--marker", "chalk"], "`chalk` is no marker to map with; there is directional"),
         (&["check", "--choices", "some"], "[possible values: default, all]"),
         (&["check", "--threads", "0"], "0 is not in 1..=1024"),
+        (&["check", "--max-states", "5"], "--max-states: this goes with --choices all"),
+        (&["explore", WORLD, "--max-states", "5"], "--max-states: this goes with --choices all"),
         (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
         (&["explore", WORLD, "--start", "corner"], "--start: `corner` is no start"),
         (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),

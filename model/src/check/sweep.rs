@@ -107,8 +107,7 @@ impl Sweep {
         in_parts(&parts, watch, |part, tally| {
             let mut checker = Checker::new(algorithm, self.choice, watch);
             part.for_each(&mut |found| {
-                checker.check_starts(found.graph, found.automorphisms as usize, tally);
-                go_on(watch)
+                checker.check_starts(found.graph, found.automorphisms as usize, tally)
             })
         })
     }
@@ -126,8 +125,7 @@ pub fn check_worlds(
     in_parts(&parts, watch, |part, tally| {
         let mut checker = Checker::new(algorithm, choice, watch);
         part.iter().try_for_each(|graph| {
-            checker.check_starts(graph, canonical(graph).automorphisms, tally);
-            go_on(watch)
+            checker.check_starts(graph, canonical(graph).automorphisms, tally)
         })
     })
 }
@@ -187,18 +185,23 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
         }
     }
 
-    fn check_starts(&mut self, graph: &EmbeddedGraph, automorphisms: usize, tally: &mut Tally) {
+    fn check_starts(
+        &mut self,
+        graph: &EmbeddedGraph,
+        automorphisms: usize,
+        tally: &mut Tally,
+    ) -> ControlFlow<()> {
         tally.worlds += 1;
+        let mut check = |facing| {
+            self.check_start(graph, facing, tally);
+            go_on(self.watch)
+        };
         if automorphisms == 1 {
-            for facing in graph.darts() {
-                self.check_start(graph, facing, tally);
-            }
+            graph.darts().try_for_each(check)
         } else {
             // Darts that an automorphism takes to each other are the same start.
             let orbit = canonical(graph).orbit;
-            for facing in graph.darts().filter(|dart| orbit[dart.at()] == *dart) {
-                self.check_start(graph, facing, tally);
-            }
+            graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
         }
     }
 

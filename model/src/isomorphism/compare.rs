@@ -72,6 +72,7 @@ impl fmt::Display for Difference {
 ///
 /// # Errors
 /// The [`Difference`], where they are not isomorphic.
+// paper: fig1.different
 pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijection, Difference> {
     let different = || Difference::between(one, other);
     if one.dart_count() != other.dart_count() || one.vertex_count() != other.vertex_count() {

@@ -181,8 +181,8 @@ struct Line<'a> {
 struct EveryWayLine {
     states: u64,
     runs: u128,
-    moves_least: u64,
-    moves_most: u64,
+    moves_least: Option<u64>,
+    moves_most: Option<u64>,
     /// Starts with more states than the budget.
     gave_up: u64,
 }
@@ -199,7 +199,6 @@ struct FailureLine {
 impl<'a> Line<'a> {
     fn new(size: &Size<'a>, marker: &'a str, choice: Choice) -> Self {
         let &Size { edges, class, from, shard, tally } = size;
-        let extremes = tally.extremes.filter(|_| choice != Choice::Default);
         Self {
             schema: 1,
             edges,
@@ -213,11 +212,11 @@ impl<'a> Line<'a> {
             moves_total: tally.moves_total,
             moves_max: tally.moves_max(),
             largest_ratio: tally.largest_ratio(edges),
-            every_way: extremes.map(|(moves_least, moves_most)| EveryWayLine {
+            every_way: (choice != Choice::Default).then(|| EveryWayLine {
                 states: tally.states,
                 runs: tally.runs,
-                moves_least,
-                moves_most,
+                moves_least: tally.extremes.map(|(least, _)| least),
+                moves_most: tally.extremes.map(|(_, most)| most),
                 gave_up: tally.gave_up,
             }),
             shard: (shard != Shard::WHOLE).then(|| shard.to_string()),

@@ -111,13 +111,19 @@ impl Ending<'_> {
             None => {}
             Some(Err(flaw)) => writeln!(out, "\nWith other choices: {flaw}")?,
             Some(Ok(EveryWay { states, runs, costs, complete })) => {
-                let costs: Vec<_> = costs.iter().map(|cost| cost.to_string()).collect();
-                let more = if *complete { "" } else { "more than " };
+                let least = |exact: bool| if exact { "" } else { "at least " };
                 writeln!(
                     out,
-                    "\nWith all choices there are {more}{states} states and {runs} runs,"
+                    "\nWith all choices there are {}{states} states and {}{runs} runs.",
+                    least(*complete),
+                    least(*complete && *runs < u128::MAX),
                 )?;
-                writeln!(out, "which take this many moves: {}.", costs.join(" "))?;
+                let costs: Vec<_> = costs.iter().map(|cost| cost.to_string()).collect();
+                match (complete, costs.join(" ")) {
+                    (_, costs) if costs.is_empty() => writeln!(out, "None of them was finished.")?,
+                    (true, costs) => writeln!(out, "They take this many moves: {costs}.")?,
+                    (false, costs) => writeln!(out, "Those finished took as many moves: {costs}.")?,
+                }
             }
         }
         Ok(())
