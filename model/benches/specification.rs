@@ -76,12 +76,14 @@ fn map_large_world(bencher: Bencher) {
     bencher.counter(ItemsCount::new(run())).bench(run);
 }
 
-/// Two random relabelled copies of a world: with random orders, and with the most symmetry.
-#[divan::bench(args = ["random", "cycle"], sample_count = 5)]
+/// Two random relabelled copies of a world: with random orders, with the most symmetry, and with
+/// nearly as much.
+#[divan::bench(args = ["random", "cycle", "chain"], sample_count = 5)]
 fn recognise_10_000_edges(bencher: Bencher, world: &str) {
     let mut random = Random(2);
     let graph = match world {
         "random" => random_cubic(6_666, &mut random),
+        "chain" => chain(10_000),
         _ => cycle(10_000),
     };
     let (one, other) = (relabelled(&graph, &mut random), relabelled(&graph, &mut random));
@@ -131,6 +133,15 @@ fn cycle(edges: u32) -> EmbeddedGraph {
         .map(|d| if d % 2 == 1 { (d + 1) % darts } else { (d + darts - 1) % darts })
         .collect();
     let clockwise: Vec<u32> = (0..darts).map(|d| d ^ 1).collect();
+    EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
+}
+
+fn chain(edges: u32) -> EmbeddedGraph {
+    let darts = 2 * edges;
+    let opposite: Vec<u32> = (0..darts).map(|d| d ^ 1).collect();
+    let last = darts - 1;
+    let clockwise: Vec<u32> =
+        (0..darts).map(|d| if d == 0 || d == last { d } else { ((d - 1) ^ 1) + 1 }).collect();
     EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
 }
 

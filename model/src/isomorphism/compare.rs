@@ -78,7 +78,67 @@ pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijecti
     if one.dart_count() != other.dart_count() || one.vertex_count() != other.vertex_count() {
         return Err(different());
     }
-    bijection(&canonical(one), &canonical(other)).ok_or_else(different)
+    match by_rare_darts(one, other) {
+        Verdict::Same(bijection) => Ok(bijection),
+        Verdict::Different => Err(different()),
+        Verdict::TooManyCandidates => {
+            bijection(&canonical(one), &canonical(other)).ok_or_else(different)
+        }
+    }
+}
+
+/// What a comparison by rare darts can say.
+enum Verdict {
+    Same(Bijection),
+    Different,
+    TooManyCandidates,
+}
+
+/// How many candidates are tried one by one, each in linear time.
+const CANDIDATES: usize = 16;
+
+/// Darts whose surroundings look alike have the same colour; an isomorphism keeps colours, so a dart
+/// of the rarest one can only go to the few others of it.
+fn by_rare_darts(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Verdict {
+    let (of_one, of_other) = (colours(one), colours(other));
+    let sorted = |colours: &[u64]| {
+        let mut sorted = colours.to_vec();
+        sorted.sort_unstable();
+        sorted
+    };
+    let all = sorted(&of_one);
+    if all != sorted(&of_other) {
+        return Verdict::Different;
+    }
+    let rarest = all.chunk_by(|a, b| a == b).min_by_key(|alike| alike.len());
+    let Some(alike) = rarest.filter(|alike| alike.len() <= CANDIDATES) else {
+        return Verdict::TooManyCandidates;
+    };
+    let Some(from) = one.darts().find(|dart| of_one[dart.at()] == alike[0]) else {
+        return Verdict::Different;
+    };
+    other
+        .darts()
+        .filter(|dart| of_other[dart.at()] == alike[0])
+        .map(|to| Bijection::of_starts((one, from), (other, to)))
+        .find(|bijection| bijection.verify(one, other))
+        .map_or(Verdict::Different, Verdict::Same)
+}
+
+/// A number for each dart that depends only on its surroundings, a few steps deep.
+fn colours(graph: &EmbeddedGraph) -> Vec<u64> {
+    let mut colours: Vec<u64> =
+        graph.darts().map(|dart| u64::from(graph.degree(graph.vertex(dart)))).collect();
+    for _ in 0..8 {
+        let mixed = |dart| {
+            let parts = [dart, graph.clockwise(dart), graph.opposite(dart)];
+            parts.iter().fold(0_u64, |mix, part| {
+                (mix ^ colours[part.at()]).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
+            })
+        };
+        colours = graph.darts().map(mixed).collect();
+    }
+    colours
 }
 
 /// The isomorphism of one embedded graph onto the [mirror image](EmbeddedGraph::mirror_image) of

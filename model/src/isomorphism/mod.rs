@@ -58,6 +58,18 @@ mod tests {
         }
 
         #[test]
+        fn worlds_are_isomorphic_exactly_when_they_have_the_same_canonical_code(
+            graph in any_graph(Class::Multigraph, 4),
+            other in any_graph(Class::Multigraph, 4),
+        ) {
+            let same = canonical(&graph).code == canonical(&other).code;
+            match isomorphism(&graph, &other) {
+                Ok(bijection) => prop_assert!(same && bijection.verify(&graph, &other)),
+                Err(_) => prop_assert!(!same),
+            }
+        }
+
+        #[test]
         fn starts_have_the_same_code_exactly_when_the_bijection_verifies(
             graph in any_graph(Class::Multigraph, 5),
             other in any_graph(Class::Multigraph, 5),
