@@ -104,6 +104,9 @@ impl Ending<'_> {
             Err(flaw) => {
                 let moves = story::counted(self.exploration.moves() as usize, "move");
                 writeln!(out, "\nAfter {moves}: {flaw}")?;
+                if matches!(flaw, Flaw::Error(MappingError::Bound { .. })) {
+                    writeln!(out, "With --max-darts N the robot may go on.")?;
+                }
             }
             Ok(bijection) => self.tell_map(bijection, out)?,
         }
