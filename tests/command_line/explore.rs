@@ -126,7 +126,8 @@ fn too_small_a_bound_is_incomplete() {
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(stdout(&output).ends_with(
-        "After 1 move: more than 3 darts (edge ends) are known and there is no end in sight\n"
+        "After 1 move: more than 3 darts (edge ends) are known and there is no end in sight\n\
+         With --max-darts N the robot may go on.\n"
     ));
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3", "--json"]);
     assert_eq!(output.status.code(), Some(3));
