@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
+use std::ops::ControlFlow;
+
 use toposlam_model::{
-    check::{Algorithm, Choice, Failure, Shard, Sweep},
+    check::{self, Algorithm, Choice, Failure, Shard, Sweep, every_way},
     embedded_graph::Dart,
-    enumerate::Class,
+    enumerate::{Class, Each, Enumeration},
     isomorphism::code,
     mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
     percept::{Door, Percept, Sighting},
@@ -15,7 +17,7 @@ use toposlam_model::{
 /// Algorithm 1 with something broken in lines 10 to 17.
 struct Broken(Flaw);
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Flaw {
     /// Line 15 is left out.
     NoRetrace,
@@ -27,9 +29,34 @@ enum Flaw {
     OffByOne,
     /// No hypothesis that takes a path is ever confirmed.
     NeverConfirmed,
+    /// At the marker, the robot believes that it is still where the path began.
+    LeftBehind,
 }
 
+const FLAWS: [Flaw; 5] = [
+    Flaw::NoRetrace,
+    Flaw::DirectionIgnored,
+    Flaw::FirstPerceptSuffices,
+    Flaw::OffByOne,
+    Flaw::NeverConfirmed,
+];
+
 impl Broken {
+    fn matches(&self, expected: Percept, perceived: Percept) -> bool {
+        match (self.0, expected.sighting, perceived.sighting) {
+            (Flaw::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
+                expected.degree == perceived.degree
+            }
+            (Flaw::OffByOne, Sighting::Pointing(door), _) => {
+                let door = Door((door.0 + 1) % expected.degree);
+                Percept { sighting: Sighting::Pointing(door), ..expected } == perceived
+            }
+            _ => expected == perceived,
+        }
+    }
+}
+
+impl Algorithm for Broken {
     fn try_path(
         &self,
         exploration: &mut Exploration,
@@ -59,25 +86,11 @@ impl Broken {
             exploration.retrace(world, observer)?;
             return Ok(Verdict::Rejected);
         }
-        exploration.arrive_at_marker(pose);
+        let believed = if matches!(self.0, Flaw::LeftBehind) { hypothesis } else { pose };
+        exploration.arrive_at_marker(believed);
         Ok(Verdict::Confirmed)
     }
 
-    fn matches(&self, expected: Percept, perceived: Percept) -> bool {
-        match (self.0, expected.sighting, perceived.sighting) {
-            (Flaw::DirectionIgnored, Sighting::Pointing(_), Sighting::Pointing(_)) => {
-                expected.degree == perceived.degree
-            }
-            (Flaw::OffByOne, Sighting::Pointing(door), _) => {
-                let door = Door((door.0 + 1) % expected.degree);
-                Percept { sighting: Sighting::Pointing(door), ..expected } == perceived
-            }
-            _ => expected == perceived,
-        }
-    }
-}
-
-impl Algorithm for Broken {
     fn run(
         &self,
         world: &mut GraphWorld,
@@ -123,14 +136,7 @@ fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let flaws = [
-        Flaw::NoRetrace,
-        Flaw::DirectionIgnored,
-        Flaw::FirstPerceptSuffices,
-        Flaw::OffByOne,
-        Flaw::NeverConfirmed,
-    ];
-    let caught = flaws.map(smallest_failure);
+    let caught = FLAWS.map(smallest_failure);
     // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
     let bound = |darts: u32| {
         format!("more than {darts} darts (edge ends) are known and there is no end in sight")
@@ -179,4 +185,31 @@ fn every_broken_variant_is_caught_on_a_small_start() {
         ),
     ];
     assert_eq!(caught, expected);
+}
+
+/// With all choices, too, the end of every run is judged: what the broken variants do wrong there is
+/// seen in the map and in the pose, not only where they run into a contradiction.
+#[test]
+fn every_way_of_a_broken_variant_is_judged() {
+    let mut seen = std::collections::BTreeMap::new();
+    for flaw in [Flaw::DirectionIgnored, Flaw::FirstPerceptSuffices, Flaw::LeftBehind] {
+        for edges in 1..=4 {
+            let starts = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+            let _ = starts.for_each(&mut |found| {
+                let result = every_way(&Broken(flaw), found.graph, Dart(0), 100_000, &());
+                let kind = match result {
+                    Ok(_) => "right",
+                    Err(check::Flaw::WrongMap) => "map",
+                    Err(check::Flaw::WrongPose { .. }) => "pose",
+                    Err(_) => "error",
+                };
+                *seen.entry((format!("{flaw:?}"), kind)).or_insert(0) += 1;
+                ControlFlow::Continue(())
+            });
+        }
+    }
+    let starts = |flaw: Flaw, kind| seen.get(&(format!("{flaw:?}"), kind)).copied();
+    assert_eq!(starts(Flaw::DirectionIgnored, "map"), Some(32));
+    assert_eq!(starts(Flaw::FirstPerceptSuffices, "map"), Some(94));
+    assert_eq!(starts(Flaw::LeftBehind, "pose"), Some(142));
 }

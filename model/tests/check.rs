@@ -67,12 +67,12 @@ fn every_way_of_every_start_is_mapped_right() {
 #[test]
 fn a_start_with_more_states_than_the_budget_is_given_up() {
     let graph = cycle(5);
-    let all = every_way(&graph, Dart(0), 1000, &()).unwrap();
+    let all = every_way(&Algorithm1, &graph, Dart(0), 1000, &()).unwrap();
     assert!(all.complete);
-    let some = every_way(&graph, Dart(0), all.states - 1, &()).unwrap();
+    let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
     assert!(!some.complete && some.states < all.states);
     // Too deep to begin with.
-    assert!(!every_way(&cycle(101), Dart(0), 1000, &()).unwrap().complete);
+    assert!(!every_way(&Algorithm1, &cycle(101), Dart(0), 1000, &()).unwrap().complete);
     let choice = Choice::All { budget: 3 };
     let tally = check_worlds(&[graph], choice, &Algorithm1, &());
     assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
@@ -105,7 +105,7 @@ fn the_default_run_is_among_all_runs() {
         let mut exploration = Exploration::new(8);
         let mut world = GraphWorld::new(found.graph, Dart(0));
         Algorithm1.run(&mut world, &mut exploration, &mut ()).unwrap();
-        let ways = every_way(found.graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+        let ways = every_way(&Algorithm1, found.graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
         assert!(ways.costs.contains(exploration.moves()));
         starts += 1;
         std::ops::ControlFlow::Continue(())
@@ -174,7 +174,7 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
             .collect();
         let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
-        let ways = every_way(&graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
+        let ways = every_way(&Algorithm1, &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
     }
 }

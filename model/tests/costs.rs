@@ -32,7 +32,8 @@ fn rows(name: &str, paper: u64) -> Vec<String> {
         .graph
         .darts()
         .map(|facing| {
-            let ways = every_way(&world.graph, facing, DEFAULT_STATE_BUDGET, &()).unwrap();
+            let ways =
+                every_way(&Algorithm1, &world.graph, facing, DEFAULT_STATE_BUDGET, &()).unwrap();
             let (least, most) = ways.costs.min().zip(ways.costs.max()).unwrap();
             let among = if ways.costs.contains(paper) { "yes" } else { "no" };
             let (start, moves) = (world.start_text(facing), moves(&world, facing));

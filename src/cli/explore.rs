@@ -11,7 +11,7 @@ use std::{
 
 use toposlam::picture::{self, Picture};
 use toposlam_model::{
-    check::{Choice, Flaw, every_way, judge},
+    check::{Algorithm1, Choice, Flaw, every_way, judge},
     format::named_world::NamedWorld,
     isomorphism::Candidate,
     mapping::{DEFAULT_DART_BOUND, Exploration, Nearest, map_world},
@@ -112,7 +112,9 @@ impl Arguments {
             .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
         let ways = match choice {
             Choice::Default => None,
-            Choice::All { budget } => Some(every_way(&world.graph, facing, budget, &())),
+            Choice::All { budget } => {
+                Some(every_way(&Algorithm1, &world.graph, facing, budget, &()))
+            }
         };
         let ending = Ending { world: &world, facing, exploration: &exploration, result, ways };
         if self.json {

@@ -1,7 +1,7 @@
 """Algorithm 1 a second time, in another language, from the paper and the design alone.
 
-Written by someone who had not seen the Rust code, as literally as possible and with no care for
-speed. `tests/oracle.rs` compares the two. Prints one JSON object for each number of edges:
+First written without sight of the Rust code, and tidied since; as literal as possible, with no care
+for speed. `tests/oracle.rs` compares the totals of the two. Prints one JSON object for each number of edges:
 
     python3 tests/oracle/algorithm1.py default 5    the default choices, up to 5 edges
     python3 tests/oracle/algorithm1.py all 3        every run, one by one, up to 3 edges

@@ -3,11 +3,11 @@
 
 use std::collections::HashMap;
 
-use super::{Costs, Flaw, Watch, judge::judge, judge::move_bound};
+use super::{Algorithm, Costs, Flaw, Watch, judge::judge, judge::move_bound};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     isomorphism::Candidate,
-    mapping::{Choices, Exploration, PartialMap, Verdict, try_path},
+    mapping::{Choices, Exploration, PartialMap, Verdict},
     world::GraphWorld,
 };
 
@@ -32,13 +32,14 @@ pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
 /// counting anyway.
 const MAX_EDGES: usize = 100;
 
-/// Runs Algorithm 1 on a start with all choices, and judges the end of every run. States are
+/// Runs an algorithm on a start with all choices, and judges the end of every run. States are
 /// explored once, runs are counted. After `budget` states, those within a round (what is left of H)
 /// included, or when the watch says stop, no new one is begun.
 ///
 /// # Errors
 /// The first [`Flaw`].
 pub fn every_way(
+    algorithm: &impl Algorithm,
     graph: &EmbeddedGraph,
     facing: Dart,
     budget: u64,
@@ -49,6 +50,7 @@ pub fn every_way(
     exploration.begin(&mut world, &mut ())?;
     let budget = if graph.edge_count() > MAX_EDGES { 0 } else { budget };
     let mut search = Search {
+        algorithm,
         facing,
         budget,
         watch,
@@ -82,7 +84,8 @@ impl Futures {
     }
 }
 
-struct Search<'w, W> {
+struct Search<'w, A, W> {
+    algorithm: &'w A,
     facing: Dart,
     budget: u64,
     watch: &'w W,
@@ -112,7 +115,7 @@ impl Choices for ThisHypothesis {
     }
 }
 
-impl<W: Watch> Search<'_, W> {
+impl<A: Algorithm, W: Watch> Search<'_, A, W> {
     /// Whether one more state may be begun.
     fn begin(&mut self) -> bool {
         let may = self.begun < self.budget && !self.watch.stop();
@@ -175,13 +178,14 @@ impl<W: Watch> Search<'_, W> {
         for place in 0..exploration.hypotheses().len() {
             let (mut world, mut next) = (world.clone(), exploration.clone());
             if let Some(hypothesis) = next.next_hypothesis(&mut ThisHypothesis(place)) {
-                let after = match try_path(&mut next, hypothesis, &mut world, &mut ())? {
-                    Verdict::Confirmed => {
-                        next.close_loop(hypothesis, &mut ());
-                        self.line_4(&world, &next)?
-                    }
-                    Verdict::Rejected => self.line_8(&world, &next, known)?,
-                };
+                let after =
+                    match self.algorithm.try_path(&mut next, hypothesis, &mut world, &mut ())? {
+                        Verdict::Confirmed => {
+                            next.close_loop(hypothesis, &mut ());
+                            self.line_4(&world, &next)?
+                        }
+                        Verdict::Rejected => self.line_8(&world, &next, known)?,
+                    };
                 futures.include(&after, next.moves() - exploration.moves());
             }
         }

@@ -7,7 +7,10 @@ use thiserror::Error;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, map_world},
+    mapping::{
+        Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, Verdict,
+        map_world, try_path,
+    },
     world::{GraphWorld, NoSuchDoor},
 };
 
@@ -23,6 +26,20 @@ pub trait Algorithm: Sync {
         exploration: &mut Exploration,
         observer: &mut impl Observer,
     ) -> Result<(), MappingError<NoSuchDoor>>;
+
+    /// Lines 10 to 17 of it: follows the path of one hypothesis. All choices are tried with this.
+    ///
+    /// # Errors
+    /// Those of [`try_path`].
+    fn try_path(
+        &self,
+        exploration: &mut Exploration,
+        hypothesis: Dart,
+        world: &mut GraphWorld,
+        observer: &mut impl Observer,
+    ) -> Result<Verdict, MappingError<NoSuchDoor>> {
+        try_path(exploration, hypothesis, world, observer)
+    }
 }
 
 /// Algorithm 1 with the default choices.

@@ -18,7 +18,7 @@ use crate::{
 pub enum Choice {
     /// That of the default choices.
     Default,
-    /// That, and every other resolution of what Algorithm 1 leaves open.
+    /// That, and every other resolution of what the algorithm leaves open.
     All {
         /// How many states of one start may be explored.
         budget: u64,
@@ -217,7 +217,7 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
             }
         }
         if let Choice::All { budget } = self.choice {
-            match every_way(graph, facing, budget, self.watch) {
+            match every_way(self.algorithm, graph, facing, budget, self.watch) {
                 Ok(ways) => tally.count_every_way(&ways),
                 Err(flaw) => {
                     // The run is not that of the default choices, whose story could be told.
