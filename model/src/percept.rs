@@ -1,6 +1,8 @@
 //! What a robot perceives at a vertex and how it moves: degrees, doors, sightings, door sequences
 //! and the way back. Section 2.1, "Robot motion and perception".
 
+use std::fmt;
+
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// A way out of a vertex: the `i`-th dart clockwise from the one by which the robot came in. Door 0
@@ -39,10 +41,41 @@ impl Door {
 /// What the marker in use adds to a percept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sighting {
-    /// No marker is here.
+    /// No marker is noticed.
     Nothing,
     /// The directional marker is here and points along this door.
     Pointing(Door),
+    /// So many undirected markers that look alike are here; at least one.
+    Lying(u32),
+    /// Of two markers that look different, the first is here.
+    First,
+    /// Of two markers that look different, the second is here.
+    Second,
+    /// Two markers that look different are both here.
+    Both,
+    /// The edge just traversed is marked.
+    Passed,
+    /// The edge just traversed is marked, by an arrow in the sense of the traversal.
+    PassedAlong,
+    /// The edge just traversed is marked, by an arrow in the opposite sense.
+    PassedAgainst,
+}
+
+impl fmt::Display for Sighting {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Nothing => write!(out, "no marker"),
+            Self::Pointing(door) => write!(out, "marker along door {}", door.0),
+            Self::Lying(1) => write!(out, "marker"),
+            Self::Lying(count) => write!(out, "{count} markers"),
+            Self::First => write!(out, "first marker"),
+            Self::Second => write!(out, "second marker"),
+            Self::Both => write!(out, "both markers"),
+            Self::Passed => write!(out, "past the mark"),
+            Self::PassedAlong => write!(out, "past the mark, along its arrow"),
+            Self::PassedAgainst => write!(out, "past the mark, against its arrow"),
+        }
+    }
 }
 
 /// What is sensed on arriving at a vertex, and nothing else.
@@ -55,14 +88,26 @@ pub struct Percept {
     pub sighting: Sighting,
 }
 
+/// The number of doors, and the marker if it is noticed: `3 doors, marker along door 1`.
+impl fmt::Display for Percept {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { degree, sighting } = self;
+        write!(out, "{degree} door{}", if *degree == 1 { "" } else { "s" })?;
+        if *sighting == Sighting::Nothing { Ok(()) } else { write!(out, ", {sighting}") }
+    }
+}
+
 impl Percept {
-    /// The same vertex as perceived by a robot that has come in by the door `entry` instead.
+    /// The same vertex as perceived by a robot that has come in by the door `entry` instead. What
+    /// lies on the edge of another entry cannot be told, and is taken for nothing.
     #[inline]
     #[must_use]
     pub fn seen_from(self, entry: Door) -> Self {
+        use Sighting::{Nothing, Passed, PassedAgainst, PassedAlong, Pointing};
         let sighting = match self.sighting {
-            Sighting::Nothing => Sighting::Nothing,
-            Sighting::Pointing(door) => Sighting::Pointing(door.seen_from(entry, self.degree)),
+            Pointing(door) => Pointing(door.seen_from(entry, self.degree)),
+            Passed | PassedAlong | PassedAgainst if entry != Door::BACK => Nothing,
+            same => same,
         };
         Self { sighting, ..self }
     }

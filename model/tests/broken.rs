@@ -11,7 +11,7 @@ use toposlam_model::{
     isomorphism::code,
     mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, NoSuchDoor},
+    world::{GraphWorld, Refused},
 };
 
 /// Algorithm 1 with something broken in lines 10 to 17.
@@ -63,7 +63,7 @@ impl Algorithm for Broken {
         hypothesis: Dart,
         world: &mut GraphWorld,
         observer: &mut impl Observer,
-    ) -> Result<Verdict, MappingError<NoSuchDoor>> {
+    ) -> Result<Verdict, MappingError<Refused>> {
         exploration.set_out();
         let mut pose = hypothesis;
         if matches!(self.0, Flaw::FirstPerceptSuffices) {
@@ -96,7 +96,7 @@ impl Algorithm for Broken {
         world: &mut GraphWorld,
         exploration: &mut Exploration,
         observer: &mut impl Observer,
-    ) -> Result<(), MappingError<NoSuchDoor>> {
+    ) -> Result<(), MappingError<Refused>> {
         exploration.begin(world, observer)?;
         while let Some(edge) = exploration.next_edge(&mut Nearest) {
             exploration.explore(edge, world, observer)?;

@@ -7,12 +7,12 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     mapping::{Contradiction, Event, Exploration, MappingError, Nearest, map_world},
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, NoSuchDoor, World},
+    world::{GraphWorld, Refused, World},
 };
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl World<Error = NoSuchDoor>) -> Result<u64, MappingError<NoSuchDoor>> {
+fn map(world: &mut impl World<Error = Refused>) -> Result<u64, MappingError<Refused>> {
     let mut exploration = Exploration::new(BOUND);
     map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
 }
@@ -32,19 +32,19 @@ struct Script<'s> {
 }
 
 impl World for Script<'_> {
-    type Error = NoSuchDoor;
+    type Error = Refused;
 
-    fn percept(&mut self) -> Result<Percept, NoSuchDoor> {
+    fn percept(&mut self) -> Result<Percept, Refused> {
         Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
     }
 
-    fn traverse(&mut self, _: Door) -> Result<(), NoSuchDoor> {
+    fn traverse(&mut self, _: Door) -> Result<(), Refused> {
         self.moves += 1;
         Ok(())
     }
 }
 
-fn scripted(percepts: &[Percept]) -> MappingError<NoSuchDoor> {
+fn scripted(percepts: &[Percept]) -> MappingError<Refused> {
     map(&mut Script { percepts, moves: 0 }).unwrap_err()
 }
 
@@ -91,7 +91,7 @@ fn a_known_place_that_changed_is_a_contradiction() {
     };
     assert_eq!(scripted(&[marked(2, 0), plain(1), marked(2, 1)]), turned.into());
     assert_eq!(
-        MappingError::<NoSuchDoor>::from(expected).to_string(),
+        MappingError::<Refused>::from(expected).to_string(),
         "the world contradicts itself: at the known vertex v0, entered by its dart 0, there should \
          be degree 2 with the marker along door 0 but there is degree 3 with the marker along door 0"
     );
@@ -118,15 +118,15 @@ fn a_way_back_that_changed_is_a_contradiction() {
 fn the_worlds_own_error_is_passed_on() {
     struct Closed;
     impl World for Closed {
-        type Error = NoSuchDoor;
-        fn percept(&mut self) -> Result<Percept, NoSuchDoor> {
+        type Error = Refused;
+        fn percept(&mut self) -> Result<Percept, Refused> {
             Ok(marked(2, 0))
         }
-        fn traverse(&mut self, door: Door) -> Result<(), NoSuchDoor> {
-            Err(NoSuchDoor { door, degree: 0 })
+        fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+            Err(Refused::NoSuchDoor { door, degree: 0 })
         }
     }
-    let error = NoSuchDoor { door: Door(0), degree: 0 };
+    let error = Refused::NoSuchDoor { door: Door(0), degree: 0 };
     assert_eq!(map(&mut Closed), Err(MappingError::World(error)));
 }
 

@@ -5,9 +5,8 @@
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    marker::Marker,
     percept::{Door, Percept, Sighting},
-    world::{GraphWorld, NoSuchDoor, World},
+    world::{GraphWorld, Refused, World},
 };
 
 /// A junction with, clockwise, a way `p` to a dead end, a way `q` to a bend, and a loop. Darts: 0 is
@@ -64,27 +63,11 @@ fn a_directional_marker_shows_the_entry_at_its_vertex() {
     assert_eq!(from_the_junction(&[1, 0]), [marked(4, 0), plain(2), marked(4, 3)]);
 }
 
-/// Another marker makes another world of the same graph.
-#[test]
-fn any_marker_can_lie_in_a_graph() {
-    struct Everywhere;
-    impl Marker for Everywhere {
-        fn sighting(&self, _: &EmbeddedGraph, _: Dart) -> Sighting {
-            Sighting::Pointing(Door(0))
-        }
-    }
-    let graph = junction();
-    let mut world = GraphWorld::with_marker(&graph, Everywhere, Dart(0));
-    assert_eq!(world.percept(), Ok(marked(1, 0)));
-    world.traverse(Door(0)).unwrap();
-    assert_eq!(world.percept(), Ok(marked(4, 0)));
-}
-
 #[test]
 fn a_door_that_is_not_there_cannot_be_taken() {
     let graph = junction();
     let mut world = GraphWorld::new(&graph, Dart(0));
-    let error = NoSuchDoor { door: Door(1), degree: 1 };
+    let error = Refused::NoSuchDoor { door: Door(1), degree: 1 };
     assert_eq!(world.traverse(Door(1)), Err(error));
     assert_eq!(world.pose(), Dart(0));
     assert_eq!(error.to_string(), "door 1 was taken at a vertex with 1 doors");

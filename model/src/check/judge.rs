@@ -11,7 +11,7 @@ use crate::{
         Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, Verdict,
         map_world, try_path,
     },
-    world::{GraphWorld, NoSuchDoor},
+    world::{GraphWorld, Refused},
 };
 
 /// An algorithm that maps worlds; the check is run on Algorithm 1, and its tests on broken variants.
@@ -25,7 +25,7 @@ pub trait Algorithm: Sync {
         world: &mut GraphWorld,
         exploration: &mut Exploration,
         observer: &mut impl Observer,
-    ) -> Result<(), MappingError<NoSuchDoor>>;
+    ) -> Result<(), MappingError<Refused>>;
 
     /// Lines 10 to 17 of it: follows the path of one hypothesis. All choices are tried with this.
     ///
@@ -37,7 +37,7 @@ pub trait Algorithm: Sync {
         hypothesis: Dart,
         world: &mut GraphWorld,
         observer: &mut impl Observer,
-    ) -> Result<Verdict, MappingError<NoSuchDoor>> {
+    ) -> Result<Verdict, MappingError<Refused>> {
         try_path(exploration, hypothesis, world, observer)
     }
 }
@@ -53,7 +53,7 @@ impl Algorithm for Algorithm1 {
         world: &mut GraphWorld,
         exploration: &mut Exploration,
         observer: &mut impl Observer,
-    ) -> Result<(), MappingError<NoSuchDoor>> {
+    ) -> Result<(), MappingError<Refused>> {
         map_world(world, &mut Nearest, exploration, observer)
     }
 }
@@ -64,7 +64,7 @@ impl Algorithm for Algorithm1 {
 pub enum Flaw {
     /// It did not come to an end: a door that does not exist, a contradiction, the bound.
     #[error(transparent)]
-    Error(#[from] MappingError<NoSuchDoor>),
+    Error(#[from] MappingError<Refused>),
     /// It ended with unexplored edges.
     #[error("it ended with {unexplored} edge ends unexplored")]
     Unfinished {

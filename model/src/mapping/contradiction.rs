@@ -97,7 +97,8 @@ impl fmt::Display for Seen<'_> {
         write!(out, "degree {degree} ")?;
         match sighting {
             Sighting::Nothing => write!(out, "without the marker"),
-            Sighting::Pointing(door) => write!(out, "with the marker along door {}", door.0),
+            Sighting::Pointing(_) => write!(out, "with the {sighting}"),
+            _ => write!(out, "with a sign of another kind of marker ({sighting})"),
         }
     }
 }

@@ -227,7 +227,7 @@ impl Exploration {
             let perceived = *arrival;
             return match perceived.sighting {
                 Sighting::Nothing => Ok(()),
-                Sighting::Pointing(_) => Err(Contradiction::Marker { vertex, index, perceived }),
+                _ => Err(Contradiction::Marker { vertex, index, perceived }),
             };
         }
         if !mem::replace(&mut self.to_marker_is_current, true) {
@@ -293,8 +293,8 @@ impl Exploration {
         self.moves += 1;
         let percept = world.percept().map_err(MappingError::World)?;
         let possible = match percept.sighting {
-            Sighting::Nothing => percept.degree > 0,
             Sighting::Pointing(door) => door.0 < percept.degree,
+            _ => percept.degree > 0,
         };
         observer.event(self, Event::Moved { door, percept });
         if possible {

@@ -54,7 +54,7 @@ impl<'o, W: Write> Story<'o, W> {
         let map = exploration.map();
         match event {
             Event::Started { percept } => {
-                writeln!(self.out, "It drops its marker at v0, where it senses {}.", seen(percept))
+                writeln!(self.out, "It drops its marker at v0, where it senses {percept}.")
             }
             Event::Moved { door, .. } => {
                 if self.detail.doors {
@@ -67,12 +67,7 @@ impl<'o, W: Write> Story<'o, W> {
                 self.rejected = 0;
                 let edge = dart(map, edge);
                 let moves = self.count_moves(exploration);
-                writeln!(
-                    self.out,
-                    "\n{:>3}  behind {edge}, after {moves}: {}",
-                    self.round,
-                    seen(percept)
-                )?;
+                writeln!(self.out, "\n{:>3}  behind {edge}, after {moves}: {percept}", self.round)?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
                     (_, 0) => writeln!(self.out, "     no other unexplored dart fits"),
@@ -171,19 +166,10 @@ fn dart(map: &PartialMap, dart: Dart) -> String {
     format!("v{}.{}", map.vertex(dart).0, map.index(dart))
 }
 
-/// A percept.
-fn seen(percept: Percept) -> String {
-    let doors = counted(percept.degree as usize, "door");
-    match percept.sighting {
-        Sighting::Nothing => doors,
-        Sighting::Pointing(door) => format!("{doors}, marker along door {}", door.0),
-    }
-}
-
 /// A percept beside another: that there is no marker is told where it is what differs.
 fn seen_against(percept: Percept, other: Percept) -> String {
     let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
-    format!("{}{}", seen(percept), if absent { ", no marker" } else { "" })
+    format!("{percept}{}", if absent { ", no marker" } else { "" })
 }
 
 /// So many of something.

@@ -1,0 +1,164 @@
+//! What a marker adds to a percept, and what a robot can do with it. Sections 2.2 and 2.3.
+//!
+//! A marker is placed once, by the facing dart of a start. A kind of marker is one file here, and
+//! one line in [`MARKERS`].
+
+mod directed_edge;
+mod directional;
+mod movable;
+mod none;
+mod two_distinct;
+mod two_identical;
+mod undirected;
+mod undirected_edge;
+
+use std::fmt;
+
+use thiserror::Error;
+
+pub use directed_edge::DirectedEdge;
+pub use directional::Directional;
+pub use movable::Movable;
+pub use none::NoMarker;
+pub use two_distinct::TwoDistinct;
+pub use two_identical::TwoIdentical;
+pub use undirected::Undirected;
+pub use undirected_edge::UndirectedEdge;
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    percept::Sighting,
+};
+
+/// Every kind of marker.
+pub const MARKERS: [&dyn Marker; 8] = [
+    &NoMarker,
+    &Undirected,
+    &Directional,
+    &UndirectedEdge,
+    &DirectedEdge,
+    &TwoIdentical,
+    &TwoDistinct,
+    &Movable,
+];
+
+/// A kind of marker.
+///
+/// Two facing darts may place it alike: an undirected marker lies at a vertex, whichever of its
+/// darts was faced.
+pub trait Marker: Sync {
+    /// What it is called on the command line.
+    fn name(&self) -> &'static str;
+
+    /// What it is and when it is noticed, in a sentence.
+    fn about(&self) -> &'static str;
+
+    /// What it adds to the percept of a robot that has come in by the dart `pose`, where it was
+    /// placed by the facing dart.
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting;
+
+    /// The first of the facing darts that place it just as this one does.
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart;
+
+    /// The poses in which the robot may begin, as far as the marker tells: all those, in the order
+    /// of their numbers, at which it is noticed where the robot begins.
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart>;
+
+    /// What lies where; nothing, where there is no marker to place.
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part>;
+
+    /// Whether the robot can pick it up where it notices it, carry it, and drop it, which places it
+    /// as if it then faced the dart by which it has come in.
+    fn is_movable(&self) -> bool {
+        false
+    }
+}
+
+/// A part of a marker, and where it lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Lies at a vertex. Parts of another look can be told apart from it.
+    At {
+        /// The vertex.
+        vertex: Vertex,
+        /// The look.
+        look: Look,
+    },
+    /// Lies at the dart's vertex and points along the dart.
+    Pointing(Dart),
+    /// Lies in the middle of the dart's edge.
+    OnEdge(Dart),
+    /// Lies in the middle of the dart's edge and points away from the dart's vertex.
+    OnEdgeAlong(Dart),
+}
+
+/// How a part of a marker looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// The usual one.
+    One,
+    /// One that can be told apart from it.
+    Other,
+}
+
+impl<M: Marker + ?Sized> Marker for &M {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn about(&self) -> &'static str {
+        (**self).about()
+    }
+
+    fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting {
+        (**self).sighting(graph, facing, pose)
+    }
+
+    fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart {
+        (**self).first_alike(graph, facing)
+    }
+
+    fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
+        (**self).starts(graph, facing)
+    }
+
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
+        (**self).parts(graph, facing)
+    }
+
+    fn is_movable(&self) -> bool {
+        (**self).is_movable()
+    }
+}
+
+impl fmt::Debug for dyn Marker {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(self.name())
+    }
+}
+
+impl PartialEq for dyn Marker {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for dyn Marker {}
+
+/// A name that no marker has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{0}` is no marker; there are {names}", names = names())]
+pub struct UnknownMarker(String);
+
+fn names() -> String {
+    MARKERS.map(Marker::name).join(", ")
+}
+
+/// The kind of marker with this name.
+///
+/// # Errors
+/// Where there is none; the message lists those that there are.
+pub fn named(name: &str) -> Result<&'static dyn Marker, UnknownMarker> {
+    let marker = MARKERS.into_iter().find(|marker| marker.name() == name);
+    marker.ok_or_else(|| UnknownMarker(name.to_owned()))
+}

@@ -1,0 +1,216 @@
+//! An embedded graph with a marker and a robot in it, as a world. Section 2.1.
+
+use std::{fmt, str::FromStr};
+
+use thiserror::Error;
+
+use super::{Handling, World};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    marker::{Directional, Marker},
+    percept::{Door, Percept, Sighting},
+};
+
+/// The robot tried to do what it cannot do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Refused {
+    /// It chose a door that its vertex does not have.
+    #[error("door {} was taken at a vertex with {degree} doors", door.0)]
+    NoSuchDoor {
+        /// The door.
+        door: Door,
+        /// The degree of the vertex.
+        degree: u32,
+    },
+    /// It tried to pick up a marker that is not here, or that cannot be moved.
+    #[error("there is no marker here that could be picked up")]
+    NothingToPickUp,
+    /// It tried to drop a marker that it does not carry.
+    #[error("the robot carries no marker that it could drop")]
+    NothingToDrop,
+}
+
+/// Where the robot is, and where the marker is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct State {
+    /// The dart by which the robot has come in.
+    pub pose: Dart,
+    /// The facing dart that places the marker where it lies, the first of those alike; none while
+    /// the robot carries it.
+    pub placed: Option<Dart>,
+}
+
+/// What a robot can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Action {
+    /// Leave by a door.
+    Take(Door),
+    /// Pick the marker up.
+    PickUp,
+    /// Drop the marker.
+    Drop,
+}
+
+/// The door's number, `pick-up` or `drop`.
+impl fmt::Display for Action {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Take(door) => write!(out, "{}", door.0),
+            Self::PickUp => write!(out, "pick-up"),
+            Self::Drop => write!(out, "drop"),
+        }
+    }
+}
+
+/// Not an action.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{0}` is nothing that a robot can do; write a door's number, pick-up or drop")]
+pub struct UnknownAction(String);
+
+impl FromStr for Action {
+    type Err = UnknownAction;
+
+    fn from_str(text: &str) -> Result<Self, UnknownAction> {
+        match text {
+            "pick-up" => Ok(Self::PickUp),
+            "drop" => Ok(Self::Drop),
+            door => {
+                let digits = door.bytes().all(|byte| byte.is_ascii_digit());
+                let number = digits.then(|| door.parse().ok()).flatten();
+                number.map(|n| Self::Take(Door(n))).ok_or_else(|| UnknownAction(text.to_owned()))
+            }
+        }
+    }
+}
+
+/// An embedded graph with a marker and a robot in it, as a [`World`].
+#[derive(Clone, Debug)]
+pub struct GraphWorld<'g, M = Directional> {
+    graph: &'g EmbeddedGraph,
+    marker: M,
+    state: State,
+}
+
+impl<'g> GraphWorld<'g> {
+    /// The world of a start: the directional marker lies at the start vertex and points along the
+    /// facing dart, which is one of the graph's, and the robot's entry dart.
+    #[must_use]
+    pub fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
+        Self::with_marker(graph, Directional, facing)
+    }
+}
+
+impl<'g, M: Marker> GraphWorld<'g, M> {
+    /// The world of a start with any marker, placed by the facing dart, which is one of the graph's,
+    /// and the robot's entry dart.
+    #[must_use]
+    pub fn with_marker(graph: &'g EmbeddedGraph, marker: M, facing: Dart) -> Self {
+        let placed = Some(marker.first_alike(graph, facing));
+        Self { graph, marker, state: State { pose: facing, placed } }
+    }
+
+    /// The same world with robot and marker where the state says.
+    #[must_use]
+    pub fn at(self, state: State) -> Self {
+        Self { state, ..self }
+    }
+
+    /// What the robot can do: its doors, and what it can do with the marker.
+    pub fn actions(&self) -> impl Iterator<Item = Action> + use<M> {
+        let doors = (0..self.graph.degree_around(self.state.pose)).map(|n| Action::Take(Door(n)));
+        let handling = if self.can_pick_up() {
+            Some(Action::PickUp)
+        } else {
+            self.carries().then_some(Action::Drop)
+        };
+        doors.chain(handling)
+    }
+
+    /// Does one of the [`actions`](Self::actions).
+    ///
+    /// # Errors
+    /// Where it is not one of them.
+    pub fn act(&mut self, action: Action) -> Result<(), Refused> {
+        match action {
+            Action::Take(door) => self.traverse(door),
+            Action::PickUp => self.pick_up(),
+            Action::Drop => Handling::drop(self),
+        }
+    }
+
+    /// Whether the robot carries the marker.
+    #[must_use]
+    pub fn carries(&self) -> bool {
+        self.state.placed.is_none()
+    }
+
+    fn can_pick_up(&self) -> bool {
+        self.marker.is_movable() && self.sighting() != Sighting::Nothing
+    }
+
+    #[inline]
+    fn sighting(&self) -> Sighting {
+        match self.state.placed {
+            Some(placed) => self.marker.sighting(self.graph, placed, self.state.pose),
+            None => Sighting::Nothing,
+        }
+    }
+}
+
+impl<'g, M> GraphWorld<'g, M> {
+    /// The embedded graph.
+    #[must_use]
+    pub fn graph(&self) -> &'g EmbeddedGraph {
+        self.graph
+    }
+
+    /// Where the robot truly is.
+    #[must_use]
+    pub fn pose(&self) -> Dart {
+        self.state.pose
+    }
+
+    /// Where robot and marker truly are.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+}
+
+impl<M: Marker> World for GraphWorld<'_, M> {
+    type Error = Refused;
+
+    #[inline]
+    fn percept(&mut self) -> Result<Percept, Refused> {
+        let degree = self.graph.degree_around(self.state.pose);
+        Ok(Percept { degree, sighting: self.sighting() })
+    }
+
+    #[inline]
+    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+        let degree = self.graph.degree_around(self.state.pose);
+        if door.0 >= degree {
+            return Err(Refused::NoSuchDoor { door, degree });
+        }
+        self.state.pose = self.graph.after(self.state.pose, door);
+        Ok(())
+    }
+}
+
+impl<M: Marker> Handling for GraphWorld<'_, M> {
+    fn pick_up(&mut self) -> Result<(), Refused> {
+        if !self.can_pick_up() {
+            return Err(Refused::NothingToPickUp);
+        }
+        self.state.placed = None;
+        Ok(())
+    }
+
+    fn drop(&mut self) -> Result<(), Refused> {
+        if !self.carries() {
+            return Err(Refused::NothingToDrop);
+        }
+        self.state.placed = Some(self.marker.first_alike(self.graph, self.state.pose));
+        Ok(())
+    }
+}

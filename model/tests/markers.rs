@@ -1,0 +1,149 @@
+//! What each kind of marker adds to a percept, and what a robot can do with it.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::ops::ControlFlow;
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration},
+    marker::{MARKERS, Marker, named},
+    percept::{Door, Sighting},
+    world::{Action, GraphWorld, Handling, Refused, World},
+};
+
+/// A junction `j` with, clockwise, a way `p` to a dead end `a`, a way `q` to a bend `b`, and a loop.
+/// Darts: 0 is that of `a`; 1 to 4 are those of `j`: to `a`, to `b`, and the ends of the loop; 5 and
+/// 6 are those of `b`: to `j`, and to the dead end `c`, whose dart is 7.
+fn junction() -> EmbeddedGraph {
+    let lists = [
+        ("a", vec!["p"]),
+        ("j", vec!["p", "q", "l", "l"]),
+        ("b", vec!["q", "r"]),
+        ("c", vec!["r"]),
+    ];
+    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+}
+
+/// What a marker placed by this facing dart shows to a robot that came in by each dart in turn.
+fn shown(marker: &str, facing: u32) -> String {
+    let graph = junction();
+    let marker = named(marker).unwrap();
+    let sightings = graph.darts().map(|pose| match marker.sighting(&graph, Dart(facing), pose) {
+        Sighting::Nothing => ".".to_owned(),
+        Sighting::Pointing(door) => door.0.to_string(),
+        Sighting::Lying(count) => "x".repeat(count as usize),
+        Sighting::First => "f".to_owned(),
+        Sighting::Second => "s".to_owned(),
+        Sighting::Both => "fs".to_owned(),
+        Sighting::Passed => "-".to_owned(),
+        Sighting::PassedAlong => ">".to_owned(),
+        Sighting::PassedAgainst => "<".to_owned(),
+    });
+    sightings.collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn each_marker_is_noticed_where_it_lies() {
+    for (marker, by_the_way_to_the_bend, by_the_loop) in [
+        ("none", ". . . . . . . .", ". . . . . . . ."),
+        ("undirected", ". x x x x . . .", ". x x x x . . ."),
+        ("directional", ". 1 0 3 2 . . .", ". 2 1 0 3 . . ."),
+        ("undirected-edge", ". . - . . - . .", ". . . - - . . ."),
+        ("directed-edge", ". . < . . > . .", ". . . < > . . ."),
+        ("two-identical", ". x x x x x x .", ". xx xx xx xx . . ."),
+        ("two-distinct", ". f f f f s s .", ". fs fs fs fs . . ."),
+        ("movable", ". x x x x . . .", ". x x x x . . ."),
+    ] {
+        assert_eq!(shown(marker, 2), by_the_way_to_the_bend, "{marker}");
+        assert_eq!(shown(marker, 3), by_the_loop, "{marker}");
+    }
+}
+
+#[test]
+fn the_starts_of_a_marker_are_where_it_is_noticed_at_the_start() {
+    let graph = junction();
+    for (name, starts) in [
+        ("none", vec![0, 1, 2, 3, 4, 5, 6, 7]),
+        ("undirected", vec![1, 2, 3, 4]),
+        ("directional", vec![2]),
+        ("undirected-edge", vec![2, 5]),
+        ("directed-edge", vec![2, 5]),
+        ("two-identical", vec![1, 2, 3, 4, 5, 6]),
+        ("two-distinct", vec![1, 2, 3, 4]),
+        ("movable", vec![1, 2, 3, 4]),
+    ] {
+        let starts: Vec<_> = starts.into_iter().map(Dart).collect();
+        assert_eq!(named(name).unwrap().starts(&graph, Dart(2)), starts, "{name}");
+    }
+}
+
+/// Two facing darts place a marker alike exactly when every pose sees the same: so the least of them
+/// stands for the place.
+#[test]
+fn the_first_facing_dart_alike_stands_for_the_place() {
+    let mut count = 0;
+    for edges in 1..=4 {
+        let worlds = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
+        let _ = worlds.for_each(&mut |found| {
+            let graph = found.graph;
+            count += 1;
+            for marker in MARKERS {
+                let shown = |facing| {
+                    let sightings = graph.darts().map(|pose| marker.sighting(graph, facing, pose));
+                    sightings.collect::<Vec<_>>()
+                };
+                for facing in graph.darts() {
+                    let alike = graph.darts().find(|&other| shown(other) == shown(facing));
+                    assert_eq!(Some(marker.first_alike(graph, facing)), alike, "{marker:?}");
+                    let starts = marker.starts(graph, facing);
+                    assert!(starts.contains(&facing) && starts.is_sorted(), "{marker:?}");
+                }
+            }
+            ControlFlow::Continue(())
+        });
+    }
+    assert_eq!(count, 2 + 5 + 20 + 107, "all worlds with 1 to 4 edges");
+}
+
+#[test]
+fn a_movable_marker_is_picked_up_where_it_lies_and_dropped_where_the_robot_is() {
+    let graph = junction();
+    let mut world = GraphWorld::with_marker(&graph, named("movable").unwrap(), Dart(2));
+    let marked = |world: &mut GraphWorld<'_, _>| world.percept().unwrap().sighting;
+    assert_eq!(Handling::drop(&mut world), Err(Refused::NothingToDrop));
+    assert_eq!(world.actions().last(), Some(Action::PickUp));
+    world.pick_up().unwrap();
+    assert_eq!((marked(&mut world), world.carries()), (Sighting::Nothing, true));
+    assert_eq!(world.pick_up(), Err(Refused::NothingToPickUp));
+    world.traverse(Door(0)).unwrap();
+    assert_eq!(world.actions().last(), Some(Action::Drop));
+    world.act(Action::Drop).unwrap();
+    assert_eq!((marked(&mut world), world.state().placed), (Sighting::Lying(1), Some(Dart(5))));
+    world.traverse(Door(0)).unwrap();
+    assert_eq!(marked(&mut world), Sighting::Nothing);
+    assert_eq!(world.actions().last(), Some(Action::Take(Door(3))));
+}
+
+#[test]
+fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
+    let graph = junction();
+    for marker in MARKERS.into_iter().filter(|marker| !marker.is_movable()) {
+        let mut world = GraphWorld::with_marker(&graph, marker, Dart(2));
+        assert_eq!(world.pick_up(), Err(Refused::NothingToPickUp), "{marker:?}");
+        assert_eq!(world.actions().count(), 4);
+    }
+}
+
+#[test]
+fn a_name_that_no_marker_has_is_refused_with_those_that_there_are() {
+    for marker in MARKERS {
+        assert_eq!(named(marker.name()), Ok(marker));
+        assert!(!marker.about().is_empty());
+    }
+    assert_eq!(
+        named("chalk").unwrap_err().to_string(),
+        "`chalk` is no marker; there are none, undirected, directional, undirected-edge, \
+         directed-edge, two-identical, two-distinct, movable"
+    );
+}
