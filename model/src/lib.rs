@@ -6,11 +6,12 @@
 //! * [`embedded_graph`]: darts, `opposite`, `clockwise` (Section 2.1);
 //! * [`percept`]: degrees, doors, sightings, door sequences (Section 2.1);
 //! * [`isomorphism`]: codes of starts, canonical forms, bijections as witnesses;
-//! * [`marker`]: what a marker adds to a percept (Sections 2.2, 2.3);
+//! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
 //! * [`enumerate`]: every start and every world of a size, once;
 //! * [`world`]: the trait that is all that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
+//! * [`ambiguity`]: worlds that a marker cannot tell apart, with witnesses (Section 2.2);
 //! * [`mapping`]: Algorithm 1, and what it stands on (Section 2.3);
 //! * [`check`]: Algorithm 1 on every start, judged.
 //!
@@ -35,6 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod ambiguity;
 pub mod check;
 pub mod embedded_graph;
 pub mod enumerate;

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, Watch,
-        check_worlds, every_way, move_bound,
+        Algorithm, Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, check_worlds,
+        every_way, move_bound,
     },
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration},
+    enumerate::{Class, Each, Enumeration, Watch},
     mapping::Exploration,
     world::GraphWorld,
 };
@@ -83,7 +83,7 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
 fn an_interrupted_check_says_so() {
     struct AfterParts(AtomicUsize);
     impl Watch for AfterParts {
-        fn part_done(&self, _: &Tally) {
+        fn part_done(&self, _: u64) {
             self.0.fetch_add(1, Ordering::Relaxed);
         }
         fn stop(&self) -> bool {

@@ -3,9 +3,10 @@
 
 use std::collections::HashMap;
 
-use super::{Algorithm, Costs, Flaw, Watch, judge::judge, judge::move_bound};
+use super::{Algorithm, Costs, Flaw, judge::judge, judge::move_bound};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    enumerate::Watch,
     isomorphism::Candidate,
     mapping::{Choices, Exploration, PartialMap, Verdict},
     world::GraphWorld,

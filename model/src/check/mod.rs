@@ -5,14 +5,12 @@ mod every_way;
 mod judge;
 mod sweep;
 mod tally;
-mod watch;
 
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
 pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
 pub use sweep::{Choice, Shard, ShardError, Sweep, check_worlds};
 pub use tally::{Failure, Tally, WorstStart};
-pub use watch::Watch;
 
 #[cfg(test)]
 mod tests {

@@ -4,10 +4,10 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Algorithm, Failure, Flaw, Tally, Watch, every_way, first_false_step, judge::judge};
+use super::{Algorithm, Failure, Flaw, Tally, every_way, first_false_step, judge::judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration, Part, SizeError},
+    enumerate::{Class, Each, Enumeration, Part, SizeError, Watch, in_parts},
     isomorphism::{Candidate, canonical},
     mapping::Exploration,
     world::GraphWorld,
@@ -104,7 +104,7 @@ impl Sweep {
     /// rayon's pool, or 1 without the feature `rayon`).
     pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
-        in_parts(&parts, watch, |part, tally| {
+        tally_parts(&parts, watch, |part, tally| {
             let mut checker = Checker::new(algorithm, self.choice, watch);
             part.for_each(&mut |found| {
                 checker.check_starts(found.graph, found.automorphisms as usize, tally)
@@ -122,7 +122,7 @@ pub fn check_worlds(
     watch: &impl Watch,
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
-    in_parts(&parts, watch, |part, tally| {
+    tally_parts(&parts, watch, |part, tally| {
         let mut checker = Checker::new(algorithm, choice, watch);
         part.iter().try_for_each(|graph| {
             checker.check_starts(graph, canonical(graph).automorphisms, tally)
@@ -134,35 +134,22 @@ fn go_on(watch: &impl Watch) -> ControlFlow<()> {
     if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-/// Checks the parts of a whole, at once where there are threads for it, and adds up the tallies in
-/// the order of the parts.
-fn in_parts<P: Sync>(
+/// Checks the parts of a whole, and adds up the tallies.
+fn tally_parts<P: Sync>(
     parts: &[P],
     watch: &impl Watch,
-    check: impl Fn(&P, &mut Tally) -> ControlFlow<()> + Sync,
+    check: impl Fn(&P, &mut Tally) -> ControlFlow<()> + Sync + Send,
 ) -> Tally {
-    watch.parts(parts.len());
     let check = |part: &P| {
         let mut tally = Tally::default();
-        let end = go_on(watch).is_break() || check(part, &mut tally).is_break();
-        tally.interrupted = end;
-        watch.part_done(&tally);
+        tally.interrupted = go_on(watch).is_break() || check(part, &mut tally).is_break();
         tally
     };
     let merge = |mut sum: Tally, later: Tally| {
         sum.merge(later);
         sum
     };
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        // Neighbours are merged in their order, whoever checked them.
-        parts.par_iter().with_max_len(1).map(check).reduce(Tally::default, merge)
-    }
-    #[cfg(not(feature = "rayon"))]
-    {
-        parts.iter().map(check).fold(Tally::default(), merge)
-    }
+    in_parts(parts, watch, Tally::default, check, |tally| tally.starts, merge)
 }
 
 /// What is used again from run to run.

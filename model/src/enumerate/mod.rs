@@ -9,12 +9,15 @@
 mod class;
 mod growth;
 mod rivals;
+mod watch;
 
 use std::ops::ControlFlow;
 
 use thiserror::Error;
 
 pub use class::{Class, UnknownClass};
+pub use watch::Watch;
+pub(crate) use watch::in_parts;
 
 use crate::embedded_graph::EmbeddedGraph;
 use growth::{BEGINNING, Beginning, Growth, MAX_EDGES};

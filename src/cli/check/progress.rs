@@ -9,7 +9,7 @@ use std::{
 };
 
 use indicatif::{ProgressBar, ProgressStyle};
-use toposlam_model::check::{Tally, Watch};
+use toposlam_model::enumerate::Watch;
 
 use crate::cli::Failure;
 
@@ -45,8 +45,8 @@ impl Watch for Progress {
         self.bar.set_length(count as u64);
     }
 
-    fn part_done(&self, tally: &Tally) {
-        let starts = self.starts.fetch_add(tally.starts, Ordering::Relaxed) + tally.starts;
+    fn part_done(&self, cases: u64) {
+        let starts = self.starts.fetch_add(cases, Ordering::Relaxed) + cases;
         self.bar.inc(1);
         if !self.bar.is_hidden() {
             let rate = starts as f64 / self.bar.elapsed().as_secs_f64().max(1e-3);

@@ -1,0 +1,96 @@
+//! What a search finds: how many worlds a marker cannot tell apart, and which.
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::Code,
+};
+
+/// An embedded graph with a marker, up to isomorphism that keeps the marker.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlacedWorld {
+    /// The graph; the marker was placed by its dart 0. Of all starts that place it so, this is the
+    /// one with the least code, and darts are numbered as met from it.
+    pub graph: EmbeddedGraph,
+    pub(super) code: Code,
+}
+
+impl PlacedWorld {
+    /// The facing dart by which the marker was placed.
+    pub const FACING: Dart = Dart(0);
+
+    /// The order in which worlds are told: fewer edges first, then the lesser code.
+    pub(super) fn rank(&self) -> (usize, &Code) {
+        (self.graph.edge_count(), &self.code)
+    }
+}
+
+/// Placed worlds of which no two can be told apart, in the order of their sizes and codes. There are
+/// at least two.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// The worlds.
+    pub worlds: Vec<PlacedWorld>,
+}
+
+impl Group {
+    /// Its smallest pair.
+    pub(super) fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
+        match self.worlds.as_slice() {
+            [one, other, ..] => Some([one, other]),
+            _ => None,
+        }
+    }
+}
+
+/// What was found among the worlds with a number of edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SizeFindings {
+    /// The number of edges.
+    pub edges: usize,
+    /// All placed worlds.
+    pub placed_worlds: u64,
+    /// Those that share all percepts with another placed world of the sizes searched.
+    pub ambiguous: u64,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Findings {
+    /// For each number of edges from 1.
+    pub sizes: Vec<SizeFindings>,
+    /// All ambiguous worlds, the group with the smallest pair first.
+    pub groups: Vec<Group>,
+    /// Whether the search was broken off; then it found nothing.
+    pub interrupted: bool,
+}
+
+impl Findings {
+    pub(super) fn interrupted() -> Self {
+        Self { sizes: Vec::new(), groups: Vec::new(), interrupted: true }
+    }
+
+    /// The smallest pair: that whose larger world has the fewest edges; then whose smaller world
+    /// has; then the one with the least codes.
+    #[must_use]
+    pub fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
+        self.groups.first()?.smallest()
+    }
+
+    /// All pairs, the smallest first. A group of `k` worlds has `k (k - 1) / 2` of them.
+    #[must_use]
+    pub fn pairs(&self) -> Vec<[&PlacedWorld; 2]> {
+        let mut pairs = Vec::new();
+        for Group { worlds } in &self.groups {
+            for (place, other) in worlds.iter().enumerate() {
+                pairs.extend(worlds[..place].iter().map(|one| [one, other]));
+            }
+        }
+        pairs.sort_by_key(|pair| rank(*pair));
+        pairs
+    }
+}
+
+/// The order of pairs.
+pub(super) fn rank([one, other]: [&PlacedWorld; 2]) -> (usize, usize, &Code, &Code) {
+    (other.graph.edge_count(), one.graph.edge_count(), &one.code, &other.code)
+}

@@ -1,0 +1,19 @@
+//! Worlds that a marker cannot tell apart: two starts from which every door sequence gives the same
+//! percepts. Section 2.2.
+//!
+//! Whether two starts are indistinguishable is decided by the coarsest [`partition`] of the states
+//! of both worlds; what a [`Comparison`] hands over is a [witness](Relation), which is verified
+//! without it. The [`Search`] finds all such worlds of a class by the [`quotient`] of each.
+
+mod comparison;
+mod findings;
+mod partition;
+mod quotient;
+mod search;
+mod space;
+mod witness;
+
+pub use comparison::{Comparison, PlacedRobot};
+pub use findings::{Findings, Group, PlacedWorld, SizeFindings};
+pub use search::Search;
+pub use witness::{Relation, Walk, replay};

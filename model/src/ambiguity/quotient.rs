@@ -1,0 +1,70 @@
+//! The quotient of a placed world: its states, as far as a robot can tell them apart.
+
+use super::{
+    partition::coarsest,
+    space::{Label, Space},
+};
+use crate::world::State;
+
+/// What is left of a placed world when states that no robot can tell apart are one.
+///
+/// It is no embedded graph: crossing may stay in the same class, and the degree is but a label. No
+/// two of its classes can be told apart by nothing, so it has no automorphism.
+pub(super) struct Quotient {
+    labels: Vec<Label>,
+    maps: Vec<Vec<u32>>,
+    /// The class of each state of the placed world.
+    class: Vec<u32>,
+}
+
+/// A quotient as met from one of its classes: for each class, in the order in which it is met, its
+/// label and the numbers of the classes to which the maps lead. Two states, of whatever worlds, have
+/// the same code exactly when they are indistinguishable.
+pub(super) type Code = Vec<(Label, [u32; 3])>;
+
+impl Quotient {
+    pub(super) fn of(space: &Space) -> Self {
+        let class = coarsest(&space.labels, &space.maps);
+        let count = class.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut representative = vec![0; count];
+        for (state, &class) in class.iter().enumerate() {
+            representative[class as usize] = state;
+        }
+        let labels = representative.iter().map(|&state| space.labels[state]).collect();
+        let classes_after = |map: &Vec<u32>| {
+            representative.iter().map(|&state| class[map[state] as usize]).collect()
+        };
+        let maps = space.maps.iter().map(classes_after).collect();
+        Self { labels, maps, class }
+    }
+
+    /// Whether the robot can tell all states apart.
+    pub(super) fn is_discrete(&self) -> bool {
+        self.labels.len() == self.class.len()
+    }
+
+    /// The code of the class of a state.
+    pub(super) fn code(&self, space: &Space, state: State) -> Code {
+        const UNMET: u32 = u32::MAX;
+        let mut number = vec![UNMET; self.labels.len()];
+        let root = self.class[space.number(state) as usize];
+        let mut met = vec![root];
+        number[root as usize] = 0;
+        let mut code = Vec::with_capacity(self.labels.len());
+        let mut next = 0;
+        while let Some(&class) = met.get(next) {
+            next += 1;
+            let mut leads_to = [0; 3];
+            for (map, to) in self.maps.iter().zip(&mut leads_to) {
+                let after = map[class as usize];
+                if number[after as usize] == UNMET {
+                    number[after as usize] = met.len() as u32;
+                    met.push(after);
+                }
+                *to = number[after as usize];
+            }
+            code.push((self.labels[class as usize], leads_to));
+        }
+        code
+    }
+}

@@ -1,0 +1,200 @@
+//! All worlds of a class that a marker cannot tell apart, up to a number of edges.
+//!
+//! Placed worlds are indistinguishable exactly when their quotients are the same; so one pass over
+//! all worlds and a grouping find them, without holding each against each.
+
+use std::ops::ControlFlow;
+
+use petgraph::unionfind::UnionFind;
+
+use super::{
+    Comparison, Findings, Group, PlacedWorld, SizeFindings,
+    findings::rank,
+    quotient::{Code, Quotient},
+    space::Space,
+};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration, Found, Part, SizeError, Watch, in_parts},
+    isomorphism::{as_discovered, canonical, code},
+    marker::Marker,
+    world::{GraphWorld, State},
+};
+
+/// A search over all placed worlds of a class with 1 to some number of edges.
+#[derive(Clone, Debug)]
+pub struct Search {
+    class: Class,
+    edges: usize,
+    marker: &'static dyn Marker,
+}
+
+/// What one part of the search has seen.
+#[derive(Default)]
+struct Seen {
+    placed_worlds: u64,
+    /// Those that may be ambiguous, with the code of their quotient.
+    candidates: Vec<(Code, PlacedWorld)>,
+    interrupted: bool,
+}
+
+impl Search {
+    /// A search over the worlds with 1 to `edges` edges.
+    ///
+    /// # Errors
+    /// Where they cannot be enumerated.
+    pub fn new(class: Class, edges: usize, marker: &'static dyn Marker) -> Result<Self, SizeError> {
+        Enumeration::new(Each::World, class, edges)?;
+        Ok(Self { class, edges, marker })
+    }
+
+    /// Makes the search. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// Where the worlds cannot be enumerated.
+    pub fn run(&self, watch: &impl Watch) -> Result<Findings, SizeError> {
+        let mut sizes = Vec::new();
+        let mut candidates = Vec::new();
+        for edges in 1..=self.edges {
+            let worlds = Enumeration::new(Each::World, self.class, edges)?;
+            let seen = self.look_at(&worlds, watch);
+            if seen.interrupted {
+                return Ok(Findings::interrupted());
+            }
+            sizes.push(SizeFindings { edges, placed_worlds: seen.placed_worlds, ambiguous: 0 });
+            candidates.extend(seen.candidates);
+        }
+        let groups = self.grouped(candidates, watch);
+        if watch.stop() {
+            return Ok(Findings::interrupted());
+        }
+        for world in groups.iter().flat_map(|group| &group.worlds) {
+            sizes[world.graph.edge_count() - 1].ambiguous += 1;
+        }
+        Ok(Findings { sizes, groups, interrupted: false })
+    }
+
+    fn look_at(&self, worlds: &Enumeration, watch: &impl Watch) -> Seen {
+        let look = |part: &Part| {
+            let mut seen = Seen::default();
+            let end = part.for_each(&mut |found| {
+                self.look_at_graph(found, &mut seen);
+                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            seen.interrupted = end.is_break();
+            seen
+        };
+        let merge = |mut seen: Seen, later: Seen| {
+            seen.placed_worlds += later.placed_worlds;
+            seen.candidates.extend(later.candidates);
+            seen.interrupted |= later.interrupted;
+            seen
+        };
+        in_parts(&worlds.parts(), watch, Seen::default, look, |seen| seen.placed_worlds, merge)
+    }
+
+    /// Looks at all ways to place the marker in a graph.
+    fn look_at_graph(&self, found: Found, seen: &mut Seen) {
+        let Found { graph, automorphisms } = found;
+        let mut refined: Option<(Space, Quotient)> = None;
+        for places in self.placings(graph, automorphisms) {
+            seen.placed_worlds += 1;
+            let facing = places[0];
+            // The states of a world do not depend on where a movable marker lies at first.
+            let known = refined.take().filter(|_| self.marker.is_movable());
+            let (space, quotient) = known.unwrap_or_else(|| {
+                let space = Space::of(graph, self.marker, facing);
+                let quotient = Quotient::of(&space);
+                (space, quotient)
+            });
+            // A world all of whose states can be told apart shares its percepts only with its
+            // covers, which have at least twice as many edges.
+            if !quotient.is_discrete() || 2 * graph.edge_count() <= self.edges {
+                let begun = |&pose| {
+                    let world = GraphWorld::with_marker(graph, self.marker, facing);
+                    let start = State { pose, ..world.state() };
+                    quotient.code(&space, start)
+                };
+                let starts = self.marker.starts(graph, facing);
+                if let Some(least) = starts.iter().map(begun).min() {
+                    seen.candidates.push((least, placed(graph, &places)));
+                }
+            }
+            refined = Some((space, quotient));
+        }
+    }
+
+    /// For each placed world of a graph the facing darts that place the marker so, the first one
+    /// first, in the order of the first.
+    fn placings(&self, graph: &EmbeddedGraph, automorphisms: u32) -> Vec<Vec<Dart>> {
+        let mut alike = UnionFind::<u32>::new(graph.dart_count());
+        for dart in graph.darts() {
+            alike.union(dart.0, self.marker.first_alike(graph, dart).0);
+        }
+        if automorphisms > 1 {
+            for (dart, least) in graph.darts().zip(canonical(graph).orbit) {
+                alike.union(dart.0, least.0);
+            }
+        }
+        let mut places: Vec<Vec<Dart>> = Vec::new();
+        let mut place_of = vec![None; graph.dart_count()];
+        for dart in graph.darts() {
+            let root = alike.find_mut(dart.0) as usize;
+            let place = *place_of[root].get_or_insert_with(|| {
+                places.push(Vec::new());
+                places.len() - 1
+            });
+            places[place].push(dart);
+        }
+        places
+    }
+
+    /// The groups of candidates that have the same code, each world of which is confirmed by a
+    /// relation with the first.
+    fn grouped(&self, mut candidates: Vec<(Code, PlacedWorld)>, watch: &impl Watch) -> Vec<Group> {
+        candidates.sort_by(|(code, world), (other_code, other)| {
+            code.cmp(other_code).then_with(|| world.rank().cmp(&other.rank()))
+        });
+        let alike = candidates.chunk_by(|(code, _), (other, _)| code == other);
+        let with_first: Vec<_> = alike
+            .filter(|alike| alike.len() > 1)
+            .flat_map(|alike| alike.iter().map(|(_, world)| (&alike[0].1, world)))
+            .collect();
+        let confirm = |&(first, world): &(_, &PlacedWorld)| {
+            let confirmed = !watch.stop() && self.is_confirmed(first, world);
+            let confirmed = confirmed.then(|| world.clone());
+            Vec::from_iter(confirmed.map(|world| (first, world)))
+        };
+        let merge = |mut worlds: Vec<_>, later: Vec<_>| {
+            worlds.extend(later);
+            worlds
+        };
+        let confirmed = in_parts(&with_first, &(), Vec::new, confirm, |_| 1, merge);
+        let mut groups: Vec<Group> = confirmed
+            .chunk_by(|(first, _), (other, _)| std::ptr::eq(*first, *other))
+            .filter(|group| group.len() > 1)
+            .map(|group| Group { worlds: group.iter().map(|(_, world)| world.clone()).collect() })
+            .collect();
+        groups.sort_by(|one, other| one.smallest().map(rank).cmp(&other.smallest().map(rank)));
+        groups
+    }
+
+    /// Whether a relation, which is verified, shows that two placed worlds are indistinguishable.
+    fn is_confirmed(&self, one: &PlacedWorld, other: &PlacedWorld) -> bool {
+        let start = PlacedWorld::FACING;
+        let comparison = Comparison::new(self.marker, (&one.graph, start), (&other.graph, start));
+        self.marker.starts(&other.graph, start).into_iter().any(|pose| {
+            comparison.relation([start, pose]).is_some_and(|relation| {
+                let [one, other] = comparison.starts([start, pose]);
+                relation.verify(&one, &other)
+            })
+        })
+    }
+}
+
+/// The placed world that all these facing darts make.
+fn placed(graph: &EmbeddedGraph, places: &[Dart]) -> PlacedWorld {
+    let least = places.iter().map(|&facing| (code(graph, facing), facing)).min();
+    let (code, facing) = least.unwrap_or_else(|| (code(graph, Dart(0)), Dart(0)));
+    PlacedWorld { graph: as_discovered(graph, facing), code }
+}

@@ -1,0 +1,121 @@
+//! All states of a placed world: where the robot can be, and where the marker.
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    marker::Marker,
+    percept::{Percept, Sighting},
+    world::{Action, GraphWorld, State, World},
+};
+
+/// What a robot knows in a state without moving: its percept, and whether it carries the marker.
+pub(super) type Label = (Percept, bool);
+
+/// The states of a placed world, numbered, with three maps of states to states that every action is
+/// made of: turn to the next dart, cross to the opposite one, and pick up or drop the marker, where
+/// that is possible (else stay).
+///
+/// A partition that keeps percepts and these maps keeps percepts and actions, for door `i` is `i`
+/// turns and a crossing. The converse holds too: crossing is door 0, and turning is door 1 and then
+/// door 0, which brings the robot back, having now come in by the next dart.
+pub(super) struct Space {
+    darts: usize,
+    /// The places of the marker, each as the first of the facing darts alike; in the states after
+    /// those of all places, where the marker can be moved, the robot carries it.
+    places: Vec<Dart>,
+    pub(super) labels: Vec<Label>,
+    pub(super) maps: Vec<Vec<u32>>,
+}
+
+impl Space {
+    /// The states of a world whose marker was placed by the facing dart.
+    pub(super) fn of(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
+        let places = if marker.is_movable() {
+            graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart).collect()
+        } else {
+            vec![marker.first_alike(graph, facing)]
+        };
+        let darts = graph.dart_count();
+        let mut space = Self { darts, places, labels: Vec::new(), maps: Vec::new() };
+        let count = darts * (space.places.len() + usize::from(marker.is_movable()));
+        let (mut turn, mut cross, mut handle) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        space.labels.reserve_exact(count);
+        let world = GraphWorld::with_marker(graph, marker, facing);
+        for number in 0..count {
+            let state = space.state(number as u32);
+            let mut world = world.clone().at(state);
+            // A graph can always be sensed.
+            let nothing = Percept { degree: 0, sighting: Sighting::Nothing };
+            space.labels.push((world.percept().unwrap_or(nothing), world.carries()));
+            turn.push(space.number(State { pose: graph.clockwise(state.pose), ..state }));
+            cross.push(space.number(State { pose: graph.opposite(state.pose), ..state }));
+            if marker.is_movable() {
+                // Where neither is possible, the state stays.
+                let _ = world.act(Action::PickUp).or_else(|_| world.act(Action::Drop));
+                handle.push(space.number(world.state()));
+            }
+        }
+        space.maps =
+            if marker.is_movable() { vec![turn, cross, handle] } else { vec![turn, cross] };
+        space
+    }
+
+    /// How many states there are.
+    pub(super) fn len(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// The state of a number.
+    pub(super) fn state(&self, number: u32) -> State {
+        let place = number as usize / self.darts;
+        let pose = Dart(number % self.darts as u32);
+        State { pose, placed: self.places.get(place).copied() }
+    }
+
+    /// The number of a state.
+    pub(super) fn number(&self, state: State) -> u32 {
+        let place = match state.placed {
+            Some(placed) => self.places.binary_search(&placed).unwrap_or_default(),
+            None => self.places.len(),
+        };
+        (place * self.darts) as u32 + state.pose.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{Class, any_graph},
+        marker::MARKERS,
+        percept::Door,
+    };
+
+    proptest! {
+        #[test]
+        fn every_action_is_made_of_the_maps(graph in any_graph(Class::Multigraph, 6)) {
+            for marker in MARKERS {
+                let space = Space::of(&graph, marker, Dart(0));
+                for number in 0..space.len() as u32 {
+                    let state = space.state(number);
+                    prop_assert_eq!(space.number(state), number);
+                    let world = GraphWorld::with_marker(&graph, marker, Dart(0)).at(state);
+                    for action in world.actions() {
+                        let mut world = world.clone();
+                        world.act(action).unwrap();
+                        let map = |map: usize, number: u32| space.maps[map][number as usize];
+                        let expected = match action {
+                            Action::Take(Door(turns)) => {
+                                map(1, (0..turns).fold(number, |number, _| map(0, number)))
+                            }
+                            Action::PickUp | Action::Drop => map(2, number),
+                        };
+                        prop_assert_eq!(space.number(world.state()), expected);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The witnesses: a relation between states that no walk leaves, or a walk that tells states apart.
+//! Each is verified without regard to how it was found.
+
+use crate::{
+    marker::Marker,
+    percept::Percept,
+    world::{Action, GraphWorld, Refused, State, World},
+};
+
+/// Pairs of states, one of each world, in which two robots that do the same can be: a bisimulation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Relation(pub Vec<(State, State)>);
+
+/// What two robots do to find that their worlds differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Walk {
+    /// What both do; it may be nothing.
+    pub actions: Vec<Action>,
+    /// What the one and the other perceives at the end. It is the first difference.
+    pub percepts: [Percept; 2],
+}
+
+impl Relation {
+    /// Whether this proves that the robots in the two worlds, with what they can do there, will
+    /// never perceive a difference: they are among the pairs; in each pair they perceive the same
+    /// and can do the same; and whatever they do leads to another of the pairs.
+    // paper: fig1.step
+    #[must_use]
+    pub fn verify<M: Marker + Clone>(
+        &self,
+        one: &GraphWorld<'_, M>,
+        other: &GraphWorld<'_, M>,
+    ) -> bool {
+        let mut pairs = self.0.clone();
+        pairs.sort_unstable();
+        let among = |pair: (State, State)| pairs.binary_search(&pair).is_ok();
+        let is_kept = |&(here, there): &(State, State)| {
+            let (one, other) = (one.clone().at(here), other.clone().at(there));
+            perceived(&one) == perceived(&other)
+                && one.actions().eq(other.actions())
+                && one.actions().all(|action| {
+                    let after = |world: &GraphWorld<'_, M>| {
+                        let mut world = world.clone();
+                        world.act(action).map(|()| world.state())
+                    };
+                    match (after(&one), after(&other)) {
+                        (Ok(here), Ok(there)) => among((here, there)),
+                        _ => false,
+                    }
+                })
+        };
+        among((one.state(), other.state())) && self.0.iter().all(is_kept)
+    }
+}
+
+impl Walk {
+    /// Whether this walk can be walked by the robots in both worlds, and they perceive the same up
+    /// to its end, and there what it says, which differs.
+    #[must_use]
+    pub fn verify<M: Marker + Clone>(
+        &self,
+        one: &GraphWorld<'_, M>,
+        other: &GraphWorld<'_, M>,
+    ) -> bool {
+        let replayed = |world: &GraphWorld<'_, M>| replay(world.clone(), &self.actions);
+        let (Ok(mut one), Ok(mut other)) = (replayed(one), replayed(other)) else {
+            return false;
+        };
+        let ends = one.pop().zip(other.pop());
+        one == other && ends == Some(self.percepts.into()) && self.percepts[0] != self.percepts[1]
+    }
+}
+
+/// What a robot perceives: at the start, and after each action.
+///
+/// # Errors
+/// Where an action is impossible.
+pub fn replay<M: Marker>(
+    mut world: GraphWorld<'_, M>,
+    actions: &[Action],
+) -> Result<Vec<Percept>, Refused> {
+    let mut percepts = vec![world.percept()?];
+    for &action in actions {
+        world.act(action)?;
+        percepts.push(world.percept()?);
+    }
+    Ok(percepts)
+}
+
+/// What the robot perceives where it is.
+pub(super) fn perceived<M: Marker + Clone>(world: &GraphWorld<'_, M>) -> Option<Percept> {
+    world.clone().percept().ok()
+}

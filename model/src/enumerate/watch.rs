@@ -1,0 +1,45 @@
+//! Long work on many worlds: done in parts, at once where there are threads for it, and watched.
+
+/// Watches long work, from several threads at once, and may break it off.
+pub trait Watch: Sync {
+    /// The number of parts of the work.
+    fn parts(&self, _count: usize) {}
+
+    /// One of them is done, and with it so many cases.
+    fn part_done(&self, _cases: u64) {}
+
+    /// Whether to break off.
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+impl Watch for () {}
+
+/// Works on the parts of a whole and merges the results in the order of the parts, whoever worked on
+/// them. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.
+pub(crate) fn in_parts<P: Sync, R: Send>(
+    parts: &[P],
+    watch: &impl Watch,
+    nothing: impl Fn() -> R + Sync + Send,
+    work: impl Fn(&P) -> R + Sync + Send,
+    cases: impl Fn(&R) -> u64 + Sync,
+    merge: impl Fn(R, R) -> R + Sync + Send,
+) -> R {
+    watch.parts(parts.len());
+    let work = |part: &P| {
+        let result = work(part);
+        watch.part_done(cases(&result));
+        result
+    };
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        parts.par_iter().with_max_len(1).map(work).reduce(nothing, merge)
+    }
+    #[cfg(not(feature = "rayon"))]
+    {
+        parts.iter().map(work).fold(nothing(), merge)
+    }
+}
