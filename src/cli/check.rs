@@ -1,6 +1,5 @@
 //! `toposlam check`: Algorithm 1 on every start of every world up to a size.
 
-mod progress;
 mod report;
 mod sizes;
 
@@ -18,8 +17,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
 };
 
-use super::{Choices, Failure, Outcome, input, output};
-use progress::Progress;
+use super::{Choices, Failure, Outcome, input, output, progress::Progress, use_threads};
 use report::{Report, Size};
 use sizes::Sizes;
 
@@ -99,10 +97,7 @@ enum Work {
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
-        if let Some(threads) = self.threads {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-            pool.build_global().map_err(|error| Failure::at("--threads", error))?;
-        }
+        use_threads(self.threads)?;
         let work = match &self.from {
             Some(path) => worlds_by_size(path)?,
             None => self.sweeps(choice)?,
@@ -141,7 +136,7 @@ impl Arguments {
 
 impl Work {
     fn check(&self, edges: usize, choice: Choice) -> Result<Tally, Failure> {
-        let progress = Progress::new(edges)?;
+        let progress = Progress::new(&format!("{edges} edges"), "starts")?;
         let tally = match self {
             Self::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
             Self::Worlds(graphs) => check_worlds(graphs, choice, &Algorithm1, &progress),

@@ -3,12 +3,15 @@
 mod check;
 mod compare;
 mod completions;
+mod counterexample;
 mod draw;
 mod explore;
 mod input;
+mod numbers;
 mod outcome;
 mod output;
 mod paper;
+mod progress;
 
 use std::{
     io::{self, Write},
@@ -39,6 +42,7 @@ enum Verb {
     Check(check::Arguments),
     Explore(explore::Arguments),
     Compare(compare::Arguments),
+    Counterexample(counterexample::Arguments),
     Draw(draw::Arguments),
     Paper(paper::Arguments),
     Completions(completions::Arguments),
@@ -68,6 +72,13 @@ impl Choices {
     }
 }
 
+/// Works with so many threads, where somebody says so.
+fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
+    pool.build_global().map_err(|error| Failure::at("--threads", error))
+}
+
 /// Runs the verb that the command line names.
 pub(crate) fn run() -> ExitCode {
     let arguments = Arguments::parse();
@@ -76,6 +87,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Check(verb)) => verb.run(&mut out),
         Some(Verb::Explore(verb)) => verb.run(&mut out),
         Some(Verb::Compare(verb)) => verb.run(&mut out),
+        Some(Verb::Counterexample(verb)) => verb.run(&mut out),
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),

@@ -13,7 +13,7 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 
-use crate::cli::{Failure, Outcome};
+use crate::cli::{Failure, Outcome, numbers::grouped};
 
 /// What was checked of one number of edges.
 pub(super) struct Size<'a> {
@@ -246,28 +246,9 @@ fn step(failure: &Failed) -> Option<String> {
     step.or_else(|| failure.moves.map(|moves| format!("after {moves} moves")))
 }
 
-/// A number with a comma between thousands.
-fn grouped(number: u128) -> String {
-    let digits = number.to_string();
-    let mut out = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_are_grouped() {
-        let texts = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
-        assert_eq!(texts, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
-    }
 
     #[test]
     fn runs_beyond_64_bits_are_printed_whole() {

@@ -1,0 +1,164 @@
+//! Robots in two worlds with the same marker: can they tell the worlds apart?
+
+use std::io::Write;
+
+use serde_json::{Map, Value, json};
+use toposlam_model::{
+    ambiguity::{Comparison, PlacedRobot, Relation, Walk},
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    marker::Marker,
+    world::{Action, State},
+};
+
+use super::Failure;
+
+/// How many starts in B are told one by one.
+const TOLD: usize = 8;
+
+/// Robots in two worlds: one start in A, one or more in B.
+pub(super) struct Robots<'w> {
+    worlds: [&'w NamedWorld; 2],
+    marker: &'static dyn Marker,
+    comparison: Comparison<'w>,
+    start: Dart,
+    /// Each start in B, with the walk that tells it from the one in A; `None` where none does.
+    others: Vec<(Dart, Option<Walk>)>,
+}
+
+impl<'w> Robots<'w> {
+    /// Robots at the starts of the worlds; the one in B in every way that the marker cannot tell
+    /// from its start, unless `one_pose` is wanted.
+    pub(super) fn new(
+        worlds: [&'w NamedWorld; 2],
+        marker: &'static dyn Marker,
+        one_pose: bool,
+    ) -> Self {
+        let [a, b] = worlds;
+        let (start, other) = (a.start.unwrap_or(Dart(0)), b.start.unwrap_or(Dart(0)));
+        let comparison = Comparison::new(marker, (&a.graph, start), (&b.graph, other));
+        let mut poses = vec![other];
+        if !one_pose {
+            let starts = marker.starts(&b.graph, other);
+            poses.extend(starts.into_iter().filter(|&pose| pose != other));
+        }
+        let told_apart = |pose| (pose, comparison.walk([start, pose]));
+        let others = poses.into_iter().map(told_apart).collect();
+        Self { worlds, marker, comparison, start, others }
+    }
+
+    /// The names of the worlds.
+    pub(super) fn names(&self) -> [&'w str; 2] {
+        self.worlds.map(|world| world.name.as_str())
+    }
+
+    /// The first start in B from which the worlds cannot be told apart, or else the first of all.
+    pub(super) fn poses(&self) -> [Dart; 2] {
+        let same = self.others.iter().find(|(_, walk)| walk.is_none());
+        let (pose, _) = same.or(self.others.first()).unwrap_or(&(Dart(0), None));
+        [self.start, *pose]
+    }
+
+    /// The two robots at those starts.
+    pub(super) fn begun(&self) -> [PlacedRobot<'w>; 2] {
+        self.comparison.starts(self.poses())
+    }
+
+    fn relation(&self) -> Option<Relation> {
+        self.comparison.relation(self.poses())
+    }
+
+    /// A pair of states in words.
+    fn pair_text(&self, &(one, other): &(State, State)) -> [String; 2] {
+        let [a, b] = self.worlds;
+        [state_text(a, self.marker, one), state_text(b, self.marker, other)]
+    }
+
+    pub(super) fn json(&self) -> Map<String, Value> {
+        let [a, b] = self.worlds;
+        let relation = self.relation();
+        let pairs = relation.as_ref().map(|relation| {
+            relation.0.iter().map(|pair| self.pair_text(pair)).collect::<Vec<_>>()
+        });
+        let walk = |walk: &Option<Walk>| walk.as_ref().map(|walk| actions_json(&walk.actions));
+        let first = self.others.first().filter(|_| relation.is_none());
+        let line = json!({
+            "marker": self.marker.name(),
+            "distinguishable": relation.is_none(),
+            "walk": first.and_then(|(_, first)| walk(first)),
+            "relation": pairs,
+            "start": a.start_text(self.start),
+            "starts": self.others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
+            "walks": self.others.iter().map(|(_, told)| walk(told)).collect::<Vec<_>>(),
+        });
+        line.as_object().cloned().unwrap_or_default()
+    }
+
+    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let [a, b] = self.worlds;
+        let start = a.start_text(self.start);
+        writeln!(out, "\n{} marker: {}", self.marker.name(), self.marker.about())?;
+        if let Some(relation) = self.relation() {
+            let other = b.start_text(self.poses()[1]);
+            writeln!(
+                out,
+                "from {start} in A and {other} in B no walk tells the worlds apart;\n\
+                 the robots can be in {} pairs of states:",
+                relation.0.len()
+            )?;
+            let pairs: Vec<_> =
+                relation.0.iter().map(|pair| self.pair_text(pair).join("~")).collect();
+            let widest = pairs.iter().map(String::len).max().unwrap_or_default();
+            for line in pairs.chunks((96 / (widest + 2)).max(1)) {
+                let line: Vec<_> = line.iter().map(|pair| format!("{pair:widest$}")).collect();
+                writeln!(out, "  {}", line.join("  ").trim_end())?;
+            }
+            return Ok(());
+        }
+        for (pose, walk) in self.others.iter().take(TOLD) {
+            if let Some(Walk { actions, percepts: [one, other] }) = walk {
+                let actions: Vec<_> = actions.iter().map(ToString::to_string).collect();
+                let how = match actions.as_slice() {
+                    [] => "the first percepts tell".to_owned(),
+                    actions => format!("the walk {} tells", actions.join(",")),
+                };
+                writeln!(
+                    out,
+                    "from {start} in A and {} in B {how} the worlds apart:\n  {one} in A, {other} \
+                     in B",
+                    b.start_text(*pose),
+                )?;
+            }
+        }
+        match self.others.len().saturating_sub(TOLD) {
+            0 => {}
+            more => writeln!(out, "and so from {more} more starts in B")?,
+        }
+        Ok(())
+    }
+}
+
+/// What is said of robots where there are none.
+pub(super) fn unknown() -> Map<String, Value> {
+    let keys = ["marker", "distinguishable", "walk", "relation"];
+    keys.into_iter().map(|key| (key.to_owned(), Value::Null)).collect()
+}
+
+/// A pose as `vertex:door`; and where the marker is, if it can be moved.
+pub(super) fn state_text(world: &NamedWorld, marker: &dyn Marker, state: State) -> String {
+    let pose = format!("{}:{}", world.at_text(state.pose), world.graph.index(state.pose));
+    match state.placed {
+        _ if !marker.is_movable() => pose,
+        Some(placed) => format!("{pose}@{}", world.at_text(placed)),
+        None => format!("{pose}+marker"),
+    }
+}
+
+/// Doors as numbers, other actions as words.
+pub(super) fn actions_json(actions: &[Action]) -> Value {
+    let action = |action: &Action| match action {
+        Action::Take(door) => json!(door.0),
+        other => json!(other.to_string()),
+    };
+    actions.iter().map(action).collect()
+}

@@ -1,0 +1,131 @@
+//! `toposlam counterexample`: the smallest worlds that a marker cannot tell apart.
+
+mod found;
+mod report;
+
+use std::{io::Write, path::PathBuf};
+
+use clap::ValueEnum;
+use toposlam_model::{
+    ambiguity::Search,
+    enumerate::Class,
+    marker::{self, MARKERS, Marker},
+};
+
+use super::{Failure, Outcome, progress::Progress, use_threads};
+use found::Found;
+use report::Report;
+
+/// The smallest worlds that a marker cannot tell apart, for each marker
+///
+/// All worlds of the class with up to so many edges are searched, with the marker at every place.
+/// Two of them are a pair if no walk tells them apart; each find is confirmed by a relation between
+/// the states of the two worlds, which is verified.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  toposlam counterexample                                     every marker, simple worlds
+  toposlam counterexample --marker undirected --out pair      one marker; writes the two worlds
+  toposlam counterexample --class corridor --edges 9 --json   for a program
+  toposlam counterexample --marker directional --expect none  for CI: exit code 1 on a find
+
+Of a pair's two sizes the larger one counts first: the smallest pair is the one with the smallest
+larger world. A world is ambiguous if it is in any pair.
+
+Exit codes: 0 the search is done, 1 with --expect none something was found, 2 bad usage,
+3 it was broken off.")]
+pub(super) struct Arguments {
+    /// Marker: none, undirected, directional, undirected-edge, directed-edge, two-identical,
+    /// two-distinct or movable; may be given several times [default: every one]
+    #[arg(long = "marker", value_name = "KIND", value_parser = marker::named)]
+    markers: Vec<&'static dyn Marker>,
+
+    /// Class of worlds: multigraph, simple, corridor or planar
+    #[arg(long, default_value = "simple")]
+    class: Class,
+
+    /// Search the worlds with 1 to N edges
+    /// [default: 6 for multigraph, 8 for simple and planar, 11 for corridor]
+    #[arg(long, value_name = "N")]
+    edges: Option<usize>,
+
+    /// Tell all pairs, not only the smallest
+    #[arg(long)]
+    all: bool,
+
+    /// Write the worlds that are told into a folder, as world files
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+
+    /// What is expected: none, no pair
+    #[arg(long, hide_possible_values = true)]
+    expect: Option<Expectation>,
+
+    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Print one JSON object for each number of edges, and one for what was found
+    #[arg(long)]
+    json: bool,
+}
+
+/// What somebody expects of a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Expectation {
+    /// That no pair is found.
+    None,
+}
+
+impl Arguments {
+    pub(super) fn run(mut self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        use_threads(self.threads)?;
+        let edges = self.edges.unwrap_or_else(|| usual_size(self.class));
+        if self.markers.is_empty() {
+            self.markers = MARKERS.to_vec();
+        }
+        let searches: Result<Vec<_>, Failure> = self
+            .markers
+            .iter()
+            .map(|&marker| {
+                let search = Search::new(self.class, edges, marker);
+                Ok((marker, search.map_err(|error| Failure::at("--edges", error))?))
+            })
+            .collect();
+        if let Some(folder) = &self.out {
+            found::check_folder(folder)?;
+        }
+        let mut report = Report::new(out, self.json, self.class, edges, searches?.len());
+        let mut outcome = Outcome::Holds;
+        for &marker in &self.markers {
+            let progress = Progress::new(marker.name(), "placed worlds")?;
+            let search = Search::new(self.class, edges, marker);
+            let findings = search.and_then(|search| search.run(&progress));
+            progress.finish();
+            let findings = findings.map_err(|error| Failure::at("--edges", error))?;
+            if findings.interrupted {
+                report.broken_off()?;
+                return Ok(Outcome::Incomplete);
+            }
+            let found = Found::new(marker, self.class, &findings, self.all);
+            report.marker(marker, &findings, &found)?;
+            if let Some(folder) = &self.out {
+                found.write(folder)?;
+            }
+            if self.expect == Some(Expectation::None) && !found.pairs().is_empty() {
+                outcome = Outcome::Violated;
+            }
+        }
+        report.end()?;
+        Ok(outcome)
+    }
+}
+
+/// The number of edges up to which worlds are searched in a second or two.
+fn usual_size(class: Class) -> usize {
+    match class {
+        Class::Multigraph => 6,
+        Class::Simple | Class::Planar => 8,
+        Class::Corridor => 11,
+    }
+}

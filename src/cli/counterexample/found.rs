@@ -1,0 +1,71 @@
+//! What a search found, with names: the worlds that are told, and which of them are pairs.
+
+use std::{fs, path::Path};
+
+use toposlam_model::{
+    ambiguity::{Findings, PlacedWorld},
+    enumerate::Class,
+    format::{named_world::NamedWorld, world_file},
+    marker::Marker,
+};
+
+use crate::cli::{Failure, output};
+
+/// The worlds of the pairs that are told, each once.
+pub(super) struct Found {
+    worlds: Vec<NamedWorld>,
+    /// The places of the two worlds of each pair, the smallest pair first.
+    pairs: Vec<[usize; 2]>,
+}
+
+impl Found {
+    /// The smallest pair, or all.
+    pub(super) fn new(
+        marker: &dyn Marker,
+        class: Class,
+        findings: &Findings,
+        all: bool,
+    ) -> Self {
+        let pairs = if all { findings.pairs() } else { findings.smallest().into_iter().collect() };
+        let mut worlds: Vec<&PlacedWorld> = Vec::new();
+        let mut places = std::collections::BTreeMap::new();
+        let mut place = |world| {
+            *places.entry(std::ptr::from_ref::<PlacedWorld>(world)).or_insert_with(|| {
+                worlds.push(world);
+                worlds.len() - 1
+            })
+        };
+        let pairs = pairs.into_iter().map(|pair| pair.map(&mut place)).collect();
+        let named = |(place, world): (usize, &&PlacedWorld)| {
+            let name = format!("{}-{class}-{}", marker.name(), place + 1);
+            let about = format!("No walk tells it from another world; marker: {}", marker.name());
+            NamedWorld::numbered(&name, &about, world.graph.clone(), Some(PlacedWorld::FACING))
+        };
+        Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs }
+    }
+
+    /// The worlds that are told, each once, in the order in which they are in pairs.
+    pub(super) fn worlds(&self) -> &[NamedWorld] {
+        &self.worlds
+    }
+
+    /// The pairs, the smallest first.
+    pub(super) fn pairs(&self) -> Vec<[&NamedWorld; 2]> {
+        self.pairs.iter().map(|pair| pair.map(|place| &self.worlds[place])).collect()
+    }
+
+    /// Writes each world as a file with its name.
+    pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
+        for world in &self.worlds {
+            let path = folder.join(format!("{}.toml", world.name));
+            output::write_whole(&path, world_file::to_toml(world).as_bytes())?;
+        }
+        Ok(())
+    }
+}
+
+/// Makes the folder, if it is not there.
+pub(super) fn check_folder(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
+}
