@@ -84,25 +84,21 @@ impl Arguments {
         if self.markers.is_empty() {
             self.markers = MARKERS.to_vec();
         }
-        let searches: Result<Vec<_>, Failure> = self
-            .markers
-            .iter()
-            .map(|&marker| {
-                let search = Search::new(self.class, edges, marker);
-                Ok((marker, search.map_err(|error| Failure::at("--edges", error))?))
-            })
-            .collect();
+        let search = |marker| {
+            let search = Search::new(self.class, edges, marker);
+            search.map_err(|error| Failure::at("--edges", error))
+        };
+        let searches: Vec<_> =
+            self.markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
         if let Some(folder) = &self.out {
             found::check_folder(folder)?;
         }
-        let mut report = Report::new(out, self.json, self.class, edges, searches?.len());
+        let mut report = Report::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
-        for &marker in &self.markers {
+        for (search, &marker) in searches.iter().zip(&self.markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
-            let search = Search::new(self.class, edges, marker);
-            let findings = search.and_then(|search| search.run(&progress));
+            let findings = search.run(&progress);
             progress.finish();
-            let findings = findings.map_err(|error| Failure::at("--edges", error))?;
             if findings.interrupted {
                 report.broken_off()?;
                 return Ok(Outcome::Incomplete);
@@ -116,7 +112,6 @@ impl Arguments {
                 outcome = Outcome::Violated;
             }
         }
-        report.end()?;
         Ok(outcome)
     }
 }

@@ -24,8 +24,8 @@ use crate::{
 /// A search over all placed worlds of a class with 1 to some number of edges.
 #[derive(Clone, Debug)]
 pub struct Search {
-    class: Class,
-    edges: usize,
+    /// The worlds of each size, from 1 edge.
+    sizes: Vec<Enumeration>,
     marker: &'static dyn Marker,
 }
 
@@ -44,34 +44,32 @@ impl Search {
     /// # Errors
     /// Where they cannot be enumerated.
     pub fn new(class: Class, edges: usize, marker: &'static dyn Marker) -> Result<Self, SizeError> {
+        // A number of edges that is refused is refused before those below it.
         Enumeration::new(Each::World, class, edges)?;
-        Ok(Self { class, edges, marker })
+        let sizes = (1..=edges).map(|edges| Enumeration::new(Each::World, class, edges));
+        Ok(Self { sizes: sizes.collect::<Result<_, _>>()?, marker })
     }
 
     /// Makes the search. The result does not depend on the number of threads.
-    ///
-    /// # Errors
-    /// Where the worlds cannot be enumerated.
-    pub fn run(&self, watch: &impl Watch) -> Result<Findings, SizeError> {
+    pub fn run(&self, watch: &impl Watch) -> Findings {
         let mut sizes = Vec::new();
         let mut candidates = Vec::new();
-        for edges in 1..=self.edges {
-            let worlds = Enumeration::new(Each::World, self.class, edges)?;
-            let seen = self.look_at(&worlds, watch);
+        for (worlds, edges) in self.sizes.iter().zip(1..) {
+            let seen = self.look_at(worlds, watch);
             if seen.interrupted {
-                return Ok(Findings::interrupted());
+                return Findings::interrupted();
             }
             sizes.push(SizeFindings { edges, placed_worlds: seen.placed_worlds, ambiguous: 0 });
             candidates.extend(seen.candidates);
         }
         let groups = self.grouped(candidates, watch);
         if watch.stop() {
-            return Ok(Findings::interrupted());
+            return Findings::interrupted();
         }
         for world in groups.iter().flat_map(|group| &group.worlds) {
             sizes[world.graph.edge_count() - 1].ambiguous += 1;
         }
-        Ok(Findings { sizes, groups, interrupted: false })
+        Findings { sizes, groups, interrupted: false }
     }
 
     fn look_at(&self, worlds: &Enumeration, watch: &impl Watch) -> Seen {
@@ -109,7 +107,7 @@ impl Search {
             });
             // A world all of whose states can be told apart shares its percepts only with its
             // covers, which have at least twice as many edges.
-            if !quotient.is_discrete() || 2 * graph.edge_count() <= self.edges {
+            if !quotient.is_discrete() || 2 * graph.edge_count() <= self.sizes.len() {
                 let begun = |&pose| {
                     let world = GraphWorld::with_marker(graph, self.marker, facing);
                     let start = State { pose, ..world.state() };

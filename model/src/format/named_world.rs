@@ -188,7 +188,8 @@ impl NamedWorld {
     }
 
     /// What the file lists at the dart's place: its edge, or the neighbour at its other end.
-    pub(super) fn leads_to(&self, dart: Dart) -> &str {
+    #[must_use]
+    pub fn leads_to(&self, dart: Dart) -> &str {
         match &self.edge_names {
             Some(names) => &names[dart.at()],
             None => self.at_text(self.graph.opposite(dart)),

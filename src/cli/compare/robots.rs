@@ -77,9 +77,9 @@ impl<'w> Robots<'w> {
     pub(super) fn json(&self) -> Map<String, Value> {
         let [a, b] = self.worlds;
         let relation = self.relation();
-        let pairs = relation.as_ref().map(|relation| {
-            relation.0.iter().map(|pair| self.pair_text(pair)).collect::<Vec<_>>()
-        });
+        let pairs = relation
+            .as_ref()
+            .map(|relation| relation.0.iter().map(|pair| self.pair_text(pair)).collect::<Vec<_>>());
         let walk = |walk: &Option<Walk>| walk.as_ref().map(|walk| actions_json(&walk.actions));
         let first = self.others.first().filter(|_| relation.is_none());
         let line = json!({

@@ -58,9 +58,7 @@ impl<'w> Robots<'w> {
 
 impl Walked<'_> {
     pub(super) fn json(&self) -> Value {
-        let percept = |percept: &Percept| {
-            json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() })
-        };
+        let percept = |percept: &Percept| json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() });
         let pair = |[one, other]: &[Percept; 2]| [percept(one), percept(other)];
         json!({
             "actions": actions_json(&self.actions),
@@ -69,8 +67,8 @@ impl Walked<'_> {
     }
 
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let actions = std::iter::once("start".to_owned())
-            .chain(self.actions.iter().map(ToString::to_string));
+        let actions =
+            std::iter::once("start".to_owned()).chain(self.actions.iter().map(ToString::to_string));
         let rows: Vec<_> = actions
             .zip(&self.percepts)
             .map(|(action, [one, other])| [action, one.to_string(), other.to_string()])

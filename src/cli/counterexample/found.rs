@@ -1,6 +1,6 @@
 //! What a search found, with names: the worlds that are told, and which of them are pairs.
 
-use std::{fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path, ptr};
 
 use toposlam_model::{
     ambiguity::{Findings, PlacedWorld},
@@ -16,21 +16,17 @@ pub(super) struct Found {
     worlds: Vec<NamedWorld>,
     /// The places of the two worlds of each pair, the smallest pair first.
     pairs: Vec<[usize; 2]>,
+    all: bool,
 }
 
 impl Found {
     /// The smallest pair, or all.
-    pub(super) fn new(
-        marker: &dyn Marker,
-        class: Class,
-        findings: &Findings,
-        all: bool,
-    ) -> Self {
+    pub(super) fn new(marker: &dyn Marker, class: Class, findings: &Findings, all: bool) -> Self {
         let pairs = if all { findings.pairs() } else { findings.smallest().into_iter().collect() };
         let mut worlds: Vec<&PlacedWorld> = Vec::new();
-        let mut places = std::collections::BTreeMap::new();
+        let mut places = BTreeMap::new();
         let mut place = |world| {
-            *places.entry(std::ptr::from_ref::<PlacedWorld>(world)).or_insert_with(|| {
+            *places.entry(ptr::from_ref::<PlacedWorld>(world)).or_insert_with(|| {
                 worlds.push(world);
                 worlds.len() - 1
             })
@@ -41,7 +37,12 @@ impl Found {
             let about = format!("No walk tells it from another world; marker: {}", marker.name());
             NamedWorld::numbered(&name, &about, world.graph.clone(), Some(PlacedWorld::FACING))
         };
-        Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs }
+        Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs, all }
+    }
+
+    /// Whether these are all pairs.
+    pub(super) fn has_all(&self) -> bool {
+        self.all
     }
 
     /// The worlds that are told, each once, in the order in which they are in pairs.
