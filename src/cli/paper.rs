@@ -67,6 +67,7 @@ struct RowLine<'a> {
     section: &'a str,
     line: Option<u32>,
     text: &'a str,
+    erratum: Option<&'a str>,
     status: &'static str,
     after: Option<&'a [String]>,
     code: Vec<String>,
@@ -99,6 +100,7 @@ fn print_json(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> Result<(), F
             section: &requirement.section,
             line: requirement.line,
             text: &requirement.text,
+            erratum: requirement.erratum.as_deref(),
             status,
             after,
             code: row.code.iter().map(place).collect(),
@@ -154,6 +156,9 @@ fn print_row(out: &mut dyn Write, row: &Row, id_width: usize) -> io::Result<()> 
     let head = format!("  {:id_width$}  {line:>2}  ", requirement.id);
     print_hanging(out, &head, &requirement.text)?;
     let margin = " ".repeat(head.len());
+    if let Some(erratum) = &requirement.erratum {
+        print_hanging(out, &format!("{margin}erratum  "), erratum)?;
+    }
     if let Status::Open { after } = &requirement.status {
         print_hanging(out, &format!("{margin}open   after "), &after.join(", "))?;
     }

@@ -15,6 +15,8 @@ pub struct Requirement {
     pub line: Option<u32>,
     /// What is required, in our own words.
     pub text: String,
+    /// A slip of the print, and what is right.
+    pub erratum: Option<String>,
     /// How far it has come.
     pub status: Status,
 }
@@ -127,6 +129,7 @@ struct Entry {
     section: String,
     line: Option<u32>,
     text: String,
+    erratum: Option<String>,
     status: Word,
     #[serde(default)]
     after: Vec<String>,
@@ -141,7 +144,7 @@ enum Word {
 
 impl Entry {
     fn into_requirement(self) -> Result<Requirement, TableError> {
-        let Self { id, section, line, text, status, after } = self;
+        let Self { id, section, line, text, erratum, status, after } = self;
         if !is_id(&id) {
             return Err(TableError::MalformedId(id));
         }
@@ -154,7 +157,7 @@ impl Entry {
             Word::Done => Status::Done,
             Word::Open => Status::Open { after },
         };
-        Ok(Requirement { id, section, line, text, status })
+        Ok(Requirement { id, section, line, text, erratum, status })
     }
 }
 

@@ -1,0 +1,321 @@
+//! Which worlds a marker cannot tell apart: the witnesses, and the search.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{collections::BTreeSet, ops::ControlFlow};
+
+use toposlam_model::{
+    ambiguity::{Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Walk, replay},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Class, Each, Enumeration, SizeError, Watch},
+    isomorphism::Bijection,
+    marker::{MARKERS, Marker, named},
+    percept::Percept,
+    world::{Action, State, World},
+};
+
+fn search(class: Class, edges: usize, marker: &str) -> Findings {
+    Search::new(class, edges, named(marker).unwrap()).unwrap().run(&())
+}
+
+/// For each number of edges: placed worlds, and those that are ambiguous.
+fn counts(findings: &Findings) -> (Vec<u64>, Vec<u64>) {
+    let sizes = findings.sizes.iter();
+    sizes.map(|size| (size.placed_worlds, size.ambiguous)).unzip()
+}
+
+/// The sizes of the smallest pair.
+fn smallest(findings: &Findings) -> Option<[usize; 2]> {
+    findings.smallest().map(|pair| pair.map(|world| world.graph.edge_count()))
+}
+
+/// All numbers are those of the independent implementation in `tests/oracle/ambiguity.py` of the
+/// workspace.
+// paper: marker.none-insufficient, marker.undirected-insufficient, marker.directional-sufficient
+#[test]
+fn simple_worlds_with_up_to_eight_edges() {
+    let directional = [1, 2, 6, 23, 108, 596, 3790, 27339];
+    let edges = [1, 1, 4, 12, 58, 304, 1920, 13733];
+    let vertices = [1, 2, 5, 15, 61, 306, 1787, 12117];
+    let graphs = [1, 1, 3, 5, 16, 63, 296, 1773];
+    for (marker, placed, ambiguous, pair) in [
+        ("none", graphs, [0, 0, 1, 2, 1, 9, 7, 35], Some([3, 4])),
+        ("undirected", vertices, [0, 0, 0, 0, 0, 6, 4, 29], Some([6, 6])),
+        ("directional", directional, [0; 8], None),
+        ("undirected-edge", edges, [0, 0, 0, 0, 0, 0, 6, 16], Some([7, 7])),
+        ("directed-edge", directional, [0; 8], None),
+        ("two-identical", edges, [0, 0, 0, 0, 0, 0, 6, 16], Some([7, 7])),
+        ("two-distinct", directional, [0; 8], None),
+        ("movable", vertices, [0; 8], None),
+    ] {
+        let findings = search(Class::Simple, 8, marker);
+        assert_eq!(counts(&findings), (placed.to_vec(), ambiguous.to_vec()), "{marker}");
+        assert_eq!(smallest(&findings), pair, "{marker}");
+    }
+}
+
+/// As above.
+#[test]
+fn multigraphs_with_up_to_five_edges() {
+    let directional = [2, 10, 74, 706, 8162];
+    for (marker, placed, ambiguous, pair) in [
+        ("none", [2, 5, 20, 107, 870], [1, 4, 9, 35, 175], Some([1, 2])),
+        ("undirected", [2, 7, 34, 239, 2286], [0, 2, 7, 31, 153], Some([2, 2])),
+        ("directional", directional, [0; 5], None),
+        ("undirected-edge", [2, 6, 42, 366, 4146], [0, 0, 4, 12, 88], Some([3, 3])),
+        ("directed-edge", directional, [0; 5], None),
+        ("two-identical", [2, 6, 33, 241, 2435], [0, 2, 8, 31, 188], Some([2, 2])),
+        ("two-distinct", [2, 8, 47, 375, 3905], [0, 2, 7, 29, 157], Some([2, 2])),
+        ("movable", [2, 7, 34, 239, 2286], [0, 2, 7, 25, 133], Some([2, 2])),
+    ] {
+        let findings = search(Class::Multigraph, 5, marker);
+        assert_eq!(counts(&findings), (placed.to_vec(), ambiguous.to_vec()), "{marker}");
+        assert_eq!(smallest(&findings), pair, "{marker}");
+    }
+}
+
+/// As above. What is ambiguous depends on how far the search goes: a cover of a world has at least
+/// twice its edges.
+#[test]
+fn corridors_and_planar_worlds() {
+    let corridors = search(Class::Corridor, 10, "undirected");
+    assert_eq!(counts(&corridors).1, [0, 0, 0, 0, 0, 4, 0, 2, 22, 32]);
+    let planar = search(Class::Planar, 8, "undirected");
+    assert_eq!(counts(&planar).1, [0, 0, 0, 0, 0, 0, 0, 8]);
+    assert_eq!(counts(&search(Class::Corridor, 8, "none")).1, [0, 0, 1, 2, 1, 7, 3, 12]);
+    assert_eq!(counts(&search(Class::Corridor, 10, "none")).1, [0, 0, 1, 2, 8, 8, 3, 12, 41, 67]);
+}
+
+/// A start with a directional marker is a rooted map: A000698 counts them.
+#[test]
+fn placed_worlds_of_a_directional_marker_are_starts() {
+    assert_eq!(counts(&search(Class::Multigraph, 6, "directional")).0[5], 110_410);
+    assert_eq!(counts(&search(Class::Multigraph, 6, "directed-edge")).0[5], 110_410);
+    assert_eq!(counts(&search(Class::Multigraph, 6, "none")).0[5], 9436);
+}
+
+/// All placed worlds of a class and its sizes, each by a graph and a facing dart.
+fn placed_worlds(class: Class, edges: usize, marker: &dyn Marker) -> Vec<(EmbeddedGraph, Dart)> {
+    let mut placed: Vec<(EmbeddedGraph, Dart)> = Vec::new();
+    for edges in 1..=edges {
+        let _ = Enumeration::new(Each::World, class, edges).unwrap().for_each(&mut |found| {
+            let graph = found.graph;
+            let automorphisms: Vec<_> = graph
+                .darts()
+                .map(|to| Bijection::of_starts((graph, Dart(0)), (graph, to)))
+                .filter(|bijection| bijection.verify(graph, graph))
+                .collect();
+            for facing in graph.darts() {
+                // The least of all that an automorphism, or the marker, makes the same.
+                let alike = |bijection: &Bijection| {
+                    marker.first_alike(graph, bijection.image(facing).unwrap())
+                };
+                if automorphisms.iter().map(alike).min() == Some(facing) {
+                    placed.push((graph.clone(), facing));
+                }
+            }
+            ControlFlow::Continue(())
+        });
+    }
+    placed
+}
+
+/// Each placed world against each, by walks and relations, without quotients.
+#[test]
+fn the_search_finds_what_comparing_all_with_all_finds() {
+    for (class, edges) in [(Class::Multigraph, 3), (Class::Simple, 5), (Class::Planar, 5)] {
+        for marker in MARKERS {
+            let worlds = placed_worlds(class, edges, marker);
+            let mut ambiguous = vec![0; edges];
+            for (place, (one, facing)) in worlds.iter().enumerate() {
+                let is_like = |(other_place, (other, to)): (usize, &(EmbeddedGraph, Dart))| {
+                    let comparison = Comparison::new(marker, (one, *facing), (other, *to));
+                    other_place != place
+                        && marker.starts(other, *to).into_iter().any(|pose| {
+                            let found = comparison.walk([*facing, pose]);
+                            let [here, there] = comparison.starts([*facing, pose]);
+                            assert!(found.iter().all(|walk| walk.verify(&here, &there)));
+                            found.is_none()
+                        })
+                };
+                ambiguous[one.edge_count() - 1] +=
+                    u64::from(worlds.iter().enumerate().any(is_like));
+            }
+            let findings = search(class, edges, marker.name());
+            let placed = |edges| worlds.iter().filter(|(g, _)| g.edge_count() == edges).count();
+            let placed: Vec<_> = (1..=edges).map(|edges| placed(edges) as u64).collect();
+            assert_eq!(counts(&findings), (placed, ambiguous), "{class} {marker:?}");
+        }
+    }
+}
+
+/// Every pair that the search finds is a pair, whichever way the robot in the one world begins, and
+/// the worlds are different ones.
+#[test]
+fn every_pair_is_confirmed_by_a_relation_from_every_start() {
+    for marker in MARKERS {
+        for [one, other] in search(Class::Multigraph, 3, marker.name()).pairs() {
+            assert_ne!(one, other);
+            let facing = PlacedWorld::FACING;
+            let comparison = Comparison::new(marker, (&one.graph, facing), (&other.graph, facing));
+            for start in marker.starts(&one.graph, facing) {
+                let relations = marker.starts(&other.graph, facing).into_iter().filter(|&pose| {
+                    let [here, there] = comparison.starts([start, pose]);
+                    let relation = comparison.relation([start, pose]);
+                    relation.is_some_and(|relation| relation.verify(&here, &there))
+                });
+                assert!(relations.count() > 0, "{marker:?}: {one:?} {other:?} {start:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pairs_are_told_from_the_smallest_and_each_once() {
+    let findings = search(Class::Multigraph, 4, "undirected");
+    let pairs = findings.pairs();
+    let sizes: Vec<_> = pairs
+        .iter()
+        .map(|[one, other]| (other.graph.edge_count(), one.graph.edge_count()))
+        .collect();
+    assert!(sizes.is_sorted() && sizes.iter().all(|(larger, smaller)| smaller <= larger));
+    assert_eq!(pairs.first().copied(), findings.smallest());
+    let of_groups = findings.groups.iter().map(|group| group.worlds.len());
+    let count: usize = of_groups.map(|worlds| worlds * (worlds - 1) / 2).sum();
+    assert_eq!(pairs.len(), count);
+    let distinct: BTreeSet<_> =
+        pairs.iter().map(|pair| pair.map(|world| std::ptr::from_ref(world))).collect();
+    assert_eq!(distinct.len(), pairs.len());
+}
+
+/// What two robots perceive differs, for the first time, at the end of some walk of this length.
+fn tells_apart(one: &PlacedRobot, other: &PlacedRobot, length: usize) -> Option<Vec<Action>> {
+    let mut open = vec![(one.clone(), other.clone(), Vec::new())];
+    for step in 0..=length {
+        let mut next = Vec::new();
+        for (one, other, walk) in open {
+            let percepts = [one.clone().percept().unwrap(), other.clone().percept().unwrap()];
+            if percepts[0] != percepts[1] {
+                return (step == length).then_some(walk);
+            }
+            for action in one.actions() {
+                let (mut one, mut other) = (one.clone(), other.clone());
+                one.act(action).unwrap();
+                other.act(action).unwrap();
+                next.push((one, other, [walk.as_slice(), &[action]].concat()));
+            }
+        }
+        open = next;
+    }
+    None
+}
+
+/// All walks, the shorter ones first, and those of a length in order: the first that tells the
+/// worlds apart is the one that is handed over.
+#[test]
+fn the_walk_is_the_shortest_and_the_least() {
+    let mut walks = 0;
+    let starts = Enumeration::new(Each::Start, Class::Multigraph, 3).unwrap();
+    let mut graphs = Vec::new();
+    let _ = starts.for_each(&mut |found| {
+        graphs.push(found.graph.clone());
+        ControlFlow::Continue(())
+    });
+    for marker in MARKERS {
+        for (one, other) in graphs.iter().zip(graphs.iter().cycle().skip(5)) {
+            let comparison = Comparison::new(marker, (one, Dart(0)), (other, Dart(0)));
+            let Some(walk) = comparison.walk([Dart(0), Dart(0)]) else { continue };
+            let [here, there] = comparison.starts([Dart(0), Dart(0)]);
+            assert!(walk.verify(&here, &there));
+            if walk.actions.len() <= 4 {
+                walks += 1;
+                let first = (0..=4).find_map(|length| tells_apart(&here, &there, length));
+                assert_eq!(first.as_ref(), Some(&walk.actions), "{marker:?}");
+            }
+        }
+    }
+    assert!(walks > 400, "{walks}");
+}
+
+/// A triangle and a square, with a marker, and what proves that they differ or do not.
+fn cycles() -> [EmbeddedGraph; 2] {
+    [3_u32, 4].map(|edges| {
+        let name = |n: u32| (n % edges).to_string();
+        let lists: Vec<_> =
+            (0..edges).map(|n| (name(n), vec![name(n + 1), name(n + edges - 1)])).collect();
+        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+    })
+}
+
+#[test]
+fn a_relation_that_is_not_kept_proves_nothing() {
+    let [three, four] = cycles();
+    let none = named("none").unwrap();
+    let comparison = Comparison::new(none, (&three, Dart(0)), (&four, Dart(0)));
+    let [one, other] = comparison.starts([Dart(0), Dart(0)]);
+    let Relation(pairs) = comparison.relation([Dart(0), Dart(0)]).unwrap();
+    assert!(Relation(pairs.clone()).verify(&one, &other));
+    // Without any one of its pairs it is not closed.
+    for place in 0..pairs.len() {
+        let mut fewer = pairs.clone();
+        fewer.remove(place);
+        assert!(!Relation(fewer).verify(&one, &other), "{place}");
+    }
+    assert!(!Relation(Vec::new()).verify(&one, &other));
+    // With an undirected marker, the same pairs show different percepts.
+    let undirected = named("undirected").unwrap();
+    let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
+    let [one, other] = comparison.starts([Dart(0), Dart(0)]);
+    let marked = |state: State, placed| State { placed: Some(placed), ..state };
+    let pairs: Vec<_> = pairs
+        .into_iter()
+        .map(|(here, there)| {
+            (
+                marked(here, one.state().placed.unwrap()),
+                marked(there, other.state().placed.unwrap()),
+            )
+        })
+        .collect();
+    assert!(!Relation(pairs).verify(&one, &other));
+}
+
+#[test]
+fn a_walk_that_shows_no_difference_proves_nothing() {
+    let [three, four] = cycles();
+    let undirected = named("undirected").unwrap();
+    let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
+    let [one, other] = comparison.starts([Dart(0), Dart(0)]);
+    let walk = comparison.walk([Dart(0), Dart(0)]).unwrap();
+    assert!(walk.verify(&one, &other));
+    let shorter = Walk { actions: walk.actions[..2].to_vec(), ..walk.clone() };
+    assert!(!shorter.verify(&one, &other));
+    let longer = Walk { actions: [&walk.actions[..], &walk.actions[..1]].concat(), ..walk.clone() };
+    assert!(!longer.verify(&one, &other));
+    let swapped = Walk { percepts: [walk.percepts[1], walk.percepts[0]], ..walk.clone() };
+    assert!(!swapped.verify(&one, &other));
+    let impossible = Walk { actions: vec![Action::Drop], ..walk.clone() };
+    assert!(!impossible.verify(&one, &other));
+    let percepts: Vec<Percept> = replay(one, &walk.actions).unwrap();
+    assert_eq!((percepts.len(), percepts.last()), (4, Some(&walk.percepts[0])));
+}
+
+#[test]
+fn a_search_of_no_size_or_of_too_many_edges_is_refused() {
+    let none = named("none").unwrap();
+    assert_eq!(Search::new(Class::Simple, 0, none).unwrap_err(), SizeError::NoEdge);
+    assert_eq!(Search::new(Class::Simple, 33, none).unwrap_err(), SizeError::TooManyEdges(33));
+}
+
+/// Asked to stop, a search finds nothing and says so: what it has seen is not all.
+#[test]
+fn an_interrupted_search_says_so() {
+    struct Stop;
+    impl Watch for Stop {
+        fn stop(&self) -> bool {
+            true
+        }
+    }
+    let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
+    let findings = search.run(&Stop);
+    assert!(findings.interrupted && findings.sizes.is_empty() && findings.groups.is_empty());
+}

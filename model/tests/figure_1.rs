@@ -1,0 +1,165 @@
+//! Section 2.2: the printed proof that one undirected marker does not suffice, and the other claims
+//! about markers there.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use toposlam_model::{
+    ambiguity::{Comparison, Relation},
+    embedded_graph::{Dart, EmbeddedGraph},
+    format::{named_world::NamedWorld, world_file},
+    isomorphism::isomorphism,
+    marker::{Marker, named},
+    percept::{Door, Percept, Sighting},
+    world::{Action, State},
+};
+
+fn read(name: &str) -> NamedWorld {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../worlds/{name}.toml"));
+    world_file::read(&fs::read(file).unwrap()).unwrap()
+}
+
+fn comparison<'w>(
+    marker: &'static dyn Marker,
+    [one, other]: [&'w NamedWorld; 2],
+) -> Comparison<'w> {
+    let placed = |world: &'w NamedWorld| (&world.graph, world.start.unwrap());
+    Comparison::new(marker, placed(one), placed(other))
+}
+
+fn starts([one, other]: [&NamedWorld; 2]) -> [Dart; 2] {
+    [one.start.unwrap(), other.start.unwrap()]
+}
+
+/// The degrees of the neighbours, as enumerated from the entry on.
+fn neighbours(graph: &EmbeddedGraph, pose: Dart) -> Vec<u32> {
+    let doors = (0..graph.degree_around(pose)).map(Door);
+    doors.map(|door| graph.degree_around(graph.after(pose, door))).collect()
+}
+
+/// The relation of the two worlds of Figure 1 with an undirected marker at their centres.
+fn relation([a, b]: [&NamedWorld; 2]) -> Relation {
+    let undirected = named("undirected").unwrap();
+    let comparison = comparison(undirected, [a, b]);
+    let relation = comparison.relation(starts([a, b])).unwrap();
+    let [one, other] = comparison.starts(starts([a, b]));
+    assert!(relation.verify(&one, &other));
+    relation
+}
+
+// paper: marker.undirected-insufficient
+#[test]
+fn no_walk_tells_the_worlds_of_figure_1_apart_with_an_undirected_marker() {
+    let worlds = [read("figure-1a"), read("figure-1b")];
+    assert!(isomorphism(&worlds[0].graph, &worlds[1].graph).is_err());
+    let [a, b] = &worlds;
+    assert_eq!(relation([a, b]).0.len(), 32);
+    assert_eq!(comparison(named("undirected").unwrap(), [a, b]).walk(starts([a, b])), None);
+}
+
+/// One step from the centre.
+// paper: fig1.base
+#[test]
+fn the_base_of_the_printed_proof() {
+    for name in ["figure-1a", "figure-1b"] {
+        let world = read(name);
+        let centre = world.start.unwrap();
+        for door in (0..4).map(Door) {
+            let corner = world.graph.after(centre, door);
+            assert_eq!(world.graph.degree_around(corner), 3);
+            assert_eq!(neighbours(&world.graph, corner), [4, 3, 3]);
+        }
+    }
+}
+
+/// From any pair of poses at which percepts and lists agree, any door leads to such a pair again,
+/// whether or not the robots can have come there. (At the centre the print lists [4, 4, 4, 4].)
+// paper: fig1.step
+#[test]
+fn the_step_of_the_printed_proof() {
+    let [a, b] = [read("figure-1a").graph, read("figure-1b").graph];
+    let agree = |here, there| {
+        (a.degree_around(here), neighbours(&a, here))
+            == (b.degree_around(there), neighbours(&b, there))
+    };
+    let mut pairs = 0;
+    for (here, there) in a.darts().flat_map(|here| b.darts().map(move |there| (here, there))) {
+        if agree(here, there) {
+            pairs += 1;
+            for door in (0..a.degree_around(here)).map(Door) {
+                assert!(agree(a.after(here, door), b.after(there, door)));
+            }
+        }
+    }
+    // 4 poses of each of the four kinds, in either world.
+    assert_eq!(pairs, 4 * 4 * 4);
+}
+
+// paper: fig1.cases
+#[test]
+fn the_cases_of_the_printed_proof() {
+    let [a, b] = [read("figure-1a"), read("figure-1b")];
+    let mut cases = BTreeMap::new();
+    for (State { pose: here, .. }, State { pose: there, .. }) in relation([&a, &b]).0 {
+        let list = neighbours(&a.graph, here);
+        assert_eq!(list, neighbours(&b.graph, there));
+        let case = match list.as_slice() {
+            // An erratum: the print says [4, 4, 4, 4].
+            [3, 3, 3, 3] => "1: the centre",
+            // The centre's edge is the last, so the entry is the first after it.
+            [3, 3, 4] => "2a: by the first edge next to the centre's",
+            [3, 4, 3] => "2b: by the second",
+            [4, 3, 3] => "2c: by the centre's own",
+            other => panic!("no case has {other:?}"),
+        };
+        *cases.entry(case).or_insert(0) += 1;
+    }
+    assert_eq!(cases.into_values().collect::<Vec<_>>(), [8, 8, 8, 8]);
+}
+
+#[test]
+fn a_directional_marker_tells_the_worlds_of_figure_1_apart_in_three_moves() {
+    let [a, b] = [read("figure-1a"), read("figure-1b")];
+    let comparison = comparison(named("directional").unwrap(), [&a, &b]);
+    let walk = comparison.walk(starts([&a, &b])).unwrap();
+    assert_eq!(walk.actions, [0, 1, 1].map(|door| Action::Take(Door(door))));
+    let pointing = |door| Percept { degree: 4, sighting: Sighting::Pointing(Door(door)) };
+    assert_eq!(walk.percepts, [pointing(1), pointing(3)]);
+    let [one, other] = comparison.starts(starts([&a, &b]));
+    assert!(walk.verify(&one, &other));
+    assert_eq!(comparison.relation(starts([&a, &b])), None);
+}
+
+// paper: marker.none-cycles, marker.none-insufficient
+#[test]
+fn without_a_marker_the_cycles_of_three_and_of_four_cannot_be_told_apart() {
+    let [three, four] = [read("cycle-3"), read("cycle-4")];
+    let comparison = comparison(named("none").unwrap(), [&three, &four]);
+    for (one, other) in three.graph.darts().flat_map(|d| four.graph.darts().map(move |e| (d, e))) {
+        let relation = comparison.relation([one, other]).unwrap();
+        let [here, there] = comparison.starts([one, other]);
+        assert!(relation.verify(&here, &there));
+        // Two robots on cycles of coprime lengths meet in every way that agrees on the sense.
+        assert_eq!(relation.0.len(), 2 * 3 * 4);
+    }
+}
+
+// paper: marker.undirected-cycles
+#[test]
+fn an_undirected_marker_tells_cycles_of_different_lengths_apart() {
+    let undirected = named("undirected").unwrap();
+    let cycle = |edges: u32| {
+        let name = |n: u32| (n % edges).to_string();
+        let lists: Vec<_> =
+            (0..edges).map(|n| (name(n), vec![name(n + 1), name(n + edges - 1)])).collect();
+        EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+    };
+    for (shorter, longer) in (3..12).flat_map(|n| (n + 1..=12).map(move |m| (n, m))) {
+        let (one, other) = (cycle(shorter), cycle(longer));
+        let comparison = Comparison::new(undirected, (&one, Dart(0)), (&other, Dart(0)));
+        // Once round the shorter one.
+        let walk = comparison.walk([Dart(0), Dart(0)]).unwrap();
+        assert_eq!(walk.actions.len(), shorter as usize);
+    }
+}
