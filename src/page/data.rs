@@ -34,12 +34,12 @@ fn state(state: &State) -> Value {
         "vertex": state.vertex.0,
         "percept": state.percept,
         "actions": actions.collect::<Vec<_>>(),
-        "marks": state.marks.iter().map(mark).collect::<Vec<_>>(),
+        "marks": state.marks.iter().copied().map(mark).collect::<Vec<_>>(),
     })
 }
 
 /// What kind of mark it is, and the vertex or the dart that it is told by.
-fn mark(mark: &Mark) -> Value {
+fn mark(mark: Mark) -> Value {
     match mark {
         Mark::At(vertex) => json!(["at", vertex.0]),
         Mark::OtherAt(vertex) => json!(["other at", vertex.0]),

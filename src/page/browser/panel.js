@@ -194,11 +194,14 @@ class Panel {
     // A new group, so that it appears anew.
     const group = drawn("g", { class: "own-doors" });
     group.append(...doors.map(({ at }) => circle("reach", at, reach)));
-    for (const { action, at } of doors) {
+    // Its number may cover the marker that points along it.
+    const marked = (dart) => state.marks.some(([kind, along]) => kind === "along" && along === dart);
+    for (const { action, dart, at } of doors) {
       const size = radius * (action.length > 1 ? 1.1 : 1.35);
       const number = drawn("text", { x: at.x, y: at.y + 0.36 * size, "font-size": size }, action);
       const door = drawn("g", { "data-action": action }, circle("badge", at, radius), number);
       door.classList.toggle("alone", !this.shared(action));
+      door.classList.toggle("marked", marked(dart));
       group.append(door);
     }
     // A finger covers several doors: the nearest is meant.

@@ -197,7 +197,7 @@ find("#tell-apart").addEventListener("click", tellApart);
   const meanings = {
     at: "The marker lies at the red vertex.",
     "other at": "The other marker lies at the vertex with a dashed ring.",
-    along: "The marker points along the red triangle.",
+    along: "The marker points along the red triangle and the red number.",
     on: "The marker is the red bar on an edge.",
     "on away from": "The marker is the red triangle on an edge.",
     carried: "A red robot carries the marker.",
