@@ -1,8 +1,10 @@
 //! Deterministic topological SLAM that can be trusted.
 //!
 //! This package is the front of the house: it passes on the specification ([`model`]), draws worlds
-//! ([`picture`]) and traces the paper ([`paper`]).
+//! ([`picture`]), lets a reader walk two of them in a browser ([`page`]) and traces the paper
+//! ([`paper`]).
 
+pub mod page;
 pub mod paper;
 pub mod picture;
 

@@ -35,6 +35,7 @@ use crate::model::{
 };
 
 pub use png::{PictureError, png};
+pub(crate) use text::escaped;
 
 /// What to draw.
 #[derive(Clone, Copy, Debug)]

@@ -68,7 +68,7 @@ pub(super) fn in_two(name: &str) -> Vec<String> {
 
 /// The text with what XML reads as markup written as references, and without the characters that
 /// XML does not allow.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

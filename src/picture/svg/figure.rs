@@ -136,8 +136,9 @@ impl Page {
                 if facing { (MARKER, MARKER, "#ffffff") } else { ("#ffffff", INK, INK) };
             let number = graph.index(dart);
             self.line(&format!(
-                "<circle class=\"door\" data-door=\"{number}\" cx=\"{}\" cy=\"{}\" r=\"{}\" \
-                 fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1\"/>",
+                "<circle class=\"door\" data-door=\"{number}\" data-dart=\"{}\" cx=\"{}\" cy=\"{}\" \
+                 r=\"{}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1\"/>",
+                dart.0,
                 short(at.x),
                 short(at.y),
                 short(drawing.size.knob - 0.5),

@@ -1,7 +1,9 @@
 //! The drawing as SVG text.
 //!
-//! Discs are `circle.vertex`, doors `circle.door`, edges `path.edge`; `data-vertex`, `data-door`
-//! and `data-darts` say which, so that a program can read the order off the picture too.
+//! Discs are `circle.vertex`, doors `circle.door`, edges `path.edge`; `data-vertex`, `data-door`,
+//! `data-dart` and `data-darts` say which, so that a program can read the order off the picture
+//! too. An edge runs from the first of its darts to the second. All names are in one `g.names`, so
+//! that the walk page can put a robot below them.
 
 mod figure;
 mod page;
@@ -60,9 +62,11 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         page.text(line, Point::new(middle, baseline), TITLE[0], INK, "title");
     }
     page.drawing(picture, drawing, shift);
+    page.line("<g class=\"names\">");
     for label in &labels {
         page.label(label, shift);
     }
+    page.line("</g>");
     let mut baseline = MARGIN + above + extent.size().y + 14.0;
     if let Some(floor) = drawing.floor {
         page.scale_bar(floor.metre, extent.size().x, Point::new(middle, baseline + 8.0));

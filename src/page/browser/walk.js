@@ -1,0 +1,215 @@
+// The walk: both robots do the same, by hand, at random, or as the walk that tells them apart.
+
+const find = (selector) => document.querySelector(selector);
+const data = JSON.parse(find("#data").textContent);
+for (const { states } of data.sides) {
+  for (const state of states) {
+    state.actions = new Map(state.actions.map(([action, to]) => [action, states[to]]));
+  }
+}
+
+/** How long a robot travels and then rests, in milliseconds. */
+const BY_HAND = { travel: 420 };
+const AT_RANDOM = { travel: 260, rest: 120 };
+const TELLING = { travel: 800, rest: 450 };
+const RANDOM_STEPS = 20;
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+const worlds = [...document.querySelectorAll(".world")];
+const panels = worlds.map((figure) => new Panel(figure, (action) => byHand(action)));
+const percepts = new Percepts(find(".percepts"));
+const pairText = ([a, b]) => `${data.sides[0].states[a].text} ~ ${data.sides[1].states[b].text}`;
+const relation = data.relation && new Relation(find(".relation"), data.relation, pairText);
+const indices = data.sides.map(({ states }) => new Map(states.map((state, at) => [state, at])));
+
+/** The two states at each step so far, and what was done to get there. */
+const steps = [];
+const here = () => steps.at(-1).states;
+const pair = (states) => states.map((state, side) => indices[side].get(state));
+const differ = ([a, b]) => a.percept !== b.percept;
+const shared = (action) => here().every((state) => state.actions.has(action));
+const called = (action) => (isDoor(action) ? `door ${action}` : action);
+
+function say(text) {
+  find(".status").textContent = text;
+}
+
+function told({ action, states }) {
+  const [a, b] = states.map((state) => state.percept);
+  const when = action === null ? "At the start" : `Step ${steps.length - 1}, ${called(action)}`;
+  return a === b ? `${when}: both perceive ${a}.` : `${when}: they differ. A: ${a}; B: ${b}.`;
+}
+
+/** Shows where the robots are now; with a `duration` they travel there. */
+function show(duration = 0) {
+  const states = here();
+  for (const [side, panel] of panels.entries()) {
+    panel.show(states[side], shared, still.matches ? 0 : duration);
+    worlds[side].classList.toggle("differs", differ(states));
+    worlds[side].querySelector(".state").textContent = states[side].text;
+    worlds[side].querySelector(".percept").textContent = states[side].percept;
+  }
+  relation?.show(pair(states));
+  showActions();
+  say(told(steps.at(-1)));
+}
+
+function enter(action, states) {
+  steps.push({ action, states });
+  percepts.add(action, states.map((state) => state.percept));
+  relation?.visit(pair(states));
+}
+
+/** Both robots do this, if both can; answers whether. */
+function act(action, { travel } = BY_HAND) {
+  const next = here().map((state) => state.actions.get(action));
+  const able = next.filter(Boolean).length;
+  if (able < 2) {
+    const none = isDoor(action) ? `There is no door ${action} here.` : `Neither can ${action} here.`;
+    const way = isDoor(action) ? `has a door ${action}` : `can ${action}`;
+    say(able ? `Only ${next[0] ? "A" : "B"} ${way} here: they cannot both go on by it.` : none);
+    return false;
+  }
+  enter(action, next);
+  show(isDoor(action) ? travel : 0);
+  return true;
+}
+
+function restart() {
+  stop();
+  steps.length = 0;
+  percepts.clear();
+  relation?.clear();
+  enter(null, data.sides.map(({ states, start }) => states[start]));
+  show();
+}
+
+function undo() {
+  stop();
+  if (steps.length === 1) return;
+  relation?.visit(pair(steps.pop().states), -1);
+  percepts.removeLast();
+  show();
+}
+
+// Walks that go by themselves.
+
+let timer = null;
+
+/** Does what `next` says until it says nothing. */
+function play(next, pace) {
+  const action = next();
+  const went = action !== undefined && act(action, pace);
+  timer = went ? setTimeout(play, pace.travel + pace.rest, next, pace) : null;
+  find("#random").setAttribute("aria-pressed", String(went && pace === AT_RANDOM));
+}
+
+function stop() {
+  clearTimeout(timer);
+  timer = null;
+  find("#random").setAttribute("aria-pressed", "false");
+}
+
+function byHand(action) {
+  stop();
+  act(action);
+}
+
+function randomWalk() {
+  const walking = find("#random").getAttribute("aria-pressed") === "true";
+  stop();
+  if (walking) return;
+  let left = RANDOM_STEPS;
+  play(() => {
+    const open = [...here()[0].actions.keys()].filter(shared);
+    return left-- > 0 ? open[Math.floor(Math.random() * open.length)] : undefined;
+  }, AT_RANDOM);
+}
+
+function tellApart() {
+  restart();
+  const left = [...data.walk];
+  timer = setTimeout(play, TELLING.rest, () => left.shift(), TELLING);
+}
+
+// Buttons and keys.
+
+const order = (action) => (isDoor(action) ? Number(action) : Infinity);
+const buttons = new Map();
+{
+  const actions = new Set(data.sides.flatMap(({ states }) => states.flatMap((s) => [...s.actions.keys()])));
+  for (const action of [...actions].sort((one, two) => order(one) - order(two) || (one < two ? 1 : -1))) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = action === "0" ? "0 back" : action;
+    if (isDoor(action)) button.setAttribute("aria-label", action === "0" ? "door 0, back" : called(action));
+    button.addEventListener("click", () => byHand(action));
+    buttons.set(action, button);
+  }
+  find(".doors").append(...buttons.values());
+}
+
+/** What neither robot can do is hidden; what one of them cannot is there, but does not act. */
+function showActions() {
+  for (const [action, button] of buttons) {
+    const focused = document.activeElement === button;
+    button.hidden = !here().some((state) => state.actions.has(action));
+    button.setAttribute("aria-disabled", String(!shared(action)));
+    if (focused && button.hidden) buttons.get("0")?.focus();
+  }
+  find("#undo").setAttribute("aria-disabled", String(steps.length === 1));
+}
+
+const keys = [
+  [[" "], "Space", "random walk", randomWalk],
+  [["Backspace", "u"], "Backspace", "undo", undo],
+  [["r"], "R", "restart", restart],
+];
+if (data.walk) keys.unshift([["w"], "W", "the walk that tells them apart", tellApart]);
+for (const [action, key] of [["drop", "d"], ["pick up", "p"]]) {
+  if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
+}
+
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  // Space presses a button that has the focus, as everywhere.
+  if (event.key === " " && event.target.closest("button")) return;
+  const meant = keys.find(([names]) => names.includes(event.key));
+  if (meant) meant[3]();
+  else if (/^\d$/.test(event.key)) byHand(event.key);
+  else return;
+  event.preventDefault();
+});
+
+find("#random").addEventListener("click", randomWalk);
+find("#undo").addEventListener("click", undo);
+find("#restart").addEventListener("click", restart);
+find("#tell-apart").hidden = !data.walk;
+find("#tell-apart").addEventListener("click", tellApart);
+
+// What the keys and the signs mean.
+
+{
+  const key = (name) => Object.assign(document.createElement("kbd"), { textContent: name });
+  const hints = keys.flatMap(([, name, meaning]) => [" · ", key(name), ` ${meaning}`]);
+  find(".keys").append("Keys: ", key("0"), " to ", key("9"), " doors", ...hints);
+
+  const meanings = {
+    at: "The marker lies at the red vertex.",
+    "other at": "The other marker lies at the vertex with a dashed ring.",
+    along: "The marker points along the red triangle and the red number.",
+    on: "The marker is the red bar on an edge.",
+    "on away from": "The marker is the red triangle on an edge.",
+    carried: "A red robot carries the marker.",
+  };
+  const kinds = new Set(
+    data.sides.flatMap(({ states }) => states.flatMap(({ marks }) => marks.map(([kind]) => kind))),
+  );
+  const signs = Object.keys(meanings).filter((kind) => kinds.has(kind));
+  const doors =
+    "Blue numbers are the doors as each robot counts them, 0 is the way back; " +
+    "small ones count clockwise from each vertex's first.";
+  find(".meaning").textContent = [doors, ...signs.map((kind) => meanings[kind])].join(" ");
+}
+
+restart();
