@@ -184,7 +184,7 @@ fn pairs_are_told_from_the_smallest_and_each_once() {
     let count: usize = of_groups.map(|worlds| worlds * (worlds - 1) / 2).sum();
     assert_eq!(pairs.len(), count);
     let distinct: BTreeSet<_> =
-        pairs.iter().map(|pair| pair.map(|world| std::ptr::from_ref(world))).collect();
+        pairs.iter().map(|pair| pair.map(std::ptr::from_ref)).collect();
     assert_eq!(distinct.len(), pairs.len());
 }
 

@@ -14,7 +14,7 @@ use toposlam_model::{
     marker::{self, Marker},
 };
 
-use super::{Failure, Outcome, input};
+use super::{Failure, Outcome, input, walk_page};
 use robots::Robots;
 use walk::Actions;
 
@@ -25,6 +25,7 @@ use walk::Actions;
 Examples:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --marker undirected
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --marker directional --walk 0,1,1
+  toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none --html cycles.html
 
 Isomorphic means: a bijection of edge ends keeps edges and clockwise orders. A mirror image has
 every order reversed. Both can be so at once. The starts do not matter for this.
@@ -54,10 +55,17 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ACTIONS")]
     walk: Option<Actions>,
 
+    /// Write a page on which a person walks both worlds at once
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
+
+/// Why robots cannot walk.
+const NO_START: &str = "there is no start to walk from; give --start twice, or --marker none";
 
 /// What holds of the two embedded graphs.
 struct Graphs<'w> {
@@ -76,15 +84,21 @@ impl Arguments {
             world.start = Some(input::start_of(world, Some(start))?);
         }
         let worlds = [&worlds[0], &worlds[1]];
+        if let Some(path) = &self.html {
+            walk_page::check_place(path)?;
+        }
         let robots = self.robots(worlds)?;
         let walk = match (&self.walk, &robots) {
             (None, _) => None,
             (Some(actions), Some(robots)) => Some(robots.walk(actions)?),
-            (Some(_), None) => {
-                let cause = "there is no start to walk from; give --start twice, or --marker none";
-                return Err(Failure::at("--walk", cause));
-            }
+            (Some(_), None) => return Err(Failure::at("--walk", NO_START)),
         };
+        if let Some(path) = &self.html {
+            match &robots {
+                Some(robots) => robots.write_page(path)?,
+                None => return Err(Failure::at("--html", NO_START)),
+            }
+        }
         let graphs = Graphs {
             worlds,
             same: isomorphism(&worlds[0].graph, &worlds[1].graph),

@@ -12,7 +12,7 @@ use toposlam_model::{
     marker::{self, MARKERS, Marker},
 };
 
-use super::{Failure, Outcome, progress::Progress, use_threads};
+use super::{Failure, Outcome, progress::Progress, use_threads, walk_page};
 use found::Found;
 use report::Report;
 
@@ -26,6 +26,7 @@ use report::Report;
 Examples:
   toposlam counterexample                                     every marker, simple worlds
   toposlam counterexample --marker undirected --out pair      one marker; writes the two worlds
+  toposlam counterexample --marker undirected --html page.html  and a page to walk them
   toposlam counterexample --class corridor --edges 9 --json   for a program
   toposlam counterexample --marker directional --expect none  for CI: exit code 1 on a find
 
@@ -56,6 +57,10 @@ pub(super) struct Arguments {
     /// Write the worlds that are told into a folder, as world files
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+
+    /// Write a page on which a person walks the smallest pair; for one marker
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 
     /// What is expected: none, no pair
     #[arg(long, hide_possible_values = true)]
@@ -90,8 +95,17 @@ impl Arguments {
         };
         let searches: Vec<_> =
             self.markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
+        if let Some(path) = &self.html {
+            walk_page::check_place(path)?;
+            if searches.len() != 1 {
+                return Err(Failure::at(
+                    "--html",
+                    "a page shows one marker; name it with --marker",
+                ));
+            }
+        }
         if let Some(folder) = &self.out {
-            found::check_folder(folder)?;
+            found::make_folder(folder)?;
         }
         let mut report = Report::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
@@ -107,6 +121,9 @@ impl Arguments {
             report.marker(marker, &findings, &found)?;
             if let Some(folder) = &self.out {
                 found.write(folder)?;
+            }
+            if let Some(path) = &self.html {
+                found.write_page(path, marker)?;
             }
             if self.expect == Some(Expectation::None) && !found.pairs().is_empty() {
                 outcome = Outcome::Violated;

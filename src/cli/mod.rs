@@ -12,6 +12,7 @@ mod outcome;
 mod output;
 mod paper;
 mod progress;
+mod walk_page;
 
 use std::{
     io::{self, Write},

@@ -1,62 +1,64 @@
 //! What the page is told, as the JSON that its script reads.
 
-use std::fmt;
-
 use serde_json::{Value, json};
 
-use super::{Action, Mark, Side, State, WalkPage};
+use super::{WalkPage, side::Side};
+use crate::model::{
+    ambiguity::PlacedRobot,
+    marker::{Look, Part},
+    world::{Action, World},
+};
 
 /// The data as JSON that can stand inside a `script` element: nothing in it ends the element or
 /// begins a comment.
-pub(super) fn json(page: &WalkPage) -> String {
-    let walk = page.walk.map(|walk| walk.iter().map(Action::to_string).collect::<Vec<_>>());
+pub(super) fn json(page: &WalkPage, [one, other]: [&Side; 2]) -> String {
+    let relation = page.comparison.relation(page.poses).map(|relation| {
+        let places = |&(here, there): &_| [one.place(here), other.place(there)];
+        relation.0.iter().map(places).collect::<Vec<_>>()
+    });
+    let walk = page.comparison.walk(page.poses);
+    let walk = walk.map(|walk| walk.actions.iter().map(Action::to_string).collect::<Vec<_>>());
     let data = json!({
-        "sides": page.sides.iter().map(side).collect::<Vec<_>>(),
-        "relation": page.relation,
+        "sides": [side(one), side(other)],
+        "relation": relation,
         "walk": walk,
     });
     data.to_string().replace('<', "\\u003c")
 }
 
 fn side(side: &Side) -> Value {
+    let states = side.robots.iter().zip(&side.actions);
     json!({
-        "name": side.name,
-        "start": side.start,
-        "states": side.states.iter().map(state).collect::<Vec<_>>(),
+        "name": side.world.name,
+        "start": 0,
+        "states": states.map(|(robot, actions)| state(side, robot, actions)).collect::<Vec<_>>(),
     })
 }
 
-fn state(state: &State) -> Value {
-    let actions = state.actions.iter().map(|(action, to)| json!([action.to_string(), to]));
+fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
+    let percept = robot.clone().percept().map(|percept| percept.to_string());
+    let actions = actions.iter().map(|(action, to)| json!([action.to_string(), to]));
+    let marks = match robot.state().placed {
+        Some(placed) => robot.marker().parts(robot.graph(), placed).into_iter().map(mark).collect(),
+        None => vec![json!(["carried"])],
+    };
     json!({
-        "text": state.text,
-        "dart": state.dart.0,
-        "vertex": state.vertex.0,
-        "percept": state.percept,
+        "text": side.world.state_text(robot.marker(), robot.state()),
+        "dart": robot.pose().0,
+        "vertex": robot.graph().vertex(robot.pose()).0,
+        "percept": percept.unwrap_or_default(),
         "actions": actions.collect::<Vec<_>>(),
-        "marks": state.marks.iter().copied().map(mark).collect::<Vec<_>>(),
+        "marks": marks,
     })
 }
 
-/// What kind of mark it is, and the vertex or the dart that it is told by.
-fn mark(mark: Mark) -> Value {
-    match mark {
-        Mark::At(vertex) => json!(["at", vertex.0]),
-        Mark::OtherAt(vertex) => json!(["other at", vertex.0]),
-        Mark::Along(dart) => json!(["along", dart.0]),
-        Mark::On(dart) => json!(["on", dart.0]),
-        Mark::OnAwayFrom(dart) => json!(["on away from", dart.0]),
-        Mark::Carried => json!(["carried"]),
-    }
-}
-
-impl fmt::Display for Action {
-    /// A door is its number.
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Door(door) => write!(formatter, "{}", door.0),
-            Self::PickUp => formatter.write_str("pick up"),
-            Self::Drop => formatter.write_str("drop"),
-        }
+/// What a part of a marker is, and the vertex or the dart that it is told by.
+fn mark(part: Part) -> Value {
+    match part {
+        Part::At { vertex, look: Look::One } => json!(["at", vertex.0]),
+        Part::At { vertex, look: Look::Other } => json!(["other at", vertex.0]),
+        Part::Pointing(dart) => json!(["along", dart.0]),
+        Part::OnEdge(dart) => json!(["on", dart.0]),
+        Part::OnEdgeAlong(dart) => json!(["on away from", dart.0]),
     }
 }

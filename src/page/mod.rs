@@ -1,94 +1,31 @@
 //! A page on which a reader walks two worlds at once: a robot in each, both sent through the same
 //! doors, and what each of them perceives. Section 2.2, Figure 1.
 //!
-//! One self-contained HTML document that asks nothing of the network. It is told as plain data which
-//! states there are and where they lead, and knows nothing of how they were found; what happens in
-//! the browser is in `browser/`.
+//! One self-contained HTML document that asks nothing of the network. What happens in the browser is
+//! in `browser/`.
 
 mod data;
+mod side;
 
 use crate::{
-    model::{
-        embedded_graph::{Dart, Vertex},
-        percept::Door,
-    },
+    model::{ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld},
     picture::escaped,
 };
+use side::Side;
 
 /// What the page shows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy)]
 pub struct WalkPage<'a> {
     /// The heading, such as "figure-1a and figure-1b, undirected marker".
     pub title: &'a str,
     /// A sentence or two beneath it; may be empty.
     pub about: &'a str,
     /// The two worlds.
-    pub sides: [Side<'a>; 2],
-    /// The pairs of states that the two robots can reach together, the start first; none where the
-    /// worlds can be told apart.
-    pub relation: Option<&'a [[usize; 2]]>,
-    /// A shortest walk at whose end the percepts differ; empty if they do at the start already, none
-    /// where no walk tells the worlds apart.
-    pub walk: Option<&'a [Action]>,
-}
-
-/// One of the two worlds.
-#[derive(Clone, Debug)]
-pub struct Side<'a> {
-    /// What it is called.
-    pub name: &'a str,
-    /// The SVG document that [`crate::picture::svg`] gives. Draw it without a start where the page
-    /// is to draw the marker: see [`State::marks`].
-    pub picture: &'a str,
-    /// Every state that the robot can be in.
-    pub states: Vec<State>,
-    /// The state in which it starts, an index of `states`.
-    pub start: usize,
-}
-
-/// A state of a robot and its world.
-#[derive(Clone, Debug)]
-pub struct State {
-    /// How it is called, such as "a:1".
-    pub text: String,
-    /// The dart by which the robot has come in.
-    pub dart: Dart,
-    /// The vertex at which it is.
-    pub vertex: Vertex,
-    /// What it perceives, such as "4 doors, marker". Equal texts are equal percepts.
-    pub percept: String,
-    /// What it can do, and the state that this leads to, an index of the side's states.
-    pub actions: Vec<(Action, usize)>,
-    /// The markers, where they lie now. Empty if there are none or the picture shows them.
-    pub marks: Vec<Mark>,
-}
-
-/// What a robot can do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// Leave by a door.
-    Door(Door),
-    /// Pick up the movable marker.
-    PickUp,
-    /// Drop it here.
-    Drop,
-}
-
-/// Where a marker is, as the page draws it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
-    /// At a vertex.
-    At(Vertex),
-    /// At a vertex, and not the same kind of marker as the first.
-    OtherAt(Vertex),
-    /// At the vertex of this dart, and points along it.
-    Along(Dart),
-    /// On the edge of this dart, the same in both senses.
-    On(Dart),
-    /// On the edge of this dart, and points away from the dart's vertex.
-    OnAwayFrom(Dart),
-    /// The robot carries it.
-    Carried,
+    pub worlds: [&'a NamedWorld; 2],
+    /// The comparison of these two worlds.
+    pub comparison: &'a Comparison<'a>,
+    /// Where the two robots begin: the darts by which they have come in.
+    pub poses: [Dart; 2],
 }
 
 const PAGE: &str = include_str!("browser/walk.html");
@@ -101,19 +38,20 @@ const SCRIPT: [&str; 4] = [
     include_str!("browser/walk.js"),
 ];
 
-/// The page as an HTML document. The same data gives the same bytes.
+/// The page as an HTML document. The same worlds give the same bytes.
 #[must_use]
 pub fn page(page: &WalkPage) -> String {
-    let [a, b] = &page.sides;
+    let robots = page.comparison.starts(page.poses);
+    let [one, other] = [0, 1].map(|at| Side::new(page.worlds[at], &robots[at]));
     filled(PAGE, |place| match place {
         "title" => escaped(page.title),
         "about" => escaped(page.about),
         "style" => STYLE.to_owned(),
-        "name of A" => escaped(a.name),
-        "name of B" => escaped(b.name),
-        "picture of A" => a.picture.to_owned(),
-        "picture of B" => b.picture.to_owned(),
-        "data" => data::json(page),
+        "name of A" => escaped(&page.worlds[0].name),
+        "name of B" => escaped(&page.worlds[1].name),
+        "picture of A" => one.picture(),
+        "picture of B" => other.picture(),
+        "data" => data::json(page, [&one, &other]),
         "script" => SCRIPT.concat(),
         _ => String::new(),
     })
@@ -133,21 +71,30 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
+    use serde_json::{Value, json};
 
     use super::*;
+    use crate::model::{
+        embedded_graph::EmbeddedGraph,
+        marker::{self, Marker},
+    };
 
-    /// A world of one edge whose two ends perceive the same.
-    fn side<'a>(name: &'a str, picture: &'a str) -> Side<'a> {
-        let state = |at: u32| State {
-            text: format!("{name}{at}"),
-            dart: Dart(at),
-            vertex: Vertex(at),
-            percept: "1 door".to_owned(),
-            actions: vec![(Action::Door(Door(0)), 1 - at as usize)],
-            marks: vec![Mark::At(Vertex(0))],
+    /// A chain of so many edges, begun at one end.
+    fn chain(name: &str, edges: usize) -> NamedWorld {
+        let vertex = |n: usize| {
+            let neighbours = [n.checked_sub(1), Some(n + 1).filter(|&next| next <= edges)];
+            (n.to_string(), neighbours.into_iter().flatten().map(|n| n.to_string()).collect())
         };
-        Side { name, picture, states: vec![state(0), state(1)], start: 0 }
+        let lists: Vec<(String, Vec<String>)> = (0..=edges).map(vertex).collect();
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+        NamedWorld::numbered(name, "", graph, Some(Dart(0)))
+    }
+
+    fn document(marker: &'static dyn Marker, worlds: [&NamedWorld; 2], title: &str) -> String {
+        let placed = worlds.map(|world| (&world.graph, Dart(0)));
+        let comparison = Comparison::new(marker, placed[0], placed[1]);
+        let poses = [Dart(0), Dart(0)];
+        page(&WalkPage { title, about: title, worlds, comparison: &comparison, poses })
     }
 
     fn data_of(document: &str) -> Value {
@@ -159,13 +106,8 @@ mod tests {
     #[test]
     fn names_are_text_wherever_they_stand() {
         let nasty = "</script><!--<i>&\"{{data}}";
-        let document = page(&WalkPage {
-            title: nasty,
-            about: nasty,
-            sides: [side(nasty, "<svg/>"), side("plain", "<svg/>")],
-            relation: Some(&[[0, 0], [1, 1]]),
-            walk: None,
-        });
+        let worlds = [chain(nasty, 1), chain("plain", 1)];
+        let document = document(&marker::NoMarker, worlds.each_ref(), nasty);
         assert!(!document.contains("<i>"));
         assert!(!document.contains("</script><"));
         assert_eq!(document.matches("</script>").count(), 2);
@@ -177,53 +119,45 @@ mod tests {
 
     #[test]
     fn every_place_of_the_template_is_filled() {
-        let places = std::cell::RefCell::new(Vec::new());
+        let places = std::cell::RefCell::new(std::collections::BTreeSet::new());
         filled(PAGE, |place| {
-            places.borrow_mut().push(place.to_owned());
+            places.borrow_mut().insert(place.to_owned());
             String::new()
         });
-        let mut places = places.into_inner();
-        places.sort_unstable();
-        places.dedup();
-        assert_eq!(
-            places,
-            [
-                "about",
-                "data",
-                "name of A",
-                "name of B",
-                "picture of A",
-                "picture of B",
-                "script",
-                "style",
-                "title"
-            ]
-        );
+        let known = ["about", "data", "name of A", "name of B", "picture of A", "picture of B"];
+        let known = known.into_iter().chain(["script", "style", "title"]).map(str::to_owned);
+        assert_eq!(places.into_inner(), known.collect());
     }
 
     #[test]
-    fn the_data_tells_all_that_the_page_was_told() {
-        let walk = [Action::Door(Door(12)), Action::PickUp, Action::Drop];
-        let document = page(&WalkPage {
-            title: "t",
-            about: "",
-            sides: [side("a", "<svg/>"), side("b", "<svg/>")],
-            relation: None,
-            walk: Some(&walk),
-        });
-        let data = data_of(&document);
-        assert_eq!(data["relation"], Value::Null);
-        assert_eq!(data["walk"], serde_json::json!(["12", "pick up", "drop"]));
-        assert_eq!(
-            data["sides"][1]["states"][1],
-            serde_json::json!({
-                "text": "b1",
+    fn the_data_tells_where_each_action_leads_and_how_the_worlds_differ() {
+        let worlds = [chain("one", 1), chain("two", 2)];
+        let data = data_of(&document(&marker::Directional, worlds.each_ref(), ""));
+        assert_eq!((&data["relation"], &data["walk"]), (&Value::Null, &json!(["0"])));
+        let far = |degree: u32| {
+            json!({
+                "text": "v1:0",
                 "dart": 1,
                 "vertex": 1,
-                "percept": "1 door",
-                "actions": [["0", 0]],
-                "marks": [["at", 0]],
+                "percept": if degree == 1 { "1 door" } else { "2 doors" },
+                "actions": if degree == 1 { json!([["0", 0]]) } else { json!([["0", 0], ["1", 2]]) },
+                "marks": [["along", 0]],
             })
-        );
+        };
+        assert_eq!(data["sides"][0]["states"][1], far(1));
+        assert_eq!(data["sides"][1]["states"][1], far(2));
+    }
+
+    #[test]
+    fn the_data_tells_the_pairs_that_the_robots_can_reach() {
+        let worlds = [chain("one", 1), chain("other", 1)];
+        let data = data_of(&document(&marker::Movable, worlds.each_ref(), ""));
+        assert_eq!(data["walk"], Value::Null);
+        assert_eq!(data["relation"].as_array().unwrap().len(), 6);
+        assert_eq!(data["relation"][0], json!([0, 0]));
+        let carried = &data["sides"][0]["states"][2];
+        assert_eq!(carried["text"], "v0:0+marker");
+        assert_eq!(carried["marks"], json!([["carried"]]));
+        assert_eq!(carried["actions"], json!([["0", 4], ["drop", 0]]));
     }
 }

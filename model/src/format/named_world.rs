@@ -7,6 +7,8 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
+    marker::Marker,
+    world::State,
 };
 
 /// A world as a file tells it.
@@ -167,6 +169,19 @@ impl NamedWorld {
     #[must_use]
     pub fn start_text(&self, dart: Dart) -> String {
         format!("{}:{}", self.at_text(dart), self.facing_text(dart))
+    }
+
+    /// A state of a robot in this world: its pose as `vertex:door`, the door counted from the first
+    /// that is listed at the vertex; and where the marker is, if it can be moved: `@vertex`, or
+    /// `+marker` while the robot carries it.
+    #[must_use]
+    pub fn state_text(&self, marker: &impl Marker, state: State) -> String {
+        let pose = format!("{}:{}", self.at_text(state.pose), self.graph.index(state.pose));
+        match state.placed {
+            _ if !marker.is_movable() => pose,
+            Some(placed) => format!("{pose}@{}", self.at_text(placed)),
+            None => format!("{pose}+marker"),
+        }
     }
 
     /// The name of the vertex at which the dart is: what a file's `at` says of it.

@@ -164,6 +164,12 @@ impl<'g, M> GraphWorld<'g, M> {
         self.graph
     }
 
+    /// The marker.
+    #[must_use]
+    pub fn marker(&self) -> &M {
+        &self.marker
+    }
+
     /// Where the robot truly is.
     #[must_use]
     pub fn pose(&self) -> Dart {

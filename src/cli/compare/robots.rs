@@ -1,6 +1,6 @@
 //! Robots in two worlds with the same marker: can they tell the worlds apart?
 
-use std::io::Write;
+use std::{io::Write, path::Path};
 
 use serde_json::{Map, Value, json};
 use toposlam_model::{
@@ -11,7 +11,7 @@ use toposlam_model::{
     world::{Action, State},
 };
 
-use super::Failure;
+use super::{Failure, walk_page};
 
 /// How many starts in B are told one by one.
 const TOLD: usize = 8;
@@ -64,6 +64,11 @@ impl<'w> Robots<'w> {
         self.comparison.starts(self.poses())
     }
 
+    /// Writes the page on which a person walks with them.
+    pub(super) fn write_page(&self, path: &Path) -> Result<(), Failure> {
+        walk_page::write(path, self.worlds, self.marker, &self.comparison, self.poses())
+    }
+
     fn relation(&self) -> Option<Relation> {
         self.comparison.relation(self.poses())
     }
@@ -71,7 +76,7 @@ impl<'w> Robots<'w> {
     /// A pair of states in words.
     fn pair_text(&self, &(one, other): &(State, State)) -> [String; 2] {
         let [a, b] = self.worlds;
-        [state_text(a, self.marker, one), state_text(b, self.marker, other)]
+        [a.state_text(&self.marker, one), b.state_text(&self.marker, other)]
     }
 
     pub(super) fn json(&self) -> Map<String, Value> {
@@ -142,16 +147,6 @@ impl<'w> Robots<'w> {
 pub(super) fn unknown() -> Map<String, Value> {
     let keys = ["marker", "distinguishable", "walk", "relation"];
     keys.into_iter().map(|key| (key.to_owned(), Value::Null)).collect()
-}
-
-/// A pose as `vertex:door`; and where the marker is, if it can be moved.
-pub(super) fn state_text(world: &NamedWorld, marker: &dyn Marker, state: State) -> String {
-    let pose = format!("{}:{}", world.at_text(state.pose), world.graph.index(state.pose));
-    match state.placed {
-        _ if !marker.is_movable() => pose,
-        Some(placed) => format!("{pose}@{}", world.at_text(placed)),
-        None => format!("{pose}+marker"),
-    }
 }
 
 /// Doors as numbers, other actions as words.

@@ -3,13 +3,13 @@
 use std::{collections::BTreeMap, fs, path::Path, ptr};
 
 use toposlam_model::{
-    ambiguity::{Findings, PlacedWorld},
+    ambiguity::{Comparison, Findings, PlacedWorld},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     marker::Marker,
 };
 
-use crate::cli::{Failure, output};
+use crate::cli::{Failure, output, walk_page};
 
 /// The worlds of the pairs that are told, each once.
 pub(super) struct Found {
@@ -55,6 +55,20 @@ impl Found {
         self.pairs.iter().map(|pair| pair.map(|place| &self.worlds[place])).collect()
     }
 
+    /// Writes the page of the smallest pair; says so if there is none.
+    pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), Failure> {
+        let Some(worlds @ [one, other]) = self.pairs().first().copied() else {
+            eprintln!("{} is not written: there is no pair to walk", path.display());
+            return Ok(());
+        };
+        let start = PlacedWorld::FACING;
+        let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
+        let poses = marker.starts(&other.graph, start).into_iter().map(|pose| [start, pose]);
+        let alike = poses.into_iter().find(|&poses| comparison.indistinguishable(poses));
+        let poses = alike.unwrap_or([start, start]);
+        walk_page::write(path, worlds, marker, &comparison, poses)
+    }
+
     /// Writes each world as a file with its name.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         for world in &self.worlds {
@@ -66,7 +80,7 @@ impl Found {
 }
 
 /// Makes the folder, if it is not there.
-pub(super) fn check_folder(folder: &Path) -> Result<(), Failure> {
+pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder)
         .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
 }

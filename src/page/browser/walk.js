@@ -166,7 +166,7 @@ const keys = [
   [["r"], "R", "restart", restart],
 ];
 if (data.walk) keys.unshift([["w"], "W", "the walk that tells them apart", tellApart]);
-for (const [action, key] of [["drop", "d"], ["pick up", "p"]]) {
+for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
   if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
 }
 

@@ -1,0 +1,55 @@
+//! One of the two worlds of a walk page: its picture, and every state that its robot can be in.
+
+use std::collections::HashMap;
+
+use crate::{
+    model::{
+        ambiguity::PlacedRobot,
+        format::named_world::NamedWorld,
+        world::{Action, State},
+    },
+    picture::{Picture, svg},
+};
+
+/// A world and what can happen in it from a start.
+pub(super) struct Side<'a> {
+    pub(super) world: &'a NamedWorld,
+    /// The robot in each state that it can reach, the start first.
+    pub(super) robots: Vec<PlacedRobot<'a>>,
+    /// What it can do in each state, and the place of the state after it.
+    pub(super) actions: Vec<Vec<(Action, usize)>>,
+    /// The place of each state.
+    place: HashMap<State, usize>,
+}
+
+impl<'a> Side<'a> {
+    pub(super) fn new(world: &'a NamedWorld, start: &PlacedRobot<'a>) -> Self {
+        let robots = vec![start.clone()];
+        let place = HashMap::from([(start.state(), 0)]);
+        let mut side = Self { world, robots, actions: Vec::new(), place };
+        while let Some(robot) = side.robots.get(side.actions.len()).cloned() {
+            let leads_to = |action| {
+                let mut after = robot.clone();
+                after.act(action).ok()?;
+                let place = *side.place.entry(after.state()).or_insert_with(|| {
+                    side.robots.push(after);
+                    side.robots.len() - 1
+                });
+                Some((action, place))
+            };
+            let actions = robot.actions().filter_map(leads_to).collect();
+            side.actions.push(actions);
+        }
+        side
+    }
+
+    /// The place of a state; the start's, if the robot cannot be in it.
+    pub(super) fn place(&self, state: State) -> usize {
+        self.place.get(&state).copied().unwrap_or_default()
+    }
+
+    /// The world as it is drawn, but for its words and its marker, which the page shows itself.
+    pub(super) fn picture(&self) -> String {
+        svg(&Picture { start: None, title: "", caption: "", ..Picture::from(self.world) })
+    }
+}
