@@ -183,8 +183,7 @@ fn pairs_are_told_from_the_smallest_and_each_once() {
     let of_groups = findings.groups.iter().map(|group| group.worlds.len());
     let count: usize = of_groups.map(|worlds| worlds * (worlds - 1) / 2).sum();
     assert_eq!(pairs.len(), count);
-    let distinct: BTreeSet<_> =
-        pairs.iter().map(|pair| pair.map(std::ptr::from_ref)).collect();
+    let distinct: BTreeSet<_> = pairs.iter().map(|pair| pair.map(std::ptr::from_ref)).collect();
     assert_eq!(distinct.len(), pairs.len());
 }
 

@@ -10,7 +10,10 @@ use clap::ValueEnum;
 
 use toposlam::picture::{Picture, png, svg};
 
-use toposlam_model::format::dot;
+use toposlam_model::{
+    format::dot,
+    marker::{self, Marker},
+};
 
 use super::{Failure, Outcome, input, output};
 
@@ -22,9 +25,13 @@ use super::{Failure, Outcome, input, output};
 pub(super) struct Arguments {
     /// The world file
     world: PathBuf,
-    /// Where the marker lies and points, instead of the file's [start]
+    /// Where the marker is placed, instead of the file's [start]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
+    /// Kind of marker: none, undirected, directional, undirected-edge, directed-edge, two-identical,
+    /// two-distinct or movable
+    #[arg(long, default_value = "directional", value_parser = marker::named)]
+    marker: &'static dyn Marker,
     /// The file to write, as its ending says: .svg, .png or .dot [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -52,7 +59,7 @@ impl Arguments {
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = || svg(&Picture::from(&world));
+        let drawn = || svg(&Picture { marker: self.marker, ..Picture::from(&world) });
         let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
             Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,

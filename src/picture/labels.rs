@@ -7,6 +7,7 @@ use super::{
     Picture,
     drawing::Drawing,
     geometry::{Extent, Point},
+    signs::Sign,
     size::Names,
     text,
 };
@@ -54,7 +55,7 @@ const AWAY: [f64; 5] = [3.0, 8.0, 16.0, 28.0, 44.0];
 const COVERED: f64 = 300.0;
 
 /// The labels of vertices and edges.
-pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
+pub(super) fn labels(drawing: &Drawing, picture: &Picture, signs: &[Sign]) -> Vec<Label> {
     let mut labels = Vec::new();
     let size = &drawing.size;
     let named = drawing.centres.iter().zip(picture.vertex_names).enumerate();
@@ -67,7 +68,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
             }
             Names::Beside => {
                 let places = beside(centre, size.discs[vertex] + size.knob, name, size.name);
-                labels.extend(roomiest(drawing, picture, &labels, None, places));
+                labels.extend(roomiest(drawing, signs, &labels, None, places));
             }
         }
     }
@@ -86,7 +87,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture) -> Vec<Label> {
                 size: EDGE_SIZE,
                 kind: Kind::Edge,
             });
-            labels.extend(roomiest(drawing, picture, &labels, Some(number), places));
+            labels.extend(roomiest(drawing, signs, &labels, Some(number), places));
         }
     }
     labels
@@ -114,14 +115,14 @@ fn beside(centre: Point, reach: f64, name: &str, size: f64) -> Vec<Label> {
 /// The place that covers least; the first among equals.
 fn roomiest(
     drawing: &Drawing,
-    picture: &Picture,
+    signs: &[Sign],
     taken: &[Label],
     own: Option<usize>,
     places: impl IntoIterator<Item = Label>,
 ) -> Option<Label> {
     let mut best: Option<(f64, Label)> = None;
     for (rank, label) in places.into_iter().enumerate() {
-        let cost = covered(drawing, picture, taken, own, &label) + 0.1 * rank as f64;
+        let cost = covered(drawing, signs, taken, own, &label) + 0.1 * rank as f64;
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, label));
         }
@@ -132,7 +133,7 @@ fn roomiest(
 /// How much the label covers of what is there already.
 fn covered(
     drawing: &Drawing,
-    picture: &Picture,
+    signs: &[Sign],
     taken: &[Label],
     own: Option<usize>,
     label: &Label,
@@ -165,11 +166,8 @@ fn covered(
             cost += 6.0 * inside.filter(|point| roomy.contains(*point)).count() as f64;
         }
     }
-    if let Some(start) = picture.start {
-        let vertex = picture.graph.vertex(start).at();
-        let away = drawing.size.discs[vertex] + drawing.size.knob + 9.0;
-        let arrow = drawing.centres[vertex] + Point::polar(drawing.doors[start.at()], away);
-        cost += extent.shared_area(&Extent::around(arrow, 9.0, 9.0));
+    for sign in signs {
+        cost += extent.shared_area(&sign.extent());
     }
     cost
 }

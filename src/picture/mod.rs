@@ -4,7 +4,7 @@
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
 //! picture, even where edges have to cross. From the ground up: `geometry`, `text`, `doors` and
 //! `size`; the `layout` of the vertices and its `scale`; the `curves`, the `ways` that an edge may
-//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together, and `svg` and
+//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together, the `signs` of the marker come upon it, and `svg` and
 //! `png` write it.
 
 #![expect(
@@ -21,6 +21,7 @@ mod layout;
 mod png;
 mod routes;
 mod scale;
+mod signs;
 mod size;
 mod svg;
 mod text;
@@ -32,6 +33,7 @@ mod gallery;
 use crate::model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::named_world::NamedWorld,
+    marker::{Directional, Marker, Part},
 };
 
 pub use png::{PictureError, png};
@@ -46,14 +48,23 @@ pub struct Picture<'a> {
     pub vertex_names: &'a [String],
     /// The name of each dart's edge, where edges have names.
     pub edge_names: Option<&'a [String]>,
-    /// The facing dart; the marker lies at its vertex and points along it.
+    /// The facing dart, by which the marker is placed; without one, no marker is drawn.
     pub start: Option<Dart>,
+    /// The kind of marker.
+    pub marker: &'a dyn Marker,
     /// Where the vertices are.
     pub place: Place<'a>,
     /// Stands above the picture; may be empty.
     pub title: &'a str,
     /// Stands below the picture, the cost of exploring it for example; may be empty.
     pub caption: &'a str,
+}
+
+impl Picture<'_> {
+    /// What lies where.
+    fn parts(&self) -> Vec<Part> {
+        self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
+    }
 }
 
 /// Where the vertices of a picture are.
@@ -107,13 +118,15 @@ impl<'a> From<&'a NamedWorld> for Place<'a> {
 }
 
 impl<'a> From<&'a NamedWorld> for Picture<'a> {
-    /// The picture of a world with its own names, its start, and its name as the title.
+    /// The picture of a world with its own names, a directional marker at its start, and its name
+    /// as the title.
     fn from(world: &'a NamedWorld) -> Self {
         Self {
             graph: &world.graph,
             vertex_names: &world.vertex_names,
             edge_names: world.edge_names.as_deref(),
             start: world.start,
+            marker: &Directional,
             place: Place::from(world),
             title: &world.name,
             caption: &world.about,

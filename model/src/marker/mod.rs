@@ -131,19 +131,19 @@ impl<M: Marker + ?Sized> Marker for &M {
     }
 }
 
-impl fmt::Debug for dyn Marker {
+impl fmt::Debug for dyn Marker + '_ {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         out.write_str(self.name())
     }
 }
 
-impl PartialEq for dyn Marker {
+impl PartialEq for dyn Marker + '_ {
     fn eq(&self, other: &Self) -> bool {
         self.name() == other.name()
     }
 }
 
-impl Eq for dyn Marker {}
+impl Eq for dyn Marker + '_ {}
 
 /// A name that no marker has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

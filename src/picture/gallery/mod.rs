@@ -12,7 +12,9 @@ use super::{
     drawing::Drawing,
     geometry::{Extent, Point},
     labels::{Kind, labels},
-    png, svg, text,
+    png,
+    signs::signs,
+    svg, text,
 };
 use crate::model::format::named_world::NamedWorld;
 use worlds::{cycle, random};
@@ -214,7 +216,8 @@ fn names_of_vertices_do_not_overlap_and_stand_on_the_canvas() {
 fn names_beside_discs_keep_clear_of_hallways_edges_and_discs() {
     let mut beside = 0;
     for Drawn { world, drawing, .. } in GALLERY.iter() {
-        let labels = labels(drawing, &Picture::from(world));
+        let picture = Picture::from(world);
+        let labels = labels(drawing, &picture, &signs(&picture, drawing));
         for label in labels.iter().filter(|label| label.kind == Kind::Beside) {
             beside += 1;
             let extent = label.extent();

@@ -9,10 +9,13 @@ use super::{
         drawing::{Drawing, INKS},
         geometry::{Extent, Point},
         labels::{Kind, LINE, Label},
+        signs::Sign,
         text,
     },
     page::{FAINT, INK, MARKER, PAPER, Page, short},
 };
+
+use crate::model::marker::Part;
 
 const FLOOR: &str = "#ebe6db";
 /// Inks of edges: the usual one, and those of edges that cross others.
@@ -21,7 +24,13 @@ const EDGES: [&str; INKS + 1] =
 
 impl Page {
     /// Everything that is drawn, moved by `shift`.
-    pub(super) fn drawing(&mut self, picture: &Picture, drawing: &Drawing, shift: Point) {
+    pub(super) fn drawing(
+        &mut self,
+        picture: &Picture,
+        drawing: &Drawing,
+        signs: &[Sign],
+        shift: Point,
+    ) {
         self.floor(drawing, shift);
         self.edges(drawing, shift);
         self.discs(drawing, shift);
@@ -29,12 +38,8 @@ impl Page {
         if size.knob > 0.0 {
             self.doors(picture, drawing, shift);
         }
-        if let Some(start) = picture.start {
-            let vertex = picture.graph.vertex(start).at();
-            let direction = drawing.doors[start.at()];
-            let away = size.discs[vertex] + size.knob + 1.5;
-            let at = drawing.centres[vertex] + Point::polar(direction, away) + shift;
-            self.arrow(at, direction, if size.knob > 0.0 { 1.35 } else { 0.9 });
+        for sign in signs {
+            self.sign(&sign.moved(shift));
         }
     }
 
@@ -127,11 +132,12 @@ impl Page {
     /// The knobs of the doors, with their numbers.
     fn doors(&mut self, picture: &Picture, drawing: &Drawing, shift: Point) {
         let graph = picture.graph;
+        let pointing = picture.parts();
         for dart in graph.darts() {
             let vertex = graph.vertex(dart);
             let rim = Point::polar(drawing.doors[dart.at()], drawing.size.discs[vertex.at()]);
             let at = drawing.centres[vertex.at()] + rim + shift;
-            let facing = picture.start == Some(dart);
+            let facing = pointing.contains(&Part::Pointing(dart));
             let (fill, stroke, ink) =
                 if facing { (MARKER, MARKER, "#ffffff") } else { ("#ffffff", INK, INK) };
             let number = graph.index(dart);

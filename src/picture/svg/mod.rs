@@ -8,7 +8,18 @@
 mod figure;
 mod page;
 
-use super::{Picture, drawing::Drawing, geometry::Point, labels::labels, text};
+use super::{
+    Picture,
+    drawing::Drawing,
+    geometry::Point,
+    labels::{Label, labels},
+    signs::{Sign, signs},
+    text,
+};
+use crate::model::{
+    embedded_graph::{Dart, Vertex},
+    marker::{Look, Part},
+};
 use page::{FAINT, INK, PAPER, Page, short};
 
 /// Room around everything.
@@ -22,10 +33,11 @@ const LEGEND: [f64; 2] = [11.0, 15.5];
 
 /// The picture as an SVG document.
 pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
-    let labels = labels(drawing, picture);
+    let signs = signs(picture, drawing);
+    let labels = labels(drawing, picture, &signs);
     let mut extent = drawing.extent();
-    for label in &labels {
-        extent.join(label.extent());
+    for each in labels.iter().map(Label::extent).chain(signs.iter().map(Sign::extent)) {
+        extent.join(each);
     }
     let column = extent.size().x.max(COLUMN);
     let title = text::lines(picture.title, TITLE[0], column);
@@ -61,7 +73,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
         let baseline = MARGIN + TITLE[0] + number as f64 * TITLE[1] - 2.0;
         page.text(line, Point::new(middle, baseline), TITLE[0], INK, "title");
     }
-    page.drawing(picture, drawing, shift);
+    page.drawing(picture, drawing, &signs, shift);
     page.line("<g class=\"names\">");
     for label in &labels {
         page.label(label, shift);
@@ -80,13 +92,13 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
     baseline += between;
     for (number, line) in legend.iter().enumerate() {
         baseline += LEGEND[1];
-        let with_sign = number == 0 && picture.start.is_some();
-        let aside = if with_sign { 9.0 } else { 0.0 };
+        let sign = signs.first().filter(|_| number == 0);
+        let aside = if sign.is_some() { 9.0 } else { 0.0 };
         let at = Point::new(middle + aside, baseline - 4.0);
         page.text(line, at, LEGEND[0], FAINT, "legend");
-        if with_sign {
+        if let Some(sign) = sign {
             let left = at.x - text::width(line, LEGEND[0]) / 2.0 - 18.0;
-            page.arrow(Point::new(left, at.y - 4.0), 0.0, 1.0);
+            page.sign(&sign.small(Point::new(left, at.y - 4.0)));
         }
     }
     page.line("</svg>");
@@ -96,16 +108,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
 /// What the signs mean, in lines that are at most as wide as given.
 fn legend(picture: &Picture, drawing: &Drawing, widest: f64) -> Vec<String> {
     let mut says = Vec::new();
-    if let Some(start) = picture.start {
-        let graph = picture.graph;
-        let vertex = graph.vertex(start);
-        let number = vertex.at().to_string();
-        let name = picture.vertex_names.get(vertex.at()).unwrap_or(&number);
-        says.push(format!(
-            "the marker lies at {name} and points along door {}",
-            graph.index(start)
-        ));
-    }
+    says.extend(where_the_marker_is(picture));
     if drawing.size.knob > 0.0 && picture.graph.vertices().any(|v| picture.graph.degree(v) > 1) {
         says.push("doors are numbered clockwise from each vertex's first".to_owned());
     }
@@ -114,6 +117,46 @@ fn legend(picture: &Picture, drawing: &Drawing, widest: f64) -> Vec<String> {
         says = vec![whole];
     }
     says.iter().flat_map(|line| text::lines(line, LEGEND[0], widest)).collect()
+}
+
+/// Where the marker is, in words; `None` where there is none.
+fn where_the_marker_is(picture: &Picture) -> Option<String> {
+    let graph = picture.graph;
+    let name = |vertex: Vertex| {
+        let known = picture.vertex_names.get(vertex.at());
+        known.cloned().unwrap_or_else(|| vertex.at().to_string())
+    };
+    let ends = |dart: Dart| [dart, graph.opposite(dart)].map(|end| name(graph.vertex(end)));
+    Some(match picture.parts().as_slice() {
+        [] => return None,
+        [Part::Pointing(dart)] => format!(
+            "the marker lies at {} and points along door {}",
+            name(graph.vertex(*dart)),
+            graph.index(*dart)
+        ),
+        [Part::OnEdge(dart)] => {
+            let [from, to] = ends(*dart);
+            format!("an edge between {from} and {to} is marked")
+        }
+        [Part::OnEdgeAlong(dart)] => {
+            let [from, to] = ends(*dart);
+            format!("an edge is marked with an arrow from {from} to {to}")
+        }
+        parts => {
+            let at = |part: &Part| match part {
+                Part::At { vertex, look: Look::One } => name(*vertex),
+                Part::At { vertex, look: Look::Other } => format!("{} (dashed)", name(*vertex)),
+                Part::Pointing(dart) | Part::OnEdge(dart) | Part::OnEdgeAlong(dart) => {
+                    name(graph.vertex(*dart))
+                }
+            };
+            let places: Vec<_> = parts.iter().map(at).collect();
+            match places.as_slice() {
+                [only] => format!("the marker lies at {only}"),
+                places => format!("markers lie at {}", places.join(" and ")),
+            }
+        }
+    })
 }
 
 impl Page {

@@ -1,6 +1,11 @@
 //! An SVG document as far as it is written: text, the marker's sign, numbers.
 
-use super::super::{geometry::Point, text};
+use super::super::{
+    geometry::Point,
+    signs::{ARROW, Sign},
+    text,
+};
+use crate::model::marker::Look;
 
 pub(super) const PAPER: &str = "#fdfcf9";
 pub(super) const INK: &str = "#2b3440";
@@ -37,20 +42,47 @@ impl Page {
         ));
     }
 
-    /// A triangle that points along a direction, its base at `at`.
-    pub(super) fn arrow(&mut self, at: Point, direction: f64, scale: f64) {
-        let along = Point::polar(direction, 1.0);
-        let tip = at + along * (12.0 * scale);
-        let one = at + along.quarter_turn() * (5.0 * scale);
-        let two = at - along.quarter_turn() * (5.0 * scale);
+    /// A sign of the marker.
+    pub(super) fn sign(&mut self, sign: &Sign) {
+        match *sign {
+            Sign::Ring { centre, radius, look } => {
+                let dashes = match look {
+                    Look::One => "",
+                    Look::Other => " stroke-dasharray=\"4 3\"",
+                };
+                self.line(&format!(
+                    "<circle class=\"marker\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" \
+                     stroke=\"{MARKER}\" stroke-width=\"2.4\"{dashes}/>",
+                    short(centre.x),
+                    short(centre.y),
+                    short(radius),
+                ));
+            }
+            Sign::Arrow { at, direction, scale } => {
+                let along = Point::polar(direction, scale);
+                let across = along.quarter_turn() * 5.0;
+                self.marker([at + along * ARROW, at + across, at - across].as_slice());
+            }
+            Sign::Bar { at, direction, scale } => {
+                let along = Point::polar(direction, scale) * 2.2;
+                let across = along.quarter_turn() * (5.5 / 2.2);
+                self.marker(&[
+                    at + along + across,
+                    at + along - across,
+                    at - along - across,
+                    at - along + across,
+                ]);
+            }
+        }
+    }
+
+    /// A shape in the marker's colour, by its corners.
+    fn marker(&mut self, corners: &[Point]) {
+        let corners: Vec<_> =
+            corners.iter().map(|at| format!("{} {}", short(at.x), short(at.y))).collect();
         self.line(&format!(
-            "<path class=\"marker\" d=\"M{} {}L{} {}L{} {}Z\" fill=\"{MARKER}\"/>",
-            short(tip.x),
-            short(tip.y),
-            short(one.x),
-            short(one.y),
-            short(two.x),
-            short(two.y)
+            "<path class=\"marker\" d=\"M{}Z\" fill=\"{MARKER}\"/>",
+            corners.join("L")
         ));
     }
 }
