@@ -1,5 +1,6 @@
 //! `toposlam counterexample`: the smallest worlds that a marker cannot tell apart.
 
+mod atlas;
 mod found;
 mod report;
 
@@ -62,6 +63,15 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
+    /// Make the atlas instead: the smallest pair of every marker in every class, as files, pictures
+    /// and a table; --edges limits it
+    #[arg(
+        long,
+        value_name = "FOLDER",
+        conflicts_with_all = ["markers", "class", "all", "out", "html", "expect", "json"],
+    )]
+    atlas: Option<PathBuf>,
+
     /// What is expected: none, no pair
     #[arg(long, hide_possible_values = true)]
     expect: Option<Expectation>,
@@ -85,6 +95,9 @@ enum Expectation {
 impl Arguments {
     pub(super) fn run(mut self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
+        if let Some(folder) = &self.atlas {
+            return atlas::write(folder, self.edges);
+        }
         let edges = self.edges.unwrap_or_else(|| usual_size(self.class));
         if self.markers.is_empty() {
             self.markers = MARKERS.to_vec();

@@ -158,6 +158,6 @@ mod tests {
         let carried = &data["sides"][0]["states"][2];
         assert_eq!(carried["text"], "v0:0+marker");
         assert_eq!(carried["marks"], json!([["carried"]]));
-        assert_eq!(carried["actions"], json!([["0", 4], ["drop", 0]]));
+        assert_eq!(carried["actions"], json!([["0", 3], ["drop", 0]]));
     }
 }

@@ -80,7 +80,6 @@ impl<'a> Comparison<'a> {
     }
 
     /// How they can: the shortest walk, and of these the least; `None` where they cannot.
-    // paper: fig1.different
     #[must_use]
     pub fn walk(&self, poses: [Dart; 2]) -> Option<Walk> {
         (!self.indistinguishable(poses))

@@ -24,7 +24,7 @@ impl Relation {
     /// Whether this proves that the robots in the two worlds, with what they can do there, will
     /// never perceive a difference: they are among the pairs; in each pair they perceive the same
     /// and can do the same; and whatever they do leads to another of the pairs.
-    // paper: fig1.step
+    // paper: fig1.base, fig1.step, fig1.cases
     #[must_use]
     pub fn verify<M: Marker + Clone>(
         &self,

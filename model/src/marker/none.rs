@@ -7,6 +7,7 @@ use crate::{
 };
 
 /// No marker: the robot senses degrees and nothing else, and may have begun anywhere.
+// paper: marker.none-insufficient, marker.none-cycles
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoMarker;
 

@@ -7,6 +7,7 @@ use crate::{
 };
 
 /// One undirected marker at the start vertex: at each vertex the robot senses whether it lies there.
+// paper: marker.undirected-insufficient, marker.undirected-cycles
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Undirected;
 

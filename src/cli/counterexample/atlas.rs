@@ -1,0 +1,143 @@
+//! The atlas: for each marker and class the smallest pair, as world files, pictures and a table.
+
+use std::path::Path;
+
+use toposlam::picture::{Picture, svg};
+use toposlam_model::{
+    ambiguity::Search,
+    enumerate::Class,
+    format::named_world::NamedWorld,
+    marker::{MARKERS, Marker},
+};
+
+use super::found::{self, Found};
+use crate::cli::{Failure, Outcome, output, progress::Progress};
+
+/// The sizes up to which the atlas searches a class, in less than a minute altogether.
+fn full_size(class: Class) -> usize {
+    match class {
+        Class::Multigraph => 7,
+        Class::Simple | Class::Planar => 10,
+        Class::Corridor => 12,
+    }
+}
+
+/// The smallest pair of a marker in each class.
+struct Row {
+    marker: &'static dyn Marker,
+    found: Vec<Found>,
+}
+
+/// Makes the atlas, of worlds with no more than so many edges where somebody says so.
+pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Failure> {
+    let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
+    let mut rows = Vec::new();
+    found::make_folder(folder)?;
+    for marker in MARKERS {
+        let mut found = Vec::new();
+        for (class, edges) in Class::ALL.into_iter().zip(sizes) {
+            let search =
+                Search::new(class, edges, marker).map_err(|error| Failure::at("--edges", error))?;
+            let work = format!("{}, {class}", marker.name());
+            let progress = Progress::new(&work, "placed worlds")?;
+            let findings = search.run(&progress);
+            progress.finish();
+            if findings.interrupted {
+                return Ok(Outcome::Incomplete);
+            }
+            found.push(Found::new(marker, class, &findings, false));
+        }
+        rows.push(Row { marker, found });
+    }
+    for Row { marker, found } in &rows {
+        for found in found {
+            found.write(folder)?;
+            for world in found.worlds() {
+                let picture = Picture { marker: *marker, caption: "", ..Picture::from(world) };
+                let path = folder.join(format!("{}.svg", world.name));
+                output::write_whole(&path, svg(&picture).as_bytes())?;
+            }
+        }
+    }
+    output::write_whole(&folder.join("README.md"), readme(&rows, sizes).as_bytes())?;
+    Ok(Outcome::Holds)
+}
+
+/// The table, and the pictures of each pair.
+fn readme(rows: &[Row], sizes: [usize; 4]) -> String {
+    let mut text = String::from(HEAD);
+    let mut line = |line: &str| {
+        text.push_str(line);
+        text.push('\n');
+    };
+    let classes = Class::ALL.into_iter().zip(sizes);
+    let heads: Vec<_> =
+        classes.map(|(class, edges)| format!("{class}, up to {edges} edges")).collect();
+    line(&format!("| marker | {} |", heads.join(" | ")));
+    line(&format!("| --- |{}", " --- |".repeat(heads.len())));
+    for Row { marker, found } in rows {
+        let cells: Vec<_> =
+            found.iter().zip(sizes).map(|(found, edges)| cell(found, edges)).collect();
+        line(&format!("| {} | {} |", marker.name(), cells.join(" | ")));
+    }
+    for Row { marker, found } in rows {
+        line(&format!("\n## {}\n", marker.name()));
+        line(&format!("{}\n", sentence(marker.about())));
+        if found.iter().all(|found| found.pairs().is_empty()) {
+            line("A walk tells any two of the worlds searched apart.");
+            continue;
+        }
+        let mut header = true;
+        for (found, class) in found.iter().zip(Class::ALL) {
+            if let Some([one, other]) = found.pairs().first() {
+                if std::mem::take(&mut header) {
+                    line("| class | one world | the other |\n| --- | --- | --- |");
+                }
+                line(&format!("| {class} | {} | {} |", pictured(one), pictured(other)));
+            }
+        }
+    }
+    text
+}
+
+const HEAD: &str = "\
+# Atlas of worlds that a marker cannot tell apart
+
+The smallest pair for each kind of marker in each class of worlds, or that there is none among all
+worlds of the class with up to so many edges, with the marker at every place. Of a pair's two sizes
+the larger one counts first. Each pair is confirmed by a relation between the states of the two
+worlds, which
+
+    toposlam compare worlds/atlas/undirected-simple-1.toml worlds/atlas/undirected-simple-2.toml --marker undirected
+
+shows, and with `--html` walks. This folder is made by
+
+    toposlam counterexample --atlas worlds/atlas
+
+";
+
+/// With a capital, and a full stop unless it is a question.
+fn sentence(words: &str) -> String {
+    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
+    let stop = if words.ends_with('?') { "" } else { "." };
+    format!("{}{rest}{stop}", first.to_uppercase())
+}
+
+/// The sizes of the pair, with its files.
+fn cell(found: &Found, edges: usize) -> String {
+    match found.pairs().first() {
+        None => format!("none up to {edges} edges"),
+        Some(pair) => {
+            let file = |world: &NamedWorld| {
+                let edges = world.graph.edge_count();
+                let word = if edges == 1 { "edge" } else { "edges" };
+                format!("[{edges} {word}]({}.toml)", world.name)
+            };
+            format!("{} and {}", file(pair[0]), file(pair[1]))
+        }
+    }
+}
+
+fn pictured(world: &NamedWorld) -> String {
+    format!("![{0}]({0}.svg)", world.name)
+}
