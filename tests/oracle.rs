@@ -1,11 +1,12 @@
-//! Algorithm 1 against a second implementation of it, in Python, which shares nothing with it but the
-//! reading of the paper.
+//! Algorithm 1, and what a marker cannot tell apart, against second implementations in Python, which
+//! share nothing with the first but the reading of the paper.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::process::Command;
 
 use serde_json::Value;
+use toposlam::model::format::world_file;
 
 /// The JSON objects that a command prints.
 fn objects(command: &mut Command) -> Vec<Value> {
@@ -15,10 +16,18 @@ fn objects(command: &mut Command) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
+/// Whether Python is there to run a second implementation; says so if it is not.
+fn python(program: &str) -> bool {
+    let found = Command::new("python3").arg("--version").output().is_ok();
+    if !found {
+        eprintln!("skipped: there is no python3 to run {program}");
+    }
+    found
+}
+
 /// Every key that the oracle prints has the same value in what `check` prints.
 fn agree(choices: &str, up_to: &str) {
-    if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no python3 to run tests/oracle/algorithm1.py");
+    if !python("tests/oracle/algorithm1.py") {
         return;
     }
     let oracle =
@@ -48,4 +57,53 @@ fn the_default_choices_cost_the_same() {
 #[test]
 fn all_choices_have_the_same_states_runs_and_costs() {
     agree("all", "3");
+}
+
+/// What `counterexample` prints, as the oracle would print it: `KIND m placed_worlds ambiguous` and
+/// `KIND smallest M K`.
+fn counterexamples(class: &str, edges: &str) -> String {
+    let lines = objects(Command::new(env!("CARGO_BIN_EXE_toposlam")).args([
+        "counterexample",
+        "--json",
+        "--class",
+        class,
+        "--edges",
+        edges,
+    ]));
+    let told = lines.iter().map(|line| {
+        let marker = line["marker"].as_str().unwrap();
+        let told = match line["smallest"]["worlds"].as_array() {
+            Some(worlds) => {
+                let size = |world: &Value| {
+                    let world = world_file::read(world.to_string().as_bytes()).unwrap();
+                    world.graph.edge_count()
+                };
+                format!("smallest {} {}", size(&worlds[1]), size(&worlds[0]))
+            }
+            None if line.get("smallest").is_some() => "smallest none".to_owned(),
+            None => format!("{} {} {}", line["edges"], line["placed_worlds"], line["ambiguous"]),
+        };
+        format!("{marker} {told}\n")
+    });
+    told.collect()
+}
+
+#[test]
+fn the_same_worlds_are_counted_and_cannot_be_told_apart() {
+    let program = "tests/oracle/ambiguity.py";
+    if !python(program) {
+        return;
+    }
+    for (class, edges) in [("multigraph", "4"), ("simple", "6"), ("corridor", "7"), ("planar", "6")]
+    {
+        let oracle = Command::new("python3")
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args([program, class, edges])
+            .output()
+            .unwrap();
+        assert!(oracle.status.success(), "{oracle:?}");
+        let oracle = String::from_utf8(oracle.stdout).unwrap();
+        assert!(oracle.lines().count() > 8 * 4);
+        assert_eq!(counterexamples(class, edges), oracle, "{class}");
+    }
 }

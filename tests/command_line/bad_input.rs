@@ -111,7 +111,7 @@ fn truncated_codes_are_refused_with_their_byte() {
 
 #[test]
 fn bad_arguments_are_refused_with_what_is_wanted() {
-    let cases: [(&[&str], &str); 23] = [
+    let cases: [(&[&str], &str); 37] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
         (&["check", "--edges", "5..=3"], "the range is empty"),
@@ -136,6 +136,41 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         ),
         (&["draw", WORLD, "--start", "corner:sw"], "--start: vertex `corner` has no neighbour"),
         (&["draw", WORLD, "--out", "w.jpg"], "w.jpg: the name must end in .svg or .png or .dot"),
+        (
+            &["compare", WORLD, WORLD, "--marker", "chalk"],
+            "`chalk` is no marker; there are none, und",
+        ),
+        (&["draw", WORLD, "--marker", "chalk"], "`chalk` is no marker; there are none, undirected"),
+        (
+            &["counterexample", "--marker", "chalk"],
+            "directional, undirected-edge, directed-edge, two",
+        ),
+        (&["compare", WORLD, WORLD, "--start", "corner"], "--start: `corner` is no start"),
+        (
+            &["compare", WORLD, WORLD, "--start", "corner:sw"],
+            "`corner` has no neighbour `sw`; it has",
+        ),
+        (
+            &["compare", WORLD, WORLD, "--start", "sw:se", "--start", "sw:se", "--start", "sw:se"],
+            "--start: there are two worlds; give it twice at most",
+        ),
+        (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is nothing that a robot can do"),
+        (
+            &["compare", WORLD, WORLD, "--walk", "0,9"],
+            "--walk: action 2 in A: door 9 was taken at a",
+        ),
+        (
+            &["compare", WORLD, WORLD, "--walk", "pick-up"],
+            "action 1 in A: there is no marker here that",
+        ),
+        (&["counterexample", "--edges", "0"], "--edges: a world has at least one edge"),
+        (&["counterexample", "--edges", "33"], "--edges: worlds with 33 edges are too many"),
+        (&["counterexample", "--expect", "some"], "[possible values: none]"),
+        (
+            &["counterexample", "--html", "page.html"],
+            "--html: a page shows one marker; name it with",
+        ),
+        (&["counterexample", "--atlas", "x", "--json"], "cannot be used with"),
         (&["chekc"], "a similar subcommand exists: 'check'"),
         (&["fly"], "unrecognized subcommand 'fly'"),
     ];
@@ -150,8 +185,10 @@ fn a_place_that_cannot_become_a_file_is_refused_before_the_work() {
     let folder = folder("bad_places");
     let (missing, itself) = (folder.join("no/such.svg"), folder.to_str().unwrap());
     let missing = missing.to_str().unwrap();
-    let verbs: [&[&str]; 4] = [
+    let verbs: [&[&str]; 6] = [
         &["check", "--edges", "1..=12", "--worst"],
+        &["compare", WORLD, WORLD, "--html"],
+        &["counterexample", "--marker", "none", "--edges", "12", "--html"],
         &["explore", WORLD, "--map"],
         &["explore", WORLD, "--svg"],
         &["draw", WORLD, "--out"],
@@ -192,4 +229,36 @@ fn no_bytes_make_it_panic() {
     }
     let file = write(&folder, "w.json", format!("{{\"name\":{deep}").as_bytes());
     refusal(&["explore", &file]);
+}
+
+#[test]
+fn a_marker_that_needs_a_start_is_refused_in_a_world_without_one() {
+    let folder = folder("no_start");
+    let file = write(&folder, "path.toml", b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\n");
+    let page = folder.join("page.html");
+    let page = page.to_str().unwrap();
+    for arguments in [[WORLD, &file], [&file, WORLD]] {
+        let compared = [&["compare", "--html", page, "--marker", "undirected"], &arguments[..]];
+        let refused = refusal(&compared.concat());
+        let cause = "there is no [start], by which the undirected marker is placed; give --start";
+        assert!(refused.starts_with(&format!("error: {file}: {cause}")), "{refused}");
+    }
+    let refused = refusal(&["compare", "--html", page, &file, WORLD]);
+    assert!(refused.starts_with("error: --html: there is no start to walk from"), "{refused}");
+    let refused = refusal(&["compare", "--walk", "0", &file, WORLD]);
+    assert!(refused.starts_with("error: --walk: there is no start to walk from"), "{refused}");
+    assert_eq!(names_in(&folder), ["path.toml"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_refused_before_the_work() {
+    let folder = folder("no_folder");
+    let file = write(&folder, "file", b"");
+    let inside = format!("{file}/inside");
+    for place in [&file, &inside] {
+        for verb in [["--out", place], ["--atlas", place]] {
+            let refused = refusal(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
+            assert!(refused.starts_with(&format!("error: {place}: cannot be made")), "{refused}");
+        }
+    }
 }

@@ -4,11 +4,15 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 6] = [
+const VERBS: [(&str, &[&str]); 7] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     ("explore", &["--start", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"]),
-    ("compare", &["--json"]),
-    ("draw", &["--start", "--out", "--format"]),
+    ("compare", &["--marker", "--start", "--walk", "--html", "--json"]),
+    (
+        "counterexample",
+        &["--marker", "--class", "--edges", "--all", "--out", "--html", "--expect", "--atlas"],
+    ),
+    ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("completions", &[]),
 ];

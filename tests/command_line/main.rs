@@ -5,6 +5,7 @@
 mod bad_input;
 mod check;
 mod compare;
+mod counterexample;
 mod draw;
 mod explore;
 mod help;

@@ -53,7 +53,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
         for found in found {
             found.write(folder)?;
             for world in found.worlds() {
-                let picture = Picture { marker: *marker, caption: "", ..Picture::from(world) };
+                let picture = Picture { marker: *marker, ..Picture::from(world) };
                 let path = folder.join(format!("{}.svg", world.name));
                 output::write_whole(&path, svg(&picture).as_bytes())?;
             }

@@ -1,0 +1,129 @@
+//! `toposlam counterexample`.
+
+use std::{collections::BTreeSet, fs};
+
+use serde_json::Value;
+use toposlam_model::format::world_file;
+
+use crate::{folder, names_in, objects, read_world, run, said, stdout};
+
+/// The lines of a search, those of sizes and then the rest.
+fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {
+    let arguments = [&["counterexample", "--json"], arguments].concat();
+    let lines = objects(&said(arguments));
+    lines.into_iter().partition(|line| line["placed_worlds"].is_number())
+}
+
+#[test]
+fn a_line_for_each_size_and_one_for_the_smallest_pair() {
+    let (sizes, rest) = searched(&["--marker", "undirected", "--edges", "7"]);
+    let edges: Vec<_> = sizes.iter().map(|line| line["edges"].as_u64().unwrap()).collect();
+    assert_eq!(edges, [1, 2, 3, 4, 5, 6, 7]);
+    let six = &sizes[5];
+    assert_eq!((&six["class"], &six["marker"]), (&"simple".into(), &"undirected".into()));
+    assert_eq!((&six["placed_worlds"], &six["ambiguous"]), (&306.into(), &6.into()));
+    assert_eq!(rest.len(), 1);
+    assert_eq!(rest[0]["searched_edges"], 7);
+    assert_eq!(rest[0]["smallest"]["edges"], 6);
+    let worlds = rest[0]["smallest"]["worlds"].as_array().unwrap();
+    assert_eq!(worlds.len(), 2);
+    for world in worlds {
+        let world = world_file::read(world.to_string().as_bytes()).unwrap();
+        assert_eq!((world.graph.edge_count(), world.graph.vertex_count()), (6, 5));
+        assert!(world.start.is_some());
+    }
+}
+
+#[test]
+fn where_there_is_no_pair_none_is_told() {
+    let (_, rest) = searched(&["--marker", "directional", "--edges", "5"]);
+    assert_eq!((rest.len(), &rest[0]["smallest"]), (1, &Value::Null));
+    let told = said(["counterexample", "--marker", "directional", "--edges", "5"]);
+    assert!(told.ends_with("\nno pair up to 5 edges: a walk tells any two apart\n"), "{told}");
+}
+
+#[test]
+fn all_markers_make_a_table() {
+    let told = said(["counterexample", "--edges", "7"]);
+    let rows: Vec<_> = told.lines().skip(3).map(|row| row.split_whitespace().next()).collect();
+    let markers = [
+        "none",
+        "undirected",
+        "directional",
+        "undirected-edge",
+        "directed-edge",
+        "two-identical",
+        "two-distinct",
+        "movable",
+    ];
+    assert_eq!(rows, markers.map(Some));
+    assert!(told.contains("undirected               2,177         10  6 and 6 edges\n"), "{told}");
+    let (sizes, rest) = searched(&["--edges", "3"]);
+    assert_eq!((sizes.len(), rest.len()), (8 * 3, 8));
+}
+
+/// Each world as a file, and each pair is one: no walk tells its worlds apart, and they differ.
+#[test]
+fn all_pairs_are_told_and_written_and_are_pairs() {
+    let folder = folder("counterexample_all");
+    let out = folder.join("new/deep");
+    let arguments = ["--all", "--marker", "undirected", "--class", "multigraph", "--edges", "3"];
+    let written = ["--out", out.to_str().unwrap()];
+    let (sizes, rest) = searched(&[&arguments[..], &written[..]].concat());
+    let ambiguous: u64 = sizes.iter().map(|line| line["ambiguous"].as_u64().unwrap()).sum();
+    assert_eq!(names_in(&out).len() as u64, ambiguous);
+    let pairs = &rest[1..];
+    assert_eq!(pairs[0]["pair"], rest[0]["smallest"]);
+    let mut in_pairs = BTreeSet::new();
+    for pair in pairs {
+        let worlds = pair["pair"]["worlds"].as_array().unwrap();
+        let files: Vec<_> = worlds
+            .iter()
+            .map(|world| out.join(format!("{}.toml", world["name"].as_str().unwrap())))
+            .collect();
+        in_pairs.extend(files.clone());
+        for (file, world) in files.iter().zip(worlds) {
+            let told = world_file::read(world.to_string().as_bytes()).unwrap();
+            assert_eq!(read_world(file), told);
+        }
+        let files: Vec<_> = files.iter().map(|file| file.to_str().unwrap()).collect();
+        let compared = ["compare", "--json", "--marker", "undirected", files[0], files[1]];
+        let line = &objects(&said(compared))[0];
+        assert_eq!((&line["distinguishable"], &line["isomorphic"]), (&false.into(), &false.into()));
+    }
+    assert_eq!(in_pairs.len() as u64, ambiguous);
+}
+
+#[test]
+fn what_is_expected_decides_the_exit_code() {
+    let code = |marker, expect: &[&str]| {
+        let arguments = [&["counterexample", "--edges", "4", "--marker", marker], expect].concat();
+        run(arguments).status.code()
+    };
+    assert_eq!(code("none", &[]), Some(0));
+    assert_eq!(code("none", &["--expect", "none"]), Some(1));
+    assert_eq!(code("directional", &["--expect", "none"]), Some(0));
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let searched = |threads| {
+        let sizes = ["--class", "multigraph", "--edges", "4", "--all", "--json"];
+        stdout(&run([&["counterexample", "--threads", threads], &sizes[..]].concat()))
+    };
+    let one = searched("1");
+    assert!(one.lines().count() > 100);
+    assert_eq!(one, searched("3"));
+}
+
+#[test]
+fn a_page_is_written_where_there_is_a_pair() {
+    let folder = folder("counterexample_page");
+    let page = folder.join("page.html");
+    let written = ["--edges", "4", "--html", page.to_str().unwrap()];
+    let output = run([&["counterexample", "--marker", "directional"], &written[..]].concat());
+    assert_eq!((output.status.code(), names_in(&folder).len()), (Some(0), 0));
+    said([&["counterexample", "--marker", "none"], &written[..]].concat());
+    let page = fs::read_to_string(&page).unwrap();
+    assert!(page.starts_with("<!doctype html>") && page.contains("none-simple-2"));
+}
