@@ -163,8 +163,9 @@ class Panel {
     // A way is told by the dart at its end; the marker is told by the one at its beginning.
     const along = (length) => path.getPointAtLength(backward ? length : whole - length);
     const size = Math.max(1.35, 0.5 * this.pixel);
-    // In the middle of an edge stands its name.
-    const middle = kind === "along" ? this.knob + 1.5 + 6 * size : 0.3 * whole;
+    // In the middle of an edge stands its name, if it has one.
+    const share = this.svg.querySelector(".edge-name") ? 0.3 : 0.5;
+    const middle = kind === "along" ? this.knob + 1.5 + 6 * size : share * whole;
     const at = along(middle);
     const turn = (direction(along(middle - 1), along(middle + 1)) * 180) / Math.PI;
     const shape = kind === "on" ? "M-2.5 -7h5v14h-5z" : "M6 0L-6 5V-5Z";
