@@ -12,15 +12,15 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{Algorithm1, Choice, Shard, Sweep, Tally, WorstStart, check_worlds},
+    check::{Algorithm, Algorithm1, AllChoices, Shard, Sweep, Tally, WorstStart, check_worlds},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
 };
 
-use super::{Choices, Failure, Outcome, input, output};
+use super::{Choice, Choices, Failure, Outcome, input, output};
 use progress::Progress;
-use report::{Report, Size};
+use report::{Report, Size, Subject};
 use sizes::Sizes;
 
 /// Run Algorithm 1 on every start of every world up to a size; is every map right?
@@ -103,18 +103,32 @@ impl Arguments {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
             pool.build_global().map_err(|error| Failure::at("--threads", error))?;
         }
+        match choice {
+            Choice::Default => self.check(&Algorithm1, choice, out),
+            Choice::All { budget } => {
+                self.check(&AllChoices { algorithm: Algorithm1, budget }, choice, out)
+            }
+        }
+    }
+
+    fn check(
+        self,
+        algorithm: &impl Algorithm,
+        choice: Choice,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
         let work = match &self.from {
             Some(path) => worlds_by_size(path)?,
-            None => self.sweeps(choice)?,
+            None => self.sweeps()?,
         };
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         let begun = Instant::now();
-        let mut report = Report::new(out, self.json, self.marker, choice);
+        let mut report = Report::new(out, self.json, Subject::of(algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
-            let tally = work.check(edges, choice)?;
+            let tally = work.check(edges, algorithm)?;
             let (class, from, shard) = (self.class, self.from.as_deref(), self.shard);
             report.size(&Size { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
@@ -130,9 +144,9 @@ impl Arguments {
     }
 
     /// A sweep for each number of edges.
-    fn sweeps(&self, choice: Choice) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
         let sweep = |edges| {
-            let sweep = Sweep::new(self.class, edges, self.shard, choice);
+            let sweep = Sweep::new(self.class, edges, self.shard);
             Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
@@ -140,11 +154,11 @@ impl Arguments {
 }
 
 impl Work {
-    fn check(&self, edges: usize, choice: Choice) -> Result<Tally, Failure> {
+    fn check(&self, edges: usize, algorithm: &impl Algorithm) -> Result<Tally, Failure> {
         let progress = Progress::new(edges)?;
         let tally = match self {
-            Self::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
-            Self::Worlds(graphs) => check_worlds(graphs, choice, &Algorithm1, &progress),
+            Self::Sweep(sweep) => sweep.run(algorithm, &progress),
+            Self::Worlds(graphs) => check_worlds(graphs, algorithm, &progress),
         };
         progress.finish();
         Ok(tally)

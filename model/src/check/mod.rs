@@ -1,5 +1,6 @@
-//! The exhaustive check: Algorithm 1 run on every start of every small world, and judged.
+//! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
+mod algorithm;
 mod costs;
 mod every_way;
 mod judge;
@@ -7,10 +8,11 @@ mod sweep;
 mod tally;
 mod watch;
 
+pub use algorithm::{Algorithm, Algorithm1, AllChoices, OpenChoices, Order, RunState};
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
-pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
-pub use sweep::{Choice, Shard, ShardError, Sweep, check_worlds};
+pub use judge::{FalseStep, Flaw, first_false_step, judge};
+pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{Failure, Tally, WorstStart};
 pub use watch::Watch;
 
@@ -64,7 +66,9 @@ mod tests {
             let mut exploration = Exploration::new(graph.dart_count());
             let mut choices = Drawn { numbers: &numbers, next: 0 };
             map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
-            prop_assert!(judge(&exploration, facing, &world, &mut Candidate::default()).is_ok());
+            let mut candidate = Candidate::default();
+            let verdict = judge(&Algorithm1, &exploration, facing, &world, &mut candidate);
+            prop_assert!(verdict.is_ok());
         }
 
         /// The default choices look at nothing but the map, so the numbers of a world do not matter.

@@ -140,7 +140,10 @@ impl PartialMap {
 
     /// The darts of a vertex in the order of their indices.
     #[must_use]
-    pub fn darts_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + use<> {
+    pub fn darts_of(
+        &self,
+        vertex: Vertex,
+    ) -> impl ExactSizeIterator<Item = Dart> + DoubleEndedIterator + use<> {
         self.known.darts_of(vertex)
     }
 
@@ -152,7 +155,8 @@ impl PartialMap {
         Door::between(self.index(pose), self.index(to), degree)
     }
 
-    /// What the robot expects to perceive when it comes in by the dart `pose`.
+    /// What the robot expects to perceive when it comes in by the dart `pose`, where the directional
+    /// marker lies at the start vertex.
     #[inline]
     #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {

@@ -1,8 +1,8 @@
-//! The story of a run of Algorithm 1, told to whoever listens.
+//! The story of a run, told to whoever listens.
 
 use crate::{
     embedded_graph::{Dart, Vertex},
-    mapping::Exploration,
+    mapping::Journey,
     percept::{Door, Percept},
 };
 
@@ -68,19 +68,19 @@ pub enum Event {
 
 /// Listens to a run.
 pub trait Observer {
-    /// Something happened; the exploration is as it is after it, but that at [`Event::Moved`] the
+    /// Something happened; the journey is as it is after it, but that at [`Event::Moved`] the
     /// robot's pose in the map is still that before the move.
-    fn event(&mut self, exploration: &Exploration, event: Event);
+    fn event(&mut self, journey: &Journey, event: Event);
 }
 
 /// Nobody listens.
 impl Observer for () {
     #[inline]
-    fn event(&mut self, _: &Exploration, _: Event) {}
+    fn event(&mut self, _: &Journey, _: Event) {}
 }
 
-impl<F: FnMut(&Exploration, Event)> Observer for F {
-    fn event(&mut self, exploration: &Exploration, event: Event) {
-        self(exploration, event);
+impl<F: FnMut(&Journey, Event)> Observer for F {
+    fn event(&mut self, journey: &Journey, event: Event) {
+        self(journey, event);
     }
 }

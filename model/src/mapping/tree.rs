@@ -1,5 +1,5 @@
 //! Shortest paths in the known map: breadth-first trees, the darts of a vertex in index order, the
-//! first parent kept. Section 2.3, Algorithm 1, lines 6 and 10.
+//! first parent kept. Section 2.3, Algorithm 1, lines 6 and 10; the search for a movable marker.
 
 use super::partial_map::PartialMap;
 use crate::{
