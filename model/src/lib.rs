@@ -11,8 +11,8 @@
 //! * [`enumerate`]: every start and every world of a size, once;
 //! * [`world`]: the trait that is all that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
-//! * [`mapping`]: Algorithm 1, and what it stands on (Section 2.3);
-//! * [`check`]: Algorithm 1 on every start, judged.
+//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and what they stand on (Section 2.3);
+//! * [`check`]: an algorithm on every start, judged.
 //!
 //! ```
 //! use toposlam_model::{

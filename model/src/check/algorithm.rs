@@ -6,9 +6,10 @@ use super::{EveryWay, Flaw, Watch, every_way};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     mapping::{
-        Exploration, Journey, MappingError, Nearest, Observer, Verdict, map_world, try_path,
+        Exploration, Journey, MappingError, MarkerSearch, Nearest, Observer, Verdict,
+        map_with_movable_marker, map_world, try_path,
     },
-    marker::{Directional, Marker},
+    marker::{Directional, Marker, Movable},
     world::{GraphWorld, Refused},
 };
 
@@ -92,6 +93,7 @@ macro_rules! run_state {
     };
 }
 run_state!(Exploration);
+run_state!(MarkerSearch);
 
 /// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,5 +220,56 @@ impl<A: OpenChoices> Algorithm for AllChoices<A> {
         watch: &impl Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
         every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
+    }
+}
+
+/// The movable marker algorithm with the default choices, for worlds without loops and parallel
+/// edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MovableMarker;
+
+impl Algorithm for MovableMarker {
+    type Marker = Movable;
+    type State = MarkerSearch;
+
+    fn name(&self) -> &'static str {
+        "Place and back-link validation"
+    }
+
+    fn order(&self) -> Order {
+        Order::EdgesVertices
+    }
+
+    /// `3 n (n - 1) / 2 + (m - n + 1) (6 n - 7)`, which is less than `6 m n`.
+    ///
+    /// Each of the m edges is explored once, and the world is simple. Let `k` vertices be known. The
+    /// robot goes to the known end and over the edge: at most `k` moves. A search goes back over the
+    /// edge, along no more than a closed depth-first walk of a tree of the `k` vertices, and so takes
+    /// at most `1 + 2 (k - 1)` moves until the robot is at the known end again, whether the marker
+    /// was found on the way or not.
+    ///
+    /// * The place is new: once more over the edge. That is at most `3 k` moves, and happens once for
+    ///   each `k` from 1 to `n - 1`: `3 n (n - 1) / 2`.
+    /// * It is known, `m - n + 1` times: the robot carries the marker to the known end, which ends
+    ///   the closed walk, and returns to the place in at most `n - 1` moves. The place has at least
+    ///   one explored dart, and is neither the known end nor joined to it by another edge; so the
+    ///   darts to try lead to at most `n - 2` vertices, one of them the known end. The last costs a
+    ///   move, each before it two: at most `2 (n - 2) - 1`. That is
+    ///   `n + 1 + 2 (n - 1) + (n - 1) + 2 (n - 2) - 1 = 6 n - 7` together.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let new = n.saturating_mul(n.saturating_sub(1)).saturating_mul(3) / 2;
+        let loops = (m + 1).saturating_sub(n);
+        new.saturating_add(loops.saturating_mul(n.saturating_mul(6).saturating_sub(7)))
+    }
+
+    #[inline]
+    fn run(
+        &self,
+        world: &mut GraphWorld<Movable>,
+        search: &mut MarkerSearch,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        map_with_movable_marker(world, &mut Nearest, search, observer)
     }
 }

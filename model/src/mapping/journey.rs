@@ -142,9 +142,14 @@ impl Journey {
         Ok(())
     }
 
-    /// The darts by which the robot leaves the vertices on a shortest way to a known one.
+    /// The darts by which the robot leaves the vertices on a shortest way to a known one; none if
+    /// it is not known.
     pub(super) fn way_to(&mut self, target: Vertex) -> Vec<Dart> {
         let mut way = mem::take(&mut self.way);
+        if target.at() >= self.map.vertex_count() {
+            way.clear();
+            return way;
+        }
         self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
         self.from_robot.path_from_root(&self.map, target, &mut way);
         way

@@ -168,6 +168,19 @@ impl PartialMap {
         Percept { degree: self.known.degree_around(pose), sighting }
     }
 
+    /// What the robot expects to perceive when it comes in by the dart `pose`, at a vertex without a
+    /// marker.
+    #[inline]
+    #[must_use]
+    pub fn unmarked(&self, pose: Dart) -> Percept {
+        Percept { degree: self.known.degree_around(pose), sighting: Sighting::Nothing }
+    }
+
+    /// The known vertices at the far ends of a vertex's explored darts.
+    pub fn neighbours(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> + '_ {
+        self.darts_of(vertex).filter_map(|dart| self.opposite(dart)).map(|far| self.vertex(far))
+    }
+
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].
     #[must_use]
     pub fn complete(&self) -> Option<&EmbeddedGraph> {

@@ -119,6 +119,8 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 self.tell_map(map)
             }
+            // Algorithm 1 has none of these.
+            Event::Movable(_) => Ok(()),
         }
     }
 
