@@ -1,5 +1,6 @@
-//! `toposlam check`: Algorithm 1 on every start of every world up to a size.
+//! `toposlam check`: an algorithm on every start of every world up to a size.
 
+mod movable;
 mod progress;
 mod report;
 mod sizes;
@@ -12,7 +13,10 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, AllChoices, Shard, Sweep, Tally, WorstStart, check_worlds},
+    check::{
+        Algorithm, Algorithm1, AllChoices, MovableMarker, Shard, Sweep, Tally, WorstStart,
+        check_worlds,
+    },
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -27,6 +31,9 @@ use sizes::Sizes;
 ///
 /// Each map is proved right by a bijection between it and the world; the robot must be where it
 /// believes to be; and the moves must stay within m n + 2 m^2 (n - 1).
+///
+/// With --marker movable it is the algorithm with one movable marker instead, on worlds without
+/// loops and parallel edges; its moves must stay within 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -35,6 +42,7 @@ Examples:
   toposlam check --edges 7 --shard 1/4            a quarter of the work
   toposlam check --edges 1..=4 --choices all      every resolution of what Algorithm 1 leaves open
   toposlam check --from worlds/petersen.toml      every start of the worlds in a file
+  toposlam check --marker movable                 one marker that the robot carries and drops
 
 Ctrl-C ends a check early, and prints what was checked.
 
@@ -45,12 +53,13 @@ pub(super) struct Arguments {
     edges: Sizes,
 
     /// Class of worlds: multigraph, simple, corridor or planar
-    #[arg(long, default_value = "multigraph")]
-    class: Class,
+    /// [default: multigraph; with --marker movable: simple]
+    #[arg(long)]
+    class: Option<Class>,
 
-    /// Marker with which the worlds are mapped
-    #[arg(long, default_value = "directional", value_parser = marker)]
-    marker: &'static str,
+    /// Marker with which the worlds are mapped: directional (by Algorithm 1) or movable
+    #[arg(long, default_value = "directional", value_parser = with_marker)]
+    marker: WithMarker,
 
     /// Runs of each start: default, or all that the open choices allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
@@ -82,11 +91,18 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The only marker with which Algorithm 1 maps.
-fn marker(name: &str) -> Result<&'static str, String> {
+/// The markers with which an algorithm maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum WithMarker {
+    Directional,
+    Movable,
+}
+
+fn with_marker(name: &str) -> Result<WithMarker, String> {
     match name {
-        "directional" => Ok("directional"),
-        _ => Err(format!("`{name}` is no marker to map with; there is directional")),
+        "directional" => Ok(WithMarker::Directional),
+        "movable" => Ok(WithMarker::Movable),
+        _ => Err(format!("`{name}` is no marker to map with; there are directional and movable")),
     }
 }
 
@@ -103,11 +119,17 @@ impl Arguments {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
             pool.build_global().map_err(|error| Failure::at("--threads", error))?;
         }
-        match choice {
-            Choice::Default => self.check(&Algorithm1, choice, out),
-            Choice::All { budget } => {
+        match (self.marker, choice) {
+            (WithMarker::Directional, Choice::Default) => self.check(&Algorithm1, choice, out),
+            (WithMarker::Directional, Choice::All { budget }) => {
                 self.check(&AllChoices { algorithm: Algorithm1, budget }, choice, out)
             }
+            (WithMarker::Movable, Choice::Default) => self.check(&MovableMarker, choice, out),
+            (WithMarker::Movable, Choice::All { .. }) => Err(Failure::at(
+                "--choices",
+                "all choices are those of Algorithm 1, which maps with \
+                                              the directional marker",
+            )),
         }
     }
 
@@ -118,7 +140,7 @@ impl Arguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let work = match &self.from {
-            Some(path) => worlds_by_size(path)?,
+            Some(path) => self.worlds_by_size(path)?,
             None => self.sweeps()?,
         };
         if let Some(worst) = &self.worst {
@@ -129,7 +151,7 @@ impl Arguments {
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
             let tally = work.check(edges, algorithm)?;
-            let (class, from, shard) = (self.class, self.from.as_deref(), self.shard);
+            let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
             report.size(&Size { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
             if tally.interrupted {
@@ -143,13 +165,40 @@ impl Arguments {
         Ok(outcome)
     }
 
+    fn class(&self) -> Class {
+        self.class.unwrap_or(match self.marker {
+            WithMarker::Directional => Class::Multigraph,
+            WithMarker::Movable => Class::Simple,
+        })
+    }
+
     /// A sweep for each number of edges.
     fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+        let class = self.class();
+        if self.marker == WithMarker::Movable && !class.is_simple() {
+            return Err(Failure::at("--class", movable::not_sufficient(format!("class {class}"))));
+        }
         let sweep = |edges| {
-            let sweep = Sweep::new(self.class, edges, self.shard);
+            let sweep = Sweep::new(class, edges, self.shard);
             Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
+    }
+
+    /// The worlds of a file, by their number of edges.
+    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
+        let graphs = input::read_graphs(path)?;
+        if self.marker == WithMarker::Movable
+            && let Some(place) = graphs.iter().position(|graph| !graph.is_simple())
+        {
+            let world = format!("world {}", place + 1);
+            return Err(Failure::in_file(path, movable::not_sufficient(world)));
+        }
+        let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
+        for graph in graphs {
+            sizes.entry(graph.edge_count()).or_default().push(graph);
+        }
+        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
     }
 }
 
@@ -171,15 +220,6 @@ impl Work {
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }
-}
-
-/// The worlds of a file, by their number of edges.
-fn worlds_by_size(path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
-    let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
-    for graph in input::read_graphs(path)? {
-        sizes.entry(graph.edge_count()).or_default().push(graph);
-    }
-    Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
 }
 
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
