@@ -152,6 +152,7 @@ impl Exploration {
         if !self.map().is_unexplored(edge) {
             return Ok(());
         }
+        self.set_out();
         self.journey.explore(edge, PartialMap::expected, world, observer)?;
         let percept = self.journey.arrival;
         self.stand(percept);
