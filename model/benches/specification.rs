@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
-    check::{Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, judge},
+    check::{Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, isomorphism},
@@ -41,7 +41,7 @@ fn enumerate(bencher: Bencher, (class, edges, worlds): (&str, usize, u64)) {
 /// Algorithm 1 on every start, each map verified.
 #[divan::bench(args = [(6, 110_410), (7, 1_708_394)], sample_count = 5)]
 fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
-    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default).unwrap();
+    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
     bencher.counter(ItemsCount::new(starts)).bench(|| {
         assert_eq!(sweep.run(&Algorithm1, &()).mapped, starts);
     });
@@ -50,15 +50,10 @@ fn check(bencher: Bencher, (edges, starts): (usize, u64)) {
 /// Algorithm 1 with all choices on every start; the items are states.
 #[divan::bench(args = [(4, 16_471), (5, 468_929)], sample_count = 3)]
 fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
-    let sweep = Sweep::new(
-        Class::Multigraph,
-        edges,
-        Shard::WHOLE,
-        Choice::All { budget: DEFAULT_STATE_BUDGET },
-    )
-    .unwrap();
+    let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+    let all_choices = AllChoices { algorithm: Algorithm1, budget: DEFAULT_STATE_BUDGET };
     bencher.counter(ItemsCount::new(states)).bench(|| {
-        assert_eq!(sweep.run(&Algorithm1, &()).states, states);
+        assert_eq!(sweep.run(&all_choices, &()).states, states);
     });
 }
 
@@ -70,7 +65,7 @@ fn map_large_world(bencher: Bencher) {
         let mut exploration = Exploration::new(graph.dart_count());
         let mut world = GraphWorld::new(&graph, Dart(0));
         map_world(&mut world, &mut Nearest, &mut exploration, &mut ()).unwrap();
-        judge(&exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
+        judge(&Algorithm1, &exploration, Dart(0), &world, &mut Candidate::default()).unwrap();
         exploration.moves()
     };
     bencher.counter(ItemsCount::new(run())).bench(run);

@@ -12,8 +12,8 @@
 //! * [`world`]: the trait that is all that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
 //! * [`ambiguity`]: worlds that a marker cannot tell apart, with witnesses (Section 2.2);
-//! * [`mapping`]: Algorithm 1, and what it stands on (Section 2.3);
-//! * [`check`]: Algorithm 1 on every start, judged.
+//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and what they stand on (Section 2.3);
+//! * [`check`]: an algorithm on every start, judged.
 //!
 //! ```
 //! use toposlam_model::{

@@ -5,11 +5,12 @@
 use std::ops::ControlFlow;
 
 use toposlam_model::{
-    check::{self, Algorithm, Choice, Failure, Shard, Sweep, every_way},
+    check::{self, Algorithm, Algorithm1, Failure, OpenChoices, Order, Shard, Sweep, every_way},
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
     isomorphism::code,
     mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
+    marker::Directional,
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused},
 };
@@ -56,7 +57,7 @@ impl Broken {
     }
 }
 
-impl Algorithm for Broken {
+impl OpenChoices for Broken {
     fn try_path(
         &self,
         exploration: &mut Exploration,
@@ -90,6 +91,23 @@ impl Algorithm for Broken {
         exploration.arrive_at_marker(believed);
         Ok(Verdict::Confirmed)
     }
+}
+
+impl Algorithm for Broken {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        "Algorithm 1, broken"
+    }
+
+    fn order(&self) -> Order {
+        Algorithm1.order()
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        Algorithm1.move_bound(edges, vertices)
+    }
 
     fn run(
         &self,
@@ -120,7 +138,7 @@ impl Algorithm for Broken {
 fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
     (1..=4)
         .find_map(|edges| {
-            let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default);
+            let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
             let tally = sweep.unwrap().run(&Broken(flaw), &());
             assert_eq!(tally.failed() > 0, tally.failure.is_some());
             let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;

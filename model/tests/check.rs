@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, Choice, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, check_worlds,
-        every_way, move_bound,
+        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, check_worlds,
+        every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
@@ -16,8 +16,11 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-fn sweep(class: Class, edges: usize, choice: Choice, algorithm: &impl Algorithm) -> Tally {
-    Sweep::new(class, edges, Shard::WHOLE, choice).unwrap().run(algorithm, &())
+const ALL_CHOICES: AllChoices<Algorithm1> =
+    AllChoices { algorithm: Algorithm1, budget: DEFAULT_STATE_BUDGET };
+
+fn sweep(class: Class, edges: usize, algorithm: &impl Algorithm) -> Tally {
+    Sweep::new(class, edges, Shard::WHOLE).unwrap().run(algorithm, &())
 }
 
 /// Starts: A000698. Moves: by the independent implementation in `tests/oracle` of the workspace.
@@ -26,7 +29,7 @@ fn sweep(class: Class, edges: usize, choice: Choice, algorithm: &impl Algorithm)
 fn every_start_with_up_to_six_edges_is_mapped_right() {
     let rows: Vec<_> = (1..=6)
         .map(|edges| {
-            let tally = sweep(Class::Multigraph, edges, Choice::Default, &Algorithm1);
+            let tally = sweep(Class::Multigraph, edges, &Algorithm1);
             assert_eq!(tally.failure, None);
             assert_eq!(tally.mapped, tally.starts);
             (tally.worlds, tally.starts, tally.moves_total, tally.moves_max())
@@ -51,12 +54,7 @@ fn every_start_with_up_to_six_edges_is_mapped_right() {
 fn every_way_of_every_start_is_mapped_right() {
     let states: Vec<_> = (1..=4)
         .map(|edges| {
-            let tally = sweep(
-                Class::Multigraph,
-                edges,
-                Choice::All { budget: DEFAULT_STATE_BUDGET },
-                &Algorithm1,
-            );
+            let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
             assert_eq!(tally.failure, None);
             tally.states
         })
@@ -73,8 +71,7 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     assert!(!some.complete && some.states < all.states);
     // Too deep to begin with.
     assert!(!every_way(&Algorithm1, &cycle(101), Dart(0), 1000, &()).unwrap().complete);
-    let choice = Choice::All { budget: 3 };
-    let tally = check_worlds(&[graph], choice, &Algorithm1, &());
+    let tally = check_worlds(&[graph], &AllChoices { budget: 3, ..ALL_CHOICES }, &());
     assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
 }
 
@@ -90,7 +87,7 @@ fn an_interrupted_check_says_so() {
             self.0.load(Ordering::Relaxed) > 2
         }
     }
-    let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE, Choice::Default).unwrap();
+    let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
     let tally = sweep.run(&Algorithm1, &AfterParts(AtomicUsize::new(0)));
     assert!(tally.interrupted);
     assert!(tally.worlds < 870);
@@ -117,7 +114,7 @@ fn the_default_run_is_among_all_runs() {
 fn the_shards_are_the_whole() {
     for class in Class::ALL {
         let of = |shard: &str| {
-            let sweep = Sweep::new(class, 6, shard.parse().unwrap(), Choice::Default);
+            let sweep = Sweep::new(class, 6, shard.parse().unwrap());
             sweep.unwrap().run(&Algorithm1, &())
         };
         let whole = of("1/1");
@@ -183,18 +180,13 @@ fn a_chain_of_m_edges_costs_m_from_an_end() {
 #[test]
 fn no_run_takes_fewer_moves_than_there_are_edges() {
     for edges in 1..=4 {
-        let tally = sweep(
-            Class::Multigraph,
-            edges,
-            Choice::All { budget: DEFAULT_STATE_BUDGET },
-            &Algorithm1,
-        );
+        let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
         assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
     }
 }
 
 #[test]
 fn the_bound_is_the_stated_one() {
-    assert_eq!(move_bound(6, 6), 6 * 6 + 2 * 36 * 5);
-    assert_eq!(move_bound(1, 1), 1);
+    assert_eq!(Algorithm1.move_bound(6, 6), 6 * 6 + 2 * 36 * 5);
+    assert_eq!(Algorithm1.move_bound(1, 1), 1);
 }

@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
-    mapping::{Contradiction, Event, Exploration, MappingError, Nearest, map_world},
+    mapping::{Contradiction, Event, Exploration, Journey, MappingError, Nearest, map_world},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused, World},
 };
@@ -158,7 +158,7 @@ fn the_story_of_a_triangle_with_a_tail() {
     .unwrap();
     let mut story = Vec::new();
     let mut exploration = Exploration::new(graph.dart_count());
-    let mut listen = |_: &Exploration, event: Event| {
+    let mut listen = |_: &Journey, event: Event| {
         if !matches!(event, Event::Moved { .. }) {
             story.push(event);
         }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{Algorithm1, Choice, Flaw, Shard, Sweep, Tally, judge, move_bound},
+    check::{Algorithm, Algorithm1, Flaw, Shard, Sweep, Tally, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Class,
     isomorphism::{Candidate, code},
@@ -24,7 +24,7 @@ fn mapped(graph: &EmbeddedGraph) -> (Exploration, GraphWorld<'_>) {
 }
 
 fn verdict(exploration: &Exploration, world: &GraphWorld) -> Option<Flaw> {
-    judge(exploration, Dart(0), world, &mut Candidate::default()).err()
+    judge(&Algorithm1, exploration, Dart(0), world, &mut Candidate::default()).err()
 }
 
 // paper: alg1.isomorphic, alg1.located, cost.bound
@@ -40,7 +40,7 @@ fn a_run_is_wrong_by_its_map_its_pose_or_its_moves() {
     moved.traverse(Door::BACK).unwrap();
     assert!(matches!(verdict(&exploration, &moved), Some(Flaw::WrongPose { .. })));
     // To and fro, until it is one move too many.
-    let bound = move_bound(3, 2);
+    let bound = Algorithm1.move_bound(3, 2);
     while exploration.moves() <= bound {
         assert_eq!(verdict(&exploration, &world), None);
         for _ in 0..2 {
@@ -96,7 +96,7 @@ fn steps_out_of_order_do_nothing() {
 fn the_tally_keeps_the_extremes_of_small_worlds() {
     let new = |degree: u32| u32::MAX - degree;
     for (edges, dearest) in [(3, (10, 2)), (4, (21, 2)), (5, (36, 2)), (6, (55, 2))] {
-        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE, Choice::Default);
+        let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
         let tally = sweep.unwrap().run(&Algorithm1, &());
         assert_eq!(tally.dearest, Some(dearest));
         if edges == 3 {

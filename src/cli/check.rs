@@ -1,5 +1,6 @@
-//! `toposlam check`: Algorithm 1 on every start of every world up to a size.
+//! `toposlam check`: an algorithm on every start of every world up to a size.
 
+mod movable;
 mod report;
 mod sizes;
 
@@ -11,20 +12,26 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{Algorithm1, Choice, Shard, Sweep, Tally, WorstStart, check_worlds},
+    check::{
+        Algorithm, Algorithm1, AllChoices, MovableMarker, Shard, Sweep, Tally, WorstStart,
+        check_worlds,
+    },
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
 };
 
-use super::{Choices, Failure, Outcome, input, output, progress::Progress, use_threads};
-use report::{Report, Size};
+use super::{Choice, Choices, Failure, Outcome, input, output, progress::Progress, use_threads};
+use report::{Report, Size, Subject};
 use sizes::Sizes;
 
 /// Run Algorithm 1 on every start of every world up to a size; is every map right?
 ///
 /// Each map is proved right by a bijection between it and the world; the robot must be where it
 /// believes to be; and the moves must stay within m n + 2 m^2 (n - 1).
+///
+/// With --marker movable it is the algorithm with one movable marker instead, on worlds without
+/// loops and parallel edges; its moves must stay within 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,6 +40,7 @@ Examples:
   toposlam check --edges 7 --shard 1/4            a quarter of the work
   toposlam check --edges 1..=4 --choices all      every resolution of what Algorithm 1 leaves open
   toposlam check --from worlds/petersen.toml      every start of the worlds in a file
+  toposlam check --marker movable                 one marker that the robot carries and drops
 
 Ctrl-C ends a check early, and prints what was checked.
 
@@ -43,12 +51,13 @@ pub(super) struct Arguments {
     edges: Sizes,
 
     /// Class of worlds: multigraph, simple, corridor or planar
-    #[arg(long, default_value = "multigraph")]
-    class: Class,
+    /// [default: multigraph; with --marker movable: simple]
+    #[arg(long)]
+    class: Option<Class>,
 
-    /// Marker with which the worlds are mapped
-    #[arg(long, default_value = "directional", value_parser = marker)]
-    marker: &'static str,
+    /// Marker with which the worlds are mapped: directional (by Algorithm 1) or movable
+    #[arg(long, default_value = "directional", value_parser = with_marker)]
+    marker: WithMarker,
 
     /// Runs of each start: default, or all that the open choices allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
@@ -80,11 +89,18 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The only marker with which Algorithm 1 maps.
-fn marker(name: &str) -> Result<&'static str, String> {
+/// The markers with which an algorithm maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum WithMarker {
+    Directional,
+    Movable,
+}
+
+fn with_marker(name: &str) -> Result<WithMarker, String> {
     match name {
-        "directional" => Ok("directional"),
-        _ => Err(format!("`{name}` is no marker to map with; there is directional")),
+        "directional" => Ok(WithMarker::Directional),
+        "movable" => Ok(WithMarker::Movable),
+        _ => Err(format!("`{name}` is no marker to map with; there are directional and movable")),
     }
 }
 
@@ -98,19 +114,39 @@ impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
+        match (self.marker, choice) {
+            (WithMarker::Directional, Choice::Default) => self.check(&Algorithm1, choice, out),
+            (WithMarker::Directional, Choice::All { budget }) => {
+                self.check(&AllChoices { algorithm: Algorithm1, budget }, choice, out)
+            }
+            (WithMarker::Movable, Choice::Default) => self.check(&MovableMarker, choice, out),
+            (WithMarker::Movable, Choice::All { .. }) => {
+                let cause =
+                    "all choices are those of Algorithm 1, which maps with the directional marker";
+                Err(Failure::at("--choices", cause))
+            }
+        }
+    }
+
+    fn check(
+        self,
+        algorithm: &impl Algorithm,
+        choice: Choice,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
         let work = match &self.from {
-            Some(path) => worlds_by_size(path)?,
-            None => self.sweeps(choice)?,
+            Some(path) => self.worlds_by_size(path)?,
+            None => self.sweeps()?,
         };
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         let begun = Instant::now();
-        let mut report = Report::new(out, self.json, self.marker, choice);
+        let mut report = Report::new(out, self.json, Subject::of(algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
-            let tally = work.check(edges, choice)?;
-            let (class, from, shard) = (self.class, self.from.as_deref(), self.shard);
+            let tally = work.check(edges, algorithm)?;
+            let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
             report.size(&Size { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
             if tally.interrupted {
@@ -124,22 +160,49 @@ impl Arguments {
         Ok(outcome)
     }
 
+    fn class(&self) -> Class {
+        self.class.unwrap_or(match self.marker {
+            WithMarker::Directional => Class::Multigraph,
+            WithMarker::Movable => Class::Simple,
+        })
+    }
+
     /// A sweep for each number of edges.
-    fn sweeps(&self, choice: Choice) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+        let class = self.class();
+        if self.marker == WithMarker::Movable && !class.is_simple() {
+            return Err(Failure::at("--class", movable::not_sufficient(format!("class {class}"))));
+        }
         let sweep = |edges| {
-            let sweep = Sweep::new(self.class, edges, self.shard, choice);
+            let sweep = Sweep::new(class, edges, self.shard);
             Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
     }
+
+    /// The worlds of a file, by their number of edges.
+    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
+        let graphs = input::read_graphs(path)?;
+        if self.marker == WithMarker::Movable
+            && let Some(place) = graphs.iter().position(|graph| !graph.is_simple())
+        {
+            let world = format!("world {}", place + 1);
+            return Err(Failure::in_file(path, movable::not_sufficient(world)));
+        }
+        let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
+        for graph in graphs {
+            sizes.entry(graph.edge_count()).or_default().push(graph);
+        }
+        Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
+    }
 }
 
 impl Work {
-    fn check(&self, edges: usize, choice: Choice) -> Result<Tally, Failure> {
+    fn check(&self, edges: usize, algorithm: &impl Algorithm) -> Result<Tally, Failure> {
         let progress = Progress::new(&format!("{edges} edges"), "starts")?;
         let tally = match self {
-            Self::Sweep(sweep) => sweep.run(&Algorithm1, &progress),
-            Self::Worlds(graphs) => check_worlds(graphs, choice, &Algorithm1, &progress),
+            Self::Sweep(sweep) => sweep.run(algorithm, &progress),
+            Self::Worlds(graphs) => check_worlds(graphs, algorithm, &progress),
         };
         progress.finish();
         Ok(tally)
@@ -152,15 +215,6 @@ impl Work {
             Self::Worlds(graphs) => graphs.iter().all(EmbeddedGraph::is_simple),
         }
     }
-}
-
-/// The worlds of a file, by their number of edges.
-fn worlds_by_size(path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
-    let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
-    for graph in input::read_graphs(path)? {
-        sizes.entry(graph.edge_count()).or_default().push(graph);
-    }
-    Ok(sizes.into_iter().map(|(edges, graphs)| (edges, Work::Worlds(graphs))).collect())
 }
 
 fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {

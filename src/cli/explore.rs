@@ -11,14 +11,14 @@ use std::{
 
 use toposlam::picture::{self, Picture};
 use toposlam_model::{
-    check::{Algorithm1, Choice, Flaw, every_way, judge},
+    check::{Algorithm1, Flaw, every_way, judge},
     format::named_world::NamedWorld,
     isomorphism::Candidate,
     mapping::{DEFAULT_DART_BOUND, Exploration, Nearest, map_world},
     world::GraphWorld,
 };
 
-use super::{Choices, Failure, Outcome, input, output};
+use super::{Choice, Choices, Failure, Outcome, input, output};
 use doors::Doors;
 use ending::Ending;
 use story::{Detail, Story};
@@ -109,7 +109,7 @@ impl Arguments {
         let mut candidate = Candidate::default();
         let result = run
             .map_err(Flaw::from)
-            .and_then(|()| judge(&exploration, facing, &robot, &mut candidate));
+            .and_then(|()| judge(&Algorithm1, &exploration, facing, &robot, &mut candidate));
         let ways = match choice {
             Choice::Default => None,
             Choice::All { budget } => {

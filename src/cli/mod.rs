@@ -20,7 +20,7 @@ use std::{
 };
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use toposlam_model::check::{Choice, DEFAULT_STATE_BUDGET};
+use toposlam_model::check::DEFAULT_STATE_BUDGET;
 
 use outcome::{Failure, Outcome};
 
@@ -56,6 +56,18 @@ enum Choices {
     Default,
     /// In every way.
     All,
+}
+
+/// Which runs of a start are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    /// That of the default choices.
+    Default,
+    /// That, and every other resolution of what Algorithm 1 leaves open.
+    All {
+        /// How many states of one start may be explored.
+        budget: u64,
+    },
 }
 
 impl Choices {

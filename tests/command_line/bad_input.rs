@@ -111,7 +111,7 @@ fn truncated_codes_are_refused_with_their_byte() {
 
 #[test]
 fn bad_arguments_are_refused_with_what_is_wanted() {
-    let cases: [(&[&str], &str); 37] = [
+    let cases: [(&[&str], &str); 42] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
         (&["check", "--edges", "5..=3"], "the range is empty"),
@@ -122,7 +122,28 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["check", "--shard", "3/2"], "`3/2` is no shard; write i/n with i from 1 to n"),
         (&["check", "--shard", "0/2"], "`0/2` is no shard; write i/n with i from 1 to n"),
         (&["check", "--class", "tree"], "there are multigraph, simple, corridor and planar"),
-        (&["check", "--marker", "chalk"], "`chalk` is no marker to map with; there is directional"),
+        (
+            &["check", "--marker", "chalk"],
+            "`chalk` is no marker to map with; there are directional and movable",
+        ),
+        (&["check", "--marker", "undirected"], "there are directional and movable"),
+        (
+            &["check", "--marker", "movable", "--choices", "all"],
+            "--choices: all choices are those of Algorithm 1, which maps with the directional marker",
+        ),
+        (
+            &["check", "--marker", "movable", "--class", "multigraph"],
+            "--class: class multigraph has loops or parallel edges, and with these one movable \
+             marker does not suffice: no walk tells [v0 = e0 e0 e1 e1] from [v0 = e0 e1 e0 e1]",
+        ),
+        (
+            &["check", "--marker", "movable", "--class", "multigraph"],
+            "(toposlam counterexample --marker movable --class multigraph)",
+        ),
+        (
+            &["check", "--marker", "movable", "--from", "worlds/theta-plane.toml"],
+            "worlds/theta-plane.toml: world 1 has loops or parallel edges",
+        ),
         (&["check", "--choices", "some"], "[possible values: default, all]"),
         (&["check", "--threads", "0"], "0 is not in 1..=1024"),
         (&["check", "--max-states", "5"], "--max-states: this goes with --choices all"),

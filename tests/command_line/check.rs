@@ -31,6 +31,47 @@ fn every_start_of_every_world_with_up_to_4_edges_is_mapped() {
     }
 }
 
+// paper: movable.place
+#[test]
+fn with_a_movable_marker_every_simple_world_is_mapped() {
+    let lines = objects(&said(["check", "--json", "--edges", "1..=6", "--marker", "movable"]));
+    assert_eq!(numbers(&lines, "starts"), [1, 2, 6, 23, 108, 596]);
+    assert_eq!(numbers(&lines, "mapped"), [1, 2, 6, 23, 108, 596]);
+    assert_eq!(numbers(&lines, "moves_total"), [1, 5, 27, 173, 1222, 9519]);
+    assert_eq!(numbers(&lines, "moves_max"), [1, 3, 6, 15, 24, 36]);
+    for line in &lines {
+        assert_eq!((&line["class"], &line["marker"]), (&"simple".into(), &"movable".into()));
+        assert_eq!(line["holds"], true);
+    }
+    // That of four vertices and 32 moves, and not that with 36.
+    assert_eq!(lines[5]["largest_ratio"], 4.0 / 3.0);
+    for class in ["simple", "corridor", "planar"] {
+        let table = said(["check", "--marker", "movable", "--class", class]);
+        let title = format!("Place and back-link validation, movable marker, class {class}\n");
+        assert!(table.starts_with(&title), "{table}");
+        assert!(table.contains("  most/(m n)\n") && table.contains("\nholds: "), "{table}");
+    }
+}
+
+#[test]
+fn the_world_that_is_not_simple_is_named() {
+    let folder = folder("check_movable");
+    let graph_of = |name: &str| {
+        let file = world_files().into_iter().find(|path| path.ends_with(name)).unwrap();
+        read_world(&file).graph
+    };
+    let worlds = ["k4-plane.toml", "two-loops-torus.toml", "theta-plane.toml"].map(graph_of);
+    let file = folder.join("three.ec");
+    fs::write(&file, plantri::write(&worlds, Code::Edge).unwrap()).unwrap();
+    let file = file.to_str().unwrap();
+    let refused = run(["check", "--marker", "movable", "--from", file]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = stderr(&refused);
+    assert!(message.starts_with(&format!("error: {file}: world 2 has loops or")), "{message}");
+    let lines = objects(&said(["check", "--json", "--from", file]));
+    assert_eq!(lines.len(), 3);
+}
+
 #[test]
 fn the_output_is_the_same_at_any_number_of_threads() {
     let with = |threads: &str| said(["check", "--json", "--edges", "1..=5", "--threads", threads]);

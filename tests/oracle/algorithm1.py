@@ -12,12 +12,14 @@ import sys
 from collections import deque
 
 
-def starts(edges):
-    """Every start: the opposite of each dart, and the degrees of the vertices, in whose order the
-    darts stand, clockwise. Dart 0 is the facing dart. The first free dart meets a later free one,
-    or the first dart of a new vertex."""
+def starts(edges, fits=lambda opposite, degrees: True):
+    """Every start that fits, as must all that it grew from: the opposite of each dart, and the
+    degrees of the vertices, in whose order the darts stand, clockwise. Dart 0 is the facing dart.
+    The first free dart meets a later free one, or the first dart of a new vertex."""
 
     def grow(opposite, degrees):
+        if not fits(opposite, degrees):
+            return
         free = [dart for dart, other in enumerate(opposite) if other is None]
         if not free:
             if len(opposite) == 2 * edges:
@@ -241,4 +243,5 @@ def main(choices, up_to):
         print(json.dumps(line))
 
 
-main(sys.argv[1], int(sys.argv[2]))
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))

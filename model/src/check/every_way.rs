@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::{Algorithm, Costs, Flaw, judge::judge, judge::move_bound};
+use super::{Costs, Flaw, OpenChoices, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
@@ -40,7 +40,7 @@ const MAX_EDGES: usize = 100;
 /// # Errors
 /// The first [`Flaw`].
 pub fn every_way(
-    algorithm: &impl Algorithm,
+    algorithm: &impl OpenChoices,
     graph: &EmbeddedGraph,
     facing: Dart,
     budget: u64,
@@ -61,7 +61,7 @@ pub fn every_way(
         candidate: Candidate::default(),
     };
     let Futures { runs, costs } = search.line_4(&world, &exploration)?;
-    let bound = move_bound(graph.edge_count(), graph.vertex_count());
+    let bound = algorithm.move_bound(graph.edge_count(), graph.vertex_count());
     match costs.max() {
         Some(moves) if moves > bound => Err(Flaw::TooManyMoves { moves, bound }),
         _ => {
@@ -116,7 +116,7 @@ impl Choices for ThisHypothesis {
     }
 }
 
-impl<A: Algorithm, W: Watch> Search<'_, A, W> {
+impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
     /// Whether one more state may be begun.
     fn begin(&mut self) -> bool {
         let may = self.begun < self.budget && !self.watch.stop();
@@ -142,7 +142,7 @@ impl<A: Algorithm, W: Watch> Search<'_, A, W> {
         }
         let mut futures = Futures::default();
         if map.unexplored_is_empty() {
-            judge(exploration, self.facing, world, &mut self.candidate)?;
+            judge(self.algorithm, exploration, self.facing, world, &mut self.candidate)?;
             futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
         }
         for edge in map.unexplored() {

@@ -1,62 +1,16 @@
-//! Is a run of Algorithm 1 right? Section 2.1 (the map is isomorphic to the world), Section 2.3.
+//! Is a run right? Section 2.1 (the map is isomorphic to the world), Section 2.3.
 
 use std::fmt;
 
 use thiserror::Error;
 
+use super::{Algorithm, RunState};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{
-        Event, Exploration, FACING, MappingError, Nearest, Observer, PartialMap, Verdict,
-        map_world, try_path,
-    },
+    mapping::{Event, FACING, Journey, MappingError, PartialMap},
     world::{GraphWorld, Refused},
 };
-
-/// An algorithm that maps worlds; the check is run on Algorithm 1, and its tests on broken variants.
-pub trait Algorithm: Sync {
-    /// Maps a world; afterwards the exploration holds map, pose and moves.
-    ///
-    /// # Errors
-    /// Those of [`map_world`].
-    fn run(
-        &self,
-        world: &mut GraphWorld,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer,
-    ) -> Result<(), MappingError<Refused>>;
-
-    /// Lines 10 to 17 of it: follows the path of one hypothesis. All choices are tried with this.
-    ///
-    /// # Errors
-    /// Those of [`try_path`].
-    fn try_path(
-        &self,
-        exploration: &mut Exploration,
-        hypothesis: Dart,
-        world: &mut GraphWorld,
-        observer: &mut impl Observer,
-    ) -> Result<Verdict, MappingError<Refused>> {
-        try_path(exploration, hypothesis, world, observer)
-    }
-}
-
-/// Algorithm 1 with the default choices.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Algorithm1;
-
-impl Algorithm for Algorithm1 {
-    #[inline]
-    fn run(
-        &self,
-        world: &mut GraphWorld,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer,
-    ) -> Result<(), MappingError<Refused>> {
-        map_world(world, &mut Nearest, exploration, observer)
-    }
-}
 
 /// What is wrong with a run. Darts of the map are numbered as discovered, those of the world as
 /// there.
@@ -98,29 +52,22 @@ pub enum Flaw {
     },
 }
 
-/// The most moves that Algorithm 1 may make: `m n + 2 m^2 (n - 1)`.
-// paper: cost.bound
-#[must_use]
-pub fn move_bound(edges: usize, vertices: usize) -> u64 {
-    let (m, n) = (edges as u64, vertices as u64);
-    let paths = m.saturating_mul(m).saturating_mul(n.saturating_sub(1).saturating_mul(2));
-    m.saturating_mul(n).saturating_add(paths)
-}
-
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
 /// verified, and answered; the robot's pose is what it believes; the moves are within the bound.
 ///
 /// # Errors
 /// The first [`Flaw`].
 // paper: alg1.isomorphic
-pub fn judge<'c>(
-    exploration: &Exploration,
+pub fn judge<'c, A: Algorithm>(
+    algorithm: &A,
+    state: &A::State,
     facing: Dart,
-    world: &GraphWorld,
+    world: &GraphWorld<A::Marker>,
     candidate: &'c mut Candidate,
 ) -> Result<&'c Bijection, Flaw> {
-    let unexplored = exploration.map().unexplored_count();
-    let Some(map) = exploration.map().complete() else {
+    let journey = state.journey();
+    let unexplored = journey.map().unexplored_count();
+    let Some(map) = journey.map().complete() else {
         return Err(Flaw::Unfinished { unexplored });
     };
     let graph = world.graph();
@@ -128,13 +75,13 @@ pub fn judge<'c>(
     if !bijection.verify(map, graph) {
         return Err(Flaw::WrongMap);
     }
-    let (believed, truly) = (exploration.robot(), world.pose());
+    let (believed, truly) = (journey.robot(), world.pose());
     let image = bijection.images()[believed.at()];
     if image != truly {
         return Err(Flaw::WrongPose { believed, image, truly });
     }
-    let (moves, bound) =
-        (exploration.moves(), move_bound(graph.edge_count(), graph.vertex_count()));
+    let bound = algorithm.move_bound(graph.edge_count(), graph.vertex_count());
+    let moves = journey.moves();
     if moves > bound {
         return Err(Flaw::TooManyMoves { moves, bound });
     }
@@ -170,21 +117,22 @@ impl fmt::Display for FalseStep {
 
 /// Runs an algorithm on a start, and answers the first step after which its map no longer embeds in
 /// the world; `None` if it always does.
-pub fn first_false_step(
-    algorithm: &impl Algorithm,
+pub fn first_false_step<A: Algorithm>(
+    algorithm: &A,
     graph: &EmbeddedGraph,
     facing: Dart,
-    exploration: &mut Exploration,
+    state: &mut A::State,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |exploration: &Exploration, added: Event| {
+    let mut watch = |journey: &Journey, added: Event| {
         let adds = matches!(added, Event::LoopClosed { .. } | Event::VertexAdded { .. });
-        if adds && first.is_none() && !embeds(exploration.map(), graph, facing) {
-            first = Some(FalseStep { moves: exploration.moves(), added });
+        if adds && first.is_none() && !embeds(journey.map(), graph, facing) {
+            first = Some(FalseStep { moves: journey.moves(), added });
         }
     };
     // Whether it ends well does not matter here.
-    let _ = algorithm.run(&mut GraphWorld::new(graph, facing), exploration, &mut watch);
+    let mut world = GraphWorld::with_marker(graph, A::Marker::default(), facing);
+    let _ = algorithm.run(&mut world, state, &mut watch);
     first
 }
 

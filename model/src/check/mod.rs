@@ -1,15 +1,19 @@
-//! The exhaustive check: Algorithm 1 run on every start of every small world, and judged.
+//! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
+mod algorithm;
 mod costs;
 mod every_way;
 mod judge;
 mod sweep;
 mod tally;
 
+pub use algorithm::{
+    Algorithm, Algorithm1, AllChoices, MovableMarker, OpenChoices, Order, RunState,
+};
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
-pub use judge::{Algorithm, Algorithm1, FalseStep, Flaw, first_false_step, judge, move_bound};
-pub use sweep::{Choice, Shard, ShardError, Sweep, check_worlds};
+pub use judge::{FalseStep, Flaw, first_false_step, judge};
+pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{Failure, Tally, WorstStart};
 
 #[cfg(test)]
@@ -19,9 +23,13 @@ mod tests {
     use super::*;
     use crate::{
         any_graph::{Class, any_graph},
-        embedded_graph::Dart,
+        embedded_graph::{Dart, EmbeddedGraph},
         isomorphism::Candidate,
-        mapping::{Choices, Exploration, PartialMap, map_world},
+        mapping::{
+            Choices, Exploration, MarkerSearch, Nearest, PartialMap, map_with_movable_marker,
+            map_world,
+        },
+        marker::Movable,
         world::GraphWorld,
     };
 
@@ -49,6 +57,20 @@ mod tests {
         }
     }
 
+    fn flaw_with_movable(
+        graph: &EmbeddedGraph,
+        facing: Dart,
+        mut choices: impl Choices,
+    ) -> Option<Flaw> {
+        let mut world = GraphWorld::with_marker(graph, Movable, facing);
+        let mut search = MarkerSearch::new(graph.dart_count());
+        let mut candidate = Candidate::default();
+        map_with_movable_marker(&mut world, &mut choices, &mut search, &mut ())
+            .map_err(Flaw::from)
+            .and_then(|()| judge(&MovableMarker, &search, facing, &world, &mut candidate))
+            .err()
+    }
+
     proptest! {
         // paper: alg1.5, alg1.9, alg1.isomorphic, alg1.located
         #[test]
@@ -62,7 +84,22 @@ mod tests {
             let mut exploration = Exploration::new(graph.dart_count());
             let mut choices = Drawn { numbers: &numbers, next: 0 };
             map_world(&mut world, &mut choices, &mut exploration, &mut ()).unwrap();
-            prop_assert!(judge(&exploration, facing, &world, &mut Candidate::default()).is_ok());
+            let mut candidate = Candidate::default();
+            let verdict = judge(&Algorithm1, &exploration, facing, &world, &mut candidate);
+            prop_assert!(verdict.is_ok());
+        }
+
+        // paper: movable.place, movable.new, movable.known, movable.back-link
+        #[test]
+        fn larger_simple_worlds_are_mapped_right_with_a_movable_marker(
+            graph in any_graph(Class::Simple, 60),
+            facing in any::<u32>(),
+            numbers in proptest::collection::vec(any::<u16>(), 1..20),
+        ) {
+            let facing = Dart(facing % graph.dart_count() as u32);
+            let drawn = Drawn { numbers: &numbers, next: 0 };
+            prop_assert_eq!(flaw_with_movable(&graph, facing, Nearest), None);
+            prop_assert_eq!(flaw_with_movable(&graph, facing, drawn), None);
         }
 
         /// The default choices look at nothing but the map, so the numbers of a world do not matter.

@@ -4,26 +4,13 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Algorithm, Failure, Flaw, Tally, every_way, first_false_step, judge::judge};
+use super::{Algorithm, Failure, Flaw, RunState, Tally, first_false_step, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Part, SizeError, Watch, in_parts},
     isomorphism::{Candidate, canonical},
-    mapping::Exploration,
     world::GraphWorld,
 };
-
-/// Which runs of each start are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choice {
-    /// That of the default choices.
-    Default,
-    /// That, and every other resolution of what the algorithm leaves open.
-    All {
-        /// How many states of one start may be explored.
-        budget: u64,
-    },
-}
 
 /// One of several disjoint shares of a check that together are the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +64,6 @@ impl fmt::Display for Shard {
 pub struct Sweep {
     worlds: Enumeration,
     shard: Shard,
-    choice: Choice,
 }
 
 impl Sweep {
@@ -85,13 +71,8 @@ impl Sweep {
     ///
     /// # Errors
     /// Where the worlds cannot be enumerated.
-    pub fn new(
-        class: Class,
-        edges: usize,
-        shard: Shard,
-        choice: Choice,
-    ) -> Result<Self, SizeError> {
-        Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard, choice })
+    pub fn new(class: Class, edges: usize, shard: Shard) -> Result<Self, SizeError> {
+        Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard })
     }
 
     /// The class of worlds.
@@ -105,7 +86,7 @@ impl Sweep {
     pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
         tally_parts(&parts, watch, |part, tally| {
-            let mut checker = Checker::new(algorithm, self.choice, watch);
+            let mut checker = Checker::new(algorithm, watch);
             part.for_each(&mut |found| {
                 checker.check_starts(found.graph, found.automorphisms as usize, tally)
             })
@@ -117,13 +98,12 @@ impl Sweep {
 /// on the number of threads.
 pub fn check_worlds(
     graphs: &[EmbeddedGraph],
-    choice: Choice,
     algorithm: &impl Algorithm,
     watch: &impl Watch,
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
-        let mut checker = Checker::new(algorithm, choice, watch);
+        let mut checker = Checker::new(algorithm, watch);
         part.iter().try_for_each(|graph| {
             checker.check_starts(graph, canonical(graph).automorphisms, tally)
         })
@@ -153,23 +133,16 @@ fn tally_parts<P: Sync>(
 }
 
 /// What is used again from run to run.
-struct Checker<'a, A, W> {
+struct Checker<'a, A: Algorithm, W> {
     algorithm: &'a A,
-    choice: Choice,
     watch: &'a W,
-    exploration: Exploration,
+    state: A::State,
     candidate: Candidate,
 }
 
 impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
-    fn new(algorithm: &'a A, choice: Choice, watch: &'a W) -> Self {
-        Self {
-            algorithm,
-            choice,
-            watch,
-            exploration: Exploration::new(0),
-            candidate: Candidate::default(),
-        }
+    fn new(algorithm: &'a A, watch: &'a W) -> Self {
+        Self { algorithm, watch, state: RunState::new(0), candidate: Candidate::default() }
     }
 
     fn check_starts(
@@ -203,16 +176,15 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
                 return;
             }
         }
-        if let Choice::All { budget } = self.choice {
-            match every_way(self.algorithm, graph, facing, budget, self.watch) {
-                Ok(ways) => tally.count_every_way(&ways),
-                Err(flaw) => {
-                    // The run is not that of the default choices, whose story could be told.
-                    let (graph, moves) = (graph.clone(), None);
-                    let failure = Failure { graph, facing, flaw, moves, false_step: None };
-                    tally.failure.get_or_insert(failure);
-                    return;
-                }
+        match self.algorithm.other_runs(graph, facing, self.watch) {
+            Ok(None) => {}
+            Ok(Some(ways)) => tally.count_every_way(&ways),
+            Err(flaw) => {
+                // The run is not that of the default choices, whose story could be told.
+                let (graph, moves) = (graph.clone(), None);
+                let failure = Failure { graph, facing, flaw, moves, false_step: None };
+                tally.failure.get_or_insert(failure);
+                return;
             }
         }
         tally.mapped += 1;
@@ -220,20 +192,20 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
 
     fn run(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Result<u64, Flaw> {
         // No true map has more darts than the world.
-        self.exploration.set_bound(graph.dart_count());
-        self.exploration.clear();
-        let mut world = GraphWorld::new(graph, facing);
-        self.algorithm.run(&mut world, &mut self.exploration, &mut ())?;
-        judge(&self.exploration, facing, &world, &mut self.candidate)?;
-        Ok(self.exploration.moves())
+        self.state.set_bound(graph.dart_count());
+        self.state.clear();
+        let mut world = GraphWorld::with_marker(graph, A::Marker::default(), facing);
+        self.algorithm.run(&mut world, &mut self.state, &mut ())?;
+        judge(self.algorithm, &self.state, facing, &world, &mut self.candidate)?;
+        Ok(self.state.journey().moves())
     }
 
     fn failure(&mut self, graph: &EmbeddedGraph, facing: Dart, flaw: Flaw) -> Failure {
-        let moves = Some(self.exploration.moves());
+        let moves = Some(self.state.journey().moves());
         let graph = graph.clone();
         // With room for what is wrongly added.
-        self.exploration.set_bound(2 * graph.dart_count());
-        let false_step = first_false_step(self.algorithm, &graph, facing, &mut self.exploration);
+        self.state.set_bound(2 * graph.dart_count());
+        let false_step = first_false_step(self.algorithm, &graph, facing, &mut self.state);
         Failure { graph, facing, flaw, moves, false_step }
     }
 }

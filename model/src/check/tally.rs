@@ -1,6 +1,6 @@
 //! What a check counts.
 
-use super::{EveryWay, FalseStep, Flaw};
+use super::{EveryWay, FalseStep, Flaw, Order};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The start that took the most moves.
@@ -71,11 +71,11 @@ impl Tally {
         self.worst.as_ref().map_or(0, |worst| worst.moves)
     }
 
-    /// The largest moves / (m^2 n), for worlds with `edges` edges.
+    /// The largest ratio of moves to the order of the cost, for worlds with `edges` edges.
     #[must_use]
-    pub fn largest_ratio(&self, edges: usize) -> f64 {
+    pub fn largest_ratio(&self, edges: usize, order: Order) -> f64 {
         let (moves, vertices) = self.dearest.unwrap_or((0, 1));
-        moves as f64 / (edges as f64 * edges as f64 * vertices as f64)
+        moves as f64 / order.of(edges as f64, vertices as f64)
     }
 
     /// Counts a run that ended.

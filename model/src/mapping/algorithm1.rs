@@ -81,13 +81,13 @@ pub fn try_path<W: World>(
             // 14, 15: reject the hypothesis, and retrace the path back to vu.
             exploration.retrace(world, observer)?;
             let event = Event::Rejected { hypothesis, followed, expected, perceived };
-            observer.event(exploration, event);
+            observer.event(exploration.journey(), event);
             return Ok(Verdict::Rejected);
         }
         pose = next;
     }
     // 16, 17: the percepts match throughout; confirm the hypothesis.
     exploration.arrive_at_marker(pose);
-    observer.event(exploration, Event::Confirmed { hypothesis, followed });
+    observer.event(exploration.journey(), Event::Confirmed { hypothesis, followed });
     Ok(Verdict::Confirmed)
 }

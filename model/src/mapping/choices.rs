@@ -1,5 +1,5 @@
 //! What Algorithm 1 leaves open: which unexplored edge next (line 5), which hypothesis next
-//! (line 9).
+//! (line 9). Mapping with a movable marker leaves open the former alone.
 
 use super::partial_map::PartialMap;
 use crate::embedded_graph::Dart;
@@ -40,7 +40,7 @@ mod tests {
     use crate::{
         any_graph::{Class, any_graph},
         embedded_graph::{EmbeddedGraph, Vertex},
-        mapping::{Event, Exploration, map_world},
+        mapping::{Event, Exploration, Journey, map_world},
         world::GraphWorld,
     };
 
@@ -82,7 +82,7 @@ mod tests {
 
     fn story(graph: &EmbeddedGraph, choices: &mut impl Choices) -> Vec<Event> {
         let mut story = Vec::new();
-        let mut listen = |_: &Exploration, event: Event| story.push(event);
+        let mut listen = |_: &Journey, event: Event| story.push(event);
         let mut exploration = Exploration::new(graph.dart_count());
         let mut world = GraphWorld::new(graph, Dart(0));
         map_world(&mut world, choices, &mut exploration, &mut listen).unwrap();

@@ -1,4 +1,4 @@
-//! How a world can fail Algorithm 1: it breaks, it contradicts itself, or it has no end.
+//! How a world can fail an algorithm: it breaks, it contradicts itself, or it has no end.
 
 use std::fmt;
 
@@ -36,9 +36,15 @@ impl<E> From<Contradiction> for MappingError<E> {
 /// the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Contradiction {
-    /// At the start the marker must be seen pointing along door 0.
+    /// At the start the directional marker must be seen pointing along door 0.
     #[error("at the start the marker must point along door 0, but there is {}", Seen(perceived))]
     Start {
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// At the start the movable marker must lie.
+    #[error("at the start the marker must lie, but there is {}", Seen(perceived))]
+    StartWithoutMarker {
         /// What was perceived.
         perceived: Percept,
     },
@@ -48,7 +54,7 @@ pub enum Contradiction {
         /// What was perceived.
         perceived: Percept,
     },
-    /// A known place looks different on the way to an unexplored edge.
+    /// A known place looks different.
     #[error(
         "at the known vertex v{}, entered by its dart {index}, there should be {} but there is {}",
         vertex.0, Seen(expected), Seen(perceived)
@@ -78,10 +84,39 @@ pub enum Contradiction {
         /// What was perceived.
         perceived: Percept,
     },
-    /// A place looks different on the way back from a rejected hypothesis.
+    /// A marker is seen at the far end of an unexplored edge while the robot carries it.
+    #[error(
+        "the robot carries the marker, but behind the unexplored dart {index} of vertex v{} there \
+         is {}",
+        vertex.0, Seen(perceived)
+    )]
+    SecondMarker {
+        /// The vertex from which the unexplored edge left.
+        vertex: Vertex,
+        /// The index of its dart.
+        index: u32,
+        /// What was perceived.
+        perceived: Percept,
+    },
+    /// Both ends of an unexplored edge are at known vertices, but no unexplored dart of the one
+    /// leads to the marker at the other.
+    #[error(
+        "an unexplored edge joins the vertices v{} and v{}, but no unexplored dart of v{} leads to \
+         the marker at v{}",
+        marked.0, vertex.0, vertex.0, marked.0
+    )]
+    NoBackLink {
+        /// The vertex whose unexplored darts were tried.
+        vertex: Vertex,
+        /// The vertex at which the marker lies.
+        marked: Vertex,
+    },
+    /// A place looks different on the way back: from a rejected hypothesis, or to a marker that was
+    /// left there.
     #[error("on the way back there should be {} but there is {}", Seen(expected), Seen(perceived))]
     WayBack {
-        /// What was perceived there on the way out, turned to the new entry.
+        /// What was perceived there on the way out, turned to the new entry, with the marker if the
+        /// robot left it there.
         expected: Percept,
         /// What was perceived on the way back.
         perceived: Percept,
@@ -98,6 +133,7 @@ impl fmt::Display for Seen<'_> {
         match sighting {
             Sighting::Nothing => write!(out, "without the marker"),
             Sighting::Pointing(_) => write!(out, "with the {sighting}"),
+            Sighting::Lying(1) => write!(out, "with a marker lying there"),
             _ => write!(out, "with a sign of another kind of marker ({sighting})"),
         }
     }

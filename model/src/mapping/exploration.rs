@@ -6,11 +6,11 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, partial_map::START,
-    tree::Tree,
+    Choices, Contradiction, Event, Journey, MappingError, Observer, PartialMap, journey::NOWHERE,
+    partial_map::START, tree::Tree,
 };
 use crate::{
-    embedded_graph::{Dart, MAX_EDGES},
+    embedded_graph::Dart,
     percept::{Door, Percept, Sighting, retrace},
     world::World,
 };
@@ -19,30 +19,18 @@ use crate::{
 /// more than 8,000 edges, or one without end.
 pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 
-/// The state of a run of Algorithm 1: what the robot knows, where it is, and how far it went.
+/// The state of a run of Algorithm 1: the robot's journey, and its hypotheses about where it is.
 #[derive(Clone, Debug)]
 pub struct Exploration {
-    bound: usize,
-    moves: u64,
-    map: PartialMap,
-    /// The dart of the map by which the robot has come in; between lines 6 and 17, when it is at no
-    /// known place, the last such.
-    robot: Dart,
+    journey: Journey,
     here: Here,
-    /// The known end of the edge that is being explored; none at line 4.
-    edge: Option<Dart>,
-    /// What the robot perceived at its unknown end.
-    arrival: Percept,
     /// H, from the farthest to the nearest.
     hypotheses: Vec<Dart>,
     /// The percept at each vertex left since setting out, and the door by which it was left.
     trail: Vec<(Percept, Door)>,
-    from_robot: Tree,
     to_marker: Tree,
     /// Whether `to_marker` is that of the present map.
     to_marker_is_current: bool,
-    /// Scratch: the darts on the way to the known end of the edge.
-    way: Vec<Dart>,
 }
 
 /// How the robot stands where it is.
@@ -55,56 +43,52 @@ struct Here {
     entry: Door,
 }
 
-const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
-
 impl Exploration {
     /// A state ready for a run that may come to know at most `bound` darts.
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
-            bound: bound.min(2 * MAX_EDGES),
-            moves: 0,
-            map: PartialMap::new(),
-            robot: FACING,
+            journey: Journey::new(bound),
             here: Here { percept: NOWHERE, entry: Door::BACK },
-            edge: None,
-            arrival: NOWHERE,
             hypotheses: Vec::new(),
             trail: Vec::new(),
-            from_robot: Tree::default(),
             to_marker: Tree::default(),
             to_marker_is_current: false,
-            way: Vec::new(),
         }
     }
 
     /// Changes how many darts later runs may come to know.
     pub fn set_bound(&mut self, bound: usize) {
-        self.bound = bound.min(2 * MAX_EDGES);
+        self.journey.set_bound(bound);
+    }
+
+    /// The robot's journey: what it knows, where it is in it, and how far it went.
+    #[inline]
+    #[must_use]
+    pub fn journey(&self) -> &Journey {
+        &self.journey
     }
 
     /// The map S, with the unexplored edges U.
     #[inline]
     #[must_use]
     pub fn map(&self) -> &PartialMap {
-        &self.map
+        self.journey.map()
     }
 
     /// The robot's pose in the map: the dart by which it has come in. At line 8, when it is at no
     /// known place, the last known one.
-    // paper: alg1.located
     #[inline]
     #[must_use]
     pub fn robot(&self) -> Dart {
-        self.robot
+        self.journey.robot()
     }
 
     /// The moves made so far.
-    // paper: cost.moves, cost.lower-bound
     #[inline]
     #[must_use]
     pub fn moves(&self) -> u64 {
-        self.moves
+        self.journey.moves()
     }
 
     /// At line 8: the hypotheses that are left, each the unexplored dart by which the robot would
@@ -116,10 +100,8 @@ impl Exploration {
 
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.moves = 0;
-        self.map.clear();
-        self.stand_at(FACING, NOWHERE);
-        self.edge = None;
+        self.journey.clear();
+        self.stand(NOWHERE);
         self.hypotheses.clear();
         self.trail.clear();
     }
@@ -139,25 +121,17 @@ impl Exploration {
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
-        self.check_bound(percept.degree)?;
-        let start = self.map.add_vertex(percept.degree);
-        self.stand_at(FACING, percept);
-        self.to_marker.plant(&self.map, start);
+        let start = self.journey.begin(percept, observer)?;
+        self.stand(percept);
+        self.to_marker.plant(self.journey.map(), start);
         self.to_marker_is_current = true;
-        observer.event(self, Event::Started { percept });
         Ok(())
     }
 
     /// Lines 4 and 5: the edge to explore next, as chosen; `None` if all is explored.
     // paper: alg1.5
     pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
-        if self.map.unexplored_is_empty() {
-            return None;
-        }
-        self.from_robot.plant(&self.map, self.map.vertex(self.robot));
-        let nearest = self.from_robot.nearest_unexplored(&self.map)?;
-        let chosen = choices.next_edge(&self.map, self.robot, nearest);
-        Some(if self.map.is_unexplored(chosen) { chosen } else { nearest })
+        self.journey.next_edge(choices)
     }
 
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
@@ -175,40 +149,24 @@ impl Exploration {
         world: &mut W,
         observer: &mut impl Observer,
     ) -> Result<(), MappingError<W::Error>> {
-        if !self.map.is_unexplored(edge) {
+        if !self.map().is_unexplored(edge) {
             return Ok(());
         }
         self.set_out();
-        let mut way = mem::take(&mut self.way);
-        self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
-        self.from_robot.path_from_root(&self.map, self.map.vertex(edge), &mut way);
-        for &dart in &way {
-            let Some(next) = self.map.opposite(dart) else {
-                break;
-            };
-            let perceived = self.take(self.map.door(self.robot, dart), world, observer)?;
-            let expected = self.map.expected(next);
-            if perceived != expected {
-                let (vertex, index) = (self.map.vertex(next), self.map.index(next));
-                return Err(Contradiction::KnownPlace { vertex, index, expected, perceived }.into());
-            }
-            self.robot = next;
-        }
-        self.way = way;
-        let arrival = self.take(self.map.door(self.robot, edge), world, observer)?;
-        self.edge = Some(edge);
-        self.arrival = arrival;
+        self.journey.explore(edge, PartialMap::expected, world, observer)?;
+        let percept = self.journey.arrival;
+        self.stand(percept);
         self.raise_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
-        let contradicted = self.map.unexplored_count() as usize - 1 - hypotheses;
-        let event = Event::Arrived { edge, percept: arrival, contradicted, hypotheses };
-        observer.event(self, event);
+        let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
+        let event = Event::Arrived { edge, percept, contradicted, hypotheses };
+        observer.event(&self.journey, event);
         Ok(())
     }
 
     // paper: alg1.hypotheses
     fn raise_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
-        let Self { map, arrival, hypotheses, .. } = self;
+        let Self { journey: Journey { map, arrival, .. }, hypotheses, .. } = self;
         hypotheses.clear();
         let marked = arrival.sighting != Sighting::Nothing;
         for vertex in map.vertices().rev() {
@@ -245,7 +203,7 @@ impl Exploration {
         if self.hypotheses.is_empty() {
             return None;
         }
-        let chosen = choices.next_hypothesis(&self.map, &self.hypotheses);
+        let chosen = choices.next_hypothesis(self.journey.map(), &self.hypotheses);
         Some(self.hypotheses.remove(chosen.min(self.hypotheses.len() - 1)))
     }
 
@@ -255,7 +213,7 @@ impl Exploration {
     #[inline]
     #[must_use]
     pub fn toward_marker(&self, pose: Dart) -> Option<(Door, Dart)> {
-        self.to_marker.toward_root(&self.map, pose)
+        self.to_marker.toward_root(self.map(), pose)
     }
 
     /// Begins a path that can be retraced.
@@ -277,31 +235,10 @@ impl Exploration {
     ) -> Result<Percept, MappingError<W::Error>> {
         let Here { percept, entry } = self.here;
         self.trail.push((percept, door));
-        let perceived = self.go(door.seen_from(entry, percept.degree), world, observer)?;
-        self.here = Here { percept: perceived, entry: Door::BACK };
+        let door = door.seen_from(entry, percept.degree);
+        let perceived = self.journey.go(door, world, observer)?;
+        self.stand(perceived);
         Ok(perceived)
-    }
-
-    #[inline]
-    fn go<W: World>(
-        &mut self,
-        door: Door,
-        world: &mut W,
-        observer: &mut impl Observer,
-    ) -> Result<Percept, MappingError<W::Error>> {
-        world.traverse(door).map_err(MappingError::World)?;
-        self.moves += 1;
-        let percept = world.percept().map_err(MappingError::World)?;
-        let possible = match percept.sighting {
-            Sighting::Pointing(door) => door.0 < percept.degree,
-            _ => percept.degree > 0,
-        };
-        observer.event(self, Event::Moved { door, percept });
-        if possible {
-            Ok(percept)
-        } else {
-            Err(Contradiction::Impossible { perceived: percept }.into())
-        }
     }
 
     /// Line 15: goes back along the path since [`set_out`](Self::set_out), and counts doors there
@@ -318,7 +255,7 @@ impl Exploration {
         let trail = mem::take(&mut self.trail);
         let doors = retrace(trail.iter().map(|&(percept, door)| (door, percept.degree)));
         for (back, &(percept, door)) in doors.zip(trail.iter().rev()) {
-            let perceived = self.go(back, world, observer)?;
+            let perceived = self.journey.go(back, world, observer)?;
             let expected = percept.seen_from(door);
             if perceived != expected {
                 return Err(Contradiction::WayBack { expected, perceived }.into());
@@ -334,11 +271,13 @@ impl Exploration {
     /// Lines 16 and 17: a path was followed to its end, and the robot knows that it has come to the
     /// marker by the dart `pose`.
     pub fn arrive_at_marker(&mut self, pose: Dart) {
-        self.stand_at(pose, self.here.percept);
+        self.journey.robot = pose;
+        self.stand(self.here.percept);
     }
 
-    fn stand_at(&mut self, pose: Dart, percept: Percept) {
-        self.robot = pose;
+    /// The robot has come in where it perceives this.
+    #[inline]
+    fn stand(&mut self, percept: Percept) {
         self.here = Here { percept, entry: Door::BACK };
     }
 
@@ -346,12 +285,10 @@ impl Exploration {
     /// explored, or the hypothesis is no other unexplored dart, nothing happens.
     // paper: alg1.18, alg1.19, alg1.20
     pub fn close_loop(&mut self, hypothesis: Dart, observer: &mut impl Observer) {
-        let possible = |edge: &Dart| *edge != hypothesis && self.map.is_unexplored(hypothesis);
-        let Some(edge) = self.edge.take().filter(possible) else { return };
-        self.map.join(edge, hypothesis);
-        self.to_marker_is_current &= self.to_marker.stays_with(&self.map, edge, hypothesis);
+        let Some(edge) = self.journey.close_loop(hypothesis, observer) else { return };
+        self.to_marker_is_current &=
+            self.to_marker.stays_with(self.journey.map(), edge, hypothesis);
         self.hypotheses.clear();
-        observer.event(self, Event::LoopClosed { edge, other: hypothesis });
     }
 
     /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
@@ -361,28 +298,14 @@ impl Exploration {
     /// The bound.
     // paper: alg1.21, alg1.22, alg1.23
     pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
-        let Some(edge) = self.edge else { return Ok(()) };
-        self.check_bound(self.arrival.degree)?;
-        self.edge = None;
-        let vertex = self.map.add_vertex(self.arrival.degree);
-        let entry = self.map.first_dart(vertex);
-        self.map.join(edge, entry);
-        if self.to_marker_is_current {
-            self.to_marker.add_leaf(&self.map, vertex);
-        }
         // The robot may have come back by another dart than it first came in by.
-        let really = Dart(entry.0 + self.here.entry.0);
-        self.stand_at(really, self.map.expected(really));
-        self.hypotheses.clear();
-        observer.event(self, Event::VertexAdded { edge, vertex });
-        Ok(())
-    }
-
-    fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {
-        let bound = self.bound;
-        if self.map.dart_count().saturating_add(degree as usize) > bound {
-            return Err(MappingError::Bound { bound });
+        let entry = self.here.entry;
+        let Some(vertex) = self.journey.add_place(entry, observer)? else { return Ok(()) };
+        if self.to_marker_is_current {
+            self.to_marker.add_leaf(self.journey.map(), vertex);
         }
+        self.stand(self.map().expected(self.robot()));
+        self.hypotheses.clear();
         Ok(())
     }
 }

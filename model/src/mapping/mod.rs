@@ -1,9 +1,13 @@
-//! Mapping a world with markers: Algorithm 1 and what it stands on. Section 2.3.
+//! Mapping a world with markers: Algorithm 1, the movable marker algorithm, and what they stand on.
+//! Section 2.3.
 
 mod algorithm1;
 mod choices;
 mod contradiction;
 mod exploration;
+mod journey;
+mod marker_search;
+mod movable_marker;
 mod partial_map;
 mod story;
 mod tree;
@@ -12,5 +16,8 @@ pub use algorithm1::{Verdict, map_world, try_path};
 pub use choices::{Choices, Nearest};
 pub use contradiction::{Contradiction, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
+pub use journey::Journey;
+pub use marker_search::MarkerSearch;
+pub use movable_marker::{Place, map_with_movable_marker, validate_back_link, validate_place};
 pub use partial_map::{FACING, PartialMap};
-pub use story::{Event, Observer};
+pub use story::{Event, MovableEvent, Observer};

@@ -140,7 +140,10 @@ impl PartialMap {
 
     /// The darts of a vertex in the order of their indices.
     #[must_use]
-    pub fn darts_of(&self, vertex: Vertex) -> impl ExactSizeIterator<Item = Dart> + use<> {
+    pub fn darts_of(
+        &self,
+        vertex: Vertex,
+    ) -> impl ExactSizeIterator<Item = Dart> + DoubleEndedIterator + use<> {
         self.known.darts_of(vertex)
     }
 
@@ -152,7 +155,8 @@ impl PartialMap {
         Door::between(self.index(pose), self.index(to), degree)
     }
 
-    /// What the robot expects to perceive when it comes in by the dart `pose`.
+    /// What the robot expects to perceive when it comes in by the dart `pose`, where the directional
+    /// marker lies at the start vertex.
     #[inline]
     #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {
@@ -162,6 +166,19 @@ impl PartialMap {
             Sighting::Nothing
         };
         Percept { degree: self.known.degree_around(pose), sighting }
+    }
+
+    /// What the robot expects to perceive when it comes in by the dart `pose`, at a vertex without a
+    /// marker.
+    #[inline]
+    #[must_use]
+    pub fn unmarked(&self, pose: Dart) -> Percept {
+        Percept { degree: self.known.degree_around(pose), sighting: Sighting::Nothing }
+    }
+
+    /// The known vertices at the far ends of a vertex's explored darts.
+    pub fn neighbours(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> + '_ {
+        self.darts_of(vertex).filter_map(|dart| self.opposite(dart)).map(|far| self.vertex(far))
     }
 
     /// The map as an embedded graph, once nothing is unexplored. Its facing dart is [`FACING`].

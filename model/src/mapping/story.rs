@@ -1,8 +1,8 @@
-//! The story of a run of Algorithm 1, told to whoever listens.
+//! The story of a run, told to whoever listens.
 
 use crate::{
     embedded_graph::{Dart, Vertex},
-    mapping::Exploration,
+    mapping::Journey,
     percept::{Door, Percept},
 };
 
@@ -64,23 +64,62 @@ pub enum Event {
         /// The new vertex.
         vertex: Vertex,
     },
+    /// What happens with a movable marker only.
+    Movable(MovableEvent),
+}
+
+/// What happens in a run with a movable marker, besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MovableEvent {
+    /// The robot stands at the unknown end of an edge, with the marker in hand.
+    Arrived {
+        /// The known end of the edge.
+        edge: Dart,
+        /// What the robot perceives at the unknown one.
+        percept: Percept,
+        /// How many known vertices this may be.
+        candidates: usize,
+    },
+    /// The robot dropped the marker where it is.
+    Dropped,
+    /// The robot picked the marker up where it is.
+    PickedUp,
+    /// Place validation: the marker lies at a known vertex, where the robot is.
+    Found {
+        /// The vertex.
+        vertex: Vertex,
+    },
+    /// Place validation: the marker is at no known vertex.
+    NotFound,
+    /// Back-link validation: the marker is not behind this unexplored dart, and the robot is back.
+    NotBehind {
+        /// The dart.
+        dart: Dart,
+        /// What the robot perceived behind it.
+        percept: Percept,
+    },
+    /// Back-link validation: the marker is behind this unexplored dart, and the robot is there.
+    Behind {
+        /// The dart.
+        dart: Dart,
+    },
 }
 
 /// Listens to a run.
 pub trait Observer {
-    /// Something happened; the exploration is as it is after it, but that at [`Event::Moved`] the
+    /// Something happened; the journey is as it is after it, but that at [`Event::Moved`] the
     /// robot's pose in the map is still that before the move.
-    fn event(&mut self, exploration: &Exploration, event: Event);
+    fn event(&mut self, journey: &Journey, event: Event);
 }
 
 /// Nobody listens.
 impl Observer for () {
     #[inline]
-    fn event(&mut self, _: &Exploration, _: Event) {}
+    fn event(&mut self, _: &Journey, _: Event) {}
 }
 
-impl<F: FnMut(&Exploration, Event)> Observer for F {
-    fn event(&mut self, exploration: &Exploration, event: Event) {
-        self(exploration, event);
+impl<F: FnMut(&Journey, Event)> Observer for F {
+    fn event(&mut self, journey: &Journey, event: Event) {
+        self(journey, event);
     }
 }

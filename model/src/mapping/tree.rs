@@ -1,5 +1,5 @@
 //! Shortest paths in the known map: breadth-first trees, the darts of a vertex in index order, the
-//! first parent kept. Section 2.3, Algorithm 1, lines 6 and 10.
+//! first parent kept. Section 2.3, Algorithm 1, lines 6 and 10; the search for a movable marker.
 
 use super::partial_map::PartialMap;
 use crate::{
@@ -127,6 +127,23 @@ impl Tree {
             vertex = map.vertex(down);
         }
         path.reverse();
+    }
+
+    /// Writes the vertices of the tree as a depth-first walk of it meets them: each before those
+    /// beyond it, and the darts of a vertex in index order.
+    pub(super) fn preorder(&self, map: &PartialMap, order: &mut Vec<Vertex>) {
+        order.clear();
+        let mut ahead: Vec<_> = self.reached.first().copied().into_iter().collect();
+        while let Some(vertex) = ahead.pop() {
+            order.push(vertex);
+            for far in map.darts_of(vertex).rev().filter_map(|dart| map.opposite(dart)) {
+                let neighbour = map.vertex(far);
+                let hops = self.hops[neighbour.at()];
+                if hops != UNREACHED && hops != 0 && self.up[neighbour.at()] == far {
+                    ahead.push(neighbour);
+                }
+            }
+        }
     }
 
     /// The next door towards the root, and the pose behind it; `None` at the root.

@@ -8,12 +8,29 @@ use std::{
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{Choice, Failure as Failed, Shard, Tally},
+    check::{Algorithm, Failure as Failed, Order, Shard, Tally},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
+    marker::Marker,
 };
 
-use crate::cli::{Failure, Outcome, numbers::grouped};
+use crate::cli::{Choice, Failure, Outcome, numbers::grouped};
+
+/// Which algorithm is checked, with which marker.
+#[derive(Clone, Copy)]
+pub(super) struct Subject {
+    algorithm: &'static str,
+    marker: &'static str,
+    /// The order of its cost.
+    order: Order,
+}
+
+impl Subject {
+    pub(super) fn of<A: Algorithm>(algorithm: &A) -> Self {
+        let marker = A::Marker::default().name();
+        Self { algorithm: algorithm.name(), marker, order: algorithm.order() }
+    }
+}
 
 /// What was checked of one number of edges.
 pub(super) struct Size<'a> {
@@ -30,7 +47,7 @@ pub(super) struct Size<'a> {
 pub(super) struct Report<'o> {
     out: &'o mut dyn Write,
     json: bool,
-    marker: &'static str,
+    subject: Subject,
     choice: Choice,
     header: bool,
     total: Tally,
@@ -40,16 +57,16 @@ impl<'o> Report<'o> {
     pub(super) fn new(
         out: &'o mut dyn Write,
         json: bool,
-        marker: &'static str,
+        subject: Subject,
         choice: Choice,
     ) -> Self {
-        Self { out, json, marker, choice, header: false, total: Tally::default() }
+        Self { out, json, subject, choice, header: false, total: Tally::default() }
     }
 
     /// One number of edges.
     pub(super) fn size(&mut self, size: &Size) -> Result<(), Failure> {
         if self.json {
-            let line = Line::new(size, self.marker, self.choice);
+            let line = Line::new(size, self.subject, self.choice);
             serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
             writeln!(self.out)?;
         } else {
@@ -69,11 +86,19 @@ impl<'o> Report<'o> {
             Shard::WHOLE => String::new(),
             shard => format!(", shard {shard}"),
         };
-        writeln!(self.out, "Algorithm 1, {} marker, {worlds}{share}\n", self.marker)?;
+        let Subject { algorithm, marker, order } = self.subject;
+        writeln!(self.out, "{algorithm}, {marker} marker, {worlds}{share}\n")?;
         write!(
             self.out,
             "{:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>10}  {:>4}  {:>12}",
-            "edges", "worlds", "starts", "mapped", "failed", "mean moves", "most", "most/(m^2 n)"
+            "edges",
+            "worlds",
+            "starts",
+            "mapped",
+            "failed",
+            "mean moves",
+            "most",
+            format!("most/({order})"),
         )?;
         if self.choice != Choice::Default {
             write!(self.out, "  {:>11}  {:>20}  {:>9}", "states", "runs", "moves")?;
@@ -96,7 +121,7 @@ impl<'o> Report<'o> {
             grouped(tally.failed().into()),
             tally.moves_total as f64 / tally.starts.max(1) as f64,
             tally.moves_max(),
-            tally.largest_ratio(edges),
+            tally.largest_ratio(edges, self.subject.order),
         )?;
         if self.choice != Choice::Default {
             let (least, most) = tally.extremes.unwrap_or_default();
@@ -114,7 +139,7 @@ impl<'o> Report<'o> {
             let step = step(failure).map_or(String::new(), |step| format!(" {step}"));
             writeln!(self.out, "\nWrong{step}: {}", failure.flaw)?;
             writeln!(self.out, "The start, as a world file for `toposlam explore`:\n")?;
-            writeln!(self.out, "{}", world_file::to_toml(&failed_world(failure)))?;
+            writeln!(self.out, "{}", world_file::to_toml(&failed_world(failure, self.subject)))?;
         }
         Ok(())
     }
@@ -197,21 +222,21 @@ struct FailureLine {
 }
 
 impl<'a> Line<'a> {
-    fn new(size: &Size<'a>, marker: &'a str, choice: Choice) -> Self {
+    fn new(size: &Size<'a>, subject: Subject, choice: Choice) -> Self {
         let &Size { edges, class, from, shard, tally } = size;
         Self {
             schema: 1,
             edges,
             class: from.is_none().then(|| class.name()),
             from: from.map(|path| path.display().to_string()),
-            marker,
+            marker: subject.marker,
             worlds: tally.worlds,
             starts: tally.starts,
             mapped: tally.mapped,
             failed: tally.failed(),
             moves_total: tally.moves_total,
             moves_max: tally.moves_max(),
-            largest_ratio: tally.largest_ratio(edges),
+            largest_ratio: tally.largest_ratio(edges, subject.order),
             every_way: (choice != Choice::Default).then(|| EveryWayLine {
                 states: tally.states,
                 runs: tally.runs,
@@ -225,7 +250,7 @@ impl<'a> Line<'a> {
                 cause: failure.flaw.to_string(),
                 step: step(failure),
                 moves: failure.moves,
-                world: world_file::to_json(&failed_world(failure)),
+                world: world_file::to_json(&failed_world(failure, subject)),
             }),
             holds: tally.failed() == 0
                 && tally.starts > 0
@@ -235,8 +260,8 @@ impl<'a> Line<'a> {
     }
 }
 
-fn failed_world(failure: &Failed) -> NamedWorld {
-    let about = format!("Algorithm 1 fails here: {}", failure.flaw);
+fn failed_world(failure: &Failed, subject: Subject) -> NamedWorld {
+    let about = format!("{} fails here: {}", subject.algorithm, failure.flaw);
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
@@ -248,6 +273,8 @@ fn step(failure: &Failed) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::check::Algorithm1;
+
     use super::*;
 
     #[test]
@@ -255,9 +282,9 @@ mod tests {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
         let (class, shard) = (Class::Simple, Shard::WHOLE);
         let size = Size { edges: 1, class, from: None, shard, tally: &tally };
-        let line =
-            serde_json::to_string(&Line::new(&size, "directional", Choice::All { budget: 9 }))
-                .unwrap();
+        let subject = Subject::of(&Algorithm1);
+        let line = Line::new(&size, subject, Choice::All { budget: 9 });
+        let line = serde_json::to_string(&line).unwrap();
         assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");
     }
 }

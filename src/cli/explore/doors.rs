@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Event, Exploration, Observer};
+use toposlam_model::mapping::{Event, Journey, Observer};
 
 /// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
 pub(super) struct Doors<'o, W> {
@@ -24,7 +24,7 @@ impl<'o, W: Write> Doors<'o, W> {
 }
 
 impl<W: Write> Observer for Doors<'_, W> {
-    fn event(&mut self, _: &Exploration, event: Event) {
+    fn event(&mut self, _: &Journey, event: Event) {
         if let (Ok(()), Event::Moved { door, .. }) = (&self.result, event) {
             let comma = if self.taken == 0 { "" } else { "," };
             self.taken += 1;

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{EveryWay, Flaw, move_bound},
+    check::{Algorithm, Algorithm1, EveryWay, Flaw},
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
@@ -141,7 +141,7 @@ impl Ending<'_> {
             story::vertices(vertices),
             story::counted(edges, "edge"),
             exploration.moves(),
-            move_bound(edges, vertices),
+            Algorithm1.move_bound(edges, vertices),
         )?;
         writeln!(out, "It is isomorphic to the world:")?;
         let name = |vertex| {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{Event, Exploration, Observer, PartialMap},
+    mapping::{Event, Journey, Observer, PartialMap},
     percept::{Door, Percept, Sighting},
 };
 
@@ -50,8 +50,8 @@ impl<'o, W: Write> Story<'o, W> {
         self.result
     }
 
-    fn tell(&mut self, exploration: &Exploration, event: Event) -> io::Result<()> {
-        let map = exploration.map();
+    fn tell(&mut self, journey: &Journey, event: Event) -> io::Result<()> {
+        let map = journey.map();
         match event {
             Event::Started { percept } => {
                 writeln!(self.out, "It drops its marker at v0, where it senses {percept}.")
@@ -66,7 +66,7 @@ impl<'o, W: Write> Story<'o, W> {
                 self.round += 1;
                 self.rejected = 0;
                 let edge = dart(map, edge);
-                let moves = self.count_moves(exploration);
+                let moves = self.count_moves(journey);
                 writeln!(self.out, "\n{:>3}  behind {edge}, after {moves}: {percept}", self.round)?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
@@ -79,7 +79,7 @@ impl<'o, W: Write> Story<'o, W> {
             }
             Event::Rejected { hypothesis, followed, expected, perceived } => {
                 self.rejected += 1;
-                let moves = self.count_moves(exploration);
+                let moves = self.count_moves(journey);
                 if self.rejected > TOLD && !self.detail.every_hypothesis {
                     return Ok(());
                 }
@@ -93,7 +93,7 @@ impl<'o, W: Write> Story<'o, W> {
             }
             Event::Confirmed { hypothesis, followed } => {
                 self.tell_untold()?;
-                let moves = self.count_moves(exploration);
+                let moves = self.count_moves(journey);
                 let how = match followed {
                     0 => "the marker is here and points as it must".to_owned(),
                     _ => format!("its path leads to the marker, which points as it must ({moves})"),
@@ -119,6 +119,8 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 self.tell_map(map)
             }
+            // Algorithm 1 has none of these.
+            Event::Movable(_) => Ok(()),
         }
     }
 
@@ -147,16 +149,16 @@ impl<'o, W: Write> Story<'o, W> {
         )
     }
 
-    fn count_moves(&mut self, exploration: &Exploration) -> String {
-        let moves = exploration.moves() - std::mem::replace(&mut self.moves, exploration.moves());
+    fn count_moves(&mut self, journey: &Journey) -> String {
+        let moves = journey.moves() - std::mem::replace(&mut self.moves, journey.moves());
         counted(moves as usize, "move")
     }
 }
 
 impl<W: Write> Observer for Story<'_, W> {
-    fn event(&mut self, exploration: &Exploration, event: Event) {
+    fn event(&mut self, journey: &Journey, event: Event) {
         if self.result.is_ok() {
-            self.result = self.tell(exploration, event);
+            self.result = self.tell(journey, event);
         }
     }
 }

@@ -1,0 +1,276 @@
+//! What can be checked: an algorithm that maps worlds with a marker. Section 2.3.
+
+use std::fmt;
+
+use super::{EveryWay, Flaw, every_way};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Watch,
+    mapping::{
+        Exploration, Journey, MappingError, MarkerSearch, Nearest, Observer, Verdict,
+        map_with_movable_marker, map_world, try_path,
+    },
+    marker::{Directional, Marker, Movable},
+    world::{GraphWorld, Refused},
+};
+
+/// An algorithm that maps worlds; the check is run on those of the paper, and its tests on broken
+/// variants.
+pub trait Algorithm: Sync {
+    /// The marker with which it maps.
+    type Marker: Marker + Clone + Default;
+
+    /// What it keeps of a run.
+    type State: RunState;
+
+    /// What it is called in a report.
+    fn name(&self) -> &'static str;
+
+    /// The order of its cost.
+    fn order(&self) -> Order;
+
+    /// The most moves that it may make in a world of this size.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64;
+
+    /// Maps a world, with the default choices; afterwards the state holds map, pose and moves.
+    ///
+    /// # Errors
+    /// Those of the algorithm.
+    fn run(
+        &self,
+        world: &mut GraphWorld<Self::Marker>,
+        state: &mut Self::State,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>>;
+
+    /// The runs that are to be made of a start besides, judged; none, but with [`AllChoices`].
+    ///
+    /// # Errors
+    /// The first [`Flaw`].
+    fn other_runs(
+        &self,
+        _graph: &EmbeddedGraph,
+        _facing: Dart,
+        _watch: &impl Watch,
+    ) -> Result<Option<EveryWay>, Flaw> {
+        Ok(None)
+    }
+}
+
+/// What an algorithm keeps of a run. All memory is kept from run to run.
+pub trait RunState: Clone {
+    /// A state ready for a run that may come to know at most `bound` darts.
+    fn new(bound: usize) -> Self;
+
+    /// Changes how many darts later runs may come to know.
+    fn set_bound(&mut self, bound: usize);
+
+    /// Forgets an earlier run.
+    fn clear(&mut self);
+
+    /// What the robot knows, where it is in it, and how far it went.
+    fn journey(&self) -> &Journey;
+}
+
+macro_rules! run_state {
+    ($state:ty) => {
+        impl RunState for $state {
+            fn new(bound: usize) -> Self {
+                Self::new(bound)
+            }
+
+            fn set_bound(&mut self, bound: usize) {
+                self.set_bound(bound);
+            }
+
+            fn clear(&mut self) {
+                self.clear();
+            }
+
+            fn journey(&self) -> &Journey {
+                self.journey()
+            }
+        }
+    };
+}
+run_state!(Exploration);
+run_state!(MarkerSearch);
+
+/// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// `m n`.
+    EdgesVertices,
+    /// `m^2 n`.
+    EdgesSquaredVertices,
+}
+
+impl Order {
+    /// What it is for a world of this size.
+    #[must_use]
+    pub fn of(self, edges: f64, vertices: f64) -> f64 {
+        match self {
+            Self::EdgesVertices => edges * vertices,
+            Self::EdgesSquaredVertices => edges * edges * vertices,
+        }
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(match self {
+            Self::EdgesVertices => "m n",
+            Self::EdgesSquaredVertices => "m^2 n",
+        })
+    }
+}
+
+/// Algorithm 1, or a variant of it, whose open choices can be tried in every way.
+pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
+    /// Lines 10 to 17 of it: follows the path of one hypothesis. All choices are tried with this.
+    ///
+    /// # Errors
+    /// Those of [`try_path`].
+    fn try_path(
+        &self,
+        exploration: &mut Exploration,
+        hypothesis: Dart,
+        world: &mut GraphWorld,
+        observer: &mut impl Observer,
+    ) -> Result<Verdict, MappingError<Refused>> {
+        try_path(exploration, hypothesis, world, observer)
+    }
+}
+
+/// Algorithm 1 with the default choices.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Algorithm1;
+
+impl Algorithm for Algorithm1 {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        "Algorithm 1"
+    }
+
+    fn order(&self) -> Order {
+        Order::EdgesSquaredVertices
+    }
+
+    /// `m n + 2 m^2 (n - 1)`.
+    // paper: cost.bound
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let paths = m.saturating_mul(m).saturating_mul(n.saturating_sub(1).saturating_mul(2));
+        m.saturating_mul(n).saturating_add(paths)
+    }
+
+    #[inline]
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        map_world(world, &mut Nearest, exploration, observer)
+    }
+}
+
+impl OpenChoices for Algorithm1 {}
+
+/// Algorithm 1, or a variant of it, with the default choices, and then with every other resolution
+/// of what it leaves open.
+#[derive(Clone, Copy, Debug)]
+pub struct AllChoices<A> {
+    /// The algorithm.
+    pub algorithm: A,
+    /// How many states of one start may be explored.
+    pub budget: u64,
+}
+
+impl<A: OpenChoices> Algorithm for AllChoices<A> {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        self.algorithm.name()
+    }
+
+    fn order(&self) -> Order {
+        self.algorithm.order()
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        self.algorithm.move_bound(edges, vertices)
+    }
+
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        self.algorithm.run(world, exploration, observer)
+    }
+
+    fn other_runs(
+        &self,
+        graph: &EmbeddedGraph,
+        facing: Dart,
+        watch: &impl Watch,
+    ) -> Result<Option<EveryWay>, Flaw> {
+        every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
+    }
+}
+
+/// The movable marker algorithm with the default choices, for worlds without loops and parallel
+/// edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MovableMarker;
+
+impl Algorithm for MovableMarker {
+    type Marker = Movable;
+    type State = MarkerSearch;
+
+    fn name(&self) -> &'static str {
+        "Place and back-link validation"
+    }
+
+    fn order(&self) -> Order {
+        Order::EdgesVertices
+    }
+
+    /// `3 n (n - 1) / 2 + (m - n + 1) (6 n - 7)`, which is less than `6 m n`.
+    ///
+    /// Each of the m edges is explored once, and the world is simple. Let `k` vertices be known. The
+    /// robot goes to the known end and over the edge: at most `k` moves. A search goes back over the
+    /// edge, along no more than a closed depth-first walk of a tree of the `k` vertices, and so takes
+    /// at most `1 + 2 (k - 1)` moves until the robot is at the known end again, whether the marker
+    /// was found on the way or not.
+    ///
+    /// * The place is new: once more over the edge. That is at most `3 k` moves, and happens once for
+    ///   each `k` from 1 to `n - 1`: `3 n (n - 1) / 2`.
+    /// * It is known, `m - n + 1` times: the robot carries the marker to the known end, which ends
+    ///   the closed walk, and returns to the place in at most `n - 1` moves. The place has at least
+    ///   one explored dart, and is neither the known end nor joined to it by another edge; so the
+    ///   darts to try lead to at most `n - 2` vertices, one of them the known end. The last costs a
+    ///   move, each before it two: at most `2 (n - 2) - 1`. That is
+    ///   `n + 1 + 2 (n - 1) + (n - 1) + 2 (n - 2) - 1 = 6 n - 7` together.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let new = n.saturating_mul(n.saturating_sub(1)).saturating_mul(3) / 2;
+        let loops = (m + 1).saturating_sub(n);
+        new.saturating_add(loops.saturating_mul(n.saturating_mul(6).saturating_sub(7)))
+    }
+
+    #[inline]
+    fn run(
+        &self,
+        world: &mut GraphWorld<Movable>,
+        search: &mut MarkerSearch,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        map_with_movable_marker(world, &mut Nearest, search, observer)
+    }
+}

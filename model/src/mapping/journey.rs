@@ -1,0 +1,248 @@
+//! The robot's journey: what every mapping algorithm keeps of a run, and the steps that they share.
+//! Section 2.3.
+
+use std::mem;
+
+use super::{
+    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, tree::Tree,
+};
+use crate::{
+    embedded_graph::{Dart, MAX_EDGES, Vertex},
+    percept::{Door, Percept, Sighting},
+    world::World,
+};
+
+/// What the robot knows, where it is in it, and how far it went.
+#[derive(Clone, Debug)]
+pub struct Journey {
+    bound: usize,
+    moves: u64,
+    pub(super) map: PartialMap,
+    /// The dart of the map by which the robot has come in; when it is at no known place, the last
+    /// such.
+    pub(super) robot: Dart,
+    /// The known end of the edge that is being explored; none between two rounds.
+    pub(super) edge: Option<Dart>,
+    /// What the robot perceived at its unknown end.
+    pub(super) arrival: Percept,
+    pub(super) from_robot: Tree,
+    /// Scratch: the darts on the way to somewhere known.
+    pub(super) way: Vec<Dart>,
+}
+
+pub(super) const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
+
+impl Journey {
+    /// A journey during which the robot may come to know at most `bound` darts.
+    pub(super) fn new(bound: usize) -> Self {
+        Self {
+            bound: bound.min(2 * MAX_EDGES),
+            moves: 0,
+            map: PartialMap::new(),
+            robot: FACING,
+            edge: None,
+            arrival: NOWHERE,
+            from_robot: Tree::default(),
+            way: Vec::new(),
+        }
+    }
+
+    pub(super) fn set_bound(&mut self, bound: usize) {
+        self.bound = bound.min(2 * MAX_EDGES);
+    }
+
+    /// The map S, with the unexplored edges U.
+    #[inline]
+    #[must_use]
+    pub fn map(&self) -> &PartialMap {
+        &self.map
+    }
+
+    /// The robot's pose in the map: the dart by which it has come in. When it is at no known place,
+    /// the last known one.
+    // paper: alg1.located
+    #[inline]
+    #[must_use]
+    pub fn robot(&self) -> Dart {
+        self.robot
+    }
+
+    /// The moves made so far.
+    // paper: cost.moves, cost.lower-bound
+    #[inline]
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.moves
+    }
+
+    /// Forgets an earlier run.
+    pub(super) fn clear(&mut self) {
+        self.moves = 0;
+        self.map.clear();
+        self.robot = FACING;
+        self.edge = None;
+    }
+
+    /// S is the start vertex, and U is its edges.
+    pub(super) fn begin<E>(
+        &mut self,
+        percept: Percept,
+        observer: &mut impl Observer,
+    ) -> Result<Vertex, MappingError<E>> {
+        self.check_bound(percept.degree)?;
+        let start = self.map.add_vertex(percept.degree);
+        observer.event(self, Event::Started { percept });
+        Ok(start)
+    }
+
+    /// The edge to explore next, as chosen; `None` if all is explored.
+    pub(super) fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        if self.map.unexplored_is_empty() {
+            return None;
+        }
+        self.from_robot.plant(&self.map, self.map.vertex(self.robot));
+        let nearest = self.from_robot.nearest_unexplored(&self.map)?;
+        let chosen = choices.next_edge(&self.map, self.robot, nearest);
+        Some(if self.map.is_unexplored(chosen) { chosen } else { nearest })
+    }
+
+    /// Goes through the known map to the known end of an unexplored edge, and follows it to its
+    /// unknown end.
+    #[inline]
+    pub(super) fn explore<W: World>(
+        &mut self,
+        edge: Dart,
+        expected: impl Fn(&PartialMap, Dart) -> Percept,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.travel_to(self.map.vertex(edge), expected, world, observer)?;
+        self.arrival = self.go(self.map.door(self.robot, edge), world, observer)?;
+        self.edge = Some(edge);
+        Ok(())
+    }
+
+    /// Goes through the known map to a vertex; each place on the way must be as expected.
+    #[inline]
+    pub(super) fn travel_to<W: World>(
+        &mut self,
+        target: Vertex,
+        expected: impl Fn(&PartialMap, Dart) -> Percept,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        let way = self.way_to(target);
+        for &dart in &way {
+            let Some((next, perceived)) = self.leave_by(dart, world, observer)? else {
+                break;
+            };
+            self.arrive(next, expected(&self.map, next), perceived)?;
+        }
+        self.way = way;
+        Ok(())
+    }
+
+    /// The darts by which the robot leaves the vertices on a shortest way to a known one; none if
+    /// it is not known.
+    pub(super) fn way_to(&mut self, target: Vertex) -> Vec<Dart> {
+        let mut way = mem::take(&mut self.way);
+        if target.at() >= self.map.vertex_count() {
+            way.clear();
+            return way;
+        }
+        self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
+        self.from_robot.path_from_root(&self.map, target, &mut way);
+        way
+    }
+
+    /// Leaves by an explored dart of the map, and answers the pose behind it and what the robot
+    /// perceives there; `None`, and nothing done, if the dart is not explored.
+    #[inline]
+    pub(super) fn leave_by<W: World>(
+        &mut self,
+        dart: Dart,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Option<(Dart, Percept)>, MappingError<W::Error>> {
+        let Some(next) = self.map.opposite(dart) else { return Ok(None) };
+        let perceived = self.go(self.map.door(self.robot, dart), world, observer)?;
+        Ok(Some((next, perceived)))
+    }
+
+    /// The robot has come in by a dart of the map, if what it perceives is what it expected.
+    #[inline]
+    pub(super) fn arrive(
+        &mut self,
+        pose: Dart,
+        expected: Percept,
+        perceived: Percept,
+    ) -> Result<(), Contradiction> {
+        if perceived != expected {
+            let (vertex, index) = (self.map.vertex(pose), self.map.index(pose));
+            return Err(Contradiction::KnownPlace { vertex, index, expected, perceived });
+        }
+        self.robot = pose;
+        Ok(())
+    }
+
+    /// Makes one move, and answers what the robot perceives after it.
+    #[inline]
+    pub(super) fn go<W: World>(
+        &mut self,
+        door: Door,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        world.traverse(door).map_err(MappingError::World)?;
+        self.moves += 1;
+        let percept = world.percept().map_err(MappingError::World)?;
+        let possible = match percept.sighting {
+            Sighting::Pointing(door) => door.0 < percept.degree,
+            _ => percept.degree > 0,
+        };
+        observer.event(self, Event::Moved { door, percept });
+        if possible {
+            Ok(percept)
+        } else {
+            Err(Contradiction::Impossible { perceived: percept }.into())
+        }
+    }
+
+    /// The edge that is being explored leads to a known vertex, by another unexplored dart; answers
+    /// its known end. Where no edge is being explored, or the dart is no other unexplored one,
+    /// nothing happens.
+    pub(super) fn close_loop(&mut self, other: Dart, observer: &mut impl Observer) -> Option<Dart> {
+        let possible = |edge: &Dart| *edge != other && self.map.is_unexplored(other);
+        let edge = self.edge.take().filter(possible)?;
+        self.map.join(edge, other);
+        observer.event(self, Event::LoopClosed { edge, other });
+        Some(edge)
+    }
+
+    /// The edge that is being explored leads to a new vertex, whose other edges are unexplored. The
+    /// robot is still there; counted from the dart by which it first came in, it has now come in by
+    /// the door `entry`. Where no edge is being explored, nothing happens.
+    pub(super) fn add_place<E>(
+        &mut self,
+        entry: Door,
+        observer: &mut impl Observer,
+    ) -> Result<Option<Vertex>, MappingError<E>> {
+        let Some(edge) = self.edge else { return Ok(None) };
+        self.check_bound(self.arrival.degree)?;
+        self.edge = None;
+        let vertex = self.map.add_vertex(self.arrival.degree);
+        let first = self.map.first_dart(vertex);
+        self.map.join(edge, first);
+        self.robot = Dart(first.0 + entry.0);
+        observer.event(self, Event::VertexAdded { edge, vertex });
+        Ok(Some(vertex))
+    }
+
+    fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {
+        let bound = self.bound;
+        if self.map.dart_count().saturating_add(degree as usize) > bound {
+            return Err(MappingError::Bound { bound });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,347 @@
+//! The state of the movable marker algorithm, and the small steps of which it is made. Section 2.3.
+
+use super::{
+    Choices, Contradiction, Event, Journey, MappingError, MovableEvent, Observer, PartialMap,
+    Verdict,
+};
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    percept::{Door, Percept, Sighting},
+    world::Handling,
+};
+
+/// The state of a run with a movable marker: the robot's journey, and where the marker may be.
+#[derive(Clone, Debug)]
+pub struct MarkerSearch {
+    journey: Journey,
+    /// The known vertices that the unknown end may be and that were not looked at yet; the next one
+    /// is the last.
+    candidates: Vec<Vertex>,
+    /// For each known vertex whether it is among them.
+    is_candidate: Vec<bool>,
+    /// The unexplored darts that may be the other end of the edge and were not tried yet; the next
+    /// one is the last.
+    back_links: Vec<Dart>,
+}
+
+/// The percept of the same place with the marker lying there.
+fn marked(place: Percept) -> Percept {
+    Percept { sighting: Sighting::Lying(1), ..place }
+}
+
+impl MarkerSearch {
+    /// A state ready for a run that may come to know at most `bound` darts.
+    #[must_use]
+    pub fn new(bound: usize) -> Self {
+        Self {
+            journey: Journey::new(bound),
+            candidates: Vec::new(),
+            is_candidate: Vec::new(),
+            back_links: Vec::new(),
+        }
+    }
+
+    /// Changes how many darts later runs may come to know.
+    pub fn set_bound(&mut self, bound: usize) {
+        self.journey.set_bound(bound);
+    }
+
+    /// The robot's journey: what it knows, where it is in it, and how far it went.
+    #[must_use]
+    pub fn journey(&self) -> &Journey {
+        &self.journey
+    }
+
+    /// The map S, with the unexplored edges U.
+    #[must_use]
+    pub fn map(&self) -> &PartialMap {
+        self.journey.map()
+    }
+
+    /// The robot's pose in the map: the dart by which it has come in. When it is at the unknown end
+    /// of an edge, the last known one.
+    #[must_use]
+    pub fn robot(&self) -> Dart {
+        self.journey.robot()
+    }
+
+    /// The moves made so far.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.journey.moves()
+    }
+
+    /// Forgets an earlier run.
+    pub(crate) fn clear(&mut self) {
+        self.journey.clear();
+        self.candidates.clear();
+        self.back_links.clear();
+    }
+
+    /// The robot picks the marker up at v0, S is v0, and U is its edges.
+    ///
+    /// # Errors
+    /// The world's own; where the marker is not seen as it must be; the bound.
+    pub fn begin<W: Handling>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.clear();
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Lying(1) {
+            return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
+        }
+        self.journey.begin(percept, observer)?;
+        self.pick_up(world, observer)
+    }
+
+    /// The edge to explore next, as chosen; `None` if all is explored.
+    pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        self.journey.next_edge(choices)
+    }
+
+    /// Carries the marker through the known map to the known end of an unexplored edge, and over it
+    /// to its unknown end; and raises the candidates: the known vertices that this may be. An edge
+    /// that is explored already is left alone.
+    ///
+    /// # Errors
+    /// The world's own; where a known place is not as it was, or there is a second marker.
+    pub fn carry_over<W: Handling>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        if !self.map().is_unexplored(edge) {
+            return Ok(());
+        }
+        self.journey.explore(edge, PartialMap::unmarked, world, observer)?;
+        let percept = self.journey.arrival;
+        if percept.sighting != Sighting::Nothing {
+            let (vertex, index) = (self.map().vertex(edge), self.map().index(edge));
+            return Err(Contradiction::SecondMarker { vertex, index, perceived: percept }.into());
+        }
+        self.raise_candidates(self.map().vertex(edge));
+        let candidates = self.candidates.len();
+        self.tell(MovableEvent::Arrived { edge, percept, candidates }, observer);
+        Ok(())
+    }
+
+    /// The candidates: they look like the unknown end and have an unexplored dart; and, since the
+    /// world has no loops and no parallel edges, they are neither the known end nor joined to it.
+    /// In the order in which a depth-first walk of the shortest paths from the known end meets them.
+    fn raise_candidates(&mut self, known_end: Vertex) {
+        let Self { journey: Journey { map, arrival, from_robot, .. }, .. } = self;
+        let looks_like_it = |vertex| map.degree(vertex) == arrival.degree;
+        self.is_candidate.clear();
+        self.is_candidate
+            .extend(map.vertices().map(|vertex| looks_like_it(vertex) && map.is_frontier(vertex)));
+        self.is_candidate[known_end.at()] = false;
+        for neighbour in map.neighbours(known_end) {
+            self.is_candidate[neighbour.at()] = false;
+        }
+        self.candidates.clear();
+        if self.is_candidate.contains(&true) {
+            from_robot.plant(map, known_end);
+            from_robot.grow_whole(map);
+            from_robot.preorder(map, &mut self.candidates);
+            self.candidates.retain(|vertex| self.is_candidate[vertex.at()]);
+            self.candidates.reverse();
+        }
+    }
+
+    /// The known vertices that the unknown end may be and that were not looked at yet.
+    #[must_use]
+    pub fn candidates(&self) -> &[Vertex] {
+        &self.candidates
+    }
+
+    /// Removes the next one of the candidates that the robot has not passed yet.
+    pub fn next_candidate(&mut self) -> Option<Vertex> {
+        while let Some(candidate) = self.candidates.pop() {
+            if self.may_be(candidate) {
+                return Some(candidate);
+            }
+        }
+        None
+    }
+
+    /// Whether the unknown end may be this vertex.
+    fn may_be(&self, vertex: Vertex) -> bool {
+        self.is_candidate.get(vertex.at()) == Some(&true)
+    }
+
+    /// Drops the marker where the robot is.
+    ///
+    /// # Errors
+    /// The world's own.
+    pub fn drop_marker<W: Handling>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        world.drop().map_err(MappingError::World)?;
+        self.tell(MovableEvent::Dropped, observer);
+        Ok(())
+    }
+
+    /// Picks the marker up where the robot is.
+    ///
+    /// # Errors
+    /// The world's own.
+    pub fn pick_up<W: Handling>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        world.pick_up().map_err(MappingError::World)?;
+        self.tell(MovableEvent::PickedUp, observer);
+        Ok(())
+    }
+
+    /// Goes back from the unknown end of the edge to the known one. Where no edge is being explored,
+    /// nothing happens.
+    ///
+    /// # Errors
+    /// The world's own; where the known end is not as it was.
+    pub fn go_back<W: Handling>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        let Some(edge) = self.journey.edge else { return Ok(()) };
+        let perceived = self.journey.go(Door::BACK, world, observer)?;
+        self.journey.arrive(edge, self.map().unmarked(edge), perceived)?;
+        Ok(())
+    }
+
+    /// Goes through the known map to a candidate, unless the marker lies at one before; answers the
+    /// vertex at which it lies, where the robot then is.
+    ///
+    /// # Errors
+    /// The world's own; where a known place is not as it was, or the marker lies where it cannot be.
+    pub fn look_for_marker<W: Handling>(
+        &mut self,
+        candidate: Vertex,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Option<Vertex>, MappingError<W::Error>> {
+        let way = self.journey.way_to(candidate);
+        for &dart in &way {
+            let Some((next, perceived)) = self.journey.leave_by(dart, world, observer)? else {
+                break;
+            };
+            let (vertex, expected) = (self.map().vertex(next), self.map().unmarked(next));
+            if self.may_be(vertex) && perceived == marked(expected) {
+                self.journey.robot = next;
+                self.tell(MovableEvent::Found { vertex }, observer);
+                return Ok(Some(vertex));
+            }
+            self.journey.arrive(next, expected, perceived)?;
+            if let Some(may_be) = self.is_candidate.get_mut(vertex.at()) {
+                *may_be = false;
+            }
+        }
+        self.journey.way = way;
+        Ok(None)
+    }
+
+    /// Goes through the known map to the known end of the edge, and over it to the unknown end,
+    /// where the marker was left. Where no edge is being explored, nothing happens.
+    ///
+    /// # Errors
+    /// The world's own; where a place is not as it was.
+    pub fn return_to_marker<W: Handling>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        let Some(edge) = self.journey.edge else { return Ok(()) };
+        self.tell(MovableEvent::NotFound, observer);
+        let expected = marked(self.journey.arrival);
+        self.journey.explore(edge, PartialMap::unmarked, world, observer)?;
+        let perceived = self.journey.arrival;
+        if perceived != expected {
+            return Err(Contradiction::WayBack { expected, perceived }.into());
+        }
+        Ok(())
+    }
+
+    /// Goes through the known map to a vertex, past no marker.
+    ///
+    /// # Errors
+    /// The world's own; where a known place is not as it was.
+    pub fn travel_to<W: Handling>(
+        &mut self,
+        vertex: Vertex,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.journey.travel_to(vertex, PartialMap::unmarked, world, observer)
+    }
+
+    /// Raises the unexplored darts of a vertex as those that may be the other end of the edge;
+    /// answers the only one, if it is.
+    pub fn raise_back_links(&mut self, vertex: Vertex) -> Option<Dart> {
+        self.back_links.clear();
+        self.back_links.extend(self.journey.map.unexplored_at(vertex).rev());
+        match self.back_links[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
+    /// Removes the next dart that may be the other end of the edge, in the order of their indices.
+    pub fn next_back_link(&mut self) -> Option<Dart> {
+        self.back_links.pop()
+    }
+
+    /// Follows an unexplored dart of the vertex where the robot is. Confirmed, the marker is behind
+    /// it, and the robot has come there by the edge; rejected, the robot is back.
+    ///
+    /// # Errors
+    /// The world's own; where what is behind it cannot be, or the vertex is not as it was.
+    pub fn try_back_link<W: Handling>(
+        &mut self,
+        dart: Dart,
+        world: &mut W,
+        observer: &mut impl Observer,
+    ) -> Result<Verdict, MappingError<W::Error>> {
+        let door = self.map().door(self.journey.robot, dart);
+        let percept = self.journey.go(door, world, observer)?;
+        match self.journey.edge {
+            Some(edge) if percept.sighting != Sighting::Nothing => {
+                self.journey.arrive(edge, marked(self.map().unmarked(edge)), percept)?;
+                self.tell(MovableEvent::Behind { dart }, observer);
+                Ok(Verdict::Confirmed)
+            }
+            _ => {
+                let back = self.journey.go(Door::BACK, world, observer)?;
+                self.journey.arrive(dart, self.map().unmarked(dart), back)?;
+                self.tell(MovableEvent::NotBehind { dart, percept }, observer);
+                Ok(Verdict::Rejected)
+            }
+        }
+    }
+
+    /// The edge leads to a known vertex, by this unexplored dart of it. Where no edge is being
+    /// explored, or the dart is no other unexplored one, nothing happens.
+    pub fn close_loop(&mut self, back_link: Dart, observer: &mut impl Observer) {
+        self.journey.close_loop(back_link, observer);
+    }
+
+    /// The edge leads to a new vertex, whose other edges are unexplored. The robot is there. Where
+    /// no edge is being explored, nothing happens.
+    ///
+    /// # Errors
+    /// The bound.
+    pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
+        self.journey.add_place(Door::BACK, observer)?;
+        Ok(())
+    }
+
+    fn tell(&self, event: MovableEvent, observer: &mut impl Observer) {
+        observer.event(&self.journey, Event::Movable(event));
+    }
+}

@@ -1,0 +1,122 @@
+//! Mapping with a single movable marker, in worlds without loops and parallel edges. Section 2.3,
+//! after the paper's reference 8: Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph
+//! construction" (1991).
+//!
+//! Place validation tells whether the place just reached is new; where it is not, back-link
+//! validation tells by which of its edges it was entered. The state, and the small steps that are
+//! taken here, are [`MarkerSearch`]'s.
+
+use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, Verdict};
+use crate::{
+    embedded_graph::{Dart, Vertex},
+    world::Handling,
+};
+
+/// What a place just reached is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// It was never reached before. The robot is there, with the marker in hand.
+    New,
+    /// It is a known vertex. The robot is there, with the marker at its feet.
+    Known(Vertex),
+}
+
+/// Maps a world without loops and parallel edges. At its start the robot stands where the marker
+/// lies, with its back to the facing door. Afterwards `search` holds the map, where the robot is in
+/// it and how many moves it made, and the robot carries the marker;
+/// [`MarkerSearch::map`] is then [complete](super::PartialMap::complete).
+///
+/// With loops or parallel edges one movable marker does not suffice: the map is then wrong, or the
+/// run ends with an error.
+///
+/// # Errors
+/// The world's own; a contradiction, where no such world could be so; or more known darts than the
+/// bound of the search. The search then tells how far it came.
+pub fn map_with_movable_marker<W: Handling>(
+    world: &mut W,
+    choices: &mut impl Choices,
+    search: &mut MarkerSearch,
+    observer: &mut impl Observer,
+) -> Result<(), MappingError<W::Error>> {
+    // The robot picks the marker up at v0; S is v0; U is its edges.
+    search.begin(world, observer)?;
+    // While U is not empty, remove an unexplored edge e = (vk, vu) from it.
+    while let Some(edge) = search.next_edge(choices) {
+        // Carry the marker through S to the known end vk, and over e to the unknown end vu.
+        search.carry_over(edge, world, observer)?;
+        match validate_place(search, world, observer)? {
+            // vu is a known vertex: a loop was closed.
+            Place::Known(vertex) => {
+                let back_link = validate_back_link(edge, vertex, search, world, observer)?;
+                search.close_loop(back_link, observer);
+            }
+            // vu is a new place.
+            Place::New => search.add_place(observer)?,
+        }
+    }
+    // S is the map.
+    Ok(())
+}
+
+/// Place validation: is the unknown end of the edge a new place, or which known vertex is it?
+///
+/// # Errors
+/// The world's own, or a contradiction.
+// paper: movable.place, movable.new, movable.known
+pub fn validate_place<W: Handling>(
+    search: &mut MarkerSearch,
+    world: &mut W,
+    observer: &mut impl Observer,
+) -> Result<Place, MappingError<W::Error>> {
+    // No known vertex can be vu: it is new.
+    if search.candidates().is_empty() {
+        return Ok(Place::New);
+    }
+    // Drop the marker at vu, and go back over e to vk.
+    search.drop_marker(world, observer)?;
+    search.go_back(world, observer)?;
+    // Search S for it: every known vertex that can be vu.
+    while let Some(candidate) = search.next_candidate() {
+        // Found at a vertex of S: this is vu.
+        if let Some(vertex) = search.look_for_marker(candidate, world, observer)? {
+            return Ok(Place::Known(vertex));
+        }
+    }
+    // Not found: vu is new. Go there again, for the marker.
+    search.return_to_marker(world, observer)?;
+    search.pick_up(world, observer)?;
+    Ok(Place::New)
+}
+
+/// Back-link validation: which unexplored dart of the known vertex is the other end of `edge`?
+/// The robot is at the vertex, with the marker at its feet. Afterwards it carries the marker.
+///
+/// # Errors
+/// The world's own, or a contradiction.
+// paper: movable.back-link
+pub fn validate_back_link<W: Handling>(
+    edge: Dart,
+    vertex: Vertex,
+    search: &mut MarkerSearch,
+    world: &mut W,
+    observer: &mut impl Observer,
+) -> Result<Dart, MappingError<W::Error>> {
+    search.pick_up(world, observer)?;
+    // An only unexplored dart of the vertex needs no validation.
+    if let Some(only) = search.raise_back_links(vertex) {
+        return Ok(only);
+    }
+    // Carry the marker to vk, drop it there, and return without it.
+    let marked = search.map().vertex(edge);
+    search.travel_to(marked, world, observer)?;
+    search.drop_marker(world, observer)?;
+    search.travel_to(vertex, world, observer)?;
+    // Try one unexplored dart after the other: that behind which the marker lies is it.
+    while let Some(dart) = search.next_back_link() {
+        if search.try_back_link(dart, world, observer)? == Verdict::Confirmed {
+            search.pick_up(world, observer)?;
+            return Ok(dart);
+        }
+    }
+    Err(Contradiction::NoBackLink { vertex, marked }.into())
+}

@@ -1,0 +1,260 @@
+//! The check fails on broken variants of the movable marker algorithm, each on its smallest start.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use toposlam_model::{
+    check::{Algorithm, Failure, MovableMarker, Order, Shard, Sweep},
+    embedded_graph::{Dart, Vertex},
+    enumerate::Class,
+    isomorphism::code,
+    mapping::{
+        MappingError, MarkerSearch, Nearest, Observer, Place, Verdict, validate_back_link,
+        validate_place,
+    },
+    marker::Movable,
+    world::{GraphWorld, Refused},
+};
+
+/// The movable marker algorithm with something broken in one of its validations.
+struct Broken(Flaw);
+
+#[derive(Clone, Copy, Debug)]
+enum Flaw {
+    /// There is no place validation: every place is new.
+    EveryPlaceIsNew,
+    /// The only vertex that looks like the place is taken for it.
+    OnlyCandidateIsIt,
+    /// The search ends at the first candidate.
+    OneCandidateSearched,
+    /// A marker that is not found is taken to lie at the last candidate.
+    NotFoundIsFound,
+    /// After a search in vain, the robot takes itself to be at the new place.
+    LeftBehind,
+    /// After a search in vain, the marker is left at the new place.
+    MarkerLeftBehind,
+    /// There is no back-link validation: the first unexplored dart is taken.
+    FirstDartIsIt,
+    /// The marker is dropped where it was found, and not carried to the known end.
+    NotCarried,
+    /// The first dart tried that does not lead to the marker is taken.
+    RejectedIsConfirmed,
+}
+
+const FLAWS: [Flaw; 9] = [
+    Flaw::EveryPlaceIsNew,
+    Flaw::OnlyCandidateIsIt,
+    Flaw::OneCandidateSearched,
+    Flaw::NotFoundIsFound,
+    Flaw::LeftBehind,
+    Flaw::MarkerLeftBehind,
+    Flaw::FirstDartIsIt,
+    Flaw::NotCarried,
+    Flaw::RejectedIsConfirmed,
+];
+
+impl Broken {
+    fn validate_place(
+        &self,
+        search: &mut MarkerSearch,
+        world: &mut GraphWorld<Movable>,
+        observer: &mut impl Observer,
+    ) -> Result<Place, MappingError<Refused>> {
+        match (self.0, search.candidates()) {
+            (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(Place::New),
+            (Flaw::OnlyCandidateIsIt, &[only]) => {
+                search.drop_marker(world, observer)?;
+                search.go_back(world, observer)?;
+                search.look_for_marker(only, world, observer)?;
+                return Ok(Place::Known(only));
+            }
+            (Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed, _) => {
+                return validate_place(search, world, observer);
+            }
+            _ => {}
+        }
+        search.drop_marker(world, observer)?;
+        search.go_back(world, observer)?;
+        let mut last = Vertex(0);
+        while let Some(candidate) = search.next_candidate() {
+            if let Some(vertex) = search.look_for_marker(candidate, world, observer)? {
+                return Ok(Place::Known(vertex));
+            }
+            last = candidate;
+            if matches!(self.0, Flaw::OneCandidateSearched) {
+                break;
+            }
+        }
+        match self.0 {
+            Flaw::NotFoundIsFound => return Ok(Place::Known(last)),
+            Flaw::LeftBehind => return Ok(Place::New),
+            _ => {}
+        }
+        search.return_to_marker(world, observer)?;
+        if !matches!(self.0, Flaw::MarkerLeftBehind) {
+            search.pick_up(world, observer)?;
+        }
+        Ok(Place::New)
+    }
+
+    fn validate_back_link(
+        &self,
+        edge: Dart,
+        vertex: Vertex,
+        search: &mut MarkerSearch,
+        world: &mut GraphWorld<Movable>,
+        observer: &mut impl Observer,
+    ) -> Result<Dart, MappingError<Refused>> {
+        if !matches!(self.0, Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed) {
+            return validate_back_link(edge, vertex, search, world, observer);
+        }
+        search.pick_up(world, observer)?;
+        if let Some(only) = search.raise_back_links(vertex) {
+            return Ok(only);
+        }
+        if !matches!(self.0, Flaw::FirstDartIsIt) {
+            if matches!(self.0, Flaw::NotCarried) {
+                search.drop_marker(world, observer)?;
+            } else {
+                search.travel_to(search.map().vertex(edge), world, observer)?;
+                search.drop_marker(world, observer)?;
+                search.travel_to(vertex, world, observer)?;
+            }
+        }
+        while let Some(dart) = search.next_back_link() {
+            if matches!(self.0, Flaw::FirstDartIsIt) {
+                return Ok(dart);
+            }
+            let verdict = search.try_back_link(dart, world, observer)?;
+            if verdict == Verdict::Confirmed || matches!(self.0, Flaw::RejectedIsConfirmed) {
+                search.pick_up(world, observer)?;
+                return Ok(dart);
+            }
+        }
+        panic!("another variant");
+    }
+}
+
+impl Algorithm for Broken {
+    type Marker = Movable;
+    type State = MarkerSearch;
+
+    fn name(&self) -> &'static str {
+        "The movable marker algorithm, broken"
+    }
+
+    fn order(&self) -> Order {
+        MovableMarker.order()
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        MovableMarker.move_bound(edges, vertices)
+    }
+
+    fn run(
+        &self,
+        world: &mut GraphWorld<Movable>,
+        search: &mut MarkerSearch,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        search.begin(world, observer)?;
+        while let Some(edge) = search.next_edge(&mut Nearest) {
+            search.carry_over(edge, world, observer)?;
+            match self.validate_place(search, world, observer)? {
+                Place::Known(vertex) => {
+                    let dart = self.validate_back_link(edge, vertex, search, world, observer)?;
+                    search.close_loop(dart, observer);
+                }
+                Place::New => search.add_place(observer)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first start on which a broken variant fails: its edges, its code, what was wrong.
+fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
+    (1..=7)
+        .find_map(|edges| {
+            let sweep = Sweep::new(Class::Simple, edges, Shard::WHOLE);
+            let tally = sweep.unwrap().run(&Broken(flaw), &());
+            assert_eq!(tally.failed() > 0, tally.failure.is_some());
+            let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;
+            let words = code(&graph, facing).words().to_vec();
+            let step = false_step
+                .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());
+            Some((edges, words, format!("{step}: {flaw}")))
+        })
+        .expect("the check catches it")
+}
+
+// paper: movable.place, movable.new, movable.known, movable.back-link
+#[test]
+fn every_broken_variant_is_caught_on_a_small_start() {
+    let caught = FLAWS.map(smallest_failure);
+    // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
+    let new = |degree: u32| u32::MAX - degree;
+    let cycle = |edges: u32| {
+        let last = edges as usize;
+        let mut words = vec![new(2); last];
+        words.push(2 * edges - 1);
+        words
+    };
+    let endless = |darts: u32| {
+        format!("more than {darts} darts (edge ends) are known and there is no end in sight")
+    };
+    let nothing_here = "there is no marker here that could be picked up";
+    let expected = [
+        (
+            3,
+            cycle(3),
+            format!(
+                "after 3 moves vertex v3 is wrongly added behind the map's dart 5: {}",
+                endless(6)
+            ),
+        ),
+        (4, cycle(4), format!("after 6 moves: {nothing_here}")),
+        (
+            6,
+            vec![new(3), new(3), new(3), new(3), 7, 10, 11],
+            format!(
+                "after 16 moves vertex v4 is wrongly added behind the map's dart 10: {}",
+                endless(12)
+            ),
+        ),
+        (4, cycle(4), format!("after 6 moves: {nothing_here}")),
+        (
+            4,
+            cycle(4),
+            "after 7 moves: the world contradicts itself: the robot carries the marker, but behind \
+             the unexplored dart 1 of vertex v3 there is degree 2 with a marker lying there"
+                .to_owned(),
+        ),
+        (
+            4,
+            cycle(4),
+            "after 10 moves: the robot carries no marker that it could drop".to_owned(),
+        ),
+        (
+            4,
+            vec![new(3), new(2), new(1), new(2), 7],
+            format!(
+                "after 6 moves the map's darts 6 and 1 are wrongly made one edge: {}",
+                endless(8)
+            ),
+        ),
+        (
+            4,
+            vec![new(3), new(2), new(2), new(1), 6],
+            "after 8 moves: the world contradicts itself: at the known vertex v0, entered by its \
+             dart 1, there should be degree 3 without the marker but there is degree 3 with a \
+             marker lying there"
+                .to_owned(),
+        ),
+        (
+            4,
+            vec![new(3), new(2), new(1), new(2), 7],
+            format!("after 12 moves: {nothing_here}"),
+        ),
+    ];
+    assert_eq!(caught, expected);
+}
