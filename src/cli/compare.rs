@@ -14,7 +14,7 @@ use toposlam_model::{
     marker::{self, Marker},
 };
 
-use super::{Failure, Outcome, input, walk_page};
+use super::{Failure, Outcome, input, marker_kinds, walk_page};
 use robots::Robots;
 use walk::Actions;
 
@@ -42,9 +42,8 @@ pub(super) struct Arguments {
     /// Another world file
     b: PathBuf,
 
-    /// Marker: none, undirected, directional, undirected-edge, directed-edge, two-identical,
-    /// two-distinct or movable [default: directional, where both worlds have a start]
-    #[arg(long, value_name = "KIND", value_parser = marker::named)]
+    /// Kind of marker [default: directional, where both worlds have a start]
+    #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
 
     /// Where the robot starts in A, instead of the file's [start]; given twice, then in B too

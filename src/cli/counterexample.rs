@@ -10,10 +10,10 @@ use clap::ValueEnum;
 use toposlam_model::{
     ambiguity::Search,
     enumerate::Class,
-    marker::{self, MARKERS, Marker},
+    marker::{MARKERS, Marker},
 };
 
-use super::{Failure, Outcome, progress::Progress, use_threads, walk_page};
+use super::{Failure, Outcome, marker_kinds, progress::Progress, use_threads, walk_page};
 use found::Found;
 use report::Report;
 
@@ -37,9 +37,8 @@ larger world. A world is ambiguous if it is in any pair.
 Exit codes: 0 the search is done, 1 with --expect none something was found, 2 bad usage,
 3 it was broken off.")]
 pub(super) struct Arguments {
-    /// Marker: none, undirected, directional, undirected-edge, directed-edge, two-identical,
-    /// two-distinct or movable; may be given several times [default: every one]
-    #[arg(long = "marker", value_name = "KIND", value_parser = marker::named)]
+    /// Kind of marker; may be given several times [default: every one]
+    #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
     markers: Vec<&'static dyn Marker>,
 
     /// Class of worlds: multigraph, simple, corridor or planar

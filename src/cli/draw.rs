@@ -10,12 +10,9 @@ use clap::ValueEnum;
 
 use toposlam::picture::{Picture, png, svg};
 
-use toposlam_model::{
-    format::dot,
-    marker::{self, Marker},
-};
+use toposlam_model::{format::dot, marker::Marker};
 
-use super::{Failure, Outcome, input, output};
+use super::{Failure, Outcome, input, marker_kinds, output};
 
 /// Draw a world: its vertices with their doors in clockwise order, and its start
 #[derive(clap::Args)]
@@ -28,9 +25,8 @@ pub(super) struct Arguments {
     /// Where the marker is placed, instead of the file's [start]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// Kind of marker: none, undirected, directional, undirected-edge, directed-edge, two-identical,
-    /// two-distinct or movable
-    #[arg(long, default_value = "directional", value_parser = marker::named)]
+    /// Kind of marker
+    #[arg(long, value_name = "KIND", default_value = "directional", value_parser = marker_kinds())]
     marker: &'static dyn Marker,
     /// The file to write, as its ending says: .svg, .png or .dot [default: standard output]
     #[arg(long, value_name = "FILE")]

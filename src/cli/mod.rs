@@ -19,8 +19,12 @@ use std::{
     process::ExitCode,
 };
 
-use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{
+    CommandFactory, Parser, Subcommand, ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use toposlam_model::check::DEFAULT_STATE_BUDGET;
+use toposlam_model::marker::{self, MARKERS, Marker};
 
 use outcome::{Failure, Outcome};
 
@@ -83,6 +87,12 @@ impl Choices {
             }
         }
     }
+}
+
+/// Reads the name of a kind of marker; tells in `--help` and in refusals which there are.
+fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
+    let kinds = MARKERS.map(|marker| PossibleValue::new(marker.name()).help(marker.about()));
+    PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
 }
 
 /// Works with so many threads, where somebody says so.

@@ -1,46 +1,40 @@
 //! What a marker adds to a percept, and what a robot can do with it. Sections 2.2 and 2.3.
 //!
 //! A marker is placed once, by the facing dart of a start. A kind of marker is one file here, and
-//! one line in [`MARKERS`].
-
-mod directed_edge;
-mod directional;
-mod movable;
-mod none;
-mod two_distinct;
-mod two_identical;
-mod undirected;
-mod undirected_edge;
+//! one line in the list of [`MARKERS`].
 
 use std::fmt;
 
 use thiserror::Error;
-
-pub use directed_edge::DirectedEdge;
-pub use directional::Directional;
-pub use movable::Movable;
-pub use none::NoMarker;
-pub use two_distinct::TwoDistinct;
-pub use two_identical::TwoIdentical;
-pub use undirected::Undirected;
-pub use undirected_edge::UndirectedEdge;
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     percept::Sighting,
 };
 
-/// Every kind of marker.
-pub const MARKERS: [&dyn Marker; 8] = [
-    &NoMarker,
-    &Undirected,
-    &Directional,
-    &UndirectedEdge,
-    &DirectedEdge,
-    &TwoIdentical,
-    &TwoDistinct,
-    &Movable,
-];
+/// Makes a module and a type public for each kind of marker, and the list of all of them.
+macro_rules! markers {
+    ($($file:ident::$kind:ident,)*) => {
+        $(
+            mod $file;
+            pub use $file::$kind;
+        )*
+
+        /// Every kind of marker.
+        pub const MARKERS: [&dyn Marker; [$(stringify!($kind)),*].len()] = [$(&$kind),*];
+    };
+}
+
+markers! {
+    none::NoMarker,
+    undirected::Undirected,
+    directional::Directional,
+    undirected_edge::UndirectedEdge,
+    directed_edge::DirectedEdge,
+    two_identical::TwoIdentical,
+    two_distinct::TwoDistinct,
+    movable::Movable,
+}
 
 /// A kind of marker.
 ///
