@@ -24,11 +24,10 @@ fn toposlam(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_first_screen_shows_what_check_prints() {
+fn the_readme_shows_what_check_and_counterexample_print() {
     let readme = read("README.md");
-    let (_, from_block) = readme.split_once("```text\n").unwrap();
-    let (shown, _) = from_block.split_once("```").unwrap();
-    assert_eq!(shown, toposlam(&["check"]));
+    let blocks = readme.split("```text\n").skip(1).map(|block| block.split_once("```").unwrap().0);
+    assert_eq!(blocks.collect::<Vec<_>>(), [toposlam(&["check"]), toposlam(&["counterexample"])]);
 }
 
 /// Draw them again with the commands of the README, look at them, and commit them.

@@ -7,11 +7,13 @@ use std::ops::ControlFlow;
 
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
-    check::{Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Shard, Sweep, judge},
+    ambiguity::{Comparison, Search},
+    check::{Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, MovableMarker, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, isomorphism},
     mapping::{Exploration, Nearest, map_world},
+    marker::{MARKERS, Marker, named},
     world::GraphWorld,
 };
 
@@ -54,6 +56,47 @@ fn every_way(bencher: Bencher, (edges, states): (usize, u64)) {
     let all_choices = AllChoices { algorithm: Algorithm1, budget: DEFAULT_STATE_BUDGET };
     bencher.counter(ItemsCount::new(states)).bench(|| {
         assert_eq!(sweep.run(&all_choices, &()).states, states);
+    });
+}
+
+/// With a movable marker, every start of every simple world with 8 edges.
+#[divan::bench(sample_count = 5)]
+fn check_movable(bencher: Bencher) {
+    let sweep = Sweep::new(Class::Simple, 8, Shard::WHOLE).unwrap();
+    bencher.counter(ItemsCount::new(27_339_u64)).bench(|| {
+        assert_eq!(sweep.run(&MovableMarker, &()).mapped, 27_339);
+    });
+}
+
+/// The search with every immovable marker one after the other, or with one; the items are placed
+/// worlds.
+#[divan::bench(args = [
+    ("simple", 8, "", 144_113),
+    ("corridor", 11, "", 1_461_651),
+    ("multigraph", 7, "undirected", 410_095),
+], sample_count = 3)]
+fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize, &str, u64)) {
+    let class: Class = class.parse().unwrap();
+    let wanted = |kind: &&dyn Marker| kind.name() == marker || marker.is_empty();
+    let immovable = MARKERS.into_iter().filter(|marker| !marker.is_movable()).filter(wanted);
+    let searches: Vec<_> =
+        immovable.map(|marker| Search::new(class, edges, marker).unwrap()).collect();
+    bencher.counter(ItemsCount::new(placed)).bench(|| {
+        let findings = searches.iter().map(|search| search.run(&()));
+        let sizes = findings.flat_map(|findings| findings.sizes);
+        assert_eq!(sizes.map(|size| size.placed_worlds).sum::<u64>(), placed);
+    });
+}
+
+/// A cycle of 300 edges against one of 301, with each marker: the walk or the relation.
+#[divan::bench(args = ["none", "undirected", "movable"], sample_count = 3)]
+fn compare_long_cycles(bencher: Bencher, marker: &str) {
+    let marker = named(marker).unwrap();
+    let (one, other) = (cycle(300), cycle(301));
+    bencher.bench(|| {
+        let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));
+        let poses = [Dart(0), Dart(0)];
+        assert!(comparison.walk(poses).is_some() || comparison.relation(poses).is_some());
     });
 }
 
