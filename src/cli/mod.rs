@@ -7,12 +7,14 @@ mod counterexample;
 mod draw;
 mod explore;
 mod input;
+mod movable;
 mod numbers;
 mod outcome;
 mod output;
 mod paper;
 mod progress;
 mod walk_page;
+mod with_marker;
 
 use std::{
     io::{self, Write},
