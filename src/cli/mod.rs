@@ -1,5 +1,6 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod action_json;
 mod check;
 mod compare;
 mod completions;
