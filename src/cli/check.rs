@@ -11,9 +11,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        Algorithm, Algorithm1, MovableMarker, Shard, Sweep, Tally, WorstStart, check_worlds,
-    },
+    check::{Algorithm, Algorithm1, MovableMarker, Shard, Sweep, Tally, WorstStart, check_worlds},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,

@@ -15,9 +15,7 @@ use super::Failure;
 /// Refuses the worlds of a file if one of them has loops or parallel edges.
 pub(super) fn check_worlds(path: &Path, graphs: &[EmbeddedGraph]) -> Result<(), Failure> {
     match graphs.iter().position(|graph| !graph.is_simple()) {
-        Some(place) => {
-            Err(Failure::in_file(path, not_sufficient(format!("world {}", place + 1))))
-        }
+        Some(place) => Err(Failure::in_file(path, not_sufficient(format!("world {}", place + 1)))),
         None => Ok(()),
     }
 }

@@ -5,6 +5,7 @@ use std::{path::Path, str::FromStr};
 use toposlam_model::{
     check::{Algorithm1, AllChoices},
     embedded_graph::EmbeddedGraph,
+    marker::{Directional, Marker, Movable},
 };
 
 use super::{Choice, Failure, movable};
@@ -38,6 +39,14 @@ pub(super) enum Wanted {
 }
 
 impl WithMarker {
+    /// The name of the marker.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Directional => Directional.name(),
+            Self::Movable => Movable.name(),
+        }
+    }
+
     /// The algorithm that maps with the marker.
     pub(super) fn algorithm(self, choice: Choice) -> Result<Wanted, Failure> {
         match (self, choice) {
