@@ -169,6 +169,7 @@ fn the_story_of_the_tetrahedron() {
     let arrived = |edge, candidates| {
         Event::Movable(MovableEvent::Arrived { edge: Dart(edge), percept, candidates })
     };
+    let not_at = |vertex| Event::Movable(MovableEvent::NotAt { vertex: Vertex(vertex) });
     let found = |vertex| Event::Movable(MovableEvent::Found { vertex: Vertex(vertex) });
     let added = |edge, vertex| Event::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
     let closed = |edge, other| Event::LoopClosed { edge: Dart(edge), other: Dart(other) };
@@ -197,6 +198,7 @@ fn the_story_of_the_tetrahedron() {
             // Back over the edge, by v2 to v1, and on to v0, which has one unexplored dart left.
             (15, arrived(10, 2)),
             (15, Event::Movable(Dropped)),
+            (18, not_at(1)),
             (19, found(0)),
             (19, Event::Movable(PickedUp)),
             (19, closed(10, 1)),

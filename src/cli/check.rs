@@ -1,6 +1,5 @@
 //! `toposlam check`: an algorithm on every start of every world up to a size.
 
-mod movable;
 mod report;
 mod sizes;
 
@@ -12,16 +11,18 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{
-        Algorithm, Algorithm1, AllChoices, MovableMarker, Shard, Sweep, Tally, WorstStart,
-        check_worlds,
-    },
+    check::{Algorithm, Algorithm1, MovableMarker, Shard, Sweep, Tally, WorstStart, check_worlds},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
 };
 
-use super::{Choice, Choices, Failure, Outcome, input, output, progress::Progress, use_threads};
+use super::{
+    Choice, Choices, Failure, Outcome, input, movable, output,
+    progress::Progress,
+    use_threads,
+    with_marker::{Wanted, WithMarker},
+};
 use report::{Report, Size, Subject};
 use sizes::Sizes;
 
@@ -56,7 +57,7 @@ pub(super) struct Arguments {
     class: Option<Class>,
 
     /// Marker with which the worlds are mapped: directional (by Algorithm 1) or movable
-    #[arg(long, default_value = "directional", value_parser = with_marker)]
+    #[arg(long, default_value = "directional")]
     marker: WithMarker,
 
     /// Runs of each start: default, or all that the open choices allow
@@ -89,21 +90,6 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The markers with which an algorithm maps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum WithMarker {
-    Directional,
-    Movable,
-}
-
-fn with_marker(name: &str) -> Result<WithMarker, String> {
-    match name {
-        "directional" => Ok(WithMarker::Directional),
-        "movable" => Ok(WithMarker::Movable),
-        _ => Err(format!("`{name}` is no marker to map with; there are directional and movable")),
-    }
-}
-
 /// What is checked for one number of edges.
 enum Work {
     Sweep(Sweep),
@@ -114,17 +100,10 @@ impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
-        match (self.marker, choice) {
-            (WithMarker::Directional, Choice::Default) => self.check(&Algorithm1, choice, out),
-            (WithMarker::Directional, Choice::All { budget }) => {
-                self.check(&AllChoices { algorithm: Algorithm1, budget }, choice, out)
-            }
-            (WithMarker::Movable, Choice::Default) => self.check(&MovableMarker, choice, out),
-            (WithMarker::Movable, Choice::All { .. }) => {
-                let cause =
-                    "all choices are those of Algorithm 1, which maps with the directional marker";
-                Err(Failure::at("--choices", cause))
-            }
+        match self.marker.algorithm(choice)? {
+            Wanted::Algorithm1 => self.check(&Algorithm1, choice, out),
+            Wanted::AllChoices(algorithm) => self.check(&algorithm, choice, out),
+            Wanted::MovableMarker => self.check(&MovableMarker, choice, out),
         }
     }
 
@@ -183,12 +162,7 @@ impl Arguments {
     /// The worlds of a file, by their number of edges.
     fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
         let graphs = input::read_graphs(path)?;
-        if self.marker == WithMarker::Movable
-            && let Some(place) = graphs.iter().position(|graph| !graph.is_simple())
-        {
-            let world = format!("world {}", place + 1);
-            return Err(Failure::in_file(path, movable::not_sufficient(world)));
-        }
+        self.marker.check_worlds(path, &graphs)?;
         let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
         for graph in graphs {
             sizes.entry(graph.edge_count()).or_default().push(graph);

@@ -1,24 +1,30 @@
-//! `toposlam explore WORLD`: Algorithm 1 on one world, told as a story.
+//! `toposlam explore WORLD`: an algorithm on one world, told as a story.
 
 mod doors;
 mod ending;
 mod story;
+mod words;
 
 use std::{
     io::{self, Write},
     path::PathBuf,
+    slice,
 };
 
 use toposlam::picture::{self, Picture};
 use toposlam_model::{
-    check::{Algorithm1, Flaw, every_way, judge},
+    check::{Algorithm, Algorithm1, Flaw, MovableMarker, RunState, judge},
+    embedded_graph::Dart,
     format::named_world::NamedWorld,
     isomorphism::Candidate,
-    mapping::{DEFAULT_DART_BOUND, Exploration, Nearest, map_world},
+    mapping::DEFAULT_DART_BOUND,
     world::GraphWorld,
 };
 
-use super::{Choice, Choices, Failure, Outcome, input, output};
+use super::{
+    Choices, Failure, Outcome, input, output,
+    with_marker::{Wanted, WithMarker},
+};
 use doors::Doors;
 use ending::Ending;
 use story::{Detail, Story};
@@ -26,12 +32,16 @@ use story::{Detail, Story};
 /// Run Algorithm 1 on one world: the map, the moves, the story of each hypothesis
 ///
 /// The world is used only to answer what the robot perceives, and to prove the map right at the end.
+///
+/// With --marker movable it is the algorithm with one movable marker instead, in a world without
+/// loops and parallel edges: where the marker is dropped and looked for, and where it is found.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   toposlam explore worlds/shape-6.toml
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
   toposlam explore worlds/shape-8.toml --choices all
+  toposlam explore worlds/shape-8.toml --marker movable
 
 In the story, v2.1 is dart 1 of the map's vertex v2: the one that stands one place clockwise from
 the dart by which v2 was first entered.
@@ -46,6 +56,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
 
+    /// Marker with which the world is mapped: directional (by Algorithm 1) or movable
+    #[arg(long, default_value = "directional")]
+    marker: WithMarker,
+
     /// Also try every resolution of what Algorithm 1 leaves open: default or all
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: Choices,
@@ -59,11 +73,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
     max_darts: usize,
 
-    /// Tell every rejected hypothesis, not only the first few of each round
+    /// Tell everything that was rejected, not only the first few hypotheses of each round
     #[arg(long, conflicts_with = "json")]
     full: bool,
 
-    /// Tell the doors taken
+    /// Tell the doors taken, and where a marker was picked up or dropped
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
@@ -71,11 +85,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
-    /// Write a picture of the map, with the cost
+    /// Write a picture of the map, with the cost; a marker that is carried is not drawn
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
 
-    /// Print one JSON object, with the doors taken
+    /// Print one JSON object, with the doors taken, and pick-up and drop among them
     #[arg(long)]
     json: bool,
 }
@@ -83,6 +97,7 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let world = input::read_world(&self.world)?;
+        self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
         if let Some(map) = &self.map {
             output::check_world_place(map, world.graph.is_simple())?;
@@ -91,32 +106,49 @@ impl Arguments {
             output::check_place(svg, &["svg"])?;
         }
         let choice = self.choices.with_budget(self.max_states)?;
+        match self.marker.algorithm(choice)? {
+            Wanted::Algorithm1 => self.explore(&Algorithm1, &world, facing, out),
+            Wanted::AllChoices(algorithm) => self.explore(&algorithm, &world, facing, out),
+            Wanted::MovableMarker => self.explore(&MovableMarker, &world, facing, out),
+        }
+    }
+
+    fn explore<A: Algorithm>(
+        &self,
+        algorithm: &A,
+        world: &NamedWorld,
+        facing: Dart,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
         let mut out = io::BufWriter::new(out);
-        let mut exploration = Exploration::new(self.max_darts);
-        let mut robot = GraphWorld::new(&world.graph, facing);
+        let mut state = A::State::new(self.max_darts);
+        let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
         let run = if self.json {
             let mut doors = Doors::new(&mut out);
-            let run = map_world(&mut robot, &mut Nearest, &mut exploration, &mut doors);
+            let run = algorithm.run(&mut robot, &mut state, &mut doors);
             doors.finish()?;
             run
         } else {
             let detail = Detail { every_hypothesis: self.full, doors: self.doors };
-            let mut story = Story::new(&mut out, &world, facing, detail);
-            let run = map_world(&mut robot, &mut Nearest, &mut exploration, &mut story);
+            let mut story = Story::new(&mut out, world, facing, detail);
+            let run = algorithm.run(&mut robot, &mut state, &mut story);
             story.finish()?;
             run
         };
         let mut candidate = Candidate::default();
         let result = run
             .map_err(Flaw::from)
-            .and_then(|()| judge(&Algorithm1, &exploration, facing, &robot, &mut candidate));
-        let ways = match choice {
-            Choice::Default => None,
-            Choice::All { budget } => {
-                Some(every_way(&Algorithm1, &world.graph, facing, budget, &()))
-            }
+            .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
+        let ending = Ending {
+            world,
+            facing,
+            marker: self.marker,
+            journey: state.journey(),
+            move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
+            carries: robot.carries(),
+            result,
+            ways: algorithm.other_runs(&world.graph, facing, &()).transpose(),
         };
-        let ending = Ending { world: &world, facing, exploration: &exploration, result, ways };
         if self.json {
             ending.tell_json(&mut out)?;
         } else {
@@ -124,7 +156,7 @@ impl Arguments {
         }
         out.flush()?;
         match ending.map() {
-            Some(map) => self.write_map(&map, exploration.moves())?,
+            Some(map) => self.write_map(&map, &ending)?,
             None if self.map.is_some() || self.svg.is_some() => {
                 eprintln!("the map is not complete, and is not written");
             }
@@ -133,13 +165,20 @@ impl Arguments {
         Ok(ending.outcome())
     }
 
-    fn write_map(&self, map: &NamedWorld, moves: u64) -> Result<(), Failure> {
+    fn write_map(&self, map: &NamedWorld, ending: &Ending) -> Result<(), Failure> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }
         if let Some(path) = &self.svg {
-            let caption = format!("mapped in {moves} moves");
-            let drawn = Picture { caption: &caption, ..Picture::from(map) };
+            let moves = ending.journey.moves();
+            // A marker that lies nowhere has no place in the picture.
+            let (start, hand) = if ending.carries {
+                (None, "; the robot carries its marker")
+            } else {
+                (map.start, "")
+            };
+            let caption = format!("mapped in {moves} moves{hand}");
+            let drawn = Picture { caption: &caption, start, ..Picture::from(map) };
             output::write_whole(path, picture::svg(&drawn).as_bytes())?;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod action_json;
 mod check;
 mod compare;
 mod completions;
@@ -7,12 +8,14 @@ mod counterexample;
 mod draw;
 mod explore;
 mod input;
+mod movable;
 mod numbers;
 mod outcome;
 mod output;
 mod paper;
 mod progress;
 mod walk_page;
+mod with_marker;
 
 use std::{
     io::{self, Write},

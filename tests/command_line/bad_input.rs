@@ -196,6 +196,21 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
 }
 
 #[test]
+fn with_a_movable_marker_explore_refuses_what_check_refuses() {
+    const TORUS: &str = "worlds/theta-torus.toml";
+    let refused = |verb: &[&str]| refusal(&[verb, &["--marker", "movable"]].concat());
+    let message = refused(&["explore", TORUS]);
+    assert!(message.starts_with(&format!("error: {TORUS}: world 1 has loops or parallel edges")));
+    assert_eq!(message, refused(&["check", "--from", TORUS]));
+    let message = refused(&["explore", WORLD, "--choices", "all"]);
+    assert_eq!(message, refused(&["check", "--choices", "all"]));
+    let message = refusal(&["explore", WORLD, "--marker", "chalk"]);
+    assert!(
+        message.contains("`chalk` is no marker to map with; there are directional and movable")
+    );
+}
+
+#[test]
 fn a_place_that_cannot_become_a_file_is_refused_before_the_work() {
     let folder = folder("bad_places");
     let (missing, itself) = (folder.join("no/such.svg"), folder.to_str().unwrap());

@@ -6,7 +6,10 @@ use crate::{run, said, stderr, toposlam};
 
 const VERBS: [(&str, &[&str]); 7] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
-    ("explore", &["--start", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"]),
+    (
+        "explore",
+        &["--start", "--marker", "--choices", "--max-darts", "--full", "--doors", "--map", "--svg"],
+    ),
     ("compare", &["--marker", "--start", "--walk", "--html", "--json"]),
     (
         "counterexample",

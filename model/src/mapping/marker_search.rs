@@ -239,8 +239,9 @@ impl MarkerSearch {
                 return Ok(Some(vertex));
             }
             self.journey.arrive(next, expected, perceived)?;
-            if let Some(may_be) = self.is_candidate.get_mut(vertex.at()) {
-                *may_be = false;
+            if self.may_be(vertex) {
+                self.is_candidate[vertex.at()] = false;
+                self.tell(MovableEvent::NotAt { vertex }, observer);
             }
         }
         self.journey.way = way;

@@ -4,6 +4,7 @@ use crate::{
     embedded_graph::{Dart, Vertex},
     mapping::Journey,
     percept::{Door, Percept},
+    world::Action,
 };
 
 /// What happens in a run, as it happens. Vertices and darts are those of the map.
@@ -68,6 +69,19 @@ pub enum Event {
     Movable(MovableEvent),
 }
 
+impl Event {
+    /// What the robot did, if the event is something that it did.
+    #[must_use]
+    pub fn action(self) -> Option<Action> {
+        match self {
+            Self::Moved { door, .. } => Some(Action::Take(door)),
+            Self::Movable(MovableEvent::PickedUp) => Some(Action::PickUp),
+            Self::Movable(MovableEvent::Dropped) => Some(Action::Drop),
+            _ => None,
+        }
+    }
+}
+
 /// What happens in a run with a movable marker, besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovableEvent {
@@ -84,6 +98,12 @@ pub enum MovableEvent {
     Dropped,
     /// The robot picked the marker up where it is.
     PickedUp,
+    /// Place validation: the marker is not at this known vertex, where the robot is. It is told of
+    /// those that the unknown end may be.
+    NotAt {
+        /// The vertex.
+        vertex: Vertex,
+    },
     /// Place validation: the marker lies at a known vertex, where the robot is.
     Found {
         /// The vertex.

@@ -138,7 +138,8 @@ impl<'o> Report<'o> {
         if let Some(failure) = &tally.failure {
             let step = step(failure).map_or(String::new(), |step| format!(" {step}"));
             writeln!(self.out, "\nWrong{step}: {}", failure.flaw)?;
-            writeln!(self.out, "The start, as a world file for `toposlam explore`:\n")?;
+            let explore = format!("toposlam explore --marker {}", self.subject.marker);
+            writeln!(self.out, "The start, as a world file for `{explore}`:\n")?;
             writeln!(self.out, "{}", world_file::to_toml(&failed_world(failure, self.subject)))?;
         }
         Ok(())

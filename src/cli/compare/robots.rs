@@ -12,6 +12,7 @@ use toposlam_model::{
 };
 
 use super::{Failure, walk_page};
+use crate::cli::action_json::action_json;
 
 /// How many starts in B are told one by one.
 const TOLD: usize = 8;
@@ -151,9 +152,5 @@ pub(super) fn unknown() -> Map<String, Value> {
 
 /// Doors as numbers, other actions as words.
 pub(super) fn actions_json(actions: &[Action]) -> Value {
-    let action = |action: &Action| match action {
-        Action::Take(door) => json!(door.0),
-        other => json!(other.to_string()),
-    };
-    actions.iter().map(action).collect()
+    actions.iter().copied().map(action_json).collect()
 }

@@ -1,8 +1,11 @@
-//! The doors of a run as the beginning of a JSON object, written as they are taken.
+//! The doors of a run, and what is done with the marker, as the beginning of a JSON object that is
+//! written as they are taken.
 
 use std::io::{self, Write};
 
 use toposlam_model::mapping::{Event, Journey, Observer};
+
+use crate::cli::action_json::action_json;
 
 /// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
 pub(super) struct Doors<'o, W> {
@@ -25,10 +28,10 @@ impl<'o, W: Write> Doors<'o, W> {
 
 impl<W: Write> Observer for Doors<'_, W> {
     fn event(&mut self, _: &Journey, event: Event) {
-        if let (Ok(()), Event::Moved { door, .. }) = (&self.result, event) {
+        if let (Ok(()), Some(action)) = (&self.result, event.action()) {
             let comma = if self.taken == 0 { "" } else { "," };
             self.taken += 1;
-            self.result = write!(self.out, "{comma}{}", door.0);
+            self.result = write!(self.out, "{comma}{}", action_json(action));
         }
     }
 }

@@ -1,17 +1,17 @@
-//! How a run of Algorithm 1 ended: its map, held against the world.
+//! How a run ended: its map, held against the world.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, EveryWay, Flaw},
+    check::{EveryWay, Flaw},
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
-    mapping::{Exploration, FACING, MappingError},
+    mapping::{FACING, Journey, MappingError},
 };
 
-use super::{Failure, Outcome, story};
+use super::{Failure, Outcome, WithMarker, words};
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
@@ -22,6 +22,9 @@ struct Rest {
     isomorphic: bool,
     map: Option<serde_json::Value>,
     start: String,
+    /// The marker, but the directional one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    marker: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(flatten)]
@@ -41,7 +44,12 @@ struct EveryWayRest {
 pub(super) struct Ending<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
-    pub(super) exploration: &'a Exploration,
+    pub(super) marker: WithMarker,
+    pub(super) journey: &'a Journey,
+    /// The most moves that the algorithm may make in this world.
+    pub(super) move_bound: u64,
+    /// Whether the robot has its marker in hand.
+    pub(super) carries: bool,
     /// The bijection from the map to the world, or what is wrong.
     pub(super) result: Result<&'a Bijection, Flaw>,
     /// All runs, where they were wanted.
@@ -60,9 +68,9 @@ impl Ending<'_> {
 
     /// The map as a world, where it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
-        let (name, moves) = (&self.world.name, self.exploration.moves());
+        let (name, moves) = (&self.world.name, self.journey.moves());
         let about = format!("The map of {name}, made in {moves} moves");
-        let graph = self.exploration.map().complete()?;
+        let graph = self.journey.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
@@ -78,14 +86,15 @@ impl Ending<'_> {
 
     /// The object whose beginning, with the doors, has been written during the run.
     pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let map = self.exploration.map();
+        let map = self.journey.map();
         let rest = Rest {
-            moves: self.exploration.moves(),
+            moves: self.journey.moves(),
             edges: map.complete().map(EmbeddedGraph::edge_count),
             vertices: map.vertex_count(),
             isomorphic: self.result.is_ok(),
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
+            marker: (self.marker != WithMarker::Directional).then(|| self.marker.name()),
             error: self.error().map(ToString::to_string),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
@@ -102,7 +111,7 @@ impl Ending<'_> {
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
         match &self.result {
             Err(flaw) => {
-                let moves = story::counted(self.exploration.moves() as usize, "move");
+                let moves = words::counted(self.journey.moves() as usize, "move");
                 writeln!(out, "\nAfter {moves}: {flaw}")?;
                 if matches!(flaw, Flaw::Error(MappingError::Bound { .. })) {
                     writeln!(out, "With --max-darts N the robot may go on.")?;
@@ -133,23 +142,22 @@ impl Ending<'_> {
     }
 
     fn tell_map(&self, bijection: &Bijection, out: &mut dyn Write) -> Result<(), Failure> {
-        let Self { world, exploration, .. } = self;
+        let Self { world, journey, move_bound, .. } = self;
         let (edges, vertices) = (world.graph.edge_count(), world.graph.vertex_count());
         writeln!(
             out,
-            "\nThe map has {} and {}, and took {} moves (at least {edges}, at most {}).",
-            story::vertices(vertices),
-            story::counted(edges, "edge"),
-            exploration.moves(),
-            Algorithm1.move_bound(edges, vertices),
+            "\nThe map has {} and {}, and took {} moves (at least {edges}, at most {move_bound}).",
+            words::vertices(vertices),
+            words::counted(edges, "edge"),
+            journey.moves(),
         )?;
         writeln!(out, "It is isomorphic to the world:")?;
         let name = |vertex| {
-            let first = exploration.map().darts_of(vertex).next();
+            let first = journey.map().darts_of(vertex).next();
             let image = first.and_then(|dart| bijection.image(dart));
             image.map(|dart| world.at_text(dart)).unwrap_or_default()
         };
-        let names: Vec<_> = exploration
+        let names: Vec<_> = journey
             .map()
             .vertices()
             .map(|vertex| format!("v{} = {}", vertex.0, name(vertex)))
@@ -157,13 +165,16 @@ impl Ending<'_> {
         for line in names.chunks(6) {
             writeln!(out, "  {}", line.join(", "))?;
         }
-        let robot = exploration.robot();
+        let robot = journey.robot();
         writeln!(
             out,
             "The robot knows where it is: at v{}, having come in by its dart {}.",
-            exploration.map().vertex(robot).0,
-            exploration.map().index(robot),
+            journey.map().vertex(robot).0,
+            journey.map().index(robot),
         )?;
+        if self.carries {
+            writeln!(out, "It carries its marker.")?;
+        }
         Ok(())
     }
 }

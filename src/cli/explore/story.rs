@@ -1,4 +1,6 @@
-//! The story of a run of Algorithm 1, round by round, for a person to read.
+//! The story of a run, round by round, for a person to read.
+
+mod movable;
 
 use std::io::{self, Write};
 
@@ -6,19 +8,22 @@ use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::{Event, Journey, Observer, PartialMap},
-    percept::{Door, Percept, Sighting},
+    percept::{Percept, Sighting},
+    world::Action,
 };
+
+use super::words::{counted, dart, seen_against, vertices};
 
 /// How much is told.
 #[derive(Clone, Copy)]
 pub(super) struct Detail {
-    /// Every rejected hypothesis, or only the first few of each round.
+    /// Everything that was rejected, or only the first few of each round.
     pub(super) every_hypothesis: bool,
-    /// The doors taken.
+    /// The doors taken, and what was done with the marker.
     pub(super) doors: bool,
 }
 
-/// How many rejected hypotheses of a round are told one by one, where not all are wanted.
+/// How many of those rejected in a round are told one by one, where not all are wanted.
 const TOLD: usize = 4;
 
 /// Tells a run as it goes.
@@ -27,8 +32,8 @@ pub(super) struct Story<'o, W> {
     detail: Detail,
     result: io::Result<()>,
     round: u64,
-    doors: Vec<Door>,
-    /// Rejected in this round.
+    actions: Vec<Action>,
+    /// Rejected in this round; with a movable marker, at this stage of it.
     rejected: usize,
     /// Moves at the beginning of what is told next.
     moves: u64,
@@ -43,7 +48,7 @@ impl<'o, W: Write> Story<'o, W> {
             world.at_text(facing),
             world.facing_text(facing)
         );
-        Self { out, detail, result, round: 0, doors: Vec::new(), rejected: 0, moves: 0 }
+        Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
@@ -52,22 +57,20 @@ impl<'o, W: Write> Story<'o, W> {
 
     fn tell(&mut self, journey: &Journey, event: Event) -> io::Result<()> {
         let map = journey.map();
+        if self.detail.doors {
+            self.actions.extend(event.action());
+        }
         match event {
             Event::Started { percept } => {
-                writeln!(self.out, "It drops its marker at v0, where it senses {percept}.")
+                let marker = match percept.sighting {
+                    Sighting::Pointing(_) => "It drops its marker",
+                    _ => "Its marker lies",
+                };
+                writeln!(self.out, "{marker} at v0, where it senses {percept}.")
             }
-            Event::Moved { door, .. } => {
-                if self.detail.doors {
-                    self.doors.push(door);
-                }
-                Ok(())
-            }
+            Event::Moved { .. } => Ok(()),
             Event::Arrived { edge, percept, contradicted, hypotheses } => {
-                self.round += 1;
-                self.rejected = 0;
-                let edge = dart(map, edge);
-                let moves = self.count_moves(journey);
-                writeln!(self.out, "\n{:>3}  behind {edge}, after {moves}: {percept}", self.round)?;
+                self.tell_round(journey, edge, "", percept)?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
                     (_, 0) => writeln!(self.out, "     no other unexplored dart fits"),
@@ -78,18 +81,12 @@ impl<'o, W: Write> Story<'o, W> {
                 }
             }
             Event::Rejected { hypothesis, followed, expected, perceived } => {
-                self.rejected += 1;
-                let moves = self.count_moves(journey);
-                if self.rejected > TOLD && !self.detail.every_hypothesis {
-                    return Ok(());
-                }
-                writeln!(
-                    self.out,
-                    "     {}? no, its path fails at move {followed}: {} instead of {} ({moves})",
-                    dart(map, hypothesis),
+                let why = format!(
+                    "no, its path fails at move {followed}: {} instead of {}",
                     seen_against(perceived, expected),
                     seen_against(expected, perceived),
-                )
+                );
+                self.tell_rejected(journey, &dart(map, hypothesis), &why)
             }
             Event::Confirmed { hypothesis, followed } => {
                 self.tell_untold()?;
@@ -119,15 +116,40 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 self.tell_map(map)
             }
-            // Algorithm 1 has none of these.
-            Event::Movable(_) => Ok(()),
+            Event::Movable(event) => self.tell_movable(journey, event),
         }
     }
 
-    /// The rejected hypotheses that were not told one by one.
-    fn tell_untold(&mut self) -> io::Result<()> {
+    /// A round begins: what there is behind an unexplored dart.
+    fn tell_round(
+        &mut self,
+        journey: &Journey,
+        edge: Dart,
+        with: &str,
+        percept: Percept,
+    ) -> io::Result<()> {
+        self.round += 1;
+        self.rejected = 0;
+        let edge = dart(journey.map(), edge);
+        let moves = self.count_moves(journey);
+        writeln!(self.out, "\n{:>3}  behind {edge}, after {moves}{with}: {percept}", self.round)
+    }
+
+    /// One of those that may be it is not, and why.
+    fn tell_rejected(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
+        self.rejected += 1;
+        let moves = self.count_moves(journey);
         if self.rejected > TOLD && !self.detail.every_hypothesis {
-            let more = self.rejected - TOLD;
+            return Ok(());
+        }
+        writeln!(self.out, "     {what}? {why} ({moves})")
+    }
+
+    /// The rejected ones that were not told one by one.
+    fn tell_untold(&mut self) -> io::Result<()> {
+        let rejected = std::mem::take(&mut self.rejected);
+        if rejected > TOLD && !self.detail.every_hypothesis {
+            let more = rejected - TOLD;
             writeln!(self.out, "     ... and {more} more, all rejected")?;
         }
         Ok(())
@@ -135,7 +157,7 @@ impl<'o, W: Write> Story<'o, W> {
 
     fn tell_map(&mut self, map: &PartialMap) -> io::Result<()> {
         if self.detail.doors {
-            let doors: Vec<_> = self.doors.drain(..).map(|door| door.0.to_string()).collect();
+            let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
             writeln!(self.out, "     doors: {}", doors.join(" "))?;
         }
         let unexplored = map.unexplored_count();
@@ -161,24 +183,4 @@ impl<W: Write> Observer for Story<'_, W> {
             self.result = self.tell(journey, event);
         }
     }
-}
-
-/// A dart of the map.
-fn dart(map: &PartialMap, dart: Dart) -> String {
-    format!("v{}.{}", map.vertex(dart).0, map.index(dart))
-}
-
-/// A percept beside another: that there is no marker is told where it is what differs.
-fn seen_against(percept: Percept, other: Percept) -> String {
-    let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
-    format!("{percept}{}", if absent { ", no marker" } else { "" })
-}
-
-/// So many of something.
-pub(super) fn counted(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
-pub(super) fn vertices(number: usize) -> String {
-    if number == 1 { "1 vertex".to_owned() } else { format!("{number} vertices") }
 }

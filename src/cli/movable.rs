@@ -1,13 +1,24 @@
 //! Where one movable marker does not suffice. Section 2.3.
 
-use std::fmt::Display;
+use std::{fmt::Display, path::Path};
 
 use toposlam_model::{
     ambiguity::{PlacedWorld, Search},
+    embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
     marker::Movable,
 };
+
+use super::Failure;
+
+/// Refuses the worlds of a file if one of them has loops or parallel edges.
+pub(super) fn check_worlds(path: &Path, graphs: &[EmbeddedGraph]) -> Result<(), Failure> {
+    match graphs.iter().position(|graph| !graph.is_simple()) {
+        Some(place) => Err(Failure::in_file(path, not_sufficient(format!("world {}", place + 1)))),
+        None => Ok(()),
+    }
+}
 
 /// Why a world, or a class of worlds, is not mapped with a movable marker.
 pub(super) fn not_sufficient(what: impl Display) -> String {

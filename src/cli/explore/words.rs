@@ -1,0 +1,27 @@
+//! The words of which stories and endings are made.
+
+use toposlam_model::{
+    embedded_graph::Dart,
+    mapping::PartialMap,
+    percept::{Percept, Sighting},
+};
+
+/// A dart of the map.
+pub(super) fn dart(map: &PartialMap, dart: Dart) -> String {
+    format!("v{}.{}", map.vertex(dart).0, map.index(dart))
+}
+
+/// A percept beside another: that there is no marker is told where it is what differs.
+pub(super) fn seen_against(percept: Percept, other: Percept) -> String {
+    let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
+    format!("{percept}{}", if absent { ", no marker" } else { "" })
+}
+
+/// So many of something.
+pub(super) fn counted(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+pub(super) fn vertices(number: usize) -> String {
+    if number == 1 { "1 vertex".to_owned() } else { format!("{number} vertices") }
+}
