@@ -1,9 +1,9 @@
 //! Worlds that a marker cannot tell apart: two starts from which every door sequence gives the same
 //! percepts. Section 2.2.
 //!
-//! Whether two starts are indistinguishable is decided by the coarsest [`partition`] of the states
+//! Whether two starts are indistinguishable is decided by the coarsest partition of the states
 //! of both worlds; what a [`Comparison`] hands over is a [witness](Relation), which is verified
-//! without it. The [`Search`] finds all such worlds of a class by the [`quotient`] of each.
+//! without it. The [`Search`] finds all such worlds of a class by the quotient of each.
 
 mod comparison;
 mod findings;
