@@ -6,7 +6,7 @@ use super::{WalkPage, side::Side};
 use crate::model::{
     ambiguity::PlacedRobot,
     marker::{Look, Part},
-    world::{Action, World},
+    world::Action,
 };
 
 /// The data as JSON that can stand inside a `script` element: nothing in it ends the element or
@@ -36,7 +36,6 @@ fn side(side: &Side) -> Value {
 }
 
 fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
-    let percept = robot.clone().percept().map(|percept| percept.to_string());
     let actions = actions.iter().map(|(action, to)| json!([action.to_string(), to]));
     let marks = match robot.state().placed {
         Some(placed) => robot.marker().parts(robot.graph(), placed).into_iter().map(mark).collect(),
@@ -46,7 +45,7 @@ fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value
         "text": side.world.state_text(robot.marker(), robot.state()),
         "dart": robot.pose().0,
         "vertex": robot.graph().vertex(robot.pose()).0,
-        "percept": percept.unwrap_or_default(),
+        "percept": robot.sensed().to_string(),
         "actions": actions.collect::<Vec<_>>(),
         "marks": marks,
     })

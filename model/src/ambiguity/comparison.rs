@@ -1,11 +1,11 @@
 //! Can robots in two placed worlds tell that these are two?
 
-use std::collections::HashSet;
+use std::{cell::OnceCell, collections::HashSet};
 
 use super::{
     partition::coarsest,
-    space::Space,
-    witness::{Relation, Walk, perceived},
+    space::{Space, States},
+    witness::{Relation, Walk},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -18,10 +18,11 @@ pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
 
 /// Two placed worlds, held against each other.
 pub struct Comparison<'a> {
+    marker: &'a dyn Marker,
     worlds: [PlacedRobot<'a>; 2],
-    spaces: [Space; 2],
-    /// The class of each state of the first and then of the second world.
-    class: Vec<u32>,
+    states: [States; 2],
+    /// The class of each state of the first and then of the second world, once somebody asked.
+    class: OnceCell<Vec<u32>>,
 }
 
 impl<'a> Comparison<'a> {
@@ -32,20 +33,28 @@ impl<'a> Comparison<'a> {
         (one, facing): (&'a EmbeddedGraph, Dart),
         (other, other_facing): (&'a EmbeddedGraph, Dart),
     ) -> Self {
-        let spaces = [Space::of(one, marker, facing), Space::of(other, marker, other_facing)];
-        let labels: Vec<_> = spaces.iter().flat_map(|space| &space.labels).collect();
-        let beyond = spaces[0].len() as u32;
-        let [one_maps, other_maps] = [&spaces[0].maps, &spaces[1].maps];
-        let both = |(one, other): (&Vec<u32>, &Vec<u32>)| {
-            one.iter().copied().chain(other.iter().map(|to| to + beyond)).collect()
-        };
-        let maps: Vec<_> = one_maps.iter().zip(other_maps).map(both).collect();
-        let class = coarsest(&labels, &maps);
+        let states = [States::of(one, marker, facing), States::of(other, marker, other_facing)];
         let worlds = [
             GraphWorld::with_marker(one, marker, facing),
             GraphWorld::with_marker(other, marker, other_facing),
         ];
-        Self { worlds, spaces, class }
+        Self { marker, worlds, states, class: OnceCell::new() }
+    }
+
+    /// The coarsest partition of the states of both worlds.
+    fn class(&self) -> &[u32] {
+        self.class.get_or_init(|| {
+            let space =
+                |at: usize| Space::of(self.worlds[at].graph(), self.marker, &self.states[at]);
+            let [one, other] = [space(0), space(1)];
+            let beyond = one.labels.len() as u32;
+            let both = |(one, other): (Vec<u32>, Vec<u32>)| -> Vec<u32> {
+                one.into_iter().chain(other.into_iter().map(|to| to + beyond)).collect()
+            };
+            let labels = [one.labels, other.labels].concat();
+            let maps: Vec<_> = one.maps.into_iter().zip(other.maps).map(both).collect();
+            coarsest(&labels, &maps)
+        })
     }
 
     /// The two worlds, each with a robot at its start, whose marker lies where it was placed, and
@@ -63,37 +72,73 @@ impl<'a> Comparison<'a> {
     #[must_use]
     pub fn indistinguishable(&self, poses: [Dart; 2]) -> bool {
         let [one, other] = self.starts(poses);
-        let here = self.spaces[0].number(one.state()) as usize;
-        let there = self.spaces[0].len() + self.spaces[1].number(other.state()) as usize;
-        self.class[here] == self.class[there]
+        let here = self.states[0].number(one.state()) as usize;
+        let there = self.states[0].len() + self.states[1].number(other.state()) as usize;
+        self.class()[here] == self.class()[there]
     }
 
     /// Why they cannot: all pairs of states that they can be in, breadth-first; `None` where they
     /// can. There are at most as many pairs as states of the one times states of the other.
     #[must_use]
     pub fn relation(&self, poses: [Dart; 2]) -> Option<Relation> {
-        self.indistinguishable(poses).then(|| {
-            let mut pairs = Pairs::new(self, poses);
-            pairs.look_for_a_difference();
-            Relation(pairs.found.into_iter().map(|found| found.pair).collect())
-        })
+        if self.class.get().is_some() && !self.indistinguishable(poses) {
+            return None;
+        }
+        let mut pairs = Pairs::new(self, poses);
+        match pairs.look_for_a_difference(self.few_pairs()) {
+            Look::Difference(_) => return None,
+            Look::NoMore => {}
+            Look::Enough if !self.indistinguishable(poses) => return None,
+            Look::Enough => {
+                pairs.look_for_a_difference(usize::MAX);
+            }
+        }
+        Some(Relation(pairs.found.into_iter().map(|found| found.pair).collect()))
     }
 
     /// How they can: the shortest walk, and of these the least; `None` where they cannot.
     #[must_use]
     pub fn walk(&self, poses: [Dart; 2]) -> Option<Walk> {
-        (!self.indistinguishable(poses))
-            .then(|| Pairs::new(self, poses).look_for_a_difference())
-            .flatten()
+        if self.class.get().is_some() && self.indistinguishable(poses) {
+            return None;
+        }
+        let mut pairs = Pairs::new(self, poses);
+        let look = match pairs.look_for_a_difference(self.few_pairs()) {
+            Look::Enough if !self.indistinguishable(poses) => {
+                pairs.look_for_a_difference(usize::MAX)
+            }
+            look => look,
+        };
+        match look {
+            Look::Difference(walk) => Some(walk),
+            Look::NoMore | Look::Enough => None,
+        }
     }
+
+    /// So many pairs are looked at before the partition is made, which costs no less.
+    fn few_pairs(&self) -> usize {
+        4 * (self.states[0].len() + self.states[1].len())
+    }
+}
+
+/// How a look for a difference ended.
+enum Look {
+    /// With one.
+    Difference(Walk),
+    /// There are no more pairs.
+    NoMore,
+    /// As many pairs as were wanted have been found.
+    Enough,
 }
 
 /// Pairs of states that robots that do the same can reach, breadth-first; those of a length in the
 /// order of the least walks that lead to them.
 struct Pairs<'c, 'a> {
     worlds: [PlacedRobot<'a>; 2],
-    spaces: &'c [Space; 2],
+    states: &'c [States; 2],
     found: Vec<Found>,
+    /// The place of the pair to look further from.
+    next: usize,
     /// The numbers of the states of each pair found.
     known: HashSet<[u32; 2]>,
 }
@@ -108,15 +153,15 @@ impl<'c, 'a> Pairs<'c, 'a> {
     fn new(comparison: &'c Comparison<'a>, poses: [Dart; 2]) -> Self {
         let worlds = comparison.starts(poses);
         let pair = (worlds[0].state(), worlds[1].state());
-        let spaces = &comparison.spaces;
-        let mut pairs = Self { worlds, spaces, found: Vec::new(), known: HashSet::new() };
+        let states = &comparison.states;
+        let mut pairs = Self { worlds, states, found: Vec::new(), next: 0, known: HashSet::new() };
         pairs.find(pair, None);
         pairs
     }
 
     /// Takes in a pair, if it is a new one.
     fn find(&mut self, pair: (State, State), from: Option<(usize, Action)>) -> bool {
-        let [one, other] = self.spaces;
+        let [one, other] = self.states;
         let new = self.known.insert([one.number(pair.0), other.number(pair.1)]);
         if new {
             self.found.push(Found { pair, from });
@@ -124,27 +169,29 @@ impl<'c, 'a> Pairs<'c, 'a> {
         new
     }
 
-    /// Finds pairs until there are no more, or until one of them shows a difference.
-    fn look_for_a_difference(&mut self) -> Option<Walk> {
-        let mut next = 0;
-        while let Some(&Found { pair, .. }) = self.found.get(next) {
+    /// Finds pairs until one of them shows a difference, or there are no more, or as many as these.
+    fn look_for_a_difference(&mut self, most: usize) -> Look {
+        while let Some(&Found { pair, .. }) = self.found.get(self.next) {
             let [one, other] = self.at(pair);
-            if next == 0 && perceived(&one) != perceived(&other) {
-                return self.walk_to(0);
+            if self.next == 0 && one.sensed() != other.sensed() {
+                return self.difference_at(0);
+            }
+            if self.found.len() > most {
+                return Look::Enough;
             }
             for action in one.actions() {
                 let (mut one, mut other) = (one.clone(), other.clone());
                 // Robots that perceive the same can do the same.
                 let acted = one.act(action).and_then(|()| other.act(action));
-                let is_new =
-                    acted.is_ok() && self.find((one.state(), other.state()), Some((next, action)));
-                if is_new && perceived(&one) != perceived(&other) {
-                    return self.walk_to(self.found.len() - 1);
+                let from = Some((self.next, action));
+                let is_new = acted.is_ok() && self.find((one.state(), other.state()), from);
+                if is_new && one.sensed() != other.sensed() {
+                    return self.difference_at(self.found.len() - 1);
                 }
             }
-            next += 1;
+            self.next += 1;
         }
-        None
+        Look::NoMore
     }
 
     fn at(&self, (here, there): (State, State)) -> [PlacedRobot<'a>; 2] {
@@ -153,8 +200,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
     }
 
     /// How the pair at a place was reached, and what is perceived there.
-    fn walk_to(&self, place: usize) -> Option<Walk> {
-        let [one, other] = self.at(self.found[place].pair);
+    fn difference_at(&self, place: usize) -> Look {
         let mut actions = Vec::new();
         let mut at = place;
         while let Some((from, action)) = self.found[at].from {
@@ -162,6 +208,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
             at = from;
         }
         actions.reverse();
-        Some(Walk { actions, percepts: [perceived(&one)?, perceived(&other)?] })
+        let percepts = self.at(self.found[place].pair).map(|robot| robot.sensed());
+        Look::Difference(Walk { actions, percepts })
     }
 }

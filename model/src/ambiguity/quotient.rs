@@ -4,7 +4,6 @@ use super::{
     partition::coarsest,
     space::{Label, Space},
 };
-use crate::world::State;
 
 /// What is left of a placed world when states that no robot can tell apart are one.
 ///
@@ -43,11 +42,11 @@ impl Quotient {
         self.labels.len() == self.class.len()
     }
 
-    /// The code of the class of a state.
-    pub(super) fn code(&self, space: &Space, state: State) -> Code {
+    /// The code of the class of a state, which is told by its number.
+    pub(super) fn code(&self, state: u32) -> Code {
         const UNMET: u32 = u32::MAX;
         let mut number = vec![UNMET; self.labels.len()];
-        let root = self.class[space.number(state) as usize];
+        let root = self.class[state as usize];
         let mut met = vec![root];
         number[root as usize] = 0;
         let mut code = Vec::with_capacity(self.labels.len());

@@ -11,14 +11,14 @@ use super::{
     Comparison, Findings, Group, PlacedWorld, SizeFindings,
     findings::rank,
     quotient::{Code, Quotient},
-    space::Space,
+    space::{Space, States},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Found, Part, SizeError, Watch, in_parts},
     isomorphism::{as_discovered, canonical, code},
     marker::Marker,
-    world::{GraphWorld, State},
+    world::State,
 };
 
 /// A search over all placed worlds of a class with 1 to some number of edges.
@@ -94,31 +94,29 @@ impl Search {
     /// Looks at all ways to place the marker in a graph.
     fn look_at_graph(&self, found: Found, seen: &mut Seen) {
         let Found { graph, automorphisms } = found;
-        let mut refined: Option<(Space, Quotient)> = None;
+        let mut refined: Option<(States, Quotient)> = None;
         for places in self.placings(graph, automorphisms) {
             seen.placed_worlds += 1;
             let facing = places[0];
             // The states of a world do not depend on where a movable marker lies at first.
             let known = refined.take().filter(|_| self.marker.is_movable());
-            let (space, quotient) = known.unwrap_or_else(|| {
-                let space = Space::of(graph, self.marker, facing);
-                let quotient = Quotient::of(&space);
-                (space, quotient)
+            let (states, quotient) = known.unwrap_or_else(|| {
+                let states = States::of(graph, self.marker, facing);
+                let quotient = Quotient::of(&Space::of(graph, self.marker, &states));
+                (states, quotient)
             });
             // A world all of whose states can be told apart shares its percepts only with its
             // covers, which have at least twice as many edges.
             if !quotient.is_discrete() || 2 * graph.edge_count() <= self.sizes.len() {
-                let begun = |&pose| {
-                    let world = GraphWorld::with_marker(graph, self.marker, facing);
-                    let start = State { pose, ..world.state() };
-                    quotient.code(&space, start)
-                };
+                let placed_at = Some(self.marker.first_alike(graph, facing));
+                let begun = |&pose| states.number(State { pose, placed: placed_at });
                 let starts = self.marker.starts(graph, facing);
-                if let Some(least) = starts.iter().map(begun).min() {
+                let codes = starts.iter().map(begun).map(|state| quotient.code(state));
+                if let Some(least) = codes.min() {
                     seen.candidates.push((least, placed(graph, &places)));
                 }
             }
-            refined = Some((space, quotient));
+            refined = Some((states, quotient));
         }
     }
 

@@ -3,66 +3,38 @@
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
-    percept::{Percept, Sighting},
-    world::{Action, GraphWorld, State, World},
+    percept::Percept,
+    world::{Action, GraphWorld, State},
 };
 
 /// What a robot knows in a state without moving: its percept, and whether it carries the marker.
 pub(super) type Label = (Percept, bool);
 
-/// The states of a placed world, numbered, with three maps of states to states that every action is
-/// made of: turn to the next dart, cross to the opposite one, and pick up or drop the marker, where
-/// that is possible (else stay).
-///
-/// A partition that keeps percepts and these maps keeps percepts and actions, for door `i` is `i`
-/// turns and a crossing. The converse holds too: crossing is door 0, and turning is door 1 and then
-/// door 0, which brings the robot back, having now come in by the next dart.
-pub(super) struct Space {
+/// The states of a placed world, numbered.
+#[derive(Clone, Debug)]
+pub(super) struct States {
     darts: usize,
-    /// The places of the marker, each as the first of the facing darts alike; in the states after
-    /// those of all places, where the marker can be moved, the robot carries it.
+    /// The places of the marker, each as the first of the facing darts alike.
     places: Vec<Dart>,
-    pub(super) labels: Vec<Label>,
-    pub(super) maps: Vec<Vec<u32>>,
+    /// Whether the robot can carry it: these states come after those of all places.
+    can_carry: bool,
 }
 
-impl Space {
+impl States {
     /// The states of a world whose marker was placed by the facing dart.
     pub(super) fn of(graph: &EmbeddedGraph, marker: &dyn Marker, facing: Dart) -> Self {
-        let places = if marker.is_movable() {
+        let can_carry = marker.is_movable();
+        let places = if can_carry {
             graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart).collect()
         } else {
             vec![marker.first_alike(graph, facing)]
         };
-        let darts = graph.dart_count();
-        let mut space = Self { darts, places, labels: Vec::new(), maps: Vec::new() };
-        let count = darts * (space.places.len() + usize::from(marker.is_movable()));
-        let (mut turn, mut cross, mut handle) =
-            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
-        space.labels.reserve_exact(count);
-        let world = GraphWorld::with_marker(graph, marker, facing);
-        for number in 0..count {
-            let state = space.state(number as u32);
-            let mut world = world.clone().at(state);
-            // A graph can always be sensed.
-            let nothing = Percept { degree: 0, sighting: Sighting::Nothing };
-            space.labels.push((world.percept().unwrap_or(nothing), world.carries()));
-            turn.push(space.number(State { pose: graph.clockwise(state.pose), ..state }));
-            cross.push(space.number(State { pose: graph.opposite(state.pose), ..state }));
-            if marker.is_movable() {
-                // Where neither is possible, the state stays.
-                let _ = world.act(Action::PickUp).or_else(|_| world.act(Action::Drop));
-                handle.push(space.number(world.state()));
-            }
-        }
-        space.maps =
-            if marker.is_movable() { vec![turn, cross, handle] } else { vec![turn, cross] };
-        space
+        Self { darts: graph.dart_count(), places, can_carry }
     }
 
-    /// How many states there are.
+    /// How many there are.
     pub(super) fn len(&self) -> usize {
-        self.labels.len()
+        self.darts * (self.places.len() + usize::from(self.can_carry))
     }
 
     /// The state of a number.
@@ -82,6 +54,44 @@ impl Space {
     }
 }
 
+/// What is sensed in each state of a placed world, and three maps of states to states that every
+/// action is made of: turn to the next dart, cross to the opposite one, and pick up or drop the
+/// marker, where that is possible (else stay).
+///
+/// A partition that keeps percepts and these maps keeps percepts and actions, for door `i` is `i`
+/// turns and a crossing. The converse holds too: crossing is door 0, and turning is door 1 and then
+/// door 0, which brings the robot back, having now come in by the next dart.
+pub(super) struct Space {
+    pub(super) labels: Vec<Label>,
+    pub(super) maps: Vec<Vec<u32>>,
+}
+
+impl Space {
+    /// The space of a world with a marker.
+    pub(super) fn of(graph: &EmbeddedGraph, marker: &dyn Marker, states: &States) -> Self {
+        let count = states.len();
+        let mut labels = Vec::with_capacity(count);
+        let (mut turn, mut cross, mut handle) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        // The state that it begins with does not matter.
+        let world = GraphWorld::with_marker(graph, marker, Dart(0));
+        for number in 0..count {
+            let state = states.state(number as u32);
+            let mut world = world.clone().at(state);
+            labels.push((world.sensed(), world.carries()));
+            turn.push(states.number(State { pose: graph.clockwise(state.pose), ..state }));
+            cross.push(states.number(State { pose: graph.opposite(state.pose), ..state }));
+            if states.can_carry {
+                // Where neither is possible, the state stays.
+                let _ = world.act(Action::PickUp).or_else(|_| world.act(Action::Drop));
+                handle.push(states.number(world.state()));
+            }
+        }
+        let maps = if states.can_carry { vec![turn, cross, handle] } else { vec![turn, cross] };
+        Self { labels, maps }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -97,10 +107,11 @@ mod tests {
         #[test]
         fn every_action_is_made_of_the_maps(graph in any_graph(Class::Multigraph, 6)) {
             for marker in MARKERS {
-                let space = Space::of(&graph, marker, Dart(0));
-                for number in 0..space.len() as u32 {
-                    let state = space.state(number);
-                    prop_assert_eq!(space.number(state), number);
+                let states = States::of(&graph, marker, Dart(0));
+                let space = Space::of(&graph, marker, &states);
+                for number in 0..states.len() as u32 {
+                    let state = states.state(number);
+                    prop_assert_eq!(states.number(state), number);
                     let world = GraphWorld::with_marker(&graph, marker, Dart(0)).at(state);
                     for action in world.actions() {
                         let mut world = world.clone();
@@ -112,7 +123,7 @@ mod tests {
                             }
                             Action::PickUp | Action::Drop => map(2, number),
                         };
-                        prop_assert_eq!(space.number(world.state()), expected);
+                        prop_assert_eq!(states.number(world.state()), expected);
                     }
                 }
             }

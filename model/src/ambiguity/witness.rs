@@ -4,7 +4,7 @@
 use crate::{
     marker::Marker,
     percept::Percept,
-    world::{Action, GraphWorld, Refused, State, World},
+    world::{Action, GraphWorld, Refused, State},
 };
 
 /// Pairs of states, one of each world, in which two robots that do the same can be: a bisimulation.
@@ -36,7 +36,7 @@ impl Relation {
         let among = |pair: (State, State)| pairs.binary_search(&pair).is_ok();
         let is_kept = |&(here, there): &(State, State)| {
             let (one, other) = (one.clone().at(here), other.clone().at(there));
-            perceived(&one) == perceived(&other)
+            one.sensed() == other.sensed()
                 && one.actions().eq(other.actions())
                 && one.actions().all(|action| {
                     let after = |world: &GraphWorld<'_, M>| {
@@ -79,15 +79,10 @@ pub fn replay<M: Marker>(
     mut world: GraphWorld<'_, M>,
     actions: &[Action],
 ) -> Result<Vec<Percept>, Refused> {
-    let mut percepts = vec![world.percept()?];
+    let mut percepts = vec![world.sensed()];
     for &action in actions {
         world.act(action)?;
-        percepts.push(world.percept()?);
+        percepts.push(world.sensed());
     }
     Ok(percepts)
-}
-
-/// What the robot perceives where it is.
-pub(super) fn perceived<M: Marker + Clone>(world: &GraphWorld<'_, M>) -> Option<Percept> {
-    world.clone().percept().ok()
 }

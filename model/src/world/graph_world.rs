@@ -115,6 +115,14 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         Self { state, ..self }
     }
 
+    /// What the robot senses where it is: a graph can always be sensed.
+    #[inline]
+    #[must_use]
+    pub fn sensed(&self) -> Percept {
+        let degree = self.graph.degree_around(self.state.pose);
+        Percept { degree, sighting: self.sighting() }
+    }
+
     /// What the robot can do: its doors, and what it can do with the marker.
     pub fn actions(&self) -> impl Iterator<Item = Action> + use<M> {
         let doors = (0..self.graph.degree_around(self.state.pose)).map(|n| Action::Take(Door(n)));
@@ -188,8 +196,7 @@ impl<M: Marker> World for GraphWorld<'_, M> {
 
     #[inline]
     fn percept(&mut self) -> Result<Percept, Refused> {
-        let degree = self.graph.degree_around(self.state.pose);
-        Ok(Percept { degree, sighting: self.sighting() })
+        Ok(self.sensed())
     }
 
     #[inline]

@@ -14,8 +14,9 @@ use toposlam_model::{
 use super::{Failure, walk_page};
 use crate::cli::action_json::action_json;
 
-/// How many starts in B are told one by one.
+/// How many starts in B, and how many pairs of states, are told one by one.
 const TOLD: usize = 8;
+const TOLD_PAIRS: usize = 400;
 
 /// Robots in two worlds: one start in A, one or more in B.
 pub(super) struct Robots<'w> {
@@ -112,12 +113,15 @@ impl<'w> Robots<'w> {
                  the robots can be in {} pairs of states:",
                 relation.0.len()
             )?;
-            let pairs: Vec<_> =
-                relation.0.iter().map(|pair| self.pair_text(pair).join("~")).collect();
+            let told = relation.0.iter().take(TOLD_PAIRS);
+            let pairs: Vec<_> = told.map(|pair| self.pair_text(pair).join("~")).collect();
             let widest = pairs.iter().map(String::len).max().unwrap_or_default();
             for line in pairs.chunks((96 / (widest + 2)).max(1)) {
                 let line: Vec<_> = line.iter().map(|pair| format!("{pair:widest$}")).collect();
                 writeln!(out, "  {}", line.join("  ").trim_end())?;
+            }
+            if let Some(more) = relation.0.len().checked_sub(TOLD_PAIRS + 1) {
+                writeln!(out, "  and {} more, which --json tells", more + 1)?;
             }
             return Ok(());
         }

@@ -5,7 +5,7 @@ use std::{io::Write, str::FromStr};
 use serde_json::{Value, json};
 use toposlam_model::{
     percept::Percept,
-    world::{Action, UnknownAction, World},
+    world::{Action, UnknownAction},
 };
 
 use super::{
@@ -42,13 +42,11 @@ impl<'w> Robots<'w> {
         for step in 0..=actions.len() {
             let mut perceived = Vec::new();
             for (robot, letter) in robots.iter_mut().zip(["A", "B"]) {
-                let acted = match step.checked_sub(1) {
-                    Some(last) => robot.act(actions[last]),
-                    None => Ok(()),
-                };
-                let percept = acted.and_then(|()| robot.percept());
-                let place = || format!("--walk: action {step} in {letter}");
-                perceived.push(percept.map_err(|error| Failure::at(place(), error))?);
+                if let Some(last) = step.checked_sub(1) {
+                    let place = || format!("--walk: action {step} in {letter}");
+                    robot.act(actions[last]).map_err(|error| Failure::at(place(), error))?;
+                }
+                perceived.push(robot.sensed());
             }
             percepts.push([perceived[0], perceived[1]]);
         }
