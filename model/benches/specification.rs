@@ -83,7 +83,7 @@ fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize
         immovable.map(|marker| Search::new(class, edges, marker).unwrap()).collect();
     bencher.counter(ItemsCount::new(placed)).bench(|| {
         let findings = searches.iter().map(|search| search.run(&()));
-        let sizes = findings.flat_map(|findings| findings.sizes);
+        let sizes = findings.flat_map(|findings| findings.unwrap().sizes);
         assert_eq!(sizes.map(|size| size.placed_worlds).sum::<u64>(), placed);
     });
 }

@@ -5,17 +5,19 @@
 use std::{collections::BTreeSet, ops::ControlFlow};
 
 use toposlam_model::{
-    ambiguity::{Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Walk, replay},
+    ambiguity::{
+        Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Unfinished, Walk, replay,
+    },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, SizeError, Watch},
-    isomorphism::Bijection,
+    isomorphism::{Bijection, code},
     marker::{MARKERS, Marker, named},
-    percept::Percept,
+    percept::{Door, Percept},
     world::{Action, State, World},
 };
 
 fn search(class: Class, edges: usize, marker: &str) -> Findings {
-    Search::new(class, edges, named(marker).unwrap()).unwrap().run(&())
+    Search::new(class, edges, named(marker).unwrap()).unwrap().run(&()).unwrap()
 }
 
 /// For each number of edges: placed worlds, and those that are ambiguous.
@@ -172,8 +174,23 @@ fn every_pair_is_confirmed_by_a_relation_from_every_start() {
 
 #[test]
 fn pairs_are_told_from_the_smallest_and_each_once() {
-    let findings = search(Class::Multigraph, 4, "undirected");
+    for marker in ["none", "undirected"] {
+        told_in_order(&search(Class::Multigraph, 4, marker));
+    }
+}
+
+fn told_in_order(findings: &Findings) {
     let pairs = findings.pairs();
+    // The larger world's size counts first, then the smaller one's, then the codes, the first
+    // world's before the other's.
+    let code = |world: &PlacedWorld| code(&world.graph, PlacedWorld::FACING);
+    let in_order = |one: &[&PlacedWorld; 2], other: &[&PlacedWorld; 2]| {
+        let key = |[one, other]: [&PlacedWorld; 2]| {
+            (other.graph.edge_count(), one.graph.edge_count(), code(one), code(other))
+        };
+        key(*one) <= key(*other)
+    };
+    assert!(pairs.is_sorted_by(in_order));
     let sizes: Vec<_> = pairs
         .iter()
         .map(|[one, other]| (other.graph.edge_count(), one.graph.edge_count()))
@@ -261,6 +278,15 @@ fn a_relation_that_is_not_kept_proves_nothing() {
         assert!(!Relation(fewer).verify(&one, &other), "{place}");
     }
     assert!(!Relation(Vec::new()).verify(&one, &other));
+    // Nor does one that speaks of what is not there.
+    for nowhere in [
+        State { pose: Dart(99), ..one.state() },
+        State { placed: Some(Dart(99)), ..one.state() },
+        State { placed: None, ..one.state() },
+    ] {
+        let more = [&pairs[..], &[(nowhere, other.state())]].concat();
+        assert!(!Relation(more).verify(&one, &other), "{nowhere:?}");
+    }
     // With an undirected marker, the same pairs show different percepts.
     let undirected = named("undirected").unwrap();
     let comparison = Comparison::new(undirected, (&three, Dart(0)), (&four, Dart(0)));
@@ -292,6 +318,11 @@ fn a_walk_that_shows_no_difference_proves_nothing() {
     assert!(!longer.verify(&one, &other));
     let swapped = Walk { percepts: [walk.percepts[1], walk.percepts[0]], ..walk.clone() };
     assert!(!swapped.verify(&one, &other));
+    // A walk whose percepts differ before its end is not the shortest, and no proof.
+    let late = [&walk.actions[..], &[Action::Take(Door(1)); 1]].concat();
+    let ends = [one.clone(), other.clone()].map(|it| *replay(it, &late).unwrap().last().unwrap());
+    assert_ne!(ends[0], ends[1], "or this tests nothing");
+    assert!(!Walk { actions: late, percepts: ends }.verify(&one, &other));
     let impossible = Walk { actions: vec![Action::Drop], ..walk.clone() };
     assert!(!impossible.verify(&one, &other));
     let percepts: Vec<Percept> = replay(one, &walk.actions).unwrap();
@@ -315,6 +346,5 @@ fn an_interrupted_search_says_so() {
         }
     }
     let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
-    let findings = search.run(&Stop);
-    assert!(findings.interrupted && findings.sizes.is_empty() && findings.groups.is_empty());
+    assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
 }

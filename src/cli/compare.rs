@@ -14,7 +14,10 @@ use toposlam_model::{
     marker::{self, Marker},
 };
 
-use super::{Failure, Outcome, input, marker_kinds, walk_page};
+use super::{
+    Failure, Outcome, input, marker_kinds, walk_page,
+    words::{counted, vertices},
+};
 use robots::Robots;
 use walk::Actions;
 
@@ -140,7 +143,7 @@ impl Arguments {
             (Some(marker), _) => marker,
         };
         let one_pose = self.start.len() == 2;
-        Ok(Some(Robots::new(worlds, marker, one_pose)))
+        Robots::new(worlds, marker, one_pose).map(Some)
     }
 }
 
@@ -160,11 +163,11 @@ impl Graphs<'_> {
         for (letter, world) in ["A", "B"].into_iter().zip(self.worlds) {
             writeln!(
                 out,
-                "{letter} is {}: {} vertices, {} edges, {} faces, genus {}",
+                "{letter} is {}: {}, {}, {}, genus {}",
                 world.name,
-                world.graph.vertex_count(),
-                world.graph.edge_count(),
-                world.graph.face_count(),
+                vertices(world.graph.vertex_count()),
+                counted(world.graph.edge_count(), "edge"),
+                counted(world.graph.face_count(), "face"),
                 world.graph.genus(),
             )?;
         }

@@ -92,21 +92,22 @@ enum Expectation {
 }
 
 impl Arguments {
-    pub(super) fn run(mut self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
         if let Some(folder) = &self.atlas {
             return atlas::write(folder, self.edges);
         }
         let edges = self.edges.unwrap_or_else(|| usual_size(self.class));
-        if self.markers.is_empty() {
-            self.markers = MARKERS.to_vec();
-        }
+        // Each once, in the order of the list.
+        let wanted =
+            |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
+        let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
         let search = |marker| {
             let search = Search::new(self.class, edges, marker);
             search.map_err(|error| Failure::at("--edges", error))
         };
         let searches: Vec<_> =
-            self.markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
+            markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
         if let Some(path) = &self.html {
             walk_page::check_place(path)?;
             if searches.len() != 1 {
@@ -121,14 +122,14 @@ impl Arguments {
         }
         let mut report = Report::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
-        for (search, &marker) in searches.iter().zip(&self.markers) {
+        for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
             let findings = search.run(&progress);
             progress.finish();
-            if findings.interrupted {
-                report.broken_off()?;
-                return Ok(Outcome::Incomplete);
-            }
+            let findings = match findings {
+                Ok(findings) => findings,
+                Err(unfinished) => return Ok(found::unfinished(&unfinished)),
+            };
             let found = Found::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
             if let Some(folder) = &self.out {
@@ -141,6 +142,7 @@ impl Arguments {
                 outcome = Outcome::Violated;
             }
         }
+        report.end()?;
         Ok(outcome)
     }
 }

@@ -9,13 +9,13 @@ mod draw;
 mod explore;
 mod input;
 mod movable;
-mod numbers;
 mod outcome;
 mod output;
 mod paper;
 mod progress;
 mod walk_page;
 mod with_marker;
+mod words;
 
 use std::{
     io::{self, Write},

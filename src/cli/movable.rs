@@ -32,7 +32,7 @@ pub(super) fn not_sufficient(what: impl Display) -> String {
 /// The smallest two worlds that no robot with one movable marker can tell apart, in words.
 fn smallest_pair() -> Option<String> {
     // It has two edges; with three the search still takes no time.
-    let findings = Search::new(Class::Multigraph, 3, &Movable).ok()?.run(&());
+    let findings = Search::new(Class::Multigraph, 3, &Movable).ok()?.run(&()).ok()?;
     let [one, other] = findings.smallest()?.map(described);
     Some(format!("{one} from {other}"))
 }

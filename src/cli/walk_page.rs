@@ -4,15 +4,24 @@ use std::path::Path;
 
 use toposlam::page::{WalkPage, page};
 use toposlam_model::{
-    ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld, marker::Marker,
+    ambiguity::{Comparison, state_count},
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    marker::Marker,
 };
 
-use super::{Failure, output};
+use super::{
+    Failure, output,
+    words::{grouped, sentence},
+};
 
 /// Refuses a path that cannot become a page, before long work begins.
 pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
     output::check_place(path, &["html", "htm"])
 }
+
+/// The most states of a world that a page can tell.
+const MOST_STATES: usize = 20_000;
 
 /// Writes the page of two worlds with a marker, whose robots begin in these poses.
 pub(crate) fn write(
@@ -22,14 +31,37 @@ pub(crate) fn write(
     comparison: &Comparison,
     poses: [Dart; 2],
 ) -> Result<(), Failure> {
-    let title = format!("{} and {}, {} marker", worlds[0].name, worlds[1].name, marker.name());
-    let stop = if marker.about().ends_with('?') { "" } else { "." };
-    let verdict = if comparison.indistinguishable(poses) {
-        "No walk tells these worlds apart: whatever both robots do, both perceive the same."
-    } else {
-        "A walk tells these worlds apart: it is as short as any that does."
+    for world in worlds {
+        let states = state_count(&world.graph, marker);
+        if states > MOST_STATES {
+            let cause = format!(
+                "{} has {} states, and a page can tell {}",
+                world.name,
+                grouped(states as u128),
+                grouped(MOST_STATES as u128)
+            );
+            return Err(Failure::in_file(path, cause));
+        }
+    }
+    let kind = if marker.name() == "none" { "no" } else { marker.name() };
+    let title = format!("{} and {}, {kind} marker", worlds[0].name, worlds[1].name);
+    let starts = format!(
+        "from {} in A and {} in B",
+        worlds[0].start_text(poses[0]),
+        worlds[1].start_text(poses[1])
+    );
+    let verdict = match comparison.walk(poses) {
+        None => format!(
+            "{starts} no walk tells these worlds apart: whatever both robots do, both perceive the \
+             same"
+        ),
+        Some(walk) if walk.actions.is_empty() => format!("{starts} the first percepts differ"),
+        Some(walk) => {
+            let actions: Vec<_> = walk.actions.iter().map(ToString::to_string).collect();
+            format!("{starts} the walk {} tells these worlds apart", actions.join(", "))
+        }
     };
-    let about = format!("The marker: {}{stop} {verdict}", marker.about());
+    let about = format!("{} {}", sentence(marker.about()), sentence(&verdict));
     let document = page(&WalkPage { title: &title, about: &about, worlds, comparison, poses });
     output::write_whole(path, document.as_bytes())
 }

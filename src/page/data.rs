@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{WalkPage, side::Side};
 use crate::model::{
     ambiguity::PlacedRobot,
-    marker::{Look, Part},
+    marker::{Marker, Part},
     world::Action,
 };
 
@@ -37,27 +37,26 @@ fn side(side: &Side) -> Value {
 
 fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
     let actions = actions.iter().map(|(action, to)| json!([action.to_string(), to]));
-    let marks = match robot.state().placed {
-        Some(placed) => robot.marker().parts(robot.graph(), placed).into_iter().map(mark).collect(),
-        None => vec![json!(["carried"])],
+    // A marker that stays where it is stands in the picture.
+    let marker = match robot.state().placed {
+        _ if !robot.marker().is_movable() => Value::Null,
+        Some(placed) => json!(robot.graph().vertex(placed).0),
+        None => json!("carried"),
     };
+    let pointing = robot.state().placed.and_then(|placed| {
+        let parts = robot.marker().parts(robot.graph(), placed);
+        parts.into_iter().find_map(|part| match part {
+            Part::Pointing(dart) => Some(dart.0),
+            _ => None,
+        })
+    });
     json!({
         "text": side.world.state_text(robot.marker(), robot.state()),
         "dart": robot.pose().0,
         "vertex": robot.graph().vertex(robot.pose()).0,
         "percept": robot.sensed().to_string(),
         "actions": actions.collect::<Vec<_>>(),
-        "marks": marks,
+        "marker": marker,
+        "pointing": pointing,
     })
-}
-
-/// What a part of a marker is, and the vertex or the dart that it is told by.
-fn mark(part: Part) -> Value {
-    match part {
-        Part::At { vertex, look: Look::One } => json!(["at", vertex.0]),
-        Part::At { vertex, look: Look::Other } => json!(["other at", vertex.0]),
-        Part::Pointing(dart) => json!(["along", dart.0]),
-        Part::OnEdge(dart) => json!(["on", dart.0]),
-        Part::OnEdgeAlong(dart) => json!(["on away from", dart.0]),
-    }
 }

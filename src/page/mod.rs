@@ -49,6 +49,8 @@ pub fn page(page: &WalkPage) -> String {
         "style" => STYLE.to_owned(),
         "name of A" => escaped(&page.worlds[0].name),
         "name of B" => escaped(&page.worlds[1].name),
+        "marker of A" => escaped(&one.where_the_marker_is()),
+        "marker of B" => escaped(&other.where_the_marker_is()),
         "picture of A" => one.picture(),
         "picture of B" => other.picture(),
         "data" => data::json(page, [&one, &other]),
@@ -124,8 +126,10 @@ mod tests {
             places.borrow_mut().insert(place.to_owned());
             String::new()
         });
-        let known = ["about", "data", "name of A", "name of B", "picture of A", "picture of B"];
-        let known = known.into_iter().chain(["script", "style", "title"]).map(str::to_owned);
+        let of_sides = ["marker of", "name of", "picture of"];
+        let of_sides = of_sides.into_iter().flat_map(|it| [format!("{it} A"), format!("{it} B")]);
+        let others = ["about", "data", "script", "style", "title"].map(str::to_owned);
+        let known = of_sides.chain(others);
         assert_eq!(places.into_inner(), known.collect());
     }
 
@@ -141,7 +145,8 @@ mod tests {
                 "vertex": 1,
                 "percept": if degree == 1 { "1 door" } else { "2 doors" },
                 "actions": if degree == 1 { json!([["0", 0]]) } else { json!([["0", 0], ["1", 2]]) },
-                "marks": [["along", 0]],
+                "marker": null,
+            "pointing": 0,
             })
         };
         assert_eq!(data["sides"][0]["states"][1], far(1));
@@ -157,7 +162,8 @@ mod tests {
         assert_eq!(data["relation"][0], json!([0, 0]));
         let carried = &data["sides"][0]["states"][2];
         assert_eq!(carried["text"], "v0:0+marker");
-        assert_eq!(carried["marks"], json!([["carried"]]));
+        assert_eq!(carried["marker"], "carried");
+        assert_eq!(data["sides"][0]["states"][0]["marker"], 0);
         assert_eq!(carried["actions"], json!([["0", 3], ["drop", 0]]));
     }
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::{
     model::{
         ambiguity::PlacedRobot,
+        embedded_graph::Dart,
         format::named_world::NamedWorld,
         world::{Action, State},
     },
@@ -48,8 +49,28 @@ impl<'a> Side<'a> {
         self.place.get(&state).copied().unwrap_or_default()
     }
 
-    /// The world as it is drawn, but for its words and its marker, which the page shows itself.
+    /// The world as it is drawn, but for its words; and for its marker, if that can be moved: this the
+    /// page shows itself.
     pub(super) fn picture(&self) -> String {
-        svg(&Picture { start: None, title: "", caption: "", ..Picture::from(self.world) })
+        let marker = *self.robots[0].marker();
+        let start = self.placed().filter(|_| !marker.is_movable());
+        svg(&Picture { start, marker, title: "", caption: "", ..Picture::from(self.world) })
+    }
+
+    /// Where the marker is, in words.
+    pub(super) fn where_the_marker_is(&self) -> String {
+        let marker = *self.robots[0].marker();
+        let picture = Picture { start: self.placed(), marker, ..Picture::from(self.world) };
+        let place = picture.where_the_marker_is().unwrap_or_default();
+        if marker.is_movable() {
+            format!("{place} at first; a red robot carries it")
+        } else {
+            place
+        }
+    }
+
+    /// The facing dart that places the marker at the start.
+    fn placed(&self) -> Option<Dart> {
+        self.robots[0].state().placed
     }
 }

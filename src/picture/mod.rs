@@ -31,9 +31,9 @@ mod ways;
 mod gallery;
 
 use crate::model::{
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     format::named_world::NamedWorld,
-    marker::{Directional, Marker, Part},
+    marker::{Directional, Look, Marker, Part},
 };
 
 pub use png::{PictureError, png};
@@ -64,6 +64,45 @@ impl Picture<'_> {
     /// What lies where.
     fn parts(&self) -> Vec<Part> {
         self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
+    }
+
+    /// Where the marker is, in words; `None` where there is none.
+    pub(crate) fn where_the_marker_is(&self) -> Option<String> {
+        let graph = self.graph;
+        let name = |vertex: Vertex| {
+            let known = self.vertex_names.get(vertex.at());
+            known.cloned().unwrap_or_else(|| vertex.at().to_string())
+        };
+        let edge = |dart: Dart| {
+            let [from, to] = [dart, graph.opposite(dart)].map(|end| name(graph.vertex(end)));
+            let known = self.edge_names.and_then(|names| names.get(dart.at()));
+            known.map_or(format!("the edge from {from} to {to}"), |edge| format!("edge {edge}"))
+        };
+        Some(match self.parts().as_slice() {
+            [] => return None,
+            [Part::Pointing(dart)] => format!(
+                "the marker lies at {} and points along door {}",
+                name(graph.vertex(*dart)),
+                graph.index(*dart)
+            ),
+            [Part::OnEdge(dart)] => format!("{} is marked", edge(*dart)),
+            [Part::OnEdgeAlong(dart)] => format!("{} is marked with an arrow", edge(*dart)),
+            [Part::At { vertex, .. }] => format!("the marker lies at {}", name(*vertex)),
+            [Part::At { vertex: one, .. }, Part::At { vertex: other, .. }] if one == other => {
+                format!("both markers lie at {}", name(*one))
+            }
+            parts => {
+                let at = |part: &Part| match part {
+                    Part::At { vertex, look: Look::One } => name(*vertex),
+                    Part::At { vertex, look: Look::Other } => format!("{} (dashed)", name(*vertex)),
+                    Part::Pointing(dart) | Part::OnEdge(dart) | Part::OnEdgeAlong(dart) => {
+                        name(graph.vertex(*dart))
+                    }
+                };
+                let places: Vec<_> = parts.iter().map(at).collect();
+                format!("markers lie at {}", places.join(" and "))
+            }
+        })
     }
 }
 

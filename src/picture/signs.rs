@@ -63,17 +63,37 @@ pub(super) fn signs(picture: &Picture, drawing: &Drawing) -> Vec<Sign> {
     signs
 }
 
-/// The place of a mark on a dart's edge, and the direction there away from the dart's vertex.
+/// Shares of an edge at which a mark may stand, the better ones first.
+const SHARES: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
+/// So far from everything else a mark stands well.
+const CLEAR: f64 = 14.0;
+
+/// The place of a mark on a dart's edge, clear of other edges, discs and the edge's name as far as
+/// there is room; and the direction there away from the dart's vertex.
 fn on_edge(picture: &Picture, drawing: &Drawing, dart: Dart) -> Option<(Point, f64)> {
-    let (first, _, curve) =
-        drawing.edges.iter().find(|&&(one, other, _)| one == dart || other == dart)?;
+    let number = drawing.edges.iter().position(|&(one, other, _)| one == dart || other == dart)?;
+    let (first, _, curve) = &drawing.edges[number];
     let away = if *first == dart { 1.0 } else { -1.0 };
-    // In the middle of an edge stands its name, if it has one.
-    let share = match (picture.edge_names, *first == dart) {
-        (None, _) => 0.5,
-        (Some(_), true) => 0.3,
-        (Some(_), false) => 0.7,
+    let clearance = |at: Point| {
+        let others = drawing.edges.iter().enumerate().filter(|(other, _)| *other != number);
+        let points = others.flat_map(|(_, (.., curve))| &curve.trace);
+        let discs = drawing.centres.iter().zip(&drawing.size.discs);
+        let name = picture.edge_names.map(|_| curve.at(0.5));
+        points
+            .chain(&name)
+            .map(|point| point.distance(at))
+            .chain(discs.map(|(centre, disc)| centre.distance(at) - disc))
+            .fold(CLEAR, f64::min)
     };
+    // The first of the clearest.
+    let mut best = (f64::NEG_INFINITY, 0.5);
+    for share in SHARES {
+        let clear = clearance(curve.at(share));
+        if clear > best.0 + 0.5 {
+            best = (clear, share);
+        }
+    }
+    let (_, share) = best;
     let along = (curve.at(share + 0.02) - curve.at(share - 0.02)) * away;
     Some((curve.at(share), along.angle()))
 }

@@ -170,14 +170,8 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
             "--start: there are two worlds; give it twice at most",
         ),
         (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is nothing that a robot can do"),
-        (
-            &["compare", WORLD, WORLD, "--walk", "0,9"],
-            "--walk: action 2 in A: door 9 was taken at a",
-        ),
-        (
-            &["compare", WORLD, WORLD, "--walk", "pick-up"],
-            "action 1 in A: there is no marker here that",
-        ),
+        (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
+        (&["compare", WORLD, WORLD, "--walk", "pick-up"], "action 1: there is no marker here that"),
         (&["counterexample", "--edges", "0"], "--edges: a world has at least one edge"),
         (&["counterexample", "--edges", "33"], "--edges: worlds with 33 edges are too many"),
         (&["counterexample", "--expect", "some"], "[possible values: none]"),

@@ -1,6 +1,6 @@
 //! `toposlam compare A B`.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use serde_json::{Value, json};
 use toposlam_model::format::{named_world::NamedWorld, world_file};
@@ -77,8 +77,8 @@ fn a_directional_marker_tells_figure_1_apart_and_is_the_usual_one() {
     assert_eq!((&line["walk"], &line["walks"]), (&json!([0, 1, 1]), &json!([[0, 1, 1]])));
     assert_eq!(compared(FIGURE_1, &[]), line);
     let told = said(["compare", FIGURE_1[0], FIGURE_1[1]]);
-    let end = "the walk 0,1,1 tells the worlds apart:\n  \
-               4 doors, marker along door 1 in A, 4 doors, marker along door 3 in B\n";
+    let end = "the walk 0,1,1 tells the worlds apart:\n  A: 4 doors, marker along door 1\n  \
+               B: 4 doors, marker along door 3\n";
     assert!(told.ends_with(end), "{told}");
 }
 
@@ -131,7 +131,8 @@ fn a_walk_is_replayed_percept_by_percept() {
     let told =
         said(["compare", CYCLES[0], CYCLES[1], "--marker", "undirected", "--walk", "1, 1,1"]);
     let rows: Vec<_> = told.lines().rev().take(4).collect();
-    assert!(rows[0].ends_with("2 doors, marker  2 doors  <- differs"), "{told}");
+    assert!(rows[0].contains("2 doors, marker  "), "{told}");
+    assert!(rows[0].ends_with("  2 doors  <- differs"), "{told}");
     assert!(!rows[1].contains("differs") && rows[3].starts_with("  start  "), "{told}");
 }
 
@@ -159,4 +160,52 @@ fn a_page_is_written_for_whoever_wants_to_walk() {
     assert!(page.contains("\"walk\":[\"0\",\"1\",\"1\"]"));
     let namespace = "http://www.w3.org/2000/svg";
     assert!(!page.replace(namespace, "").contains("://"), "nothing is asked of the network");
+}
+
+/// The chain a-b-c-d, begun so.
+fn chain(folder: &Path, name: &str, start: [&str; 2]) -> String {
+    let file = folder.join(format!("{name}.toml"));
+    let [at, facing] = start;
+    let orders = "a = [\"b\"]\nb = [\"a\", \"c\"]\nc = [\"b\", \"d\"]\nd = [\"c\"]\n";
+    let start = format!("[start]\nat = \"{at}\"\nfacing = \"{facing}\"\n");
+    fs::write(&file, format!("[clockwise]\n{orders}{start}")).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+/// What is told, walked and shown begins where the worlds are alike, and says where that is.
+#[test]
+fn the_robot_in_b_begins_where_no_walk_tells_the_worlds_apart_if_there_is_such_a_start() {
+    let folder = folder("compare_chain");
+    let files = [chain(&folder, "end", ["a", "b"]), chain(&folder, "middle", ["b", "c"])];
+    let files = files.each_ref().map(String::as_str);
+    let page = folder.join("page.html");
+    let more = ["--marker", "none", "--walk", "0,1", "--html", page.to_str().unwrap()];
+    let line = compared(files, &more);
+    assert_eq!((&line["distinguishable"], &line["starts"][0]), (&false.into(), &"b:c".into()));
+    assert_eq!(line["walks"][0], json!([]));
+    assert_eq!(line["relation_starts"], json!(["a:b", "a:b"]));
+    assert_eq!(line["walked"]["starts"], json!(["a:b", "a:b"]));
+    assert_eq!(line["relation"][0], json!(["a:0", "a:0"]));
+    let page = fs::read_to_string(&page).unwrap();
+    assert!(page.contains("From a:b in A and a:b in B no walk tells these worlds apart"));
+    // With both starts given, it begins nowhere else.
+    let both = ["--start", "a:b", "--start", "b:c"];
+    let line = compared(files, &[&more[..4], &both[..]].concat());
+    assert_eq!((&line["distinguishable"], &line["walk"]), (&true.into(), &json!([])));
+    // One start is that of A; B's pose varies.
+    let line = compared(files, &["--marker", "none", "--start", "d:c"]);
+    assert_eq!((&line["start"], &line["distinguishable"]), (&"d:c".into(), &false.into()));
+    assert_eq!(line["starts"].as_array().unwrap().len(), 6);
+}
+
+#[test]
+fn a_walk_goes_on_as_far_as_both_robots_can() {
+    let files = [FIGURE_1[0], CYCLES[0]];
+    let line = compared(files, &["--marker", "none", "--walk", "0,2,1"]);
+    assert_eq!(line["walked"]["actions"], json!([0]));
+    assert_eq!(line["walked"]["stopped"], "door 2 was taken at a vertex with 2 doors, in B");
+    let told = said(["compare", files[0], files[1], "--marker", "none", "--walk", "0,2,1"]);
+    let end = "3 doors             2 doors  <- differs\n  they cannot go on together: door 2 was taken at \
+               a vertex with 2 doors, in B\n";
+    assert!(told.ends_with(end), "{told}");
 }

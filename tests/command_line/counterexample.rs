@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fs};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use toposlam_model::format::world_file;
 
 use crate::{folder, names_in, objects, read_world, run, said, stdout};
@@ -60,6 +60,13 @@ fn all_markers_make_a_table() {
     assert!(told.contains("undirected               2,177         10  6 and 6 edges\n"), "{told}");
     let (sizes, rest) = searched(&["--edges", "3"]);
     assert_eq!((sizes.len(), rest.len()), (8 * 3, 8));
+    // Each marker once, however often it is named; the pairs after the table.
+    let twice = ["counterexample", "--edges", "4", "--marker", "none", "--marker", "none"];
+    assert!(said(twice).starts_with("none marker: "));
+    let told = said(["counterexample", "--edges", "4", "--all"]);
+    let (table, pairs) = told.split_once("\nall pairs: 1\n").unwrap();
+    assert_eq!(table.lines().count(), 3 + 8);
+    assert!(pairs.contains("none-simple-1 ~ none-simple-2: 3 and 4 edges"), "{told}");
 }
 
 /// Each world as a file, and each pair is one: no walk tells its worlds apart, and they differ.
@@ -72,24 +79,27 @@ fn all_pairs_are_told_and_written_and_are_pairs() {
     let (sizes, rest) = searched(&[&arguments[..], &written[..]].concat());
     let ambiguous: u64 = sizes.iter().map(|line| line["ambiguous"].as_u64().unwrap()).sum();
     assert_eq!(names_in(&out).len() as u64, ambiguous);
-    let pairs = &rest[1..];
-    assert_eq!(pairs[0]["pair"], rest[0]["smallest"]);
+    let (worlds, pairs): (Vec<_>, Vec<_>) =
+        rest[1..].iter().partition(|line| line.get("world").is_some());
+    assert_eq!(worlds.len() as u64, ambiguous);
+    for line in &worlds {
+        let told = world_file::read(line["world"].to_string().as_bytes()).unwrap();
+        assert_eq!(read_world(&out.join(format!("{}.toml", told.name))), told);
+        assert!(told.about.starts_with("No walk tells it from undirected-multigraph-"), "{told:?}");
+    }
+    let smallest = rest[0]["smallest"]["worlds"].as_array().unwrap();
+    assert_eq!(pairs[0]["pair"]["worlds"], json!([smallest[0]["name"], smallest[1]["name"]]));
     let mut in_pairs = BTreeSet::new();
-    for pair in pairs {
-        let worlds = pair["pair"]["worlds"].as_array().unwrap();
-        let files: Vec<_> = worlds
-            .iter()
-            .map(|world| out.join(format!("{}.toml", world["name"].as_str().unwrap())))
-            .collect();
-        in_pairs.extend(files.clone());
-        for (file, world) in files.iter().zip(worlds) {
-            let told = world_file::read(world.to_string().as_bytes()).unwrap();
-            assert_eq!(read_world(file), told);
-        }
+    for line in &pairs {
+        let names = line["pair"]["worlds"].as_array().unwrap();
+        let file = |name: &Value| out.join(format!("{}.toml", name.as_str().unwrap()));
+        let files: Vec<_> = names.iter().map(file).collect();
         let files: Vec<_> = files.iter().map(|file| file.to_str().unwrap()).collect();
         let compared = ["compare", "--json", "--marker", "undirected", files[0], files[1]];
-        let line = &objects(&said(compared))[0];
-        assert_eq!((&line["distinguishable"], &line["isomorphic"]), (&false.into(), &false.into()));
+        let compared = &objects(&said(compared))[0];
+        let expected = (&compared["distinguishable"], &compared["isomorphic"]);
+        assert_eq!(expected, (&false.into(), &false.into()));
+        in_pairs.extend(names.iter().map(ToString::to_string));
     }
     assert_eq!(in_pairs.len() as u64, ambiguous);
 }

@@ -57,8 +57,8 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The two worlds, each with a robot at its start, whose marker lies where it was placed, and
-    /// who has come in by such a dart.
+    /// The two worlds with their markers where they were placed, and in each a robot that has come in
+    /// by such a dart, which is one of the graph's.
     #[must_use]
     pub fn starts(&self, poses: [Dart; 2]) -> [PlacedRobot<'a>; 2] {
         let [one, other] = &self.worlds;
@@ -77,6 +77,16 @@ impl<'a> Comparison<'a> {
         self.class()[here] == self.class()[there]
     }
 
+    /// The first pose, of those in which the robot in the second world may begin as far as the marker
+    /// tells, from which it can never tell the worlds apart from one that begins in the first with
+    /// this pose; `None` where a walk tells from each.
+    #[must_use]
+    pub fn start_like(&self, pose: Dart) -> Option<Dart> {
+        let world = &self.worlds[1];
+        let starts = self.marker.starts(world.graph(), world.pose());
+        starts.into_iter().find(|&other| self.indistinguishable([pose, other]))
+    }
+
     /// Why they cannot: all pairs of states that they can be in, breadth-first; `None` where they
     /// can. There are at most as many pairs as states of the one times states of the other.
     #[must_use]
@@ -85,12 +95,12 @@ impl<'a> Comparison<'a> {
             return None;
         }
         let mut pairs = Pairs::new(self, poses);
-        match pairs.look_for_a_difference(self.few_pairs()) {
+        match pairs.reach(self.few_pairs()) {
             Look::Difference(_) => return None,
             Look::NoMore => {}
             Look::Enough if !self.indistinguishable(poses) => return None,
             Look::Enough => {
-                pairs.look_for_a_difference(usize::MAX);
+                pairs.reach(usize::MAX);
             }
         }
         Some(Relation(pairs.found.into_iter().map(|found| found.pair).collect()))
@@ -103,10 +113,8 @@ impl<'a> Comparison<'a> {
             return None;
         }
         let mut pairs = Pairs::new(self, poses);
-        let look = match pairs.look_for_a_difference(self.few_pairs()) {
-            Look::Enough if !self.indistinguishable(poses) => {
-                pairs.look_for_a_difference(usize::MAX)
-            }
+        let look = match pairs.reach(self.few_pairs()) {
+            Look::Enough if !self.indistinguishable(poses) => pairs.reach(usize::MAX),
             look => look,
         };
         match look {
@@ -170,7 +178,7 @@ impl<'c, 'a> Pairs<'c, 'a> {
     }
 
     /// Finds pairs until one of them shows a difference, or there are no more, or as many as these.
-    fn look_for_a_difference(&mut self, most: usize) -> Look {
+    fn reach(&mut self, most: usize) -> Look {
         while let Some(&Found { pair, .. }) = self.found.get(self.next) {
             let [one, other] = self.at(pair);
             if self.next == 0 && one.sensed() != other.sensed() {

@@ -1,5 +1,7 @@
 //! What a search finds: how many worlds a marker cannot tell apart, and which.
 
+use thiserror::Error;
+
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Code,
@@ -60,15 +62,25 @@ pub struct Findings {
     pub sizes: Vec<SizeFindings>,
     /// All ambiguous worlds, the group with the smallest pair first.
     pub groups: Vec<Group>,
-    /// Whether the search was broken off; then it found nothing.
-    pub interrupted: bool,
+}
+
+/// Why a search found nothing that could be told.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Unfinished {
+    /// It was broken off: what it has seen is not all.
+    #[error("the search was broken off")]
+    Interrupted,
+    /// Two worlds have the same quotient, and yet no relation that can be verified. This is a fault
+    /// of the search.
+    #[error(
+        "two worlds with {} and {} edges have the same quotient and are not confirmed to be \
+         indistinguishable: the search is at fault",
+        .0[0].graph.edge_count(), .0[1].graph.edge_count()
+    )]
+    Unconfirmed(Box<[PlacedWorld; 2]>),
 }
 
 impl Findings {
-    pub(super) fn interrupted() -> Self {
-        Self { sizes: Vec::new(), groups: Vec::new(), interrupted: true }
-    }
-
     /// The smallest pair: that whose larger world has the fewest edges; then whose smaller world
     /// has; then the one with the least codes.
     #[must_use]

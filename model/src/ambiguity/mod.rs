@@ -14,6 +14,7 @@ mod space;
 mod witness;
 
 pub use comparison::{Comparison, PlacedRobot};
-pub use findings::{Findings, Group, PlacedWorld, SizeFindings};
+pub use findings::{Findings, Group, PlacedWorld, SizeFindings, Unfinished};
 pub use search::Search;
+pub use space::state_count;
 pub use witness::{Relation, Walk, replay};

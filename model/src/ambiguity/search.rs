@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use petgraph::unionfind::UnionFind;
 
 use super::{
-    Comparison, Findings, Group, PlacedWorld, SizeFindings,
+    Comparison, Findings, Group, PlacedWorld, SizeFindings, Unfinished,
     findings::rank,
     quotient::{Code, Quotient},
     space::{Space, States},
@@ -51,25 +51,25 @@ impl Search {
     }
 
     /// Makes the search. The result does not depend on the number of threads.
-    pub fn run(&self, watch: &impl Watch) -> Findings {
+    ///
+    /// # Errors
+    /// Where the watch broke it off, or a find is not confirmed.
+    pub fn run(&self, watch: &impl Watch) -> Result<Findings, Unfinished> {
         let mut sizes = Vec::new();
         let mut candidates = Vec::new();
         for (worlds, edges) in self.sizes.iter().zip(1..) {
             let seen = self.look_at(worlds, watch);
             if seen.interrupted {
-                return Findings::interrupted();
+                return Err(Unfinished::Interrupted);
             }
             sizes.push(SizeFindings { edges, placed_worlds: seen.placed_worlds, ambiguous: 0 });
             candidates.extend(seen.candidates);
         }
-        let groups = self.grouped(candidates, watch);
-        if watch.stop() {
-            return Findings::interrupted();
-        }
+        let groups = self.grouped(candidates, watch)?;
         for world in groups.iter().flat_map(|group| &group.worlds) {
             sizes[world.graph.edge_count() - 1].ambiguous += 1;
         }
-        Findings { sizes, groups, interrupted: false }
+        Ok(Findings { sizes, groups })
     }
 
     fn look_at(&self, worlds: &Enumeration, watch: &impl Watch) -> Seen {
@@ -147,45 +147,48 @@ impl Search {
 
     /// The groups of candidates that have the same code, each world of which is confirmed by a
     /// relation with the first.
-    fn grouped(&self, mut candidates: Vec<(Code, PlacedWorld)>, watch: &impl Watch) -> Vec<Group> {
+    fn grouped(
+        &self,
+        mut candidates: Vec<(Code, PlacedWorld)>,
+        watch: &impl Watch,
+    ) -> Result<Vec<Group>, Unfinished> {
         candidates.sort_by(|(code, world), (other_code, other)| {
             code.cmp(other_code).then_with(|| world.rank().cmp(&other.rank()))
         });
         let alike = candidates.chunk_by(|(code, _), (other, _)| code == other);
-        let with_first: Vec<_> = alike
-            .filter(|alike| alike.len() > 1)
-            .flat_map(|alike| alike.iter().map(|(_, world)| (&alike[0].1, world)))
+        let alike: Vec<_> = alike.filter(|alike| alike.len() > 1).collect();
+        let pairs: Vec<[&PlacedWorld; 2]> = alike
+            .iter()
+            .flat_map(|alike| alike.iter().map(|(_, world)| [&alike[0].1, world]))
             .collect();
-        let confirm = |&(first, world): &(_, &PlacedWorld)| {
-            let confirmed = !watch.stop() && self.is_confirmed(first, world);
-            let confirmed = confirmed.then(|| world.clone());
-            Vec::from_iter(confirmed.map(|world| (first, world)))
+        let confirm = |&pair: &[&PlacedWorld; 2]| {
+            if watch.stop() {
+                Err(Unfinished::Interrupted)
+            } else if is_confirmed(self.marker, pair) {
+                Ok(())
+            } else {
+                Err(Unfinished::Unconfirmed(Box::new(pair.map(PlacedWorld::clone))))
+            }
         };
-        let merge = |mut worlds: Vec<_>, later: Vec<_>| {
-            worlds.extend(later);
-            worlds
+        in_parts(&pairs, &(), || Ok(()), confirm, |_| 1, Result::and)?;
+        let group = |alike: &[(Code, PlacedWorld)]| Group {
+            worlds: alike.iter().map(|(_, world)| world.clone()).collect(),
         };
-        let confirmed = in_parts(&with_first, &(), Vec::new, confirm, |_| 1, merge);
-        let mut groups: Vec<Group> = confirmed
-            .chunk_by(|(first, _), (other, _)| std::ptr::eq(*first, *other))
-            .filter(|group| group.len() > 1)
-            .map(|group| Group { worlds: group.iter().map(|(_, world)| world.clone()).collect() })
-            .collect();
+        let mut groups: Vec<_> = alike.into_iter().map(group).collect();
         groups.sort_by(|one, other| one.smallest().map(rank).cmp(&other.smallest().map(rank)));
-        groups
+        Ok(groups)
     }
+}
 
-    /// Whether a relation, which is verified, shows that two placed worlds are indistinguishable.
-    fn is_confirmed(&self, one: &PlacedWorld, other: &PlacedWorld) -> bool {
-        let start = PlacedWorld::FACING;
-        let comparison = Comparison::new(self.marker, (&one.graph, start), (&other.graph, start));
-        self.marker.starts(&other.graph, start).into_iter().any(|pose| {
-            comparison.relation([start, pose]).is_some_and(|relation| {
-                let [one, other] = comparison.starts([start, pose]);
-                relation.verify(&one, &other)
-            })
-        })
-    }
+/// Whether a relation, which is verified, shows that two placed worlds are indistinguishable.
+fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
+    let start = PlacedWorld::FACING;
+    let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
+    comparison.start_like(start).is_some_and(|pose| {
+        let [here, there] = comparison.starts([start, pose]);
+        let relation = comparison.relation([start, pose]);
+        relation.is_some_and(|relation| relation.verify(&here, &there))
+    })
 }
 
 /// The placed world that all these facing darts make.
@@ -193,4 +196,51 @@ fn placed(graph: &EmbeddedGraph, places: &[Dart]) -> PlacedWorld {
     let least = places.iter().map(|&facing| (code(graph, facing), facing)).min();
     let (code, facing) = least.unwrap_or_else(|| (code(graph, Dart(0)), Dart(0)));
     PlacedWorld { graph: as_discovered(graph, facing), code }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marker::named;
+
+    #[test]
+    fn worlds_that_a_walk_tells_apart_are_not_confirmed() {
+        for marker in ["none", "undirected", "movable"].map(|name| named(name).unwrap()) {
+            let findings = Search::new(Class::Multigraph, 3, marker).unwrap().run(&()).unwrap();
+            let groups: Vec<_> = findings.groups.iter().map(|group| &group.worlds).collect();
+            for (one, other) in groups.iter().zip(groups.iter().skip(1)) {
+                assert!(is_confirmed(marker, [&one[0], &one[1]]));
+                assert!(!is_confirmed(marker, [&one[0], &other[0]]));
+            }
+            assert!(groups.len() > 1);
+        }
+    }
+
+    #[test]
+    fn a_group_that_is_not_confirmed_is_an_error() {
+        let search = Search::new(Class::Simple, 4, named("undirected").unwrap()).unwrap();
+        let seen = search.look_at(&search.sizes[3], &());
+        let chains = Search::new(Class::Simple, 4, named("none").unwrap()).unwrap();
+        let seen = [seen, chains.look_at(&chains.sizes[3], &())];
+        let worlds: Vec<_> = seen.into_iter().flat_map(|seen| seen.candidates).collect();
+        // As if all of these had the same quotient.
+        let same = worlds.into_iter().map(|(_, world)| (Code::new(), world)).collect();
+        assert!(matches!(search.grouped(same, &()), Err(Unfinished::Unconfirmed(_))));
+    }
+
+    /// Of all facing darts that place a marker alike, that with the least code stands for it.
+    #[test]
+    fn a_placed_world_is_told_by_its_least_start() {
+        for marker in ["none", "undirected", "two-identical"].map(|name| named(name).unwrap()) {
+            let findings = Search::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();
+            for world in findings.groups.iter().flat_map(|group| &group.worlds) {
+                let graph = &world.graph;
+                let place = marker.first_alike(graph, PlacedWorld::FACING);
+                let alike = graph.darts().filter(|&d| marker.first_alike(graph, d) == place);
+                let least = alike.map(|facing| code(graph, facing)).min();
+                assert_eq!(least.as_ref(), Some(&world.code), "{marker:?}");
+                assert_eq!(code(graph, PlacedWorld::FACING), world.code);
+            }
+        }
+    }
 }

@@ -10,6 +10,13 @@ use crate::{
 /// What a robot knows in a state without moving: its percept, and whether it carries the marker.
 pub(super) type Label = (Percept, bool);
 
+/// How many states a robot and the marker can be in, in a world: its poses, and for each of them, with
+/// a marker that can be moved, where this lies or that it is carried.
+#[must_use]
+pub fn state_count(graph: &EmbeddedGraph, marker: &dyn Marker) -> usize {
+    States::of(graph, marker, Dart(0)).len()
+}
+
 /// The states of a placed world, numbered.
 #[derive(Clone, Debug)]
 pub(super) struct States {

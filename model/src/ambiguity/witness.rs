@@ -2,6 +2,7 @@
 //! Each is verified without regard to how it was found.
 
 use crate::{
+    embedded_graph::Dart,
     marker::Marker,
     percept::Percept,
     world::{Action, GraphWorld, Refused, State},
@@ -34,6 +35,14 @@ impl Relation {
         let mut pairs = self.0.clone();
         pairs.sort_unstable();
         let among = |pair: (State, State)| pairs.binary_search(&pair).is_ok();
+        // A claim may speak of anything.
+        let exists = |world: &GraphWorld<'_, M>, state: State| {
+            let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
+            is_dart(state.pose) && state.placed.map_or(world.marker().is_movable(), is_dart)
+        };
+        if !self.0.iter().all(|&(here, there)| exists(one, here) && exists(other, there)) {
+            return false;
+        }
         let is_kept = |&(here, there): &(State, State)| {
             let (one, other) = (one.clone().at(here), other.clone().at(there));
             one.sensed() == other.sensed()

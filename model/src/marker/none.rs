@@ -17,7 +17,7 @@ impl Marker for NoMarker {
     }
 
     fn about(&self) -> &'static str {
-        "no marker: nothing but the number of doors"
+        "no marker at all: the robot senses the number of doors and nothing else"
     }
 
     fn sighting(&self, _: &EmbeddedGraph, _: Dart, _: Dart) -> Sighting {

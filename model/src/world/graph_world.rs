@@ -36,7 +36,7 @@ pub struct State {
     /// The dart by which the robot has come in.
     pub pose: Dart,
     /// The facing dart that places the marker where it lies, the first of those alike; none while
-    /// the robot carries it.
+    /// the robot carries it. Without a marker, dart 0.
     pub placed: Option<Dart>,
 }
 
@@ -149,7 +149,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
     /// Whether the robot carries the marker.
     #[must_use]
     pub fn carries(&self) -> bool {
-        self.state.placed.is_none()
+        self.state.placed.is_none() && self.marker.is_movable()
     }
 
     fn can_pick_up(&self) -> bool {

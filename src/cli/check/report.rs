@@ -14,7 +14,7 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{Choice, Failure, Outcome, numbers::grouped};
+use crate::cli::{Choice, Failure, Outcome, words::grouped};
 
 /// Which algorithm is checked, with which marker.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use std::{io::Write, path::Path};
 
 use serde_json::{Map, Value, json};
 use toposlam_model::{
-    ambiguity::{Comparison, PlacedRobot, Relation, Walk},
+    ambiguity::{Comparison, PlacedRobot, Relation, Walk, state_count},
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     marker::Marker,
@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::{Failure, walk_page};
-use crate::cli::action_json::action_json;
+use crate::cli::{action_json::action_json, words::grouped};
 
 /// How many starts in B, and how many pairs of states, are told one by one.
 const TOLD: usize = 8;
@@ -26,7 +26,13 @@ pub(super) struct Robots<'w> {
     start: Dart,
     /// Each start in B, with the walk that tells it from the one in A; `None` where none does.
     others: Vec<(Dart, Option<Walk>)>,
+    /// From the first start in B from which no walk tells the worlds apart: why none does.
+    relation: Option<Relation>,
 }
+
+/// The most states that the robot and the marker may be in, in a world that is compared: each takes a
+/// hundred bytes and more.
+const MOST_STATES: usize = 1 << 26;
 
 impl<'w> Robots<'w> {
     /// Robots at the starts of the worlds; the one in B in every way that the marker cannot tell
@@ -35,8 +41,18 @@ impl<'w> Robots<'w> {
         worlds: [&'w NamedWorld; 2],
         marker: &'static dyn Marker,
         one_pose: bool,
-    ) -> Self {
+    ) -> Result<Self, Failure> {
         let [a, b] = worlds;
+        if let Some(world) =
+            worlds.into_iter().find(|world| state_count(&world.graph, marker) > MOST_STATES)
+        {
+            let cause = format!(
+                "with the {} marker there are {} states, which are too many to compare",
+                marker.name(),
+                grouped(state_count(&world.graph, marker) as u128),
+            );
+            return Err(Failure::at(&world.name, cause));
+        }
         let (start, other) = (a.start.unwrap_or(Dart(0)), b.start.unwrap_or(Dart(0)));
         let comparison = Comparison::new(marker, (&a.graph, start), (&b.graph, other));
         let mut poses = vec![other];
@@ -45,8 +61,27 @@ impl<'w> Robots<'w> {
             poses.extend(starts.into_iter().filter(|&pose| pose != other));
         }
         let told_apart = |pose| (pose, comparison.walk([start, pose]));
-        let others = poses.into_iter().map(told_apart).collect();
-        Self { worlds, marker, comparison, start, others }
+        let others: Vec<_> = poses.into_iter().map(told_apart).collect();
+        let mut robots = Self { worlds, marker, comparison, start, others, relation: None };
+        robots.relation = robots.comparison.relation(robots.poses());
+        robots.verify()?;
+        Ok(robots)
+    }
+
+    /// Holds what was found against the worlds, without regard to how it was found.
+    fn verify(&self) -> Result<(), Failure> {
+        let walks_hold = self.others.iter().all(|(pose, walk)| {
+            let [one, other] = self.comparison.starts([self.start, *pose]);
+            walk.as_ref().is_none_or(|walk| walk.verify(&one, &other))
+        });
+        let [one, other] = self.begun();
+        let relation_holds =
+            self.relation.as_ref().is_none_or(|relation| relation.verify(&one, &other));
+        if walks_hold && relation_holds {
+            Ok(())
+        } else {
+            Err(Failure::at("compare", "what was found is not confirmed: the search is at fault"))
+        }
     }
 
     /// The names of the worlds.
@@ -71,8 +106,10 @@ impl<'w> Robots<'w> {
         walk_page::write(path, self.worlds, self.marker, &self.comparison, self.poses())
     }
 
-    fn relation(&self) -> Option<Relation> {
-        self.comparison.relation(self.poses())
+    /// These starts, as `vertex:facing`.
+    pub(super) fn starts_text(&self) -> [String; 2] {
+        let [pose, other] = self.poses();
+        [self.worlds[0].start_text(pose), self.worlds[1].start_text(other)]
     }
 
     /// A pair of states in words.
@@ -83,7 +120,7 @@ impl<'w> Robots<'w> {
 
     pub(super) fn json(&self) -> Map<String, Value> {
         let [a, b] = self.worlds;
-        let relation = self.relation();
+        let relation = self.relation.as_ref();
         let pairs = relation
             .as_ref()
             .map(|relation| relation.0.iter().map(|pair| self.pair_text(pair)).collect::<Vec<_>>());
@@ -94,6 +131,7 @@ impl<'w> Robots<'w> {
             "distinguishable": relation.is_none(),
             "walk": first.and_then(|(_, first)| walk(first)),
             "relation": pairs,
+            "relation_starts": relation.map(|_| self.starts_text()),
             "start": a.start_text(self.start),
             "starts": self.others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
             "walks": self.others.iter().map(|(_, told)| walk(told)).collect::<Vec<_>>(),
@@ -105,13 +143,13 @@ impl<'w> Robots<'w> {
         let [a, b] = self.worlds;
         let start = a.start_text(self.start);
         writeln!(out, "\n{} marker: {}", self.marker.name(), self.marker.about())?;
-        if let Some(relation) = self.relation() {
-            let other = b.start_text(self.poses()[1]);
+        if let Some(relation) = &self.relation {
+            let [_, other] = self.starts_text();
             writeln!(
                 out,
                 "from {start} in A and {other} in B no walk tells the worlds apart;\n\
                  the robots can be in {} pairs of states:",
-                relation.0.len()
+                grouped(relation.0.len() as u128)
             )?;
             let told = relation.0.iter().take(TOLD_PAIRS);
             let pairs: Vec<_> = told.map(|pair| self.pair_text(pair).join("~")).collect();
@@ -134,15 +172,17 @@ impl<'w> Robots<'w> {
                 };
                 writeln!(
                     out,
-                    "from {start} in A and {} in B {how} the worlds apart:\n  {one} in A, {other} \
-                     in B",
+                    "from {start} in A and {} in B {how} the worlds apart:\n  A: {one}\n  B: {other}",
                     b.start_text(*pose),
                 )?;
             }
         }
         match self.others.len().saturating_sub(TOLD) {
             0 => {}
-            more => writeln!(out, "and so from {more} more starts in B")?,
+            more => writeln!(
+                out,
+                "from {more} more starts in B, too, a walk tells them apart; --json tells each"
+            )?,
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use std::{io::Write, str::FromStr};
 
 use serde_json::{Value, json};
 use toposlam_model::{
+    ambiguity::PlacedRobot,
     percept::Percept,
     world::{Action, UnknownAction},
 };
@@ -29,28 +30,42 @@ impl FromStr for Actions {
 /// A walk as it was walked: the percepts at the start and after each action.
 pub(super) struct Walked<'w> {
     names: [&'w str; 2],
+    /// Where the robots began.
+    starts: [String; 2],
     actions: Vec<Action>,
     percepts: Vec<[Percept; 2]>,
+    /// Why they did not go on, if only one of them could.
+    stopped: Option<String>,
 }
 
 impl<'w> Robots<'w> {
-    /// Both robots do the same.
+    /// Both robots do the same, as far as both can.
     pub(super) fn walk(&self, Actions(actions): &Actions) -> Result<Walked<'w>, Failure> {
-        let names = self.names();
         let mut robots = self.begun();
-        let mut percepts = Vec::new();
-        for step in 0..=actions.len() {
-            let mut perceived = Vec::new();
-            for (robot, letter) in robots.iter_mut().zip(["A", "B"]) {
-                if let Some(last) = step.checked_sub(1) {
-                    let place = || format!("--walk: action {step} in {letter}");
-                    robot.act(actions[last]).map_err(|error| Failure::at(place(), error))?;
+        let mut walked = Walked {
+            names: self.names(),
+            starts: self.starts_text(),
+            actions: Vec::new(),
+            percepts: vec![robots.each_ref().map(PlacedRobot::sensed)],
+            stopped: None,
+        };
+        for (&action, number) in actions.iter().zip(1..) {
+            let acted = robots.each_mut().map(|robot| robot.act(action));
+            match acted {
+                [Ok(()), Ok(())] => {}
+                [Err(error), Err(_)] => {
+                    return Err(Failure::at(format!("--walk: action {number}"), error));
                 }
-                perceived.push(robot.sensed());
+                [Err(error), Ok(())] => walked.stopped = Some(format!("{error}, in A")),
+                [Ok(()), Err(error)] => walked.stopped = Some(format!("{error}, in B")),
             }
-            percepts.push([perceived[0], perceived[1]]);
+            if walked.stopped.is_some() {
+                break;
+            }
+            walked.actions.push(action);
+            walked.percepts.push(robots.each_ref().map(PlacedRobot::sensed));
         }
-        Ok(Walked { names, actions: actions.clone(), percepts })
+        Ok(walked)
     }
 }
 
@@ -59,27 +74,38 @@ impl Walked<'_> {
         let percept = |percept: &Percept| json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() });
         let pair = |[one, other]: &[Percept; 2]| [percept(one), percept(other)];
         json!({
+            "starts": self.starts,
             "actions": actions_json(&self.actions),
             "percepts": self.percepts.iter().map(pair).collect::<Vec<_>>(),
+            "stopped": self.stopped,
         })
     }
 
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let heads: Vec<_> = self
+            .names
+            .iter()
+            .zip(&self.starts)
+            .map(|(name, start)| format!("{name} from {start}"))
+            .collect();
         let actions =
             std::iter::once("start".to_owned()).chain(self.actions.iter().map(ToString::to_string));
         let rows: Vec<_> = actions
             .zip(&self.percepts)
             .map(|(action, [one, other])| [action, one.to_string(), other.to_string()])
             .collect();
-        let width = |column: usize, name: &str| {
+        let width = |column: usize, head: &str| {
             let texts = rows.iter().map(|row| row[column].chars().count());
-            texts.chain([name.chars().count()]).max().unwrap_or_default()
+            texts.chain([head.chars().count()]).max().unwrap_or_default()
         };
-        let (first, second) = (width(0, "door"), width(1, self.names[0]));
-        writeln!(out, "\n  {:first$}  {:second$}  {}", "door", self.names[0], self.names[1])?;
+        let (first, second) = (width(0, "action"), width(1, &heads[0]));
+        writeln!(out, "\n  {:first$}  {:second$}  {}", "action", heads[0], heads[1])?;
         for [action, one, other] in &rows {
             let differs = if one == other { "" } else { "  <- differs" };
             writeln!(out, "  {action:first$}  {one:second$}  {other}{differs}")?;
+        }
+        if let Some(why) = &self.stopped {
+            writeln!(out, "  they cannot go on together: {why}")?;
         }
         Ok(())
     }

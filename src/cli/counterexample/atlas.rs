@@ -11,9 +11,13 @@ use toposlam_model::{
 };
 
 use super::found::{self, Found};
-use crate::cli::{Failure, Outcome, output, progress::Progress};
+use crate::cli::{
+    Failure, Outcome, output,
+    progress::Progress,
+    words::{counted, sentence},
+};
 
-/// The sizes up to which the atlas searches a class, in less than a minute altogether.
+/// The sizes up to which the atlas searches a class, in about a minute altogether.
 fn full_size(class: Class) -> usize {
     match class {
         Class::Multigraph => 7,
@@ -34,7 +38,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
     let mut rows = Vec::new();
     found::make_folder(folder)?;
     for marker in MARKERS {
-        let mut found = Vec::new();
+        let mut found_of = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let search =
                 Search::new(class, edges, marker).map_err(|error| Failure::at("--edges", error))?;
@@ -42,12 +46,13 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             let progress = Progress::new(&work, "placed worlds")?;
             let findings = search.run(&progress);
             progress.finish();
-            if findings.interrupted {
-                return Ok(Outcome::Incomplete);
-            }
-            found.push(Found::new(marker, class, &findings, false));
+            let findings = match findings {
+                Ok(findings) => findings,
+                Err(unfinished) => return Ok(found::unfinished(&unfinished)),
+            };
+            found_of.push(Found::new(marker, class, &findings, false));
         }
-        rows.push(Row { marker, found });
+        rows.push(Row { marker, found: found_of });
     }
     for Row { marker, found } in &rows {
         for found in found {
@@ -59,13 +64,14 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             }
         }
     }
-    output::write_whole(&folder.join("README.md"), readme(&rows, sizes).as_bytes())?;
+    let limit = edges.map(|edges| format!(" --edges {edges}")).unwrap_or_default();
+    output::write_whole(&folder.join("README.md"), readme(&rows, sizes, &limit).as_bytes())?;
     Ok(Outcome::Holds)
 }
 
 /// The table, and the pictures of each pair.
-fn readme(rows: &[Row], sizes: [usize; 4]) -> String {
-    let mut text = String::from(HEAD);
+fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
+    let mut text = format!("{HEAD}{limit}\n\n");
     let mut line = |line: &str| {
         text.push_str(line);
         text.push('\n');
@@ -112,16 +118,7 @@ worlds, which
 
 shows, and with `--html` walks. This folder is made by
 
-    toposlam counterexample --atlas worlds/atlas
-
-";
-
-/// With a capital, and a full stop unless it is a question.
-fn sentence(words: &str) -> String {
-    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
-    let stop = if words.ends_with('?') { "" } else { "." };
-    format!("{}{rest}{stop}", first.to_uppercase())
-}
+    toposlam counterexample --atlas worlds/atlas";
 
 /// The sizes of the pair, with its files.
 fn cell(found: &Found, edges: usize) -> String {
@@ -129,9 +126,7 @@ fn cell(found: &Found, edges: usize) -> String {
         None => format!("none up to {edges} edges"),
         Some(pair) => {
             let file = |world: &NamedWorld| {
-                let edges = world.graph.edge_count();
-                let word = if edges == 1 { "edge" } else { "edges" };
-                format!("[{edges} {word}]({}.toml)", world.name)
+                format!("[{}]({}.toml)", counted(world.graph.edge_count(), "edge"), world.name)
             };
             format!("{} and {}", file(pair[0]), file(pair[1]))
         }

@@ -3,15 +3,16 @@
 use std::{collections::BTreeMap, fs, path::Path, ptr};
 
 use toposlam_model::{
-    ambiguity::{Comparison, Findings, PlacedWorld},
+    ambiguity::{Comparison, Findings, PlacedWorld, Unfinished},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     marker::Marker,
 };
 
-use crate::cli::{Failure, output, walk_page};
+use crate::cli::{Failure, Outcome, output, walk_page};
 
 /// The worlds of the pairs that are told, each once.
+#[derive(Clone)]
 pub(super) struct Found {
     worlds: Vec<NamedWorld>,
     /// The places of the two worlds of each pair, the smallest pair first.
@@ -32,10 +33,18 @@ impl Found {
             })
         };
         let pairs = pairs.into_iter().map(|pair| pair.map(&mut place)).collect();
+        let pairs: Vec<[usize; 2]> = pairs;
+        let name = |place: usize| format!("{}-{class}-{}", marker.name(), place + 1);
         let named = |(place, world): (usize, &&PlacedWorld)| {
-            let name = format!("{}-{class}-{}", marker.name(), place + 1);
-            let about = format!("No walk tells it from another world; marker: {}", marker.name());
-            NamedWorld::numbered(&name, &about, world.graph.clone(), Some(PlacedWorld::FACING))
+            let other = pairs.iter().find(|pair| pair.contains(&place));
+            let other = other.into_iter().flatten().find(|&&other| other != place);
+            let about = format!(
+                "No walk tells it from {}; marker: {}",
+                other.map_or_else(String::new, |&other| name(other)),
+                marker.name()
+            );
+            let graph = world.graph.clone();
+            NamedWorld::numbered(&name(place), &about, graph, Some(PlacedWorld::FACING))
         };
         Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs, all }
     }
@@ -63,9 +72,7 @@ impl Found {
         };
         let start = PlacedWorld::FACING;
         let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
-        let poses = marker.starts(&other.graph, start).into_iter().map(|pose| [start, pose]);
-        let alike = poses.into_iter().find(|&poses| comparison.indistinguishable(poses));
-        let poses = alike.unwrap_or([start, start]);
+        let poses = [start, comparison.start_like(start).unwrap_or(start)];
         walk_page::write(path, worlds, marker, &comparison, poses)
     }
 
@@ -83,4 +90,13 @@ impl Found {
 pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder)
         .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
+}
+
+/// How the verb ends where a search does not.
+pub(super) fn unfinished(unfinished: &Unfinished) -> Outcome {
+    eprintln!("{unfinished}");
+    match unfinished {
+        Unfinished::Interrupted => Outcome::Incomplete,
+        Unfinished::Unconfirmed(_) => Outcome::Violated,
+    }
 }

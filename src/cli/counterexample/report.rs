@@ -11,7 +11,7 @@ use toposlam_model::{
 };
 
 use super::found::Found;
-use crate::cli::{Failure, numbers::grouped};
+use crate::cli::{Failure, words::grouped};
 
 /// Prints as it goes.
 pub(super) struct Report<'o> {
@@ -22,6 +22,8 @@ pub(super) struct Report<'o> {
     /// How many markers there will be; the only one is told at length.
     markers: usize,
     header: bool,
+    /// What is told after the table.
+    pairs: Vec<Found>,
 }
 
 impl<'o> Report<'o> {
@@ -32,7 +34,7 @@ impl<'o> Report<'o> {
         edges: usize,
         markers: usize,
     ) -> Self {
-        Self { out, json, class, edges, markers, header: false }
+        Self { out, json, class, edges, markers, header: false, pairs: Vec::new() }
     }
 
     /// What was found for one marker.
@@ -81,8 +83,20 @@ impl<'o> Report<'o> {
         });
         writeln!(self.out, "{line}")?;
         if found.has_all() {
+            for world in found.worlds() {
+                let world = world_file::to_json(world);
+                let line = json!({ "schema": 1, "world": world, "marker": marker.name() });
+                writeln!(self.out, "{line}")?;
+            }
             for each in &pairs {
-                let line = json!({ "schema": 1, "pair": pair(each), "marker": marker.name() });
+                let line = json!({
+                    "schema": 1,
+                    "pair": {
+                        "edges": each[1].graph.edge_count(),
+                        "worlds": each.map(|world| &world.name),
+                    },
+                    "marker": marker.name(),
+                });
                 writeln!(self.out, "{line}")?;
             }
         }
@@ -116,8 +130,8 @@ impl<'o> Report<'o> {
             sum(|size| size.ambiguous),
             self.sizes_of_smallest(found),
         )?;
-        if found.has_all() {
-            self.tell_pairs(found)?;
+        if found.has_all() && !found.pairs().is_empty() {
+            self.pairs.push(found.clone());
         }
         Ok(())
     }
@@ -153,11 +167,18 @@ impl<'o> Report<'o> {
         };
         writeln!(
             self.out,
-            "\nthe smallest pair that no walk tells apart: {}\n",
+            "\nthe smallest pair that no walk tells apart: {}; what is behind each vertex's \
+             doors, clockwise:\n",
             sizes(one, other)
         )?;
         self.tell_world(one)?;
         self.tell_world(other)?;
+        writeln!(
+            self.out,
+            "\nto walk them: toposlam counterexample --marker {} --class {} --html walk.html",
+            marker.name(),
+            self.class
+        )?;
         if found.has_all() {
             self.tell_pairs(found)?;
         }
@@ -167,7 +188,8 @@ impl<'o> Report<'o> {
     /// All pairs by name, and the worlds in them.
     fn tell_pairs(&mut self, found: &Found) -> Result<(), Failure> {
         let pairs = found.pairs();
-        writeln!(self.out, "\nall pairs: {}\n", grouped(pairs.len() as u128))?;
+        let count = grouped(pairs.len() as u128);
+        writeln!(self.out, "\nall pairs: {count}\n")?;
         for [one, other] in &pairs {
             writeln!(self.out, "  {} ~ {}: {}", one.name, other.name, sizes(one, other))?;
         }
@@ -190,9 +212,10 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    pub(super) fn broken_off(&mut self) -> Result<(), Failure> {
-        if !self.json {
-            writeln!(self.out, "broken off: what was searched is not all")?;
+    /// After the table, the pairs of all its rows.
+    pub(super) fn end(&mut self) -> Result<(), Failure> {
+        for found in std::mem::take(&mut self.pairs) {
+            self.tell_pairs(&found)?;
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The words of which stories and endings are made.
 
+pub(super) use crate::cli::words::{counted, vertices};
 use toposlam_model::{
     embedded_graph::Dart,
     mapping::PartialMap,
@@ -15,13 +16,4 @@ pub(super) fn dart(map: &PartialMap, dart: Dart) -> String {
 pub(super) fn seen_against(percept: Percept, other: Percept) -> String {
     let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
     format!("{percept}{}", if absent { ", no marker" } else { "" })
-}
-
-/// So many of something.
-pub(super) fn counted(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
-pub(super) fn vertices(number: usize) -> String {
-    if number == 1 { "1 vertex".to_owned() } else { format!("{number} vertices") }
 }

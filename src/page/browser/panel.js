@@ -46,7 +46,6 @@ class Panel {
     this.numbers = new Map(knobs.map((it) => [Number(it.dataset.dart), [it, it.nextElementSibling]]));
 
     this.halos = drawn("g");
-    this.signs = drawn("g");
     this.doors = drawn("g");
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(
@@ -56,7 +55,7 @@ class Panel {
     );
     this.svg.querySelector("circle.vertex")?.before(this.halos);
     const names = this.svg.querySelector(".names");
-    names.before(this.signs, this.robot);
+    names.before(this.robot);
     this.svg.append(this.doors);
     new ResizeObserver(() => this.state && this.draw()).observe(this.svg);
   }
@@ -99,10 +98,10 @@ class Panel {
 
   draw() {
     const { state } = this;
-    this.robot.classList.toggle("carrying", state.marks.some(([kind]) => kind === "carried"));
+    this.robot.classList.toggle("carrying", state.marker === "carried");
     const disc = this.discs.get(state.vertex);
     this.place(disc, direction(this.end(state.dart), disc));
-    this.drawMarks();
+    this.drawMarker();
     this.drawDoors();
   }
 
@@ -141,36 +140,14 @@ class Panel {
     step(begun);
   }
 
-  drawMarks() {
+  /** A ring around the vertex where a movable marker lies; another marker stands in the picture. */
+  drawMarker() {
     this.halos.replaceChildren();
-    this.signs.replaceChildren();
-    for (const [kind, where] of this.state.marks) {
-      if (kind === "at" || kind === "other at") {
-        const { x, y, r } = this.discs.get(where);
-        const name = kind === "at" ? "mark-disc" : "mark-disc other";
-        const radius = r + Math.max(this.knob + 4, 3 * this.pixel);
-        this.halos.append(drawn("circle", { class: name, cx: x, cy: y, r: radius }));
-      } else if (kind !== "carried") {
-        this.signs.append(this.sign(kind, where));
-      }
-    }
-  }
-
-  /** A triangle along a dart, or a bar or a triangle on an edge. */
-  sign(kind, dart) {
-    const { path, backward } = this.ways.get(dart);
-    const whole = path.getTotalLength();
-    // A way is told by the dart at its end; the marker is told by the one at its beginning.
-    const along = (length) => path.getPointAtLength(backward ? length : whole - length);
-    const size = Math.max(1.35, 0.5 * this.pixel);
-    // In the middle of an edge stands its name, if it has one.
-    const share = this.svg.querySelector(".edge-name") ? 0.3 : 0.5;
-    const middle = kind === "along" ? this.knob + 1.5 + 6 * size : share * whole;
-    const at = along(middle);
-    const turn = (direction(along(middle - 1), along(middle + 1)) * 180) / Math.PI;
-    const shape = kind === "on" ? "M-2.5 -7h5v14h-5z" : "M6 0L-6 5V-5Z";
-    const transform = `translate(${at.x} ${at.y}) rotate(${turn}) scale(${size})`;
-    return drawn("path", { class: "mark-sign", d: shape, transform });
+    const { marker } = this.state;
+    if (marker === null || marker === "carried") return;
+    const { x, y, r } = this.discs.get(marker);
+    const radius = r + Math.max(this.knob + 4, 3 * this.pixel);
+    this.halos.append(drawn("circle", { class: "mark-disc", cx: x, cy: y, r: radius }));
   }
 
   /** The doors of the vertex with the robot's own numbers, large enough for a finger. */
@@ -195,14 +172,13 @@ class Panel {
     // A new group, so that it appears anew.
     const group = drawn("g", { class: "own-doors" });
     group.append(...doors.map(({ at }) => circle("reach", at, reach)));
-    // Its number may cover the marker that points along it.
-    const marked = (dart) => state.marks.some(([kind, along]) => kind === "along" && along === dart);
     for (const { action, dart, at } of doors) {
       const size = radius * (action.length > 1 ? 1.1 : 1.35);
       const number = drawn("text", { x: at.x, y: at.y + 0.36 * size, "font-size": size }, action);
       const door = drawn("g", { "data-action": action }, circle("badge", at, radius), number);
       door.classList.toggle("alone", !this.shared(action));
-      door.classList.toggle("marked", marked(dart));
+      // Its number may cover the marker that points along it.
+      door.classList.toggle("marked", dart === state.pointing);
       group.append(door);
     }
     // A finger covers several doors: the nearest is meant.

@@ -165,7 +165,7 @@ const keys = [
   [["Backspace", "u"], "Backspace", "undo", undo],
   [["r"], "R", "restart", restart],
 ];
-if (data.walk) keys.unshift([["w"], "W", "the walk that tells them apart", tellApart]);
+if (data.walk?.length) keys.unshift([["w"], "W", "the walk that tells them apart", tellApart]);
 for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
   if (buttons.has(action)) keys.unshift([[key], key.toUpperCase(), action, () => byHand(action)]);
 }
@@ -174,7 +174,7 @@ document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   // Space presses a button that has the focus, as everywhere.
   if (event.key === " " && event.target.closest("button")) return;
-  const meant = keys.find(([names]) => names.includes(event.key));
+  const meant = keys.find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
   if (meant) meant[3]();
   else if (/^\d$/.test(event.key)) byHand(event.key);
   else return;
@@ -184,7 +184,7 @@ document.addEventListener("keydown", (event) => {
 find("#random").addEventListener("click", randomWalk);
 find("#undo").addEventListener("click", undo);
 find("#restart").addEventListener("click", restart);
-find("#tell-apart").hidden = !data.walk;
+find("#tell-apart").hidden = !data.walk?.length;
 find("#tell-apart").addEventListener("click", tellApart);
 
 // What the keys and the signs mean.
@@ -194,22 +194,13 @@ find("#tell-apart").addEventListener("click", tellApart);
   const hints = keys.flatMap(([, name, meaning]) => [" · ", key(name), ` ${meaning}`]);
   find(".keys").append("Keys: ", key("0"), " to ", key("9"), " doors", ...hints);
 
-  const meanings = {
-    at: "The marker lies at the red vertex.",
-    "other at": "The other marker lies at the vertex with a dashed ring.",
-    along: "The marker points along the red triangle and the red number.",
-    on: "The marker is the red bar on an edge.",
-    "on away from": "The marker is the red triangle on an edge.",
-    carried: "A red robot carries the marker.",
-  };
-  const kinds = new Set(
-    data.sides.flatMap(({ states }) => states.flatMap(({ marks }) => marks.map(([kind]) => kind))),
-  );
-  const signs = Object.keys(meanings).filter((kind) => kinds.has(kind));
   const doors =
     "Blue numbers are the doors as each robot counts them, 0 is the way back; " +
     "small ones count clockwise from each vertex's first.";
-  find(".meaning").textContent = [doors, ...signs.map((kind) => meanings[kind])].join(" ");
+  const [first] = data.sides[0].states;
+  const carried = first.marker === null ? "" : " @ tells where the marker lies, +marker that it is carried.";
+  const states = `${first.text} is a robot that has come in by the door of that small number.${carried}`;
+  find(".meaning").textContent = `${doors} ${states}`;
 }
 
 restart();

@@ -16,10 +16,7 @@ use super::{
     signs::{Sign, signs},
     text,
 };
-use crate::model::{
-    embedded_graph::{Dart, Vertex},
-    marker::{Look, Part},
-};
+
 use page::{FAINT, INK, PAPER, Page, short};
 
 /// Room around everything.
@@ -108,7 +105,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing) -> String {
 /// What the signs mean, in lines that are at most as wide as given.
 fn legend(picture: &Picture, drawing: &Drawing, widest: f64) -> Vec<String> {
     let mut says = Vec::new();
-    says.extend(where_the_marker_is(picture));
+    says.extend(picture.where_the_marker_is());
     if drawing.size.knob > 0.0 && picture.graph.vertices().any(|v| picture.graph.degree(v) > 1) {
         says.push("doors are numbered clockwise from each vertex's first".to_owned());
     }
@@ -117,46 +114,6 @@ fn legend(picture: &Picture, drawing: &Drawing, widest: f64) -> Vec<String> {
         says = vec![whole];
     }
     says.iter().flat_map(|line| text::lines(line, LEGEND[0], widest)).collect()
-}
-
-/// Where the marker is, in words; `None` where there is none.
-fn where_the_marker_is(picture: &Picture) -> Option<String> {
-    let graph = picture.graph;
-    let name = |vertex: Vertex| {
-        let known = picture.vertex_names.get(vertex.at());
-        known.cloned().unwrap_or_else(|| vertex.at().to_string())
-    };
-    let ends = |dart: Dart| [dart, graph.opposite(dart)].map(|end| name(graph.vertex(end)));
-    Some(match picture.parts().as_slice() {
-        [] => return None,
-        [Part::Pointing(dart)] => format!(
-            "the marker lies at {} and points along door {}",
-            name(graph.vertex(*dart)),
-            graph.index(*dart)
-        ),
-        [Part::OnEdge(dart)] => {
-            let [from, to] = ends(*dart);
-            format!("an edge between {from} and {to} is marked")
-        }
-        [Part::OnEdgeAlong(dart)] => {
-            let [from, to] = ends(*dart);
-            format!("an edge is marked with an arrow from {from} to {to}")
-        }
-        parts => {
-            let at = |part: &Part| match part {
-                Part::At { vertex, look: Look::One } => name(*vertex),
-                Part::At { vertex, look: Look::Other } => format!("{} (dashed)", name(*vertex)),
-                Part::Pointing(dart) | Part::OnEdge(dart) | Part::OnEdgeAlong(dart) => {
-                    name(graph.vertex(*dart))
-                }
-            };
-            let places: Vec<_> = parts.iter().map(at).collect();
-            match places.as_slice() {
-                [only] => format!("the marker lies at {only}"),
-                places => format!("markers lie at {}", places.join(" and ")),
-            }
-        }
-    })
 }
 
 impl Page {
