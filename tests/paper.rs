@@ -166,3 +166,12 @@ fn a_section_that_the_paper_has_not_is_bad_usage() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("`9`") && message.contains("2.3"), "{message}");
 }
+
+/// What the print has wrong is told where it stands, with what is right.
+#[test]
+fn a_slip_of_the_print_is_told() {
+    let slips: Vec<_> = table().into_iter().filter(|it| it.erratum.is_some()).collect();
+    assert_eq!(slips.iter().map(|it| it.id.as_str()).collect::<Vec<_>>(), ["fig1.step"]);
+    let output = toposlam_paper(&["--section", "2.2"]);
+    assert!(lines_of(&output).iter().any(|line| line.contains("erratum  The print gives")));
+}
