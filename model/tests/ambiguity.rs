@@ -348,3 +348,28 @@ fn an_interrupted_search_says_so() {
     let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
     assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
 }
+
+/// A chain of three edges, seen from an end and from a vertex beside it.
+#[test]
+fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() {
+    let graph = EmbeddedGraph::from_neighbour_lists(&[
+        ("a", vec!["b"]),
+        ("b", vec!["a", "c"]),
+        ("c", vec!["b", "d"]),
+        ("d", vec!["c"]),
+    ])
+    .unwrap();
+    let like = |marker, [one, other]: [u32; 2]| {
+        let marker = named(marker).unwrap();
+        let comparison = Comparison::new(marker, (&graph, Dart(one)), (&graph, Dart(other)));
+        comparison.start_like(Dart(one)).map(|dart| dart.0)
+    };
+    // Without a marker it may begin anywhere: at `a`, or turned round, at `d`.
+    assert_eq!(like("none", [0, 2]), Some(0));
+    assert_eq!(like("none", [5, 2]), Some(0));
+    assert_eq!(like("none", [1, 0]), Some(1));
+    // With one at `b`, it begins there; one at `c` is the same, turned round.
+    assert_eq!(like("undirected", [2, 1]), Some(2));
+    assert_eq!(like("undirected", [2, 3]), Some(3));
+    assert_eq!(like("undirected", [0, 1]), None);
+}

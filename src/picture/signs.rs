@@ -132,3 +132,61 @@ impl Sign {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{
+        embedded_graph::EmbeddedGraph, format::named_world::NamedWorld, marker::named,
+    };
+
+    /// What is drawn for a marker, in a letter a sign, and what is said of it.
+    fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
+        let picture = Picture { marker: named(marker).unwrap(), ..Picture::from(world) };
+        let letter = |sign: &Sign| match sign {
+            Sign::Ring { look: Look::One, .. } => 'o',
+            Sign::Ring { look: Look::Other, .. } => 'x',
+            Sign::Arrow { .. } => '>',
+            Sign::Bar { .. } => '|',
+        };
+        let signs = signs(&picture, &Drawing::of(&picture));
+        (signs.iter().map(letter).collect(), picture.where_the_marker_is().unwrap_or_default())
+    }
+
+    #[test]
+    fn each_marker_has_its_signs_and_its_words() {
+        let lists = [("a", vec!["b", "c"]), ("b", vec!["a", "c"]), ("c", vec!["a", "b"])];
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+        let simple = NamedWorld::numbered("", "", graph, Some(Dart(0)));
+        let lists = [("u", vec!["e", "e", "f"]), ("v", vec!["f"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let with_loop = NamedWorld::numbered("", "", graph, Some(Dart(0)));
+        for (marker, signs, words, of_loop) in [
+            ("none", "", "", ""),
+            ("undirected", "o", "the marker lies at v0", "the marker lies at v0"),
+            (
+                "directional",
+                ">",
+                "the marker lies at v0 and points along door 0",
+                "the marker lies at v0 and points along door 0",
+            ),
+            ("undirected-edge", "|", "the edge from v0 to v1 is marked", "edge e0 is marked"),
+            (
+                "directed-edge",
+                ">",
+                "the edge from v0 to v1 is marked with an arrow",
+                "edge e0 is marked with an arrow",
+            ),
+            ("two-identical", "oo", "markers lie at v0 and v1", "both markers lie at v0"),
+            ("two-distinct", "ox", "markers lie at v0 and v1 (dashed)", "both markers lie at v0"),
+            ("movable", "o", "the marker lies at v0", "the marker lies at v0"),
+        ] {
+            assert_eq!(drawn(&simple, marker), (signs.to_owned(), words.to_owned()), "{marker}");
+            assert_eq!(
+                drawn(&with_loop, marker),
+                (signs.to_owned(), of_loop.to_owned()),
+                "{marker}"
+            );
+        }
+    }
+}

@@ -16,7 +16,8 @@ use crate::{
 /// A robot in a placed world.
 pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
 
-/// Two placed worlds, held against each other.
+/// Two placed worlds, held against each other. Their states, as [`state_count`](super::state_count)
+/// counts them, are numbered together in a `u32`, and take memory accordingly.
 pub struct Comparison<'a> {
     marker: &'a dyn Marker,
     worlds: [PlacedRobot<'a>; 2],

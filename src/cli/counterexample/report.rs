@@ -175,9 +175,10 @@ impl<'o> Report<'o> {
         self.tell_world(other)?;
         writeln!(
             self.out,
-            "\nto walk them: toposlam counterexample --marker {} --class {} --html walk.html",
+            "\nto walk them: toposlam counterexample --marker {} --class {} --edges {} --html walk.html",
             marker.name(),
-            self.class
+            self.class,
+            self.edges
         )?;
         if found.has_all() {
             self.tell_pairs(found)?;
