@@ -1,0 +1,38 @@
+//! The driver for property tests and fuzzers: a case for each string of bytes.
+
+use crate::choose::Choose;
+
+/// Chooses as bytes say, whatever these are: each decides one choice, and after the last all choices
+/// are the first there is. Fewer and lower bytes make simpler cases.
+#[derive(Clone, Debug)]
+pub struct Bytes {
+    bytes: Vec<u8>,
+    choices: Vec<u8>,
+}
+
+impl Bytes {
+    /// Chooses as these bytes say.
+    #[must_use]
+    pub fn new(bytes: Vec<u8>) -> Self {
+        Self { bytes, choices: Vec::new() }
+    }
+
+    /// The choices made so far, with which a [`Replay`](crate::Replay) makes the case again.
+    #[must_use]
+    pub fn choices(&self) -> &[u8] {
+        &self.choices
+    }
+}
+
+impl Choose for Bytes {
+    fn below(&mut self, n: u8) -> u8 {
+        let byte = self.bytes.get(self.choices.len()).copied();
+        let choice = byte.unwrap_or_default() % n;
+        self.choices.push(choice);
+        choice
+    }
+
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
+}

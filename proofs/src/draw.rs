@@ -1,0 +1,208 @@
+//! What lemmas are about, made of choices: starts, permutations, numbers. Everything is drawn by
+//! choosing among what is left, so that no choice is in vain and each structure is made exactly once.
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    percept::Door,
+};
+
+use crate::choose::{Choose, Exhibit, Stop};
+
+/// Not yet joined, or not yet taken.
+const FREE: u32 = u32::MAX;
+
+/// A start with so many edges, whose facing dart is dart 0; at most `MOST`, and that at most 63.
+///
+/// Darts are numbered in the order in which a robot meets them: the lowest free dart is joined to
+/// another free one, or to the first dart of a new vertex. Each start has exactly one such history.
+///
+/// # Errors
+/// Where this is no world, which would be a fault of the drawing or of the constructor.
+pub fn start<const MOST: usize>(
+    choose: &mut impl Choose,
+    edges: usize,
+) -> Result<EmbeddedGraph, Stop> {
+    let darts = 2 * edges;
+    let mut opposite = [[FREE; 2]; MOST];
+    let opposite = &mut opposite.as_flattened_mut()[..darts];
+    let mut clockwise = [[FREE; 2]; MOST];
+    let clockwise = &mut clockwise.as_flattened_mut()[..darts];
+    // How many darts are numbered, and how many of these are free.
+    let (mut met, mut free) = (0, 0);
+    // The lowest free dart.
+    let mut this = 0;
+    while this < darts {
+        if this < met && opposite[this] != FREE {
+            this += 1;
+            continue;
+        }
+        let unmet = darts - met;
+        // The last two free darts may be joined, and the last one may lead to a dead end, only if
+        // nothing is left to be reached.
+        let joins = if free == 0 || (free == 2 && unmet > 0) { 0 } else { free - 1 };
+        let least = if free == 1 && unmet > 1 { 2 } else { 1 };
+        let options = joins + (unmet + 1).saturating_sub(least);
+        let option = usize::from(choose.below(options as u8));
+        if option < joins {
+            let mut other = this;
+            let mut passed = 0;
+            while passed <= option {
+                other += 1;
+                if opposite[other] == FREE {
+                    passed += 1;
+                }
+            }
+            opposite[this] = other as u32;
+            opposite[other] = this as u32;
+            free -= 2;
+        } else {
+            let degree = least + option - joins;
+            let mut dart = met;
+            while dart < met + degree {
+                clockwise[dart] = dart as u32 + 1;
+                dart += 1;
+            }
+            clockwise[met + degree - 1] = met as u32;
+            // The start vertex is met by no dart.
+            free += degree;
+            if met > 0 {
+                opposite[this] = met as u32;
+                opposite[met] = this as u32;
+                free -= 2;
+            }
+            met += degree;
+        }
+    }
+    let graph = world(opposite, clockwise)?;
+    choose.show(|| Exhibit::World { graph: graph.clone(), facing: Dart(0) });
+    Ok(graph)
+}
+
+/// A start with at least `LEAST` and at most `MOST` edges, whose facing dart is dart 0.
+///
+/// # Errors
+/// As for [`start`].
+pub fn start_of<const LEAST: usize, const MOST: usize>(
+    choose: &mut impl Choose,
+) -> Result<EmbeddedGraph, Stop> {
+    let edges = LEAST + usize::from(choose.below((MOST - LEAST + 1) as u8));
+    start::<MOST>(choose, edges)
+}
+
+/// The embedded graph of these two permutations.
+///
+/// # Errors
+/// Where the constructor refuses them.
+pub fn world(opposite: &[u32], clockwise: &[u32]) -> Result<EmbeddedGraph, Stop> {
+    match EmbeddedGraph::from_permutations(opposite, clockwise) {
+        Ok((graph, _)) => Ok(graph),
+        Err(_) => Err(Stop::Fails("what was drawn is an embedded graph")),
+    }
+}
+
+/// A dart of a graph that has at most 127 edges.
+pub fn dart(choose: &mut impl Choose, graph: &EmbeddedGraph) -> Dart {
+    Dart(u32::from(choose.below(graph.dart_count() as u8)))
+}
+
+/// A door of the vertex that was entered by this dart.
+pub fn door(choose: &mut impl Choose, graph: &EmbeddedGraph, pose: Dart) -> Door {
+    Door(u32::from(choose.below(graph.degree_around(pose) as u8)))
+}
+
+/// A permutation of the numbers below `N`.
+pub fn permutation<const N: usize>(choose: &mut impl Choose) -> [u32; N] {
+    let mut image = [0; N];
+    let mut taken = [false; N];
+    let mut number = 0;
+    while number < N {
+        let mut left = choose.below((N - number) as u8);
+        let mut free = 0;
+        while taken[free] || left > 0 {
+            if !taken[free] {
+                left -= 1;
+            }
+            free += 1;
+        }
+        taken[free] = true;
+        image[number] = free as u32;
+        number += 1;
+    }
+    image
+}
+
+/// A number whose lower `NIBBLES` half bytes are anything, and whose higher ones are all 0 or all 15:
+/// with 8, every number there is.
+pub fn number<const NIBBLES: u32>(choose: &mut impl Choose) -> u32 {
+    let mut number = if NIBBLES < 8 && choose.below(2) == 1 { u32::MAX } else { 0 };
+    let mut nibble = 0;
+    while nibble < NIBBLES {
+        number = number << 4 | u32::from(choose.below(16));
+        nibble += 1;
+    }
+    number
+}
+
+/// A byte.
+pub fn byte(choose: &mut impl Choose) -> u8 {
+    choose.below(16) << 4 | choose.below(16)
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::isomorphism::code;
+
+    use super::*;
+    use crate::odometer::Odometer;
+
+    /// OEIS A000698, shifted by one, as the model's own enumeration has it.
+    #[test]
+    fn every_start_is_drawn_once() {
+        for (edges, count) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {
+            let mut codes = Vec::new();
+            let drawn = Odometer::exhaust(
+                |choose| {
+                    let graph = start::<5>(choose, edges)?;
+                    codes.push(code(&graph, Dart(0)));
+                    Ok(())
+                },
+                &mut |_| {},
+            );
+            assert_eq!(drawn, Ok(count));
+            codes.sort_unstable();
+            codes.dedup();
+            assert_eq!(codes.len() as u64, count);
+        }
+    }
+
+    #[test]
+    fn every_permutation_is_drawn_once() {
+        let mut drawn = Vec::new();
+        let count = Odometer::exhaust(
+            |choose| {
+                drawn.push(permutation::<5>(choose));
+                Ok(())
+            },
+            &mut |_| {},
+        );
+        assert_eq!(count, Ok(120));
+        drawn.sort_unstable();
+        drawn.dedup();
+        assert_eq!(drawn.len(), 120);
+    }
+
+    #[test]
+    fn numbers_are_drawn_from_both_ends() {
+        let mut drawn = Vec::new();
+        let count = Odometer::exhaust(
+            |choose| {
+                drawn.push(number::<1>(choose));
+                Ok(())
+            },
+            &mut |_| {},
+        );
+        assert_eq!(count, Ok(32));
+        assert_eq!(drawn[..16], std::array::from_fn::<u32, 16, _>(|n| n as u32));
+        assert_eq!(drawn[31], u32::MAX);
+    }
+}

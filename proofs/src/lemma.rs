@@ -1,0 +1,246 @@
+//! What there is to know about a lemma, and how it is declared.
+
+use crate::{
+    bytes::Bytes,
+    choose::Case,
+    lemmas,
+    odometer::{Counterexample, Odometer},
+    replay::{Misfit, Replay, Shown},
+};
+
+/// A lemma: a sentence, and the engines that check it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lemma {
+    /// Its name.
+    pub name: &'static str,
+    /// What it says.
+    pub sentence: &'static str,
+    /// Its place in the paper.
+    pub paper: &'static str,
+    /// The file in which it stands, from the root of the workspace.
+    pub file: &'static str,
+    /// Its check on every case within a bound: no lemma is without one.
+    pub exhaustive: Exhaustive,
+    /// Its check on cases drawn at random within a larger bound.
+    pub sampled: Option<Sampled>,
+    /// Its check by Kani, where that is installed.
+    pub kani: Option<Kani>,
+}
+
+/// The check of a lemma on every case within a bound.
+#[derive(Clone, Copy, Debug)]
+pub struct Exhaustive {
+    /// The bound, in words.
+    pub bound: &'static str,
+    /// How many cases there are within it: a check that finds another number does not hold.
+    pub cases: u64,
+    /// The lemma, for a driver that goes through all cases.
+    pub body: fn(&mut Odometer) -> Case,
+    /// The lemma, for making one case again.
+    pub replay: fn(&mut Replay) -> Case,
+}
+
+/// The check of a lemma on cases drawn at random.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled {
+    /// The bound, in words.
+    pub bound: &'static str,
+    /// The lemma, for a driver that is given bytes.
+    pub body: fn(&mut Bytes) -> Case,
+    /// The lemma, for making one case again.
+    pub replay: fn(&mut Replay) -> Case,
+}
+
+/// The check of a lemma by Kani.
+#[derive(Clone, Copy, Debug)]
+pub struct Kani {
+    /// The bound, in words.
+    pub bound: &'static str,
+    /// How often a loop is unwound.
+    pub unwind: u32,
+    /// The name of the harness.
+    pub harness: &'static str,
+}
+
+/// Why the exhaustive check of a lemma does not hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The lemma fails in a case.
+    Case(Counterexample),
+    /// There are more or fewer cases than there must be.
+    Cases {
+        /// How many there must be.
+        pinned: u64,
+        /// How many there are.
+        found: u64,
+    },
+}
+
+impl Lemma {
+    /// All lemmas, in the order in which the theorem needs them.
+    pub fn all() -> impl Iterator<Item = &'static Self> {
+        lemmas::ALL.iter().copied().flatten()
+    }
+
+    /// Checks the lemma on every case within its bound, and answers how many there are. Now and then
+    /// it tells `progress` how many there were.
+    ///
+    /// # Errors
+    /// The first case in which it fails; or that the number of cases is not what it must be.
+    pub fn check(&self, progress: &mut impl FnMut(u64)) -> Result<u64, Failure> {
+        let Exhaustive { body, cases: pinned, .. } = self.exhaustive;
+        match Odometer::exhaust(body, progress) {
+            Err(counterexample) => Err(Failure::Case(counterexample)),
+            Ok(found) if found != pinned || found == 0 => Err(Failure::Cases { pinned, found }),
+            Ok(found) => Ok(found),
+        }
+    }
+
+    /// Makes one case of the exhaustive check again.
+    ///
+    /// # Errors
+    /// Where the choices are not those of a case.
+    pub fn replay(&self, choices: &[u8]) -> Result<Shown, Misfit> {
+        Replay::show(self.exhaustive.replay, choices)
+    }
+}
+
+/// Declares lemmas: each with its sentence, its place in the paper, and its engines, which are the
+/// same generic function at different bounds. From it come the list `LEMMAS` of the file; for each
+/// lemma the tests `exhaustively` and `sampled` in a module of its name; and with `--cfg kani` its
+/// harness, beside them, `kani`.
+macro_rules! declare {
+    ($(
+        $name:ident {
+        $sentence:literal,
+        paper $paper:literal,
+        exhaustive $bound:literal, $cases:literal cases: $exhaustive:expr;
+        $(sampled $sampled_bound:literal: $sampled:expr;)?
+        $(kani $kani_bound:literal, unwind $unwind:tt: $kani:expr;)?
+        }
+    )*) => {
+        /// The lemmas of this file.
+        pub(crate) const LEMMAS: &[$crate::lemma::Lemma] = &[$($crate::lemma::Lemma {
+            name: stringify!($name),
+            sentence: $sentence,
+            paper: $paper,
+            file: file!(),
+            exhaustive: $crate::lemma::Exhaustive {
+                bound: $bound,
+                cases: $cases,
+                body: $exhaustive,
+                replay: $exhaustive,
+            },
+            sampled: $crate::lemma::optional!($($crate::lemma::Sampled {
+                bound: $sampled_bound,
+                body: $sampled,
+                replay: $sampled,
+            })?),
+            kani: $crate::lemma::optional!($($crate::lemma::Kani {
+                bound: $kani_bound,
+                unwind: $unwind,
+                harness: concat!(module_path!(), "::", stringify!($name), "::kani"),
+            })?),
+        }),*];
+
+        $(
+            #[cfg(any(test, kani))]
+            mod $name {
+                #[allow(unused_imports, reason = "a lemma of fixed bounds names nothing more")]
+                use super::*;
+
+                #[cfg(test)]
+                #[test]
+                fn exhaustively() {
+                    $crate::lemma::tests::exhaustively(stringify!($name));
+                }
+
+                $(
+                    #[cfg(test)]
+                    #[test]
+                    fn sampled() {
+                        let _ = $sampled_bound;
+                        $crate::lemma::tests::sampled(stringify!($name));
+                    }
+                )?
+
+                $(
+                    #[cfg(kani)]
+                    #[kani::proof]
+                    #[kani::unwind($unwind)]
+                    fn kani() {
+                        let lemma: fn(&mut $crate::symbolic::Symbolic) -> $crate::Case = $kani;
+                        let holds = lemma(&mut $crate::symbolic::Symbolic).is_ok();
+                        assert!(holds);
+                        kani::cover!(holds, "there is a case");
+                    }
+                )?
+            }
+        )*
+    };
+}
+
+/// What is written, or nothing.
+macro_rules! optional {
+    () => {
+        None
+    };
+    ($value:expr) => {
+        Some($value)
+    };
+}
+
+pub(crate) use {declare, optional};
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{choose::Stop, odometer::listed};
+
+    fn named(name: &str) -> &'static Lemma {
+        Lemma::all().find(|lemma| lemma.name == name).expect("it is listed")
+    }
+
+    pub(crate) fn exhaustively(name: &str) {
+        let lemma = named(name);
+        match lemma.check(&mut |_| {}) {
+            Ok(_) => {}
+            Err(Failure::Cases { pinned, found }) => {
+                panic!("there are {found} cases; there must be {pinned}, and at least one")
+            }
+            Err(Failure::Case(Counterexample { choices, claim })) => panic!(
+                "it does not hold that {claim}:\n  toposlam proofs --run {name} --choices {}",
+                listed(&choices)
+            ),
+        }
+    }
+
+    pub(crate) fn sampled(name: &str) {
+        let sampled = named(name).sampled.expect("it is sampled");
+        proptest!(|(bytes in proptest::collection::vec(any::<u8>(), 0..=256))| {
+            let mut choose = Bytes::new(bytes);
+            match (sampled.body)(&mut choose) {
+                Ok(()) => {}
+                Err(Stop::Excluded) => return Err(TestCaseError::reject("excluded")),
+                Err(Stop::Fails(claim)) => return Err(TestCaseError::fail(format!(
+                    "it does not hold that {claim}:\n  \
+                     toposlam proofs --run {name} --engine sampled --choices {}",
+                    listed(choose.choices())
+                ))),
+            }
+        });
+    }
+
+    #[test]
+    fn every_name_is_given_once_and_every_sentence_is_one() {
+        let mut names: Vec<_> = Lemma::all().map(|lemma| lemma.name).collect();
+        assert!(names.len() > 12);
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+        for Lemma { name, sentence, .. } in Lemma::all() {
+            assert!(sentence.ends_with('.') && sentence.starts_with(char::is_uppercase), "{name}");
+        }
+    }
+}

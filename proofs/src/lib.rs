@@ -1,0 +1,33 @@
+//! The lemmas on which the correctness of the mapping rests, each one body with three drivers.
+//!
+//! A lemma is a plain function over [`Choose`]: it chooses a case, and answers whether what it
+//! claims holds there. An [`Odometer`] makes it choose in every way within a bound, so that the
+//! lemma is proved for all of these cases; property tests let it choose from [`Bytes`] at larger
+//! bounds, and shrink what fails; under [Kani](https://github.com/model-checking/kani) each choice
+//! is symbolic. A [`Replay`] makes one case again and shows it to a person.
+//!
+//! From the ground up:
+//!
+//! * [`choose`]: the trait, and what a case can come to;
+//! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: who chooses;
+//! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
+//! * [`lemma`]: what there is to know about a lemma, and how it is declared;
+//! * [`lemmas`]: the lemmas, a file for each theme.
+//!
+//! How they make up the theorem is told in the README beside this crate.
+
+pub mod bytes;
+pub mod choose;
+pub mod draw;
+pub mod lemma;
+pub mod lemmas;
+pub mod odometer;
+pub mod replay;
+#[cfg(kani)]
+pub mod symbolic;
+
+pub use bytes::Bytes;
+pub use choose::{Case, Choose, Exhibit, Stop};
+pub use lemma::Lemma;
+pub use odometer::{Counterexample, Odometer};
+pub use replay::Replay;

@@ -1,0 +1,116 @@
+//! The exhaustive driver: every case within a bound.
+
+use std::fmt;
+
+use crate::choose::{Case, Choose, Stop};
+
+/// Chooses in every way, one case after the other, the latest choice turning fastest.
+#[derive(Clone, Debug, Default)]
+pub struct Odometer {
+    /// The choices of this case, each with how many there are.
+    digits: Vec<(u8, u8)>,
+    /// How many of them have been made.
+    made: usize,
+    /// Whether the lemma once had other choices after the same ones.
+    wavered: bool,
+}
+
+impl Odometer {
+    /// Makes every case, and answers how many there are of which the lemma speaks. Each time after
+    /// so many cases it tells `progress` how many there were.
+    ///
+    /// # Errors
+    /// The first case in which the lemma fails.
+    pub fn exhaust(
+        mut lemma: impl FnMut(&mut Self) -> Case,
+        progress: &mut impl FnMut(u64),
+    ) -> Result<u64, Counterexample> {
+        let mut odometer = Self::default();
+        let mut accepted = 0_u64;
+        loop {
+            odometer.made = 0;
+            let case = lemma(&mut odometer);
+            let fails = match case {
+                _ if odometer.wavered || odometer.made < odometer.digits.len() => {
+                    Some("the lemma has the same choices after the same choices")
+                }
+                Err(Stop::Fails(what)) => Some(what),
+                Ok(()) => {
+                    accepted += 1;
+                    if accepted.is_multiple_of(PROGRESS) {
+                        progress(accepted);
+                    }
+                    None
+                }
+                Err(Stop::Excluded) => None,
+            };
+            if let Some(claim) = fails {
+                let choices = odometer.digits.iter().map(|&(choice, _)| choice).collect();
+                return Err(Counterexample { choices, claim });
+            }
+            if !odometer.turn() {
+                return Ok(accepted);
+            }
+        }
+    }
+
+    /// Goes on to the next case; `false` after the last.
+    fn turn(&mut self) -> bool {
+        while let Some((choice, n)) = self.digits.pop() {
+            if choice + 1 < n {
+                self.digits.push((choice + 1, n));
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// How many cases pass between two tellings of progress.
+const PROGRESS: u64 = 1 << 16;
+
+impl Choose for Odometer {
+    #[inline]
+    fn below(&mut self, n: u8) -> u8 {
+        let choice = match self.digits.get(self.made) {
+            Some(&(choice, of)) => {
+                self.wavered |= of != n;
+                choice
+            }
+            None => {
+                self.digits.push((0, n));
+                0
+            }
+        };
+        self.made += 1;
+        choice
+    }
+
+    #[inline]
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
+}
+
+/// A case in which a lemma fails.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counterexample {
+    /// The choices, with which a [`Replay`] makes it again.
+    pub choices: Vec<u8>,
+    /// What should hold, and does not.
+    pub claim: &'static str,
+}
+
+/// The choices stand with commas between them, as they are written to make the case again.
+impl fmt::Display for Counterexample {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        write!(out, "it does not hold that {}; choices ", self.claim)?;
+        write!(out, "{}", listed(&self.choices))
+    }
+}
+
+/// Numbers with commas between them.
+#[must_use]
+pub fn listed(choices: &[u8]) -> String {
+    choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
+}

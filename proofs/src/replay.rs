@@ -1,0 +1,112 @@
+//! One case again, for a person to look at.
+
+use std::fmt;
+
+use crate::choose::{Case, Choose, Exhibit};
+
+/// Makes one case again, from a list of choices, and keeps what it shows.
+#[derive(Clone, Debug, Default)]
+pub struct Replay {
+    choices: Vec<u8>,
+    /// How many of them have been made, or would have been.
+    made: usize,
+    misfit: Option<Misfit>,
+    exhibits: Vec<Exhibit>,
+}
+
+/// A list of choices that is not one of the lemma's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misfit {
+    /// There is no so high choice.
+    TooHigh {
+        /// The place in the list, from 1.
+        place: usize,
+        /// The choice there.
+        choice: u8,
+        /// How many choices there are at this place.
+        of: u8,
+    },
+    /// The list is too short.
+    TooFew {
+        /// How many choices it has.
+        choices: usize,
+        /// How many the case that begins so has at least.
+        needed: usize,
+    },
+    /// The list is too long.
+    TooMany {
+        /// How many choices it has.
+        choices: usize,
+        /// How many the case has.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for Misfit {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::TooHigh { place, choice, of } => {
+                write!(out, "choice number {place} is {choice}; it is at most {}", of - 1)
+            }
+            Self::TooFew { choices, needed } => {
+                write!(
+                    out,
+                    "these are {choices} choices; a case that begins so has at least {needed}"
+                )
+            }
+            Self::TooMany { choices, needed } => {
+                write!(out, "these are {choices} choices; the case that begins so has {needed}")
+            }
+        }
+    }
+}
+
+/// A case that was made again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// What the lemma comes to in it.
+    pub case: Case,
+    /// What was chosen, as the lemma shows it.
+    pub exhibits: Vec<Exhibit>,
+}
+
+impl Replay {
+    /// Makes a case again.
+    ///
+    /// # Errors
+    /// Where the choices are not those of a case.
+    pub fn show(lemma: impl FnOnce(&mut Self) -> Case, choices: &[u8]) -> Result<Shown, Misfit> {
+        let mut replay = Self { choices: choices.to_vec(), ..Self::default() };
+        let case = lemma(&mut replay);
+        let (choices, needed) = (replay.choices.len(), replay.made);
+        match replay.misfit {
+            Some(misfit) => Err(misfit),
+            None if needed > choices => Err(Misfit::TooFew { choices, needed }),
+            None if needed < choices => Err(Misfit::TooMany { choices, needed }),
+            None => Ok(Shown { case, exhibits: replay.exhibits }),
+        }
+    }
+}
+
+impl Choose for Replay {
+    fn below(&mut self, n: u8) -> u8 {
+        self.made += 1;
+        match self.choices.get(self.made - 1) {
+            Some(&choice) if choice < n => choice,
+            Some(&choice) => {
+                let misfit = Misfit::TooHigh { place: self.made, choice, of: n };
+                self.misfit.get_or_insert(misfit);
+                0
+            }
+            None => 0,
+        }
+    }
+
+    fn assume(&mut self, condition: bool) -> bool {
+        condition
+    }
+
+    fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {
+        self.exhibits.push(exhibit());
+    }
+}
