@@ -1,5 +1,5 @@
-//! Section 2.2: the printed proof that one undirected marker does not suffice, and the other claims
-//! about markers there.
+//! Section 2.2: that one undirected marker does not suffice, the cases of the printed proof of it, and
+//! the other claims about markers there. The proof's base and step are lemmas of `toposlam-proofs`.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -56,44 +56,6 @@ fn no_walk_tells_the_worlds_of_figure_1_apart_with_an_undirected_marker() {
     let [a, b] = &worlds;
     assert_eq!(relation([a, b]).0.len(), 32);
     assert_eq!(comparison(named("undirected").unwrap(), [a, b]).walk(starts([a, b])), None);
-}
-
-/// One step from the centre.
-// paper: fig1.base
-#[test]
-fn the_base_of_the_printed_proof() {
-    for name in ["figure-1a", "figure-1b"] {
-        let world = read(name);
-        let centre = world.start.unwrap();
-        for door in (0..4).map(Door) {
-            let corner = world.graph.after(centre, door);
-            assert_eq!(world.graph.degree_around(corner), 3);
-            assert_eq!(neighbours(&world.graph, corner), [4, 3, 3]);
-        }
-    }
-}
-
-/// From any pair of poses at which percepts and lists agree, any door leads to such a pair again,
-/// whether or not the robots can have come there. (At the centre the print lists [4, 4, 4, 4].)
-// paper: fig1.step
-#[test]
-fn the_step_of_the_printed_proof() {
-    let [a, b] = [read("figure-1a").graph, read("figure-1b").graph];
-    let agree = |here, there| {
-        (a.degree_around(here), neighbours(&a, here))
-            == (b.degree_around(there), neighbours(&b, there))
-    };
-    let mut pairs = 0;
-    for (here, there) in a.darts().flat_map(|here| b.darts().map(move |there| (here, there))) {
-        if agree(here, there) {
-            pairs += 1;
-            for door in (0..a.degree_around(here)).map(Door) {
-                assert!(agree(a.after(here, door), b.after(there, door)));
-            }
-        }
-    }
-    // 4 poses of each of the four kinds, in either world.
-    assert_eq!(pairs, 4 * 4 * 4);
 }
 
 // paper: fig1.cases

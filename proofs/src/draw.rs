@@ -110,13 +110,13 @@ pub fn door(choose: &mut impl Choose, graph: &EmbeddedGraph, pose: Dart) -> Door
     Door(u32::from(choose.below(graph.degree_around(pose) as u8)))
 }
 
-/// A permutation of the numbers below `N`.
-pub fn permutation<const N: usize>(choose: &mut impl Choose) -> [u32; N] {
-    let mut image = [0; N];
-    let mut taken = [false; N];
+/// A permutation of the numbers below `n`, which is at most `MOST`; what follows them is 0.
+pub fn permutation<const MOST: usize>(choose: &mut impl Choose, n: usize) -> [u32; MOST] {
+    let mut image = [0; MOST];
+    let mut taken = [false; MOST];
     let mut number = 0;
-    while number < N {
-        let mut left = choose.below((N - number) as u8);
+    while number < n {
+        let mut left = choose.below((n - number) as u8);
         let mut free = 0;
         while taken[free] || left > 0 {
             if !taken[free] {
@@ -129,6 +129,30 @@ pub fn permutation<const N: usize>(choose: &mut impl Choose) -> [u32; N] {
         number += 1;
     }
     image
+}
+
+/// An involution without fixed points of the numbers below `n`, which is even and at most `MOST`.
+pub fn pairing<const MOST: usize>(choose: &mut impl Choose, n: usize) -> [u32; MOST] {
+    let mut partner = [FREE; MOST];
+    let mut left = n;
+    let mut this = 0;
+    while this < n {
+        if partner[this] == FREE {
+            let mut pass = choose.below((left - 1) as u8);
+            let mut other = this + 1;
+            while partner[other] != FREE || pass > 0 {
+                if partner[other] == FREE {
+                    pass -= 1;
+                }
+                other += 1;
+            }
+            partner[this] = other as u32;
+            partner[other] = this as u32;
+            left -= 2;
+        }
+        this += 1;
+    }
+    partner
 }
 
 /// A number whose lower `NIBBLES` half bytes are anything, and whose higher ones are all 0 or all 15:
@@ -180,7 +204,7 @@ mod tests {
         let mut drawn = Vec::new();
         let count = Odometer::exhaust(
             |choose| {
-                drawn.push(permutation::<5>(choose));
+                drawn.push(permutation::<5>(choose, 5));
                 Ok(())
             },
             &mut |_| {},
@@ -189,6 +213,23 @@ mod tests {
         drawn.sort_unstable();
         drawn.dedup();
         assert_eq!(drawn.len(), 120);
+    }
+
+    #[test]
+    fn every_pairing_is_drawn_once() {
+        let mut drawn = Vec::new();
+        let count = Odometer::exhaust(
+            |choose| {
+                drawn.push(pairing::<8>(choose, 8));
+                Ok(())
+            },
+            &mut |_| {},
+        );
+        // 7 * 5 * 3
+        assert_eq!(count, Ok(105));
+        drawn.sort_unstable();
+        drawn.dedup();
+        assert_eq!(drawn.len(), 105);
     }
 
     #[test]

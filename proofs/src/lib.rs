@@ -11,6 +11,7 @@
 //! * [`choose`]: the trait, and what a case can come to;
 //! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: who chooses;
 //! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
+//! * [`definition`]: what is meant by a graph, an isomorphism, a bisimulation;
 //! * [`lemma`]: what there is to know about a lemma, and how it is declared;
 //! * [`lemmas`]: the lemmas, a file for each theme.
 //!
@@ -18,6 +19,7 @@
 
 pub mod bytes;
 pub mod choose;
+pub mod definition;
 pub mod draw;
 pub mod lemma;
 pub mod lemmas;

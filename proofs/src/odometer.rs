@@ -72,15 +72,12 @@ const PROGRESS: u64 = 1 << 16;
 impl Choose for Odometer {
     #[inline]
     fn below(&mut self, n: u8) -> u8 {
-        let choice = match self.digits.get(self.made) {
-            Some(&(choice, of)) => {
-                self.wavered |= of != n;
-                choice
-            }
-            None => {
-                self.digits.push((0, n));
-                0
-            }
+        let choice = if let Some(&(choice, of)) = self.digits.get(self.made) {
+            self.wavered |= of != n;
+            choice
+        } else {
+            self.digits.push((0, n));
+            0
         };
         self.made += 1;
         choice

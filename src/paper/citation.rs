@@ -6,8 +6,8 @@
 pub enum Kind {
     /// In code.
     Code,
-    /// In a test: in a file `tests.rs` or under a folder `tests`, or below the line `#[cfg(test)]`
-    /// of a file.
+    /// In a test: in a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`,
+    /// or below the line `#[cfg(test)]` of a file.
     Test,
 }
 
@@ -27,7 +27,7 @@ pub struct Citation<'a> {
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
 /// the end of a line: `// paper: id`, or several ids with commas between them.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
-    let mut kind = if file.split('/').any(|part| part == "tests" || part == "tests.rs") {
+    let mut kind = if file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part)) {
         Kind::Test
     } else {
         Kind::Code
@@ -75,12 +75,13 @@ mod tests {
     }
 
     #[test]
-    fn below_cfg_test_and_under_tests_a_citation_is_a_test() {
+    fn below_cfg_test_under_tests_and_in_a_lemma_a_citation_is_a_test() {
         let text = "// paper: world.graph\n#[cfg(test)]\nmod tests {\n    // paper: world.graph\n}";
         let kinds = |file| citations(file, text).map(|c| c.kind).collect::<Vec<_>>();
         assert_eq!(kinds("model/src/a.rs"), [Kind::Code, Kind::Test]);
         assert_eq!(kinds("model/tests/a.rs"), [Kind::Test, Kind::Test]);
         assert_eq!(kinds("model/src/a/tests.rs"), [Kind::Test, Kind::Test]);
+        assert_eq!(kinds("proofs/src/lemmas/a.rs"), [Kind::Test, Kind::Test]);
         assert_eq!(kinds("src/latests/a.rs"), [Kind::Code, Kind::Test]);
     }
 

@@ -14,7 +14,7 @@ declare! {
          path began, by the dart d1 places clockwise from the pose; and one more door, -d1, over the \
          edge of the pose.",
         paper "2.1; Algorithm 1, line 15",
-        exhaustive "every start with up to 3 edges, every pose, every path of up to 4 moves", 213132 cases:
+        exhaustive "every start with up to 3 edges, every pose, every path of up to 4 moves", 213_132 cases:
             the_way_back::<_, 1, 3, 4>;
         sampled "starts with up to 20 edges, paths of up to 40 moves": the_way_back::<_, 1, 20, 40>;
         kani "every start with 2 edges, every pose, every path of up to 2 moves", unwind 5:
@@ -40,8 +40,7 @@ fn the_way_back<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: u
     }
     let path = &path[..moves];
     choose.show(|| Exhibit::Walk { pose, doors: path.iter().map(|&(door, _)| door).collect() });
-    let mut back = retrace(path.iter().copied());
-    while let Some(door) = back.next() {
+    for door in retrace(path.iter().copied()) {
         claim("a door of the way back exists", door.0 < graph.degree_around(at))?;
         at = graph.after(at, door);
     }

@@ -1,0 +1,134 @@
+//! What is meant: the definitions of the field, written down as plainly as can be, without regard to
+//! how the model decides them. Section 2.1.
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    marker::Marker,
+    world::{GraphWorld, State},
+};
+
+/// Whether each number below the length is the entry at its own entry, which is another place.
+#[must_use]
+pub fn is_involution_without_fixed_points(array: &[u32]) -> bool {
+    let mut dart = 0;
+    while dart < array.len() {
+        let other = array[dart] as usize;
+        if other >= array.len() || other == dart || array[other] as usize != dart {
+            return false;
+        }
+        dart += 1;
+    }
+    true
+}
+
+/// Whether each number below the length is an entry exactly once.
+#[must_use]
+pub fn is_permutation(array: &[u32]) -> bool {
+    let mut number = 0;
+    while number < array.len() {
+        let mut times = 0;
+        let mut place = 0;
+        while place < array.len() {
+            if array[place] as usize == number {
+                times += 1;
+            }
+            place += 1;
+        }
+        if times != 1 {
+            return false;
+        }
+        number += 1;
+    }
+    true
+}
+
+/// Whether each dart can be reached from the first by these two permutations. `reached` is scratch
+/// space, all `false`, at least as long as they are, which is at least 1.
+#[must_use]
+pub fn is_connected(opposite: &[u32], clockwise: &[u32], reached: &mut [bool]) -> bool {
+    reached[0] = true;
+    let mut round = 0;
+    while round < opposite.len() {
+        let mut dart = 0;
+        while dart < opposite.len() {
+            if reached[dart] {
+                reached[opposite[dart] as usize] = true;
+                reached[clockwise[dart] as usize] = true;
+            }
+            dart += 1;
+        }
+        round += 1;
+    }
+    let mut dart = 0;
+    while dart < opposite.len() && reached[dart] {
+        dart += 1;
+    }
+    dart == opposite.len()
+}
+
+/// Whether this is a connected embedded graph with an edge.
+#[must_use]
+pub fn is_world(graph: &EmbeddedGraph) -> bool {
+    let numbers = |of: &dyn Fn(Dart) -> Dart| graph.darts().map(|dart| of(dart).0).collect();
+    let opposite: Vec<u32> = numbers(&|dart| graph.opposite(dart));
+    let clockwise: Vec<u32> = numbers(&|dart| graph.clockwise(dart));
+    !opposite.is_empty()
+        && is_involution_without_fixed_points(&opposite)
+        && is_permutation(&clockwise)
+        && is_connected(&opposite, &clockwise, &mut vec![false; opposite.len()])
+        && graph.darts().all(|dart| graph.vertex(graph.clockwise(dart)) == graph.vertex(dart))
+}
+
+/// Whether two starts are isomorphic: going on from facing and facing to what is opposite to them, and
+/// to what stands clockwise from them, pairs their darts one to one.
+#[must_use]
+pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) -> bool {
+    let mut pairs = vec![(one.1, other.1)];
+    let mut next = 0;
+    while let Some(&(here, there)) = pairs.get(next) {
+        next += 1;
+        for pair in [
+            (one.0.opposite(here), other.0.opposite(there)),
+            (one.0.clockwise(here), other.0.clockwise(there)),
+        ] {
+            if !pairs.contains(&pair) {
+                pairs.push(pair);
+            }
+        }
+    }
+    let is_paired_once = |dart: Dart| {
+        pairs.iter().filter(|pair| pair.0 == dart).count() == 1
+            && pairs.iter().filter(|pair| pair.1 == dart).count() == 1
+    };
+    one.0.dart_count() == other.0.dart_count() && one.0.darts().all(is_paired_once)
+}
+
+/// Whether these pairs of states are a bisimulation with the starts of the two worlds among them: in
+/// each pair robots perceive the same and can do the same, and whatever both do leads to a pair.
+#[must_use]
+pub fn is_bisimulation<M: Marker + Clone>(
+    pairs: &[(State, State)],
+    one: &GraphWorld<M>,
+    other: &GraphWorld<M>,
+) -> bool {
+    let exists = |world: &GraphWorld<M>, state: State| {
+        let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
+        is_dart(state.pose) && state.placed.is_none_or(is_dart)
+    };
+    pairs.contains(&(one.state(), other.state()))
+        && pairs.iter().all(|&(here, there)| {
+            if !exists(one, here) || !exists(other, there) {
+                return false;
+            }
+            let (one, other) = (one.clone().at(here), other.clone().at(there));
+            let can: Vec<_> = one.actions().collect();
+            one.sensed() == other.sensed()
+                && can == other.actions().collect::<Vec<_>>()
+                && can.into_iter().all(|action| {
+                    let (mut one, mut other) = (one.clone(), other.clone());
+                    one.act(action).is_ok()
+                        && other.act(action).is_ok()
+                        && pairs.contains(&(one.state(), other.state()))
+                })
+        })
+}

@@ -1,0 +1,322 @@
+//! Whole runs of Algorithm 1, with every choice that it leaves open: what it holds from round to
+//! round, what a round costs, and where it ends. Section 2.3.
+//!
+//! The runs are those of [`map_world`] itself. Beside each the truth is kept, which the robot does
+//! not know: its pose in the world, and which dart of the world each dart of its map is.
+
+use toposlam_model::{
+    check::{Algorithm, Algorithm1},
+    embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::code,
+    mapping::{Choices, Event, Exploration, FACING, Journey, PartialMap, map_world},
+    percept::Door,
+    world::GraphWorld,
+};
+
+use crate::{
+    choose::{Case, Choose, Exhibit, claim},
+    draw,
+    lemma::declare,
+};
+
+// The cases are the runs: 3, 45, 1,777 and 502,371 with 1, 2, 3 and 4 edges, as
+// `toposlam check --choices all` counts them in another way.
+declare! {
+    the_map_embeds_in_the_world {
+        "After each round the known map embeds in the world, dart for dart, with degrees, orders and \
+         edges kept, and the robot is where it believes to be.",
+        paper "2.3; Algorithm 1, lines 18 to 23",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            the_map_embeds::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": the_map_embeds::<_, 1, 20>;
+    }
+    a_confirmed_hypothesis_is_true {
+        "A hypothesis that is confirmed is true: the edge explored leads to the dart of which it \
+         speaks.",
+        paper "2.3; Algorithm 1, lines 16 and 17",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            confirmed_is_true::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": confirmed_is_true::<_, 1, 20>;
+    }
+    the_true_hypothesis_is_never_rejected {
+        "If the edge explored leads to a known vertex, then the true hypothesis is raised and not \
+         rejected, and the loop is closed there; if not, none is confirmed and a vertex is added.",
+        paper "2.3; Algorithm 1, lines 7 to 17",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            true_is_not_rejected::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": true_is_not_rejected::<_, 1, 20>;
+    }
+    each_round_explores_one_edge {
+        "A round takes from U the dart explored, and one more where it closes a loop; else it adds \
+         one less than the degree of the new vertex. There are as many rounds as edges, and then U is \
+         empty.",
+        paper "2.3; Algorithm 1, lines 4 to 23",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            one_edge_a_round::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": one_edge_a_round::<_, 1, 20>;
+    }
+    a_round_costs_no_more_than_its_paths {
+        "With k known vertices and u other unexplored darts a round takes at most k + 2 u (k - 1) \
+         moves; and in round r, u is at most 2 m - 2 r + 1.",
+        paper "2.3, cost",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            a_round_costs::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": a_round_costs::<_, 1, 20>;
+    }
+    the_rounds_together_cost_the_bound {
+        "Added up over the rounds r = 1 ... m, n + 2 (2 m - 2 r + 1) (n - 1) is m n + 2 m^2 (n - 1).",
+        paper "2.3, cost",
+        exhaustive "m and n from 1 to 64", 4096 cases: the_sum::<_, 64>;
+        sampled "m and n from 1 to 240": the_sum::<_, 240>;
+        kani "m and n from 1 to 8", unwind 10: the_sum::<_, 8>;
+    }
+    algorithm_1_maps_the_world {
+        "Algorithm 1 ends, with a map isomorphic to the world as a start, the robot where it believes \
+         to be, after at most m n + 2 m^2 (n - 1) moves.",
+        paper "2.3",
+        exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
+            the_theorem::<_, 1, 4>;
+        sampled "starts with up to 20 edges, any choices": the_theorem::<_, 1, 20>;
+    }
+}
+
+/// Chooses what Algorithm 1 leaves open.
+struct Drawn<'c, C>(&'c mut C);
+
+impl<C: Choose> Choices for Drawn<'_, C> {
+    fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
+        let place = self.0.below(map.unexplored_count() as u8);
+        map.unexplored().nth(place.into()).unwrap_or(nearest)
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+        self.0.below(hypotheses.len() as u8).into()
+    }
+}
+
+/// What is so while the robot explores a world.
+struct Truth<'g> {
+    graph: &'g EmbeddedGraph,
+    /// The dart by which the robot has really come in.
+    pose: Dart,
+    /// The dart of the world that each dart of the map is: what stands clockwise from a dart, or
+    /// opposite to the one explored, is so from its image.
+    image: Vec<Dart>,
+    /// The doors taken.
+    doors: Vec<Door>,
+}
+
+impl Truth<'_> {
+    /// Takes note of what happened.
+    fn event(&mut self, journey: &Journey, event: Event) {
+        match event {
+            Event::Started { percept } => self.meet(FACING, percept.degree),
+            Event::Moved { door, percept: _ } => {
+                self.doors.push(door);
+                self.pose = self.graph.after(self.pose, door);
+            }
+            Event::VertexAdded { edge, vertex } => {
+                let degree = journey.map().degree(vertex);
+                self.meet(self.behind(edge), degree);
+            }
+            _ => {}
+        }
+    }
+
+    /// The images of a new vertex's darts, clockwise from that of the first.
+    fn meet(&mut self, mut image: Dart, degree: u32) {
+        for _ in 0..degree {
+            self.image.push(image);
+            image = self.graph.clockwise(image);
+        }
+    }
+
+    /// The dart of the world to which an edge leads that is known at one end.
+    fn behind(&self, edge: Dart) -> Dart {
+        self.graph.opposite(self.image[edge.at()])
+    }
+
+    /// The dart of the map that is this one of the world, if that is known.
+    fn known(&self, dart: Dart) -> Option<Dart> {
+        let place = self.image.iter().position(|&image| image == dart);
+        place.map(|place| Dart(place as u32))
+    }
+}
+
+/// Draws a start and a run on it, and lets `judge` look at each event of the run, with the truth as it
+/// then is; what it answers first in the negative is the answer. At the end it answers where the run
+/// has come to.
+fn run<'g, C: Choose>(
+    choose: &mut C,
+    graph: &'g EmbeddedGraph,
+    mut judge: impl FnMut(&Truth, &Journey, Event) -> Case,
+) -> Result<(Exploration, Truth<'g>), crate::Stop> {
+    let mut truth = Truth { graph, pose: FACING, image: Vec::new(), doors: Vec::new() };
+    let mut verdict = Ok(());
+    let mut watch = |journey: &Journey, event: Event| {
+        truth.event(journey, event);
+        if verdict.is_ok() {
+            verdict = judge(&truth, journey, event);
+        }
+    };
+    let mut exploration = Exploration::new(2 * graph.dart_count());
+    let mut world = GraphWorld::new(graph, FACING);
+    let ended = map_world(&mut world, &mut Drawn(&mut *choose), &mut exploration, &mut watch);
+    choose.show(|| Exhibit::Walk { pose: FACING, doors: truth.doors.clone() });
+    verdict?;
+    claim("the run ends", ended.is_ok())?;
+    claim("the truth is the world's", truth.pose == world.pose())?;
+    Ok((exploration, truth))
+}
+
+/// Whether a round ends with this event.
+fn ends_round(event: Event) -> bool {
+    matches!(event, Event::LoopClosed { .. } | Event::VertexAdded { .. })
+}
+
+fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    run(choose, &graph, |truth, journey, event| {
+        if ends_round(event) || matches!(event, Event::Started { .. }) {
+            embeds(truth, journey)
+        } else {
+            Ok(())
+        }
+    })?;
+    Ok(())
+}
+
+fn embeds(truth: &Truth, journey: &Journey) -> Case {
+    let Truth { graph, pose, image, .. } = truth;
+    let map = journey.map();
+    claim("each dart of the map is one of the world", image.len() == map.dart_count())?;
+    for (dart, &here) in image.iter().enumerate() {
+        claim("no two darts of the map are the same", !image[..dart].contains(&here))?;
+        let dart = Dart(dart as u32);
+        let degree = map.degree(map.vertex(dart));
+        claim("degrees are kept", degree == graph.degree_around(here))?;
+        let next = map.dart(map.vertex(dart), (map.index(dart) + 1) % degree);
+        let next = next.map(|next| image[next.at()]);
+        claim("orders are kept", next == Some(graph.clockwise(here)))?;
+        if let Some(far) = map.opposite(dart) {
+            claim("edges are kept", image[far.at()] == graph.opposite(here))?;
+        }
+    }
+    claim("the robot is where it believes to be", image[journey.robot().at()] == *pose)
+}
+
+fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let mut explored = FACING;
+    run(choose, &graph, |truth, journey, event| match event {
+        Event::Arrived { edge, .. } => {
+            explored = edge;
+            Ok(())
+        }
+        Event::Confirmed { hypothesis, .. } => {
+            let leads_to = truth.behind(explored);
+            claim("the edge leads to it", truth.image[hypothesis.at()] == leads_to)?;
+            let believed = truth.image[journey.robot().at()];
+            claim("the robot knows its pose at the marker", believed == truth.pose)
+        }
+        _ => Ok(()),
+    })?;
+    Ok(())
+}
+
+fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let mut truly = None;
+    run(choose, &graph, |truth, _, event| match event {
+        Event::Arrived { edge, hypotheses, .. } => {
+            truly = truth.known(truth.behind(edge));
+            claim("the true hypothesis is raised", truly.is_none() || hypotheses > 0)
+        }
+        Event::Rejected { hypothesis, .. } => {
+            claim("the true hypothesis is not rejected", Some(hypothesis) != truly)
+        }
+        Event::LoopClosed { other, .. } => claim("the loop is closed there", Some(other) == truly),
+        Event::VertexAdded { .. } => claim("the vertex is new", truly.is_none()),
+        _ => Ok(()),
+    })?;
+    Ok(())
+}
+
+fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let mut rounds = 0;
+    let mut unexplored = 0;
+    let (exploration, _) = run(choose, &graph, |_, journey, event| {
+        let map = journey.map();
+        match event {
+            Event::Started { percept } => {
+                claim("all darts of the start are in U", map.unexplored_count() == percept.degree)?;
+            }
+            Event::LoopClosed { edge, other } => {
+                let took = map.unexplored_count() + 2 == unexplored;
+                claim("a loop takes two darts from U", took)?;
+                let joined = map.opposite(edge) == Some(other) && map.opposite(other) == Some(edge);
+                claim("they are one edge", joined && edge != other)?;
+            }
+            Event::VertexAdded { vertex, .. } => {
+                let added = map.unexplored_count() + 2 == unexplored + map.degree(vertex);
+                claim("a vertex adds its other darts to U", added)?;
+            }
+            _ => return Ok(()),
+        }
+        rounds += usize::from(ends_round(event));
+        unexplored = map.unexplored_count();
+        claim("U is what it counts", map.unexplored().count() == unexplored as usize)
+    })?;
+    claim("there are as many rounds as edges", rounds == graph.edge_count())?;
+    claim("U is empty", exploration.map().unexplored_is_empty())
+}
+
+fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let m = graph.edge_count() as u64;
+    let mut round = 0;
+    // What it was at line 4.
+    let (mut moves, mut known, mut others) = (0, 0, 0);
+    run(choose, &graph, |_, journey, event| {
+        if ends_round(event) {
+            let cost = journey.moves() - moves;
+            claim("a round costs so much at most", cost <= known + 2 * others * (known - 1))?;
+        } else if !matches!(event, Event::Started { .. }) {
+            return Ok(());
+        }
+        round += 1;
+        moves = journey.moves();
+        known = journey.map().vertex_count() as u64;
+        let unexplored = u64::from(journey.map().unexplored_count());
+        others = unexplored.saturating_sub(1);
+        claim("u is so high at most", unexplored == 0 || others + 2 * round <= 2 * m + 1)
+    })?;
+    Ok(())
+}
+
+fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> Case {
+    let (m, n) = (1 + u64::from(choose.below(MOST)), 1 + u64::from(choose.below(MOST)));
+    choose.show(|| Exhibit::Value { name: "m, n", value: format!("{m}, {n}") });
+    let mut sum = 0;
+    let mut round = 1;
+    while round <= m {
+        sum += n + 2 * (2 * m - 2 * round + 1) * (n - 1);
+        round += 1;
+    }
+    claim("the sum is the bound", sum == m * n + 2 * m * m * (n - 1))?;
+    claim("the check has this bound", sum == Algorithm1.move_bound(m as usize, n as usize))
+}
+
+fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let (exploration, truth) = run(choose, &graph, |_, _, _| Ok(()))?;
+    let Some(map) = exploration.map().complete() else {
+        return claim("the map is complete", false);
+    };
+    claim("the map is the world", code(map, FACING) == code(&graph, FACING))?;
+    let believed = truth.image[exploration.robot().at()];
+    claim("the robot is where it believes to be", believed == truth.pose)?;
+    let (m, n) = (graph.edge_count(), graph.vertex_count());
+    claim("the moves are within the bound", exploration.moves() <= Algorithm1.move_bound(m, n))
+}

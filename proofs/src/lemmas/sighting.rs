@@ -1,0 +1,66 @@
+//! What a marker's sighting tells about the entry dart. Sections 2.2, 2.3.
+
+use toposlam_model::{
+    embedded_graph::Dart,
+    marker::{Directional, Marker, Undirected},
+    percept::{Door, Sighting},
+};
+
+use crate::{
+    choose::{Case, Choose, Exhibit, claim, given},
+    draw,
+    lemma::declare,
+};
+
+declare! {
+    a_directional_sighting_tells_the_entry_dart {
+        "At the marked vertex a directional marker is seen along a door, and from any two different \
+         entry darts along different doors; nowhere else is it seen.",
+        paper "2.3",
+        // Each start with m edges, its facing dart, and 2 m times 2 m poses.
+        exhaustive "every start with up to 4 edges, any two poses", 48_016 cases: directional::<_, 1, 4>;
+        sampled "starts with up to 40 edges": directional::<_, 1, 40>;
+        kani "every start with 2 edges, any two poses", unwind 6: directional::<_, 2, 2>;
+    }
+    an_undirected_sighting_does_not_tell_the_entry_dart {
+        "There are worlds where an undirected marker gives the same sighting, at the marked vertex, \
+         for two entry darts.",
+        paper "2.2",
+        exhaustive "witnesses among the starts with up to 3 edges, any two poses", 1046 cases:
+            undirected::<_, 1, 3>;
+        kani "witnesses among the starts with 2 edges, any two poses", unwind 6: undirected::<_, 2, 2>;
+    }
+}
+
+fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let facing = Dart(0);
+    let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
+    choose.show(|| Exhibit::Walk { pose: one, doors: Vec::new() });
+    choose.show(|| Exhibit::Walk { pose: other, doors: Vec::new() });
+    let seen = |pose| Directional.sighting(&graph, facing, pose);
+    let is_here = |pose| graph.vertex(pose) == graph.vertex(facing);
+    match seen(one) {
+        Sighting::Pointing(door) => {
+            claim("it is seen at the marked vertex", is_here(one))?;
+            claim("the door exists", door.0 < graph.degree_around(one))?;
+            claim("it points along the facing dart", graph.behind(one, door) == facing)?;
+        }
+        sighting => {
+            claim("it is seen or not", sighting == Sighting::Nothing)?;
+            claim("it is not seen elsewhere", !is_here(one))?;
+        }
+    }
+    claim(
+        "the same sighting at the marked vertex means the same entry dart",
+        !(is_here(one) && is_here(other) && seen(one) == seen(other) && one != other),
+    )
+}
+
+fn undirected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
+    let seen = |pose| Undirected.sighting(&graph, Dart(0), pose);
+    given(choose, one != other && seen(one) == seen(other) && seen(one) != Sighting::Nothing)?;
+    claim("a robot there knows no door of the marker", seen(one) != Sighting::Pointing(Door::BACK))
+}
