@@ -1,9 +1,9 @@
 //! A stand-in for the library of [Kani](https://github.com/model-checking/kani), as far as the
-//! harnesses use it. It proves nothing and runs nothing: `tests/harnesses.rs` checks the types of the
-//! harnesses against it where Kani is not installed. Nothing depends on it.
+//! harnesses use it. It proves nothing and runs nothing: where Kani is not installed,
+//! `tests/harnesses.rs` checks the types of the harnesses against it. Nothing depends on it.
 //!
-//! The signatures are those of Kani's own `library/kani_core`; what is not here, no harness may use
-//! until it stands here as it stands there.
+//! What stands here has the signature that it has in Kani's own `library/kani_core`; what a harness
+//! needs besides is to be looked up there first.
 
 pub use kani_macros::{proof, unwind};
 

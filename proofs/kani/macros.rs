@@ -1,4 +1,4 @@
-//! The attributes of the stand-in for Kani: they refuse what Kani refuses, with its words, and leave
+//! The attributes of the stand-in for Kani: they refuse what Kani refuses, in its words, and leave
 //! a mark in the harness, by which `tests/harnesses.rs` tells which harnesses were compiled and how
 //! far they are unwound. They prove nothing.
 
