@@ -78,7 +78,7 @@ mod types {
         let messages = String::from_utf8(cargo.stdout).unwrap();
         let model = messages
             .split('"')
-            .find(|word| word.contains("libtoposlam_model-") && word.ends_with(".rmeta"))
+            .find(|word| word.contains("libtoposlam_model-") && word.contains(".rmeta"))
             .expect("cargo says what it made");
         (folder, model.into())
     });
@@ -467,11 +467,13 @@ Complete - 1 successfully verified harnesses, 0 failures, 1 total.
     #[cfg(unix)]
     #[test]
     fn the_script_asks_kani_for_every_harness_and_believes_it_only_through_the_gate() {
-        let count = table().len();
+        let table = table();
+        let count = table.len();
+        let one = table.first().unwrap().split_once(' ').unwrap().0;
         let (code, said) = verify("verified", &[], VERIFIED, 0);
         assert_eq!(code, Some(0), "{said}");
         assert!(said.ends_with(&format!("\n{count} of {count} harnesses verified\n")), "{said}");
-        let (code, said) = verify("one", &[NAME], VERIFIED, 0);
+        let (code, said) = verify("one", &[one], VERIFIED, 0);
         assert_eq!(code, Some(0), "{said}");
         let (code, said) = verify("names", &["--names"], "", 0);
         assert_eq!(code, Some(0), "{said}");
@@ -480,8 +482,8 @@ Complete - 1 successfully verified harnesses, 0 failures, 1 total.
         let (code, said) = verify("vacuous", &[], &vacuous, 0);
         assert_eq!(code, Some(1), "{said}");
         assert!(said.contains(&format!("\n0 of {count} harnesses verified\n")), "{said}");
-        assert_eq!(verify("vacuous_one", &[NAME], &vacuous, 0).0, Some(1));
-        assert_eq!(verify("exit_code", &[NAME], VERIFIED, 1).0, Some(1));
+        assert_eq!(verify("vacuous_one", &[one], &vacuous, 0).0, Some(1));
+        assert_eq!(verify("exit_code", &[one], VERIFIED, 1).0, Some(1));
         assert_eq!(verify("no_such_name", &["kani"], VERIFIED, 0).0, Some(2));
     }
 
