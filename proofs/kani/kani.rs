@@ -1,6 +1,6 @@
 //! A stand-in for the library of [Kani](https://github.com/model-checking/kani), as far as the
 //! harnesses use it. It proves nothing and runs nothing: where Kani is not installed,
-//! `tests/harnesses.rs` checks the types of the harnesses against it. Nothing depends on it.
+//! `tests/harnesses` checks the types of the harnesses against it. Nothing depends on it.
 //!
 //! What stands here has the signature that it has in Kani's own `library/kani_core`; what a harness
 //! needs besides is to be looked up there first.
