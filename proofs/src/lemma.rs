@@ -169,8 +169,8 @@ macro_rules! declare {
                     #[kani::proof]
                     #[kani::unwind($unwind)]
                     fn kani() {
-                        let lemma: fn(&mut $crate::symbolic::Symbolic) -> $crate::Case = $kani;
-                        let holds = lemma(&mut $crate::symbolic::Symbolic).is_ok();
+                        let case: $crate::Case = $kani(&mut $crate::symbolic::Symbolic);
+                        let holds = case.is_ok();
                         assert!(holds);
                         kani::cover!(holds, "there is a case");
                     }

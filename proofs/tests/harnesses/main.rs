@@ -1,0 +1,38 @@
+//! The harnesses for Kani, where there is no Kani: that they compile against a stand-in for its
+//! library, that they are those of the table, and that the scripts believe Kani only where it
+//! proves something. Nothing here says that a lemma holds.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+mod scripts;
+mod types;
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use toposlam_proofs::Lemma;
+
+fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A folder of ours under the target directory.
+fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harnesses").join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The harnesses of the table, as Kani names them, each with its unwinding.
+fn table() -> BTreeSet<String> {
+    let harnesses = Lemma::all().filter_map(|lemma| lemma.kani.as_ref());
+    harnesses.map(|kani| format!("{} {}", within(kani.harness), kani.unwind)).collect()
+}
+
+/// A path within the crate: Kani leaves its name out.
+fn within(path: &str) -> &str {
+    path.strip_prefix("toposlam_proofs::").expect("it is in this crate")
+}

@@ -1,0 +1,195 @@
+//! That the harnesses have the right types, against a stand-in that proves nothing.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+
+use crate::{here, scratch, table, within};
+
+fn rustc() -> Command {
+    let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    rustc.args(["--edition", "2024", "-D", "warnings"]);
+    rustc
+}
+
+/// Runs the compiler, and answers what it says if it refuses.
+fn run(rustc: &mut Command) -> Result<(), String> {
+    let Output { status, stderr, .. } = rustc.output().unwrap();
+    if status.success() { Ok(()) } else { Err(String::from_utf8(stderr).unwrap()) }
+}
+
+/// The folder of the stand-in, and what cargo made of the model.
+static DEPENDENCIES: LazyLock<(PathBuf, PathBuf)> = LazyLock::new(|| {
+    let folder = scratch("stand_in");
+    let crates = [
+        ("kani_macros", "macros.rs", "proc-macro", "proc_macro"),
+        ("kani", "kani.rs", "lib", "kani_macros"),
+    ];
+    for (name, source, kind, dependency) in crates {
+        let made = run(rustc()
+            .args(["--crate-name", name, "--crate-type", kind, "--extern", dependency])
+            .args(["--out-dir".as_ref(), folder.as_os_str(), "-L".as_ref(), folder.as_os_str()])
+            .arg(here("kani").join(source)));
+        made.unwrap_or_else(|said| panic!("{said}"));
+    }
+    // Only the last crate is compiled for Kani: others have `cfg(kani)` of their own.
+    let cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| env!("CARGO").into()))
+        .args(["check", "--lib", "-p", "toposlam-model", "--locked", "--offline"])
+        .args(["--message-format", "json", "--target-dir"])
+        .arg(scratch("model"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(cargo.status.success(), "{}", String::from_utf8(cargo.stderr).unwrap());
+    let messages = String::from_utf8(cargo.stdout).unwrap();
+    let model = messages
+        .split('"')
+        .find(|word| word.contains("libtoposlam_model-") && word.contains(".rmeta"))
+        .expect("cargo says what it made");
+    (folder, model.into())
+});
+
+/// Checks the types of the library in this folder as Kani would have it compiled, and answers
+/// its harnesses with their unwindings.
+fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
+    let (stand_in, model) = &*DEPENDENCIES;
+    let others = model.parent().unwrap();
+    run(rustc()
+        .args(["--crate-name", "toposlam_proofs", "--crate-type", "lib", "-F", "unsafe_code"])
+        .args(["--cfg", "kani", "--check-cfg", "cfg(kani, test)", "--extern", "kani"])
+        .arg("-L")
+        .arg(stand_in)
+        .arg("--extern")
+        .arg(format!("toposlam_model={}", model.display()))
+        .arg("-L")
+        .arg(format!("dependency={}", others.display()))
+        .args(["--emit", "dep-info,metadata", "--out-dir"])
+        .arg(output)
+        .arg(library.join("lib.rs")))?;
+    let noted = fs::read_to_string(output.join("toposlam_proofs.d")).unwrap();
+    let marks = |mark: &'static str| {
+        noted.lines().filter_map(move |line| line.strip_prefix("# env-dep:")?.strip_prefix(mark))
+    };
+    let proofs: BTreeSet<_> = marks("kani::proof ").collect();
+    let unwound: BTreeMap<_, _> =
+        marks("kani::unwind ").map(|mark| mark.rsplit_once(' ').unwrap()).collect();
+    assert_eq!(proofs, unwound.keys().copied().collect(), "each harness has its unwinding");
+    Ok(unwound.iter().map(|(path, times)| format!("{} {times}", within(path))).collect())
+}
+
+/// Compiles a copy of the library in which one file is otherwise.
+fn compile_with(
+    name: &str,
+    file: &str,
+    change: impl FnOnce(&str) -> String,
+) -> Result<BTreeSet<String>, String> {
+    let copy = scratch(name);
+    let source = here("src");
+    for folder in ["", "lemmas"] {
+        fs::create_dir_all(copy.join(folder)).unwrap();
+        for entry in fs::read_dir(source.join(folder)).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_file() {
+                fs::copy(entry.path(), copy.join(folder).join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    let text = fs::read_to_string(source.join(file)).unwrap();
+    let changed = change(&text);
+    assert_ne!(changed, text, "there is something to change");
+    fs::write(copy.join(file), changed).unwrap();
+    compile(&copy, &copy)
+}
+
+/// Sees that the library with this change is refused, for this reason, in this file.
+fn refused(name: &str, file: &str, old: &str, new: &str, reason: &str) {
+    let said = compile_with(name, file, |text| text.replacen(old, new, 1)).unwrap_err();
+    let place = format!("--> {}:", scratch(name).join(file).display());
+    let lines: Vec<_> = said.lines().collect();
+    let there = |pair: &[&str]| pair[0] == reason && pair[1].trim().starts_with(&place);
+    assert!(lines.windows(2).any(there), "{said}");
+}
+
+#[test]
+fn the_harnesses_of_the_table_compile_and_there_are_no_others() {
+    let compiled = compile(&here("src"), &scratch("library"));
+    assert_eq!(compiled.unwrap_or_else(|said| panic!("{said}")), table());
+}
+
+#[test]
+fn a_lemma_that_does_not_fit_its_harness_is_noticed() {
+    let lemmas = here("src/lemmas");
+    let mut files: Vec<_> =
+        fs::read_dir(&lemmas).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    files.sort();
+    let harness = "        kani \"";
+    let file = files
+        .into_iter()
+        .find(|file| fs::read_to_string(lemmas.join(file)).unwrap().contains(harness))
+        .expect("some lemma has a harness");
+    let file = format!("lemmas/{}", file.to_str().unwrap());
+    let said = compile_with("unfit_lemma", &file, |text| {
+        let (before, clause) = text.split_once(harness).unwrap();
+        let (bound, rest) = clause.split_once("unwind").unwrap();
+        let (unwind, rest) = rest.split_once(':').unwrap();
+        let (_, after) = rest.split_once(';').unwrap();
+        format!("{before}{harness}{bound}unwind{unwind}: crate::draw::byte;{after}")
+    })
+    .unwrap_err();
+    assert!(said.starts_with("error[E0308]: mismatched types\n"), "{said}");
+    let place = format!("::: {}:", scratch("unfit_lemma").join(file).display());
+    assert!(said.contains(&place), "{said}");
+}
+
+#[test]
+fn a_harness_that_does_not_come_up_is_missed() {
+    let without = |text: &str| text.replace("#[kani::proof]", "#[cfg(any())]");
+    assert_eq!(compile_with("lost", "lemma.rs", without), Ok(BTreeSet::new()));
+}
+
+#[test]
+fn a_harness_with_an_argument_is_refused() {
+    let reason = "error: functions used as harnesses cannot have any arguments";
+    refused("argument", "lemma.rs", "fn kani() {", "fn kani(_given: u8) {", reason);
+}
+
+#[test]
+fn a_generic_harness_is_refused() {
+    let reason = "error: the `proof` attribute cannot be applied to generic functions";
+    refused("generic", "lemma.rs", "fn kani() {", "fn kani<const N: u8>() {", reason);
+}
+
+#[test]
+fn an_unwinding_that_is_no_integer_is_refused() {
+    let reason = "error: invalid argument for `unwind` attribute, expected an integer";
+    refused("unwind", "lemma.rs", "::unwind($unwind)", "::unwind(-$unwind)", reason);
+}
+
+#[test]
+fn a_cover_without_a_condition_is_refused() {
+    refused("cover", "lemma.rs", "cover!(holds,", "cover!(1,", "error[E0308]: mismatched types");
+}
+
+#[test]
+fn a_symbol_of_a_type_that_kani_has_no_symbols_of_is_refused() {
+    let reason = "error[E0277]: the trait bound `String: Arbitrary` is not satisfied";
+    let string = "kani::any::<String>().len() as u8";
+    refused("arbitrary", "symbolic.rs", "kani::any()", string, reason);
+}
+
+#[test]
+fn what_the_library_of_kani_does_not_have_is_refused() {
+    let reason = "error[E0425]: cannot find function `suppose` in crate `kani`";
+    refused("unknown", "symbolic.rs", "kani::assume(", "kani::suppose(", reason);
+}
+
+#[test]
+fn a_warning_in_a_harness_is_refused() {
+    let reason = "error: unused variable: `unused`";
+    let driver = "let unused = 0; kani::assume(";
+    refused("warning", "symbolic.rs", "kani::assume(", driver, reason);
+}
