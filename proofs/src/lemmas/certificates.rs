@@ -143,6 +143,7 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
     claim("it is accepted exactly if it still is one", relation.verify(&one, &other) == is_one)
 }
 
+// paper: marker.undirected-insufficient
 fn spared<C: Choose>(choose: &mut C) -> Case {
     let [one, other] = figure_1::worlds(choose)?;
     let comparison = Comparison::new(&Undirected, (&one, Dart(0)), (&other, Dart(0)));

@@ -17,11 +17,12 @@ declare! {
         exhaustive "every start with up to 3 edges, every pose, every path of up to 4 moves", 213_132 cases:
             the_way_back::<_, 1, 3, 4>;
         sampled "starts with up to 20 edges, paths of up to 40 moves": the_way_back::<_, 1, 20, 40>;
-        kani "every start with 2 edges, every pose, every path of up to 2 moves", unwind 5:
+        kani "every start with 2 edges, every pose, every path of up to 2 moves", unwind 8:
             the_way_back::<_, 2, 2, 2>;
     }
 }
 
+// paper: alg1.15, motion.path
 fn the_way_back<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: usize>(
     choose: &mut C,
 ) -> Case {

@@ -20,7 +20,7 @@ declare! {
         // Each start with m edges, its facing dart, and 2 m times 2 m poses.
         exhaustive "every start with up to 4 edges, any two poses", 48_016 cases: directional::<_, 1, 4>;
         sampled "starts with up to 40 edges": directional::<_, 1, 40>;
-        kani "every start with 2 edges, any two poses", unwind 6: directional::<_, 2, 2>;
+        kani "every start with 2 edges, any two poses", unwind 8: directional::<_, 2, 2>;
     }
     an_undirected_sighting_does_not_tell_the_entry_dart {
         "There are worlds where an undirected marker gives the same sighting, at the marked vertex, \
@@ -28,10 +28,11 @@ declare! {
         paper "2.2",
         exhaustive "witnesses among the starts with up to 3 edges, any two poses", 1046 cases:
             undirected::<_, 1, 3>;
-        kani "witnesses among the starts with 2 edges, any two poses", unwind 6: undirected::<_, 2, 2>;
+        kani "witnesses among the starts with 2 edges, any two poses", unwind 8: undirected::<_, 2, 2>;
     }
 }
 
+// paper: marker.directional-sufficient
 fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let facing = Dart(0);
@@ -57,6 +58,7 @@ fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
     )
 }
 
+// paper: marker.undirected-insufficient
 fn undirected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));

@@ -21,7 +21,7 @@ declare! {
         exhaustive "every start with up to 4 edges, any two poses, every door", 201_988 cases:
             a_door_is_injective::<_, 1, 4>;
         sampled "starts with up to 40 edges": a_door_is_injective::<_, 1, 40>;
-        kani "every start with 2 edges, any two poses, every door", unwind 6:
+        kani "every start with 2 edges, any two poses, every door", unwind 8:
             a_door_is_injective::<_, 2, 2>;
     }
     validation_is_sound {
@@ -31,7 +31,7 @@ declare! {
         exhaustive "every start with up to 3 edges, any two poses, every path of up to 4 moves", 188_115 cases:
             validation_is_sound::<_, 1, 3, 4>;
         sampled "starts with up to 4 edges, paths of up to 6 moves": validation_is_sound::<_, 1, 4, 6>;
-        kani "every start with 2 edges, any two poses, every path of up to 2 moves", unwind 6:
+        kani "every start with 2 edges, any two poses, every path of up to 2 moves", unwind 8:
             validation_is_sound::<_, 2, 2, 2>;
     }
 }
@@ -42,6 +42,7 @@ fn common_door(choose: &mut impl Choose, graph: &EmbeddedGraph, one: Dart, other
     Door(u32::from(choose.below(degree as u8)))
 }
 
+// paper: motion.door
 fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
@@ -54,6 +55,7 @@ fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(choose:
     )
 }
 
+// paper: alg1.validation
 fn validation_is_sound<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: usize>(
     choose: &mut C,
 ) -> Case {
