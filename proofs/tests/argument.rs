@@ -1,0 +1,21 @@
+//! The written argument and the lemmas belong together.
+
+use std::collections::BTreeSet;
+
+use toposlam_proofs::Lemma;
+
+const ARGUMENT: &str = include_str!("../README.md");
+
+#[test]
+fn the_argument_names_every_lemma_and_no_other() {
+    // Names in backquotes that read like a lemma's: words with more than one line between them.
+    let named: BTreeSet<_> = ARGUMENT
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .filter(|word| word.bytes().all(|b| b.is_ascii_lowercase() || b"_1".contains(&b)))
+        .filter(|word| word.matches('_').count() > 1)
+        .collect();
+    let lemmas: BTreeSet<_> = Lemma::all().map(|lemma| lemma.name).collect();
+    assert_eq!(named, lemmas);
+}
