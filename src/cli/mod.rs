@@ -1,13 +1,14 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
-mod action_json;
 mod check;
+mod columns;
 mod compare;
 mod completions;
 mod counterexample;
 mod draw;
 mod explore;
 mod input;
+mod json;
 mod movable;
 mod outcome;
 mod output;
