@@ -14,6 +14,7 @@ mod outcome;
 mod output;
 mod paper;
 mod progress;
+mod proofs;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -54,6 +55,7 @@ enum Verb {
     Counterexample(counterexample::Arguments),
     Draw(draw::Arguments),
     Paper(paper::Arguments),
+    Proofs(proofs::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -117,6 +119,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Counterexample(verb)) => verb.run(&mut out),
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
+        Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };
