@@ -162,8 +162,8 @@ fn named<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
         [] => (format!("there is no lemma `{name}`; there are"), lemmas),
         several => (format!("`{name}` is part of several names"), several),
     };
-    let listed: String = listed.iter().map(|lemma| format!("\n  {}", lemma.name)).collect();
-    Err(Failure::at("--run", format!("{cause}:{listed}")))
+    let lines: Vec<_> = listed.iter().map(|lemma| lemma.name).collect();
+    Err(Failure::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
 /// So many cases.

@@ -111,9 +111,9 @@ fn a_lemma_is_checked_in_every_case() {
 #[test]
 fn an_unknown_name_lists_those_that_exist() {
     let message = refusal(&run(["proofs", "--run", "the_moon_is_round"]));
-    let names: String = Lemma::all().map(|lemma| format!("\n  {}", lemma.name)).collect();
+    let names: Vec<_> = Lemma::all().map(|lemma| lemma.name).collect();
     let cause = "--run: there is no lemma `the_moon_is_round`; there are:";
-    assert_eq!(message, format!("error: {cause}{names}\n"));
+    assert_eq!(message, format!("error: {cause}\n  {}\n", names.join("\n  ")));
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn a_case_is_shown_as_a_world_and_a_walk_that_the_other_verbs_read() {
 
     let (_, below) = text.split_once(" toposlam explore:\n\n").unwrap();
     let length = below.lines().position(|line| line.starts_with("facing = ")).unwrap() + 1;
-    let world: String = below.lines().take(length).map(|line| format!("{line}\n")).collect();
+    let world: String = below.split_inclusive('\n').take(length).collect();
     let file = folder.join("case.toml");
     fs::write(&file, &world).unwrap();
     let file = file.to_str().unwrap();

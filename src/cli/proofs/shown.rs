@@ -13,17 +13,23 @@ use toposlam_model::{
 };
 use toposlam_proofs::Exhibit;
 
-use crate::cli::{columns::print_rows, json::percept_json};
+use crate::cli::{columns::print_rows, json::percept_json, words::capital};
 
-/// The worlds of a case, the walks in them, and what else there is, in the order of the lemma.
+/// The worlds of a case, the walks in them, and what else there is.
 pub(super) struct Shown {
+    worlds: Vec<NamedWorld>,
+    /// In the order of the lemma.
     parts: Vec<Part>,
 }
 
 enum Part {
-    World(NamedWorld),
+    /// The world at this place among those that are shown, from 0.
+    World(usize),
     Walk(Walk),
-    Value { name: &'static str, value: String },
+    Value {
+        name: &'static str,
+        value: String,
+    },
 }
 
 /// A walk in a world where the directional marker lies at the start.
@@ -43,54 +49,42 @@ impl Shown {
     pub(super) fn new(about: &str, exhibits: &[Exhibit]) -> Self {
         let is_world = |exhibit: &&Exhibit| matches!(exhibit, Exhibit::World { .. });
         let several = exhibits.iter().filter(is_world).count() > 1;
-        let mut shown = Self { parts: Vec::new() };
+        let mut worlds: Vec<NamedWorld> = Vec::new();
+        let mut parts = Vec::new();
         for exhibit in exhibits {
-            let worlds = shown.worlds().count();
-            let part = match exhibit {
+            parts.push(match exhibit {
                 Exhibit::World { graph, facing } => {
+                    let place = worlds.len();
                     let name =
-                        if several { format!("case-{}", worlds + 1) } else { "case".to_owned() };
+                        if several { format!("case-{}", place + 1) } else { "case".to_owned() };
                     let start = Some(*facing).filter(|facing| facing.at() < graph.dart_count());
-                    Part::World(NamedWorld::numbered(&name, about, graph.clone(), start))
+                    worlds.push(NamedWorld::numbered(&name, about, graph.clone(), start));
+                    Part::World(place)
                 }
-                Exhibit::Walk { pose, doors } => match shown.worlds().last() {
-                    Some(world) => Walk::new(world, worlds - 1, *pose, doors),
-                    None => nowhere(*pose, doors),
-                },
+                Exhibit::Walk { pose, doors } => Walk::new(&worlds, *pose, doors)
+                    .map_or_else(|| nowhere(*pose, doors), Part::Walk),
                 Exhibit::Value { name, value } => Part::Value { name, value: value.clone() },
-            };
-            shown.parts.push(part);
+            });
         }
-        shown
-    }
-
-    fn worlds(&self) -> impl Iterator<Item = &NamedWorld> {
-        self.parts.iter().filter_map(|part| match part {
-            Part::World(world) => Some(world),
-            _ => None,
-        })
+        Self { worlds, parts }
     }
 
     /// Each part, after an empty line.
     pub(super) fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
-        let several = self.worlds().count() > 1;
-        let mut told = 0;
+        let world = |place: usize| match self.worlds.len() {
+            1 => "the world".to_owned(),
+            _ => format!("world {}", place + 1),
+        };
         for part in &self.parts {
             writeln!(out)?;
             match part {
-                Part::World(world) => {
-                    told += 1;
-                    let which =
-                        if several { format!("World {told}") } else { "The world".to_owned() };
+                Part::World(place) => {
+                    let which = capital(&world(*place));
                     writeln!(out, "{which}, as a file for toposlam draw and toposlam explore:\n")?;
-                    write!(out, "{}", world_file::to_toml(world))?;
+                    write!(out, "{}", world_file::to_toml(&self.worlds[*place]))?;
                 }
                 Part::Walk(walk) => {
-                    let which = if several {
-                        format!("world {}", walk.world + 1)
-                    } else {
-                        "the world".to_owned()
-                    };
+                    let which = world(walk.world);
                     writeln!(out, "A walk in {which}, with the directional marker:\n")?;
                     walk.tell(out)?;
                 }
@@ -102,7 +96,7 @@ impl Shown {
 
     pub(super) fn json(&self) -> ShownLine<'_> {
         let mut line = ShownLine {
-            worlds: self.worlds().map(world_file::to_json).collect(),
+            worlds: self.worlds.iter().map(world_file::to_json).collect(),
             walks: Vec::new(),
             values: Vec::new(),
         };
@@ -125,11 +119,11 @@ fn nowhere(pose: Dart, doors: &[Door]) -> Part {
 }
 
 impl Walk {
-    /// The walk from a pose by these doors, as far as it goes.
-    fn new(world: &NamedWorld, place: usize, pose: Dart, doors: &[Door]) -> Part {
-        let Some(facing) = world.start.filter(|_| pose.at() < world.graph.dart_count()) else {
-            return nowhere(pose, doors);
-        };
+    /// The walk from a pose by these doors in the latest world, as far as it goes; none where there
+    /// is no such pose.
+    fn new(worlds: &[NamedWorld], pose: Dart, doors: &[Door]) -> Option<Self> {
+        let world = worlds.last().filter(|world| pose.at() < world.graph.dart_count())?;
+        let facing = world.start?;
         let mut robot = GraphWorld::new(&world.graph, facing);
         let begun = State { pose, ..robot.state() };
         robot = robot.at(begun);
@@ -144,7 +138,7 @@ impl Walk {
             }
             steps.push(step(&robot));
         }
-        Part::Walk(Self { world: place, doors: doors.to_vec(), steps, stopped })
+        Some(Self { world: worlds.len() - 1, doors: doors.to_vec(), steps, stopped })
     }
 
     fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
