@@ -19,7 +19,7 @@ use again::Again;
 use checking::{Ending, checked};
 use report::Report;
 
-/// List the lemmas on which the mapping rests, or check them: in every case within a bound
+/// List the lemmas on which the mapping rests; check them in every case within a bound
 ///
 /// The list tells what each lemma says, where it is in the paper, and which engines check it.
 #[derive(clap::Args)]
@@ -40,7 +40,7 @@ Ctrl-C ends a check early, and prints what was checked.
 Exit codes: 0 all that was run holds, 1 a lemma fails, 2 bad usage or input,
 3 not all was checked, or the lemma says nothing about the case that --choices makes.")]
 pub(super) struct Arguments {
-    /// Check this lemma in every case within its bound; may be given again; all: every lemma
+    /// Check the lemma of this name, or all, in every case within its bound; may be repeated
     #[arg(long, value_name = "NAME")]
     run: Vec<String>,
 
