@@ -1,18 +1,20 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
-mod action_json;
 mod check;
+mod columns;
 mod compare;
 mod completions;
 mod counterexample;
 mod draw;
 mod explore;
 mod input;
+mod json;
 mod movable;
 mod outcome;
 mod output;
 mod paper;
 mod progress;
+mod proofs;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -53,6 +55,7 @@ enum Verb {
     Counterexample(counterexample::Arguments),
     Draw(draw::Arguments),
     Paper(paper::Arguments),
+    Proofs(proofs::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -116,6 +119,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Counterexample(verb)) => verb.run(&mut out),
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
+        Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

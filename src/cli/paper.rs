@@ -8,10 +8,7 @@ use std::{
 use serde::Serialize;
 use toposlam::paper::{CITATIONS, Citation, Row, Status, TABLE, Trace, requirements};
 
-use super::{Failure, Outcome};
-
-/// The widest line.
-const WIDTH: usize = 100;
+use super::{Failure, Outcome, columns::print_hanging, json::print_object};
 
 /// Show every requirement of the paper: where it is implemented, where it is tested, what is open
 #[derive(clap::Args)]
@@ -120,11 +117,6 @@ fn print_json(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> Result<(), F
     print_object(out, &totals)
 }
 
-fn print_object(out: &mut dyn Write, object: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(object).map_err(io::Error::from)?;
-    Ok(writeln!(out, "{text}")?)
-}
-
 /// The rows by section, for people, and then the totals.
 fn print_table(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> io::Result<()> {
     let id_width = rows.iter().map(|row| row.requirement.id.len()).max();
@@ -184,25 +176,6 @@ fn places(citations: &[Citation]) -> String {
         })
         .collect::<Vec<_>>()
         .join("; ")
-}
-
-/// Prints a text after its head; the lines that it needs beyond the first begin below its first
-/// word.
-fn print_hanging(out: &mut dyn Write, head: &str, text: &str) -> io::Result<()> {
-    let mut column = head.len();
-    write!(out, "{head}")?;
-    for (nth, word) in text.split(' ').enumerate() {
-        if nth > 0 && column + 1 + word.len() > WIDTH {
-            write!(out, "\n{:1$}", "", head.len())?;
-            column = head.len();
-        } else if nth > 0 {
-            write!(out, " ")?;
-            column += 1;
-        }
-        write!(out, "{word}")?;
-        column += word.len();
-    }
-    writeln!(out)
 }
 
 fn done(rows: &[&Row]) -> usize {

@@ -24,9 +24,14 @@ pub(crate) fn vertices(number: usize) -> String {
 
 /// With a capital, and a full stop unless it is a question.
 pub(crate) fn sentence(words: &str) -> String {
-    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
     let stop = if words.ends_with('?') { "" } else { "." };
-    format!("{}{rest}{stop}", first.to_uppercase())
+    format!("{}{stop}", capital(words))
+}
+
+/// With a capital.
+pub(crate) fn capital(words: &str) -> String {
+    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
+    format!("{}{rest}", first.to_uppercase())
 }
 
 #[cfg(test)]

@@ -111,7 +111,7 @@ fn truncated_codes_are_refused_with_their_byte() {
 
 #[test]
 fn bad_arguments_are_refused_with_what_is_wanted() {
-    let cases: [(&[&str], &str); 42] = [
+    let cases: [(&[&str], &str); 50] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
         (&["check", "--edges", "5..=3"], "the range is empty"),
@@ -180,6 +180,20 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
             "--html: a page shows one marker; name it with",
         ),
         (&["counterexample", "--atlas", "x", "--json"], "cannot be used with"),
+        (&["proofs", "--choices", "1"], "--run <NAME>"),
+        (
+            &["proofs", "--run", "all", "--choices", "1"],
+            "--choices: these make a case of one lemma",
+        ),
+        (
+            &["proofs", "--run", "a", "--run", "b", "--choices", "1"],
+            "--choices: these make a case of one lemma; name it with one --run",
+        ),
+        (&["proofs", "--run", "all", "--choices", "0,300"], "`300` is no choice; write numbers"),
+        (&["proofs", "--run", "all", "--choices", "-1"], "`-1` is no choice; write numbers from 0"),
+        (&["proofs", "--run", "all", "--choices", "0,,1"], "`` is no choice; write numbers from 0"),
+        (&["proofs", "--run", "all", "--engine", "sampled"], "--choices <NUMBERS>"),
+        (&["proofs", "--run", "all", "--choices", "1", "--engine", "kani"], "[possible values: "),
         (&["chekc"], "a similar subcommand exists: 'check'"),
         (&["fly"], "unrecognized subcommand 'fly'"),
     ];

@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 7] = [
+const VERBS: [(&str, &[&str]); 8] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -17,6 +17,7 @@ const VERBS: [(&str, &[&str]); 7] = [
     ),
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
+    ("proofs", &["--run", "--choices", "--engine", "--json"]),
     ("completions", &[]),
 ];
 
@@ -52,12 +53,13 @@ fn the_paper_is_listed() {
 
 #[test]
 fn a_reader_who_leaves_early_is_no_panic() {
-    let verbs: [&[&str]; 5] = [
+    let verbs: [&[&str]; 6] = [
         &["explore", "worlds/building-25.toml", "--full"],
         &["explore", "worlds/building-25.toml", "--json"],
         &["check", "--json", "--edges", "1..=5"],
         &["draw", "worlds/building-25.toml"],
         &["paper"],
+        &["proofs"],
     ];
     for verb in verbs {
         let mut command = toposlam();

@@ -9,6 +9,7 @@ mod counterexample;
 mod draw;
 mod explore;
 mod help;
+mod proofs;
 
 use std::{
     ffi::OsStr,

@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::{Failure, walk_page};
-use crate::cli::{action_json::action_json, words::grouped};
+use crate::cli::{json::action_json, words::grouped};
 
 /// How many starts in B, and how many pairs of states, are told one by one.
 const TOLD: usize = 8;

@@ -13,6 +13,7 @@ use super::{
     Failure,
     robots::{Robots, actions_json},
 };
+use crate::cli::{columns::print_rows, json::percept_json};
 
 /// Actions as the command line tells them.
 #[derive(Clone, Debug)]
@@ -71,8 +72,7 @@ impl<'w> Robots<'w> {
 
 impl Walked<'_> {
     pub(super) fn json(&self) -> Value {
-        let percept = |percept: &Percept| json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() });
-        let pair = |[one, other]: &[Percept; 2]| [percept(one), percept(other)];
+        let pair = |pair: &[Percept; 2]| pair.map(percept_json);
         json!({
             "starts": self.starts,
             "actions": actions_json(&self.actions),
@@ -92,18 +92,13 @@ impl Walked<'_> {
             std::iter::once("start".to_owned()).chain(self.actions.iter().map(ToString::to_string));
         let rows: Vec<_> = actions
             .zip(&self.percepts)
-            .map(|(action, [one, other])| [action, one.to_string(), other.to_string()])
+            .map(|(action, [one, other])| {
+                let differs = if one == other { "" } else { "  <- differs" };
+                [action, one.to_string(), format!("{other}{differs}")]
+            })
             .collect();
-        let width = |column: usize, head: &str| {
-            let texts = rows.iter().map(|row| row[column].chars().count());
-            texts.chain([head.chars().count()]).max().unwrap_or_default()
-        };
-        let (first, second) = (width(0, "action"), width(1, &heads[0]));
-        writeln!(out, "\n  {:first$}  {:second$}  {}", "action", heads[0], heads[1])?;
-        for [action, one, other] in &rows {
-            let differs = if one == other { "" } else { "  <- differs" };
-            writeln!(out, "  {action:first$}  {one:second$}  {other}{differs}")?;
-        }
+        writeln!(out)?;
+        print_rows(out, ["action", &heads[0], &heads[1]], &rows)?;
         if let Some(why) = &self.stopped {
             writeln!(out, "  they cannot go on together: {why}")?;
         }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use toposlam_model::mapping::{Event, Journey, Observer};
 
-use crate::cli::action_json::action_json;
+use crate::cli::json::action_json;
 
 /// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
 pub(super) struct Doors<'o, W> {

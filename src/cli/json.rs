@@ -1,0 +1,28 @@
+//! What `--json` prints: an object a line, and in it what a robot does and perceives.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::{Value, json};
+use toposlam_model::{percept::Percept, world::Action};
+
+use super::Failure;
+
+/// Prints one object, on a line of its own.
+pub(super) fn print_object(out: &mut dyn Write, object: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(object).map_err(io::Error::from)?;
+    Ok(writeln!(out, "{text}")?)
+}
+
+/// A door as its number, another action as its word.
+pub(super) fn action_json(action: Action) -> Value {
+    match action {
+        Action::Take(door) => json!(door.0),
+        other => json!(other.to_string()),
+    }
+}
+
+/// A degree, and a sighting in words.
+pub(super) fn percept_json(percept: Percept) -> Value {
+    json!({ "degree": percept.degree, "sighting": percept.sighting.to_string() })
+}

@@ -1,0 +1,129 @@
+//! The list of all lemmas: what each says, where it stands, and which engines check it.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use toposlam_proofs::{Lemma, lemma::Kani};
+
+use super::cases;
+use crate::cli::{Failure, columns::print_hanging, json::print_object, words::counted};
+
+const EXHAUSTIVE: &str = "exhaustive";
+const SAMPLED: &str = "sampled";
+const KANI: &str = "Kani";
+
+/// How each engine is run, below the list.
+const ENGINES: [(&str, &str); 3] = [
+    (EXHAUSTIVE, "every case within the bound: toposlam proofs --run NAME, or --run all"),
+    (SAMPLED, "cases drawn at random within the bound: cargo test -p toposlam-proofs"),
+    (
+        KANI,
+        "every case within the bound, made symbolic: cargo kani -p toposlam-proofs. Verified only \
+         where Kani is installed: neither this program nor cargo test does it",
+    ),
+];
+
+/// Lists the lemmas, and how many there are.
+pub(super) fn list(lemmas: &[&Lemma], json: bool, out: &mut dyn Write) -> Result<(), Failure> {
+    if json { print_json(out, lemmas) } else { Ok(print_list(out, lemmas)?) }
+}
+
+fn print_list(out: &mut dyn Write, lemmas: &[&Lemma]) -> io::Result<()> {
+    for lemma in lemmas {
+        let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
+        writeln!(out, "{name}")?;
+        print_hanging(out, "  ", sentence)?;
+        print_entry(out, "paper", paper)?;
+        print_entry(out, "file", file)?;
+        let cases = cases(exhaustive.cases);
+        print_entry(out, EXHAUSTIVE, &format!("{}: {cases}", exhaustive.bound))?;
+        if let Some(sampled) = sampled {
+            print_entry(out, SAMPLED, sampled.bound)?;
+        }
+        if let Some(kani) = kani {
+            print_entry(out, KANI, &format!("{}; unwind {}", kani.bound, kani.unwind))?;
+        }
+        writeln!(out)?;
+    }
+    for (engine, how) in ENGINES {
+        print_entry(out, engine, how)?;
+    }
+    let cases = cases(total(lemmas));
+    writeln!(out, "\n{}, {cases} within the exhaustive bounds", counted(lemmas.len(), "lemma"))
+}
+
+fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
+    let width = EXHAUSTIVE.len();
+    print_hanging(out, &format!("  {label:width$}  "), text)
+}
+
+/// A line of `--json`.
+#[derive(Serialize)]
+struct Line<'a> {
+    schema: u32,
+    lemma: &'a str,
+    sentence: &'a str,
+    paper: &'a str,
+    file: &'a str,
+    exhaustive: ExhaustiveLine<'a>,
+    sampled: Option<SampledLine<'a>>,
+    kani: Option<KaniLine<'a>>,
+}
+
+#[derive(Serialize)]
+struct ExhaustiveLine<'a> {
+    bound: &'a str,
+    cases: u64,
+}
+
+#[derive(Serialize)]
+struct SampledLine<'a> {
+    bound: &'a str,
+}
+
+#[derive(Serialize)]
+struct KaniLine<'a> {
+    bound: &'a str,
+    unwind: u32,
+    harness: &'a str,
+}
+
+/// The last line of `--json`.
+#[derive(Serialize)]
+struct TotalsLine {
+    schema: u32,
+    lemmas: usize,
+    cases: u64,
+    sampled: usize,
+    kani: usize,
+}
+
+fn print_json(out: &mut dyn Write, lemmas: &[&Lemma]) -> Result<(), Failure> {
+    for lemma in lemmas {
+        let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
+        let line = Line {
+            schema: 1,
+            lemma: name,
+            sentence,
+            paper,
+            file,
+            exhaustive: ExhaustiveLine { bound: exhaustive.bound, cases: exhaustive.cases },
+            sampled: sampled.map(|sampled| SampledLine { bound: sampled.bound }),
+            kani: kani.map(|Kani { bound, unwind, harness }| KaniLine { bound, unwind, harness }),
+        };
+        print_object(out, &line)?;
+    }
+    let totals = TotalsLine {
+        schema: 1,
+        lemmas: lemmas.len(),
+        cases: total(lemmas),
+        sampled: lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
+        kani: lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),
+    };
+    print_object(out, &totals)
+}
+
+/// How many cases there are within the exhaustive bounds.
+fn total(lemmas: &[&Lemma]) -> u64 {
+    lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum()
+}

@@ -1,0 +1,191 @@
+//! What a lemma shows of a case, as a person reads it and as a program does.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::Value;
+use toposlam_model::{
+    embedded_graph::Dart,
+    format::{named_world::NamedWorld, world_file},
+    marker::Directional,
+    percept::{Door, Percept},
+    world::{Action, GraphWorld, State},
+};
+use toposlam_proofs::Exhibit;
+
+use crate::cli::{columns::print_rows, json::percept_json, words::capital};
+
+/// The worlds of a case, the walks in them, and what else there is.
+pub(super) struct Shown {
+    worlds: Vec<NamedWorld>,
+    /// In the order of the lemma.
+    parts: Vec<Part>,
+}
+
+enum Part {
+    /// The world at this place among those that are shown, from 0.
+    World(usize),
+    Walk(Walk),
+    Value {
+        name: &'static str,
+        value: String,
+    },
+}
+
+/// A walk in a world where the directional marker lies at the start.
+struct Walk {
+    /// The place of the world among those that are shown, from 0.
+    world: usize,
+    doors: Vec<Door>,
+    /// Where the robot is, `vertex:door`, and what it perceives there: at the beginning and after each
+    /// door.
+    steps: Vec<(String, Percept)>,
+    /// Why it did not go on, if it could not.
+    stopped: Option<String>,
+}
+
+impl Shown {
+    /// What a lemma shows; `about` is said of its worlds.
+    pub(super) fn new(about: &str, exhibits: &[Exhibit]) -> Self {
+        let is_world = |exhibit: &&Exhibit| matches!(exhibit, Exhibit::World { .. });
+        let several = exhibits.iter().filter(is_world).count() > 1;
+        let mut worlds: Vec<NamedWorld> = Vec::new();
+        let mut parts = Vec::new();
+        for exhibit in exhibits {
+            parts.push(match exhibit {
+                Exhibit::World { graph, facing } => {
+                    let place = worlds.len();
+                    let name =
+                        if several { format!("case-{}", place + 1) } else { "case".to_owned() };
+                    let start = Some(*facing).filter(|facing| facing.at() < graph.dart_count());
+                    worlds.push(NamedWorld::numbered(&name, about, graph.clone(), start));
+                    Part::World(place)
+                }
+                Exhibit::Walk { pose, doors } => Walk::new(&worlds, *pose, doors)
+                    .map_or_else(|| nowhere(*pose, doors), Part::Walk),
+                Exhibit::Value { name, value } => Part::Value { name, value: value.clone() },
+            });
+        }
+        Self { worlds, parts }
+    }
+
+    /// Each part, after an empty line.
+    pub(super) fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
+        let world = |place: usize| match self.worlds.len() {
+            1 => "the world".to_owned(),
+            _ => format!("world {}", place + 1),
+        };
+        for part in &self.parts {
+            writeln!(out)?;
+            match part {
+                Part::World(place) => {
+                    let which = capital(&world(*place));
+                    writeln!(out, "{which}, as a file for toposlam draw and toposlam explore:\n")?;
+                    write!(out, "{}", world_file::to_toml(&self.worlds[*place]))?;
+                }
+                Part::Walk(walk) => {
+                    let which = world(walk.world);
+                    writeln!(out, "A walk in {which}, with the directional marker:\n")?;
+                    walk.tell(out)?;
+                }
+                Part::Value { name, value } => writeln!(out, "{name}: {value}")?,
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn json(&self) -> ShownLine<'_> {
+        let mut line = ShownLine {
+            worlds: self.worlds.iter().map(world_file::to_json).collect(),
+            walks: Vec::new(),
+            values: Vec::new(),
+        };
+        for part in &self.parts {
+            match part {
+                Part::World(_) => {}
+                Part::Walk(walk) => line.walks.push(walk.json()),
+                Part::Value { name, value } => line.values.push(ValueLine { name, value }),
+            }
+        }
+        line
+    }
+}
+
+/// A walk that is in none of the worlds that are shown.
+fn nowhere(pose: Dart, doors: &[Door]) -> Part {
+    let doors: Vec<_> = doors.iter().map(|door| door.0.to_string()).collect();
+    let value = format!("from dart {} by the doors {}", pose.0, doors.join(","));
+    Part::Value { name: "walk", value }
+}
+
+impl Walk {
+    /// The walk from a pose by these doors in the latest world, as far as it goes; none where there
+    /// is no such pose.
+    fn new(worlds: &[NamedWorld], pose: Dart, doors: &[Door]) -> Option<Self> {
+        let world = worlds.last().filter(|world| pose.at() < world.graph.dart_count())?;
+        let facing = world.start?;
+        let mut robot = GraphWorld::new(&world.graph, facing);
+        let begun = State { pose, ..robot.state() };
+        robot = robot.at(begun);
+        let step =
+            |robot: &GraphWorld| (world.state_text(&Directional, robot.state()), robot.sensed());
+        let mut steps = vec![step(&robot)];
+        let mut stopped = None;
+        for &door in doors {
+            if let Err(refused) = robot.act(Action::Take(door)) {
+                stopped = Some(refused.to_string());
+                break;
+            }
+            steps.push(step(&robot));
+        }
+        Some(Self { world: worlds.len() - 1, doors: doors.to_vec(), steps, stopped })
+    }
+
+    fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
+        let doors = self.doors.iter().map(|door| door.0.to_string());
+        let rows: Vec<_> = std::iter::once("start".to_owned())
+            .chain(doors)
+            .zip(&self.steps)
+            .map(|(door, (pose, percept))| [door, pose.clone(), percept.to_string()])
+            .collect();
+        print_rows(out, ["door", "robot at", "perceives"], &rows)?;
+        if let Some(why) = &self.stopped {
+            writeln!(out, "  it cannot go on: {why}")?;
+        }
+        Ok(())
+    }
+
+    fn json(&self) -> WalkLine<'_> {
+        WalkLine {
+            world: self.world,
+            doors: self.doors.iter().map(|door| door.0).collect(),
+            poses: self.steps.iter().map(|(pose, _)| pose.as_str()).collect(),
+            percepts: self.steps.iter().map(|&(_, percept)| percept_json(percept)).collect(),
+            stopped: self.stopped.as_deref(),
+        }
+    }
+}
+
+/// What `--json` tells of a case.
+#[derive(Serialize)]
+pub(super) struct ShownLine<'a> {
+    worlds: Vec<Value>,
+    walks: Vec<WalkLine<'a>>,
+    values: Vec<ValueLine<'a>>,
+}
+
+#[derive(Serialize)]
+struct WalkLine<'a> {
+    /// The place of its world in `worlds`.
+    world: usize,
+    doors: Vec<u32>,
+    poses: Vec<&'a str>,
+    percepts: Vec<Value>,
+    stopped: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct ValueLine<'a> {
+    name: &'a str,
+    value: &'a str,
+}
