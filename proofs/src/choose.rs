@@ -1,7 +1,10 @@
 //! What a lemma stands on: it chooses a case, may assume something of it, and claims something.
 
+use std::panic::{self, AssertUnwindSafe};
+
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    marker::{Directional, Marker},
     percept::Door,
 };
 
@@ -49,6 +52,12 @@ pub fn claim(what: &'static str, holds: bool) -> Case {
     if holds { Ok(()) } else { Err(Stop::Fails(what)) }
 }
 
+/// What a lemma comes to, where that the code panics is one way to fail.
+pub(crate) fn unless_it_panics(lemma: impl FnOnce() -> Case) -> Case {
+    let ended = panic::catch_unwind(AssertUnwindSafe(lemma));
+    ended.unwrap_or(Err(Stop::Fails("the code does not panic")))
+}
+
 /// Something that was chosen, for a person to look at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Exhibit {
@@ -59,11 +68,15 @@ pub enum Exhibit {
         /// The facing dart.
         facing: Dart,
     },
-    /// The robot's entry dart in the latest world, and the doors that it takes from there.
+    /// A robot's walk in one of the worlds.
     Walk {
-        /// The entry dart.
+        /// The place of the world among those shown, from 0.
+        world: usize,
+        /// The marker, placed by the world's facing dart.
+        marker: &'static dyn Marker,
+        /// The robot's entry dart at the beginning.
         pose: Dart,
-        /// The doors.
+        /// The doors that it takes.
         doors: Vec<Door>,
     },
     /// Anything else: what it is, and what it was.
@@ -73,4 +86,12 @@ pub enum Exhibit {
         /// What it was.
         value: String,
     },
+}
+
+impl Exhibit {
+    /// A walk in the first world, with the directional marker.
+    #[must_use]
+    pub fn walk(pose: Dart, doors: &[Door]) -> Self {
+        Self::Walk { world: 0, marker: &Directional, pose, doors: doors.to_vec() }
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::choose::{Case, Choose, Stop};
+use crate::choose::{Case, Choose, Stop, unless_it_panics};
 
 /// Chooses in every way, one case after the other, the latest choice turning fastest.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +29,7 @@ impl Odometer {
         let mut accepted = 0_u64;
         loop {
             odometer.made = 0;
-            let case = lemma(&mut odometer);
+            let case = unless_it_panics(|| lemma(&mut odometer));
             let fails = match case {
                 _ if odometer.wavered || odometer.made < odometer.digits.len() => {
                     Some("the lemma has the same choices after the same choices")
@@ -92,7 +92,7 @@ impl Choose for Odometer {
 /// A case in which a lemma fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counterexample {
-    /// The choices, with which a [`Replay`] makes it again.
+    /// The choices, with which a [`Replay`](crate::Replay) makes it again.
     pub choices: Vec<u8>,
     /// What should hold, and does not.
     pub claim: &'static str,

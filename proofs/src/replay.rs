@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::choose::{Case, Choose, Exhibit};
+use crate::choose::{Case, Choose, Exhibit, unless_it_panics};
 
 /// Makes one case again, from a list of choices, and keeps what it shows.
 #[derive(Clone, Debug, Default)]
@@ -77,7 +77,7 @@ impl Replay {
     /// Where the choices are not those of a case.
     pub fn show(lemma: impl FnOnce(&mut Self) -> Case, choices: &[u8]) -> Result<Shown, Misfit> {
         let mut replay = Self { choices: choices.to_vec(), ..Self::default() };
-        let case = lemma(&mut replay);
+        let case = unless_it_panics(|| lemma(&mut replay));
         let (choices, needed) = (replay.choices.len(), replay.made);
         match replay.misfit {
             Some(misfit) => Err(misfit),

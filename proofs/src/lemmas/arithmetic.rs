@@ -109,7 +109,7 @@ fn behind<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = Door(draw::number::<NIBBLES>(choose));
-    choose.show(|| Exhibit::Walk { pose, doors: vec![door] });
+    choose.show(|| Exhibit::walk(pose, &[door]));
     let dart = graph.behind(pose, door);
     claim("it is a dart", dart.at() < graph.dart_count())?;
     claim("it is one of the vertex's", graph.vertex(dart) == graph.vertex(pose))?;

@@ -107,7 +107,10 @@ fn for_ever<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: usize
             && there.act(action).is_ok()
             && here.sensed() == there.sensed();
     }
-    choose.show(|| Exhibit::Walk { pose: Dart(0), doors });
+    for world in 0..2 {
+        let (marker, doors) = (*one.marker(), doors.clone());
+        choose.show(|| Exhibit::Walk { world, marker, pose: Dart(0), doors });
+    }
     claim("they perceive the same", agree)
 }
 

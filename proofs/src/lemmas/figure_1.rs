@@ -7,6 +7,7 @@
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::{Marker, Undirected},
+    percept::Door,
 };
 
 use crate::{
@@ -52,6 +53,13 @@ pub(super) fn worlds(choose: &mut impl Choose) -> Result<[EmbeddedGraph; 2], Sto
     Ok(worlds)
 }
 
+/// Shows the same door taken in both worlds.
+fn show_walks(choose: &mut impl Choose, poses: [Dart; 2], door: Door) {
+    for (world, pose) in [(0, poses[0]), (1, poses[1])] {
+        choose.show(|| Exhibit::Walk { world, marker: &Undirected, pose, doors: vec![door] });
+    }
+}
+
 /// What a robot perceives behind each of its doors: degrees; 0 where there is no such door.
 fn neighbours(graph: &EmbeddedGraph, pose: Dart) -> [u32; 4] {
     let mut degrees = [0; 4];
@@ -77,7 +85,7 @@ fn base<C: Choose>(choose: &mut C) -> Case {
     let worlds = worlds(choose)?;
     claim("the starts are related", related(&worlds, FACING, FACING))?;
     let door = draw::door(choose, &worlds[0], FACING);
-    choose.show(|| Exhibit::Walk { pose: FACING, doors: vec![door] });
+    show_walks(choose, [FACING, FACING], door);
     let [here, there] = [worlds[0].after(FACING, door), worlds[1].after(FACING, door)];
     claim("the first comes there", neighbours(&worlds[0], here) == [4, 3, 3, 0])?;
     claim("the second comes there", neighbours(&worlds[1], there) == [4, 3, 3, 0])
@@ -89,8 +97,7 @@ fn step<C: Choose>(choose: &mut C) -> Case {
     let (here, there) = (draw::dart(choose, &worlds[0]), draw::dart(choose, &worlds[1]));
     given(choose, related(&worlds, here, there))?;
     let door = draw::door(choose, &worlds[0], here);
-    choose.show(|| Exhibit::Walk { pose: here, doors: vec![door] });
-    choose.show(|| Exhibit::Walk { pose: there, doors: vec![door] });
+    show_walks(choose, [here, there], door);
     let after = (worlds[0].after(here, door), worlds[1].after(there, door));
     claim("it leads to related poses", related(&worlds, after.0, after.1))
 }

@@ -162,7 +162,7 @@ fn run<'g, C: Choose>(
     let mut exploration = Exploration::new(2 * graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let ended = map_world(&mut world, &mut Drawn(&mut *choose), &mut exploration, &mut watch);
-    choose.show(|| Exhibit::Walk { pose: FACING, doors: truth.doors.clone() });
+    choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;
     claim("the run ends", ended.is_ok())?;
     claim("the truth is the world's", truth.pose == world.pose())?;

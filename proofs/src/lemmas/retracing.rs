@@ -40,7 +40,10 @@ fn the_way_back<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: u
         made += 1;
     }
     let path = &path[..moves];
-    choose.show(|| Exhibit::Walk { pose, doors: path.iter().map(|&(door, _)| door).collect() });
+    choose.show(|| {
+        let doors: Vec<_> = path.iter().map(|&(door, _)| door).collect();
+        Exhibit::walk(pose, &doors)
+    });
     for door in retrace(path.iter().copied()) {
         claim("a door of the way back exists", door.0 < graph.degree_around(at))?;
         at = graph.after(at, door);

@@ -37,8 +37,8 @@ fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let facing = Dart(0);
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
-    choose.show(|| Exhibit::Walk { pose: one, doors: Vec::new() });
-    choose.show(|| Exhibit::Walk { pose: other, doors: Vec::new() });
+    choose.show(|| Exhibit::walk(one, &[]));
+    choose.show(|| Exhibit::walk(other, &[]));
     let seen = |pose| Directional.sighting(&graph, facing, pose);
     let is_here = |pose| graph.vertex(pose) == graph.vertex(facing);
     match seen(one) {

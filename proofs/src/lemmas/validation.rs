@@ -47,8 +47,8 @@ fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(choose:
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
     let door = common_door(choose, &graph, one, other);
-    choose.show(|| Exhibit::Walk { pose: one, doors: vec![door] });
-    choose.show(|| Exhibit::Walk { pose: other, doors: vec![door] });
+    choose.show(|| Exhibit::walk(one, &[door]));
+    choose.show(|| Exhibit::walk(other, &[door]));
     claim(
         "it leads to the same pose exactly from the same pose",
         (graph.after(one, door) == graph.after(other, door)) == (one == other),
@@ -71,8 +71,8 @@ fn validation_is_sound<C: Choose, const LEAST: usize, const MOST: usize, const M
         (here, there) = (graph.after(here, door), graph.after(there, door));
         made += 1;
     }
-    choose.show(|| Exhibit::Walk { pose: one, doors: doors[..moves].to_vec() });
-    choose.show(|| Exhibit::Walk { pose: other, doors: doors[..moves].to_vec() });
+    choose.show(|| Exhibit::walk(one, &doors[..moves]));
+    choose.show(|| Exhibit::walk(other, &doors[..moves]));
     let seen = |pose| Directional.sighting(&graph, Dart(0), pose);
     given(choose, seen(here) == seen(there) && seen(here) != Sighting::Nothing)?;
     claim("they began in the same pose", one == other)

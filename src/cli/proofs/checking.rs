@@ -52,8 +52,7 @@ enum News {
 
 /// Checks a lemma.
 ///
-/// It works on a thread of its own: whoever breaks off need not wait for the next case, and a lemma
-/// that panics takes nothing with it.
+/// It works on a thread of its own: whoever breaks off need not wait for the next case.
 pub(super) fn checked(lemma: &Lemma, watch: &impl Watch) -> Result<Checked, Failure> {
     let begun = Instant::now();
     let (teller, news) = mpsc::channel();
@@ -78,7 +77,7 @@ pub(super) fn checked(lemma: &Lemma, watch: &impl Watch) -> Result<Checked, Fail
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(Failure::at(lemma.name, "the lemma panicked, and was not checked"));
+                return Err(Failure::at(lemma.name, "the check came to no end"));
             }
         }
         if watch.stop() {

@@ -18,8 +18,8 @@ const ENGINES: [(&str, &str); 3] = [
     (SAMPLED, "cases drawn at random within the bound: cargo test -p toposlam-proofs"),
     (
         KANI,
-        "every case within the bound, made symbolic: cargo kani -p toposlam-proofs. Verified only \
-         where Kani is installed: neither this program nor cargo test does it",
+        "every case within the bound, made symbolic: proofs/kani/verify, where Kani is installed; \
+         neither this program nor cargo test does it",
     ),
 ];
 

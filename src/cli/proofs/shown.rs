@@ -7,7 +7,7 @@ use serde_json::Value;
 use toposlam_model::{
     embedded_graph::Dart,
     format::{named_world::NamedWorld, world_file},
-    marker::Directional,
+    marker::Marker,
     percept::{Door, Percept},
     world::{Action, GraphWorld, State},
 };
@@ -32,10 +32,11 @@ enum Part {
     },
 }
 
-/// A walk in a world where the directional marker lies at the start.
+/// A walk in a world with a marker at the start.
 struct Walk {
     /// The place of the world among those that are shown, from 0.
     world: usize,
+    marker: &'static dyn Marker,
     doors: Vec<Door>,
     /// Where the robot is, `vertex:door`, and what it perceives there: at the beginning and after each
     /// door.
@@ -61,8 +62,10 @@ impl Shown {
                     worlds.push(NamedWorld::numbered(&name, about, graph.clone(), start));
                     Part::World(place)
                 }
-                Exhibit::Walk { pose, doors } => Walk::new(&worlds, *pose, doors)
-                    .map_or_else(|| nowhere(*pose, doors), Part::Walk),
+                Exhibit::Walk { world, marker, pose, doors } => {
+                    Walk::new(&worlds, *world, *marker, *pose, doors)
+                        .map_or_else(|| nowhere(*pose, doors), Part::Walk)
+                }
                 Exhibit::Value { name, value } => Part::Value { name, value: value.clone() },
             });
         }
@@ -85,7 +88,8 @@ impl Shown {
                 }
                 Part::Walk(walk) => {
                     let which = world(walk.world);
-                    writeln!(out, "A walk in {which}, with the directional marker:\n")?;
+                    let marker = walk.marker.name();
+                    writeln!(out, "A walk in {which}, marker {marker}:\n")?;
                     walk.tell(out)?;
                 }
                 Part::Value { name, value } => writeln!(out, "{name}: {value}")?,
@@ -119,16 +123,23 @@ fn nowhere(pose: Dart, doors: &[Door]) -> Part {
 }
 
 impl Walk {
-    /// The walk from a pose by these doors in the latest world, as far as it goes; none where there
+    /// The walk from a pose by these doors in one of the worlds, as far as it goes; none where there
     /// is no such pose.
-    fn new(worlds: &[NamedWorld], pose: Dart, doors: &[Door]) -> Option<Self> {
-        let world = worlds.last().filter(|world| pose.at() < world.graph.dart_count())?;
+    fn new(
+        worlds: &[NamedWorld],
+        place: usize,
+        marker: &'static dyn Marker,
+        pose: Dart,
+        doors: &[Door],
+    ) -> Option<Self> {
+        let world = worlds.get(place).filter(|world| pose.at() < world.graph.dart_count())?;
         let facing = world.start?;
-        let mut robot = GraphWorld::new(&world.graph, facing);
+        let mut robot = GraphWorld::with_marker(&world.graph, marker, facing);
         let begun = State { pose, ..robot.state() };
         robot = robot.at(begun);
-        let step =
-            |robot: &GraphWorld| (world.state_text(&Directional, robot.state()), robot.sensed());
+        let step = |robot: &GraphWorld<'_, &dyn Marker>| {
+            (world.state_text(&marker, robot.state()), robot.sensed())
+        };
         let mut steps = vec![step(&robot)];
         let mut stopped = None;
         for &door in doors {
@@ -138,7 +149,7 @@ impl Walk {
             }
             steps.push(step(&robot));
         }
-        Some(Self { world: worlds.len() - 1, doors: doors.to_vec(), steps, stopped })
+        Some(Self { world: place, marker, doors: doors.to_vec(), steps, stopped })
     }
 
     fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -158,6 +169,7 @@ impl Walk {
     fn json(&self) -> WalkLine<'_> {
         WalkLine {
             world: self.world,
+            marker: self.marker.name(),
             doors: self.doors.iter().map(|door| door.0).collect(),
             poses: self.steps.iter().map(|(pose, _)| pose.as_str()).collect(),
             percepts: self.steps.iter().map(|&(_, percept)| percept_json(percept)).collect(),
@@ -178,6 +190,7 @@ pub(super) struct ShownLine<'a> {
 struct WalkLine<'a> {
     /// The place of its world in `worlds`.
     world: usize,
+    marker: &'a str,
     doors: Vec<u32>,
     poses: Vec<&'a str>,
     percepts: Vec<Value>,

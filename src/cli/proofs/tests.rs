@@ -48,7 +48,7 @@ fn a_marker_tells_the_entry<C: Choose>(choose: &mut C) -> Case {
     let graph = draw::start_of::<1, 2>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = draw::door(choose, &graph, pose);
-    choose.show(|| Exhibit::Walk { pose, doors: vec![door] });
+    choose.show(|| Exhibit::walk(pose, &[door]));
     let pose = graph.after(pose, door);
     let sighting = Undirected.sighting(&graph, Dart(0), pose);
     choose.show(|| Exhibit::Value { name: "undirected", value: sighting.to_string() });
@@ -88,7 +88,7 @@ v0 = [\"e0\", \"e0\"]
 at = \"v0\"
 facing = \"e0:1\"
 
-A walk in the world, with the directional marker:
+A walk in the world, marker directional:
 
   door   robot at  perceives
   start  v0:0      2 doors, marker along door 0
@@ -129,7 +129,8 @@ fn a_program_is_told_the_same() {
     assert_eq!((world.graph.edge_count(), world.start), (1, Some(Dart(0))));
     let seen = |door: u32| json!({ "degree": 2, "sighting": format!("marker along door {door}") });
     let walk = json!([{
-        "world": 0, "doors": [0], "poses": ["v0:0", "v0:1"], "percepts": [seen(0), seen(1)],
+        "world": 0,
+            "marker": "directional", "doors": [0], "poses": ["v0:0", "v0:1"], "percepts": [seen(0), seen(1)],
         "stopped": null,
     }]);
     assert_eq!(failed["walks"], walk);
@@ -202,17 +203,20 @@ fn a_lemma_without_a_case_does_not_hold_nor_does_a_check_without_a_lemma() {
     assert_eq!(text, "\nincomplete: there was nothing to check\n");
 }
 
-/// Each walk is in the world before it, and goes as far as it can.
+/// Each walk goes as far as it can, if there is its world.
 #[test]
 fn several_worlds_are_numbered() {
     fn two_worlds<C: Choose>(choose: &mut C) -> Case {
-        let walk = |dart, door| move || Exhibit::Walk { pose: Dart(dart), doors: vec![Door(door)] };
-        choose.show(walk(0, 7));
+        let walk = |world, dart, door| {
+            let (marker, pose) = (&Undirected, Dart(dart));
+            move || Exhibit::Walk { world, marker, pose, doors: vec![Door(door)] }
+        };
+        choose.show(walk(0, 0, 7));
         draw::start::<2>(choose, 1)?;
-        choose.show(walk(0, 0));
-        choose.show(walk(9, 0));
+        choose.show(walk(0, 0, 0));
+        choose.show(walk(0, 9, 0));
         draw::start::<2>(choose, 2)?;
-        choose.show(walk(2, 2));
+        choose.show(walk(1, 2, 2));
         Ok(())
     }
     let lemmas = [lemma("two", 20, two_worlds, two_worlds)];
@@ -221,7 +225,7 @@ fn several_worlds_are_numbered() {
     let heads: Vec<_> =
         text.lines().filter(|line| line.contains("orld ") && line.ends_with(':')).collect();
     let world = |n| format!("World {n}, as a file for toposlam draw and toposlam explore:");
-    let walk = |n| format!("A walk in world {n}, with the directional marker:");
+    let walk = |n| format!("A walk in world {n}, marker undirected:");
     assert_eq!(heads, [world(1), walk(1), world(2), walk(2)]);
     assert!(text.contains("\nwalk: from dart 0 by the doors 7\n"), "{text}");
     assert!(text.contains("\nwalk: from dart 9 by the doors 0\n"), "{text}");
@@ -278,13 +282,17 @@ fn a_part_of_a_name_will_do_if_no_other_has_it() {
 }
 
 #[test]
-fn a_lemma_that_panics_is_a_failure_that_names_it() {
-    fn panics<C>(_: &mut C) -> Case {
-        panic!("a lemma of a test does this")
+fn a_lemma_that_panics_fails_in_that_case() {
+    fn panics<C: Choose>(choose: &mut C) -> Case {
+        let number = choose.below(4);
+        assert!(number < 2, "a lemma of a test does this");
+        claim("it is below 2", number < 2)
     }
-    let (outcome, _) = run(&[lemma("wild", 1, panics, panics)], &["--run", "wild"]);
-    let Err(Failure::Input(message)) = outcome else { panic!() };
-    assert_eq!(message, "wild: the lemma panicked, and was not checked");
+    let (outcome, text) = run(&[lemma("wild", 1, panics, panics)], &["--run", "wild"]);
+    assert_eq!(outcome.unwrap(), Outcome::Violated);
+    let fails = "  fails: it does not hold that the code does not panic\n  \
+                 again: toposlam proofs --run wild --choices 2\n";
+    assert!(text.contains(fails), "{text}");
 }
 
 #[test]
