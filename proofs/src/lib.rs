@@ -12,13 +12,15 @@
 //! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: who chooses;
 //! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
 //! * [`lemma`]: what there is to know about a lemma, and how it is declared;
-//! * [`lemmas`]: the lemmas, a file for each theme.
+//! * [`lemmas`]: the lemmas, a file for each theme;
+//! * [`fuzz`]: what fuzzers try to break, on bytes of their own.
 //!
 //! How they make up the theorem is told in the README beside this crate.
 
 pub mod bytes;
 pub mod choose;
 pub mod draw;
+pub mod fuzz;
 pub mod lemma;
 pub mod lemmas;
 pub mod odometer;
