@@ -52,7 +52,10 @@ pub fn world_file(bytes: &[u8]) {
     let json = world_file::to_json(&world).to_string();
     for text in [world_file::to_toml(&world), world_file::to_json_text(&world), json] {
         let again = world_file::read(text.as_bytes());
-        assert!(again.as_ref() == Ok(&world), "{world:?}\nis written as\n{text}\nread as\n{again:?}");
+        assert!(
+            again.as_ref() == Ok(&world),
+            "{world:?}\nis written as\n{text}\nread as\n{again:?}"
+        );
     }
 }
 
@@ -101,9 +104,7 @@ pub fn mapping(bytes: &[u8]) {
     let mut chosen = Chosen { choose: &mut choose };
     let flaw = match map_world(&mut world, &mut chosen, &mut exploration, &mut watch) {
         Err(error) => Some(error.into()),
-        Ok(()) => {
-            judge(&Algorithm1, &exploration, facing, &world, &mut Candidate::default()).err()
-        }
+        Ok(()) => judge(&Algorithm1, &exploration, facing, &world, &mut Candidate::default()).err(),
     };
     assert!(flaw.is_none(), "{flaw:?} in {graph:?}");
 }

@@ -91,8 +91,12 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         (at(), 0..8_u8).prop_map(|(at, bit)| Edit::Flip { at, bit }),
         (at(), byte()).prop_map(|(at, byte)| Edit::Replace { at, byte }),
         (at(), vec(byte(), 1..5)).prop_map(|(at, bytes)| Edit::Insert { at, bytes }),
-        (at(), at(), 1..40_usize, at())
-            .prop_map(|(at, from, bytes, of)| Edit::Splice { at, from, bytes, of }),
+        (at(), at(), 1..40_usize, at()).prop_map(|(at, from, bytes, of)| Edit::Splice {
+            at,
+            from,
+            bytes,
+            of
+        }),
     ]
 }
 
@@ -108,7 +112,8 @@ fn holds(name: &str, mutations: u32) {
         edits.iter().for_each(|edit| edit.apply(&mut file, &seeds));
         file
     };
-    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(mutations) };
+    let config =
+        ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(mutations) };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let result = TestRunner::new_with_rng(config, rng).run(
         &(any::<Index>(), vec(any_edit(), 1..6)),
