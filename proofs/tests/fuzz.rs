@@ -1,6 +1,8 @@
 //! The bodies of the fuzz targets on stable Rust: on every seed, and on a fixed number of mutations
 //! of the seeds, always the same ones; what fails is shrunk.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 use proptest::{

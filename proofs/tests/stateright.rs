@@ -4,6 +4,8 @@
 //! Nothing here is the specification's but embedded graphs, percepts and the verifier of a bijection:
 //! the map, the walks in it and the hypotheses are written anew, and stateright explores the states.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 use std::{
     collections::VecDeque,
     hash::{Hash, Hasher},
