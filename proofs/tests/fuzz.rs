@@ -62,11 +62,15 @@ impl Edit {
             }
             Self::Flip { at, bit } => {
                 let at = place(at);
-                file.get_mut(at).into_iter().for_each(|byte| *byte ^= 1 << bit);
+                if let Some(byte) = file.get_mut(at) {
+                    *byte ^= 1 << bit;
+                }
             }
             Self::Replace { at, byte: new } => {
                 let at = place(at);
-                file.get_mut(at).into_iter().for_each(|byte| *byte = *new);
+                if let Some(byte) = file.get_mut(at) {
+                    *byte = *new;
+                }
             }
             Self::Insert { at, bytes } => {
                 let at = place(at);
@@ -111,7 +115,9 @@ fn holds(name: &str, mutations: u32) {
     }
     let mutated = |(seed, edits): (Index, Vec<Edit>)| {
         let (_, mut file) = seed.get(&seeds).clone();
-        edits.iter().for_each(|edit| edit.apply(&mut file, &seeds));
+        for edit in edits {
+            edit.apply(&mut file, &seeds);
+        }
         file
     };
     let config =
@@ -180,18 +186,15 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
 /// A seed that is in error is called so, and no other.
 #[test]
 fn seeds_are_what_they_are_called() {
-    let reads: [(&str, fn(&[u8]) -> bool); 3] = [
-        ("world_file", |bytes| world_file::read(bytes).is_ok()),
-        ("planar_code", |bytes| all_read(bytes, Code::Planar)),
-        ("edge_code", |bytes| all_read(bytes, Code::Edge)),
-    ];
-    for (target, is_read) in reads {
+    for target in ["world_file", "planar_code", "edge_code"] {
         for (name, bytes) in seeds(target) {
-            assert_eq!(is_read(&bytes), !name.starts_with("error-"), "{target}/{name}");
+            let all = |code| plantri::read_headerless(&bytes, code).all(|result| result.is_ok());
+            let is_read = match target {
+                "planar_code" => all(Code::Planar),
+                "edge_code" => all(Code::Edge),
+                _ => world_file::read(&bytes).is_ok(),
+            };
+            assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
         }
     }
-}
-
-fn all_read(bytes: &[u8], code: Code) -> bool {
-    plantri::read_headerless(bytes, code).all(|result| result.is_ok())
 }

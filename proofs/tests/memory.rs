@@ -86,7 +86,12 @@ fn again(part: &str, bytes: usize) -> String {
 /// A part for each number, to about so many bytes.
 fn numbered(part: impl Fn(usize) -> String, bytes: usize) -> String {
     let each = part(0xfff).len();
-    (0..=bytes / each).map(part).collect()
+    first(bytes / each + 1, part)
+}
+
+/// A part for each of the first numbers.
+fn first(count: usize, part: impl Fn(usize) -> String) -> String {
+    (0..count).map(part).collect()
 }
 
 /// World files of about so many bytes that make the most of them, right and wrong ones.
@@ -129,7 +134,7 @@ fn world_files(bytes: usize) -> Vec<String> {
     files.push(format!("[doors]\nfirst=['0']\n{path}"));
     let leaves = numbered(|number| format!("'{number:x}',"), bytes / 2);
     let count = leaves.matches(',').count();
-    let leaf_lists: String = (0..count).map(|number| format!("{number:x}=['hub']\n")).collect();
+    let leaf_lists = first(count, |number| format!("{number:x}=['hub']\n"));
     files.push(format!("[clockwise]\nhub=[{leaves}]\n{leaf_lists}"));
     let ends = again("'e',", bytes / 2);
     files.push(format!("[doors]\n{}=[{ends}]", again("v", bytes / 2)));
@@ -147,9 +152,16 @@ fn world_files(bytes: usize) -> Vec<String> {
     let plan = "[floor]\nhallway_width=0.1\n[junctions]\n";
     let junctions = numbered(|number| format!("{number:x}=[{number},0]\n"), bytes / 4);
     let count = junctions.matches('\n').count();
-    let row: String = (1..count)
-        .map(|number| format!("[[hallways]]\nfrom='{:x}'\nto='{number:x}'\n", number - 1))
-        .collect();
+    let hallway = |number| {
+        format!(
+            "[[hallways]]
+from='{number:x}'
+to='{:x}'
+",
+            number + 1
+        )
+    };
+    let row = first(count - 1, hallway);
     files.push(format!("{plan}{junctions}{row}"));
     let hallways = again("[[hallways]]\nfrom='a'\nto='b'\n", bytes);
     files.push(format!("{plan}a=[0,0]\nb=[1,0]\n{hallways}"));
