@@ -1,6 +1,8 @@
 //! What is meant: the definitions of the field, written down as plainly as can be, without regard to
 //! how the model decides them. Section 2.1.
 
+use std::mem;
+
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::Marker,
@@ -66,17 +68,47 @@ pub fn is_connected(opposite: &[u32], clockwise: &[u32], reached: &mut [bool]) -
     dart == opposite.len()
 }
 
-/// Whether this is a connected embedded graph with an edge.
+/// Whether this is a connected embedded graph with an edge: every edge has two ends, every vertex its
+/// edge ends in a circle, and all can be reached. Linear time.
 #[must_use]
 pub fn is_world(graph: &EmbeddedGraph) -> bool {
-    let numbers = |of: &dyn Fn(Dart) -> Dart| graph.darts().map(|dart| of(dart).0).collect();
-    let opposite: Vec<u32> = numbers(&|dart| graph.opposite(dart));
-    let clockwise: Vec<u32> = numbers(&|dart| graph.clockwise(dart));
-    !opposite.is_empty()
-        && is_involution_without_fixed_points(&opposite)
-        && is_permutation(&clockwise)
-        && is_connected(&opposite, &clockwise, &mut vec![false; opposite.len()])
-        && graph.darts().all(|dart| graph.vertex(graph.clockwise(dart)) == graph.vertex(dart))
+    let darts = graph.dart_count();
+    let mut listed = 0;
+    let in_circles = graph.vertices().all(|vertex| {
+        let degree = graph.degree(vertex) as usize;
+        let around = graph.darts_of(vertex);
+        let next = around.clone().cycle().skip(1);
+        listed += degree;
+        degree > 0
+            && around.len() == degree
+            && around
+                .zip(next)
+                .all(|(dart, next)| graph.vertex(dart) == vertex && graph.clockwise(dart) == next)
+    });
+    let in_pairs = graph.darts().all(|dart| {
+        let other = graph.opposite(dart);
+        other != dart && graph.opposite(other) == dart
+    });
+    let mut reached = vec![false; darts];
+    let mut open = Vec::with_capacity(2 * darts + 1);
+    open.push(Dart(0));
+    let mut count = 0;
+    while let Some(dart) = open.pop() {
+        if !mem::replace(&mut reached[dart.at()], true) {
+            count += 1;
+            open.extend([graph.opposite(dart), graph.clockwise(dart)]);
+        }
+    }
+    darts == 2 * graph.edge_count() && listed == darts && in_circles && in_pairs && count == darts
+}
+
+/// Whether no edge leads from a vertex to itself, and no two lead to the same one.
+#[must_use]
+pub fn is_simple(graph: &EmbeddedGraph) -> bool {
+    let far = |dart| graph.vertex(graph.opposite(dart));
+    let mut pairs: Vec<_> = graph.darts().map(|dart| (graph.vertex(dart), far(dart))).collect();
+    pairs.sort_unstable();
+    pairs.iter().all(|(here, there)| here != there) && pairs.windows(2).all(|two| two[0] != two[1])
 }
 
 /// Whether two starts are isomorphic: going on from facing and facing to what is opposite to them, and

@@ -1,8 +1,9 @@
-//! What lemmas are about, made of choices: starts, permutations, numbers. Everything is drawn by
-//! choosing among what is left, so that no choice is in vain and each structure is made exactly once.
+//! What lemmas are about, made of choices: starts, permutations, numbers, runs. Everything is drawn
+//! by choosing among what is left, so that no choice is in vain and each structure is made once.
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    mapping::{Choices, PartialMap},
     percept::Door,
 };
 
@@ -170,6 +171,21 @@ pub fn number<const NIBBLES: u32>(choose: &mut impl Choose) -> u32 {
 /// A byte.
 pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
+}
+
+/// What Algorithm 1 leaves open, chosen: any edge at line 5, any hypothesis at line 9. The map has at
+/// most 127 edges.
+pub struct OpenChoices<'c, C>(pub &'c mut C);
+
+impl<C: Choose> Choices for OpenChoices<'_, C> {
+    fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
+        let place = self.0.below(map.unexplored_count() as u8);
+        map.unexplored().nth(place.into()).unwrap_or(nearest)
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+        self.0.below(hypotheses.len() as u8).into()
+    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,8 @@
 //! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
 //! * [`definition`]: what is meant by a graph, an isomorphism, a bisimulation;
 //! * [`lemma`]: what there is to know about a lemma, and how it is declared;
-//! * [`lemmas`]: the lemmas, a file for each theme.
+//! * [`lemmas`]: the lemmas, a file for each theme;
+//! * [`fuzz`]: what fuzzers try to break, on bytes of their own.
 //!
 //! How they make up the theorem is told in the README beside this crate.
 
@@ -21,6 +22,7 @@ pub mod bytes;
 pub mod choose;
 pub mod definition;
 pub mod draw;
+pub mod fuzz;
 pub mod lemma;
 pub mod lemmas;
 pub mod odometer;

@@ -10,6 +10,9 @@ use super::{
 /// A dart that has not yet met its opposite.
 const UNPAIRED: Dart = Dart(u32::MAX);
 
+/// How many vertices an error lists.
+const SHOWN: usize = 8;
+
 impl EmbeddedGraph {
     /// An embedded graph from its two permutations of the darts `0 .. 2m`, and the number that each
     /// of them gets: vertices in the order of their least dart, the darts of a vertex clockwise
@@ -128,10 +131,11 @@ impl EmbeddedGraph {
                 }
                 wrong => {
                     let places = wrong.iter().map(|&(vertex, _)| lists[vertex].0.as_ref());
+                    let more = (wrong.len() > SHOWN).then_some("...");
                     return Err(ListError::NotTwoEnds {
                         edge: (*name).to_owned(),
                         times: wrong.len(),
-                        places: places.collect::<Vec<_>>().join(", "),
+                        places: places.take(SHOWN).chain(more).collect::<Vec<_>>().join(", "),
                     });
                 }
             }
@@ -276,6 +280,10 @@ mod tests {
         assert_eq!(
             message(edges(&[("a", &["e"])])),
             "edge `e` stands 1 times (a); an edge has two ends"
+        );
+        assert_eq!(
+            message(edges(&[("a", &["e"; 9])])),
+            "edge `e` stands 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends"
         );
         assert_eq!(message(edges(&[("a", &[]), ("a", &[])])), "vertex `a` has two lists");
         assert_eq!(message(edges(&[("a", &[])])), "there is no edge; a world has at least one");

@@ -55,7 +55,7 @@ pub enum ListError {
         edge: String,
         /// How often it stands.
         times: usize,
-        /// The vertices in whose lists it stands.
+        /// The vertices in whose lists it stands, the first few.
         places: String,
     },
     /// The graph falls into pieces.

@@ -122,9 +122,10 @@ impl NamedWorld {
     /// # Errors
     /// Where there is no colon, or no such dart.
     pub fn start_from_text(&self, text: &str) -> Result<Dart, StartError> {
-        let (at, facing) =
-            text.split_once(':').ok_or_else(|| StartError::NoColon { text: text.to_owned() })?;
-        self.start_from_names(at, facing)
+        match text.split_once(':') {
+            Some((at, facing)) => self.start_from_names(at, facing),
+            None => Err(StartError::NoColon { text: shown(text) }),
+        }
     }
 
     /// The dart at the vertex `at` that `facing` tells: a neighbour's name where the world speaks
@@ -134,9 +135,8 @@ impl NamedWorld {
     /// # Errors
     /// Where there is no such dart, or the name of a loop stands alone.
     pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
-        let vertex = self
-            .vertex_named(at)
-            .ok_or_else(|| StartError::UnknownVertex { vertex: at.to_owned() })?;
+        let vertex =
+            self.vertex_named(at).ok_or_else(|| StartError::UnknownVertex { vertex: shown(at) })?;
         let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
         let mut bare_loop = false;
         for dart in self.graph.darts_of(vertex) {
@@ -152,7 +152,7 @@ impl NamedWorld {
             }
         }
         let vertex = at.to_owned();
-        let facing = facing.to_owned();
+        let facing = shown(facing);
         Err(if bare_loop {
             StartError::BareLoop { edge: facing }
         } else if self.edge_names.is_some() {
@@ -229,6 +229,11 @@ impl NamedWorld {
     }
 }
 
+/// What was given, for a message, which is one line whatever was given.
+fn shown(text: &str) -> String {
+    text.escape_debug().to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -287,6 +292,12 @@ mod tests {
                 format!("no edge `{wrong}` ends at vertex `u`; there end a:1, b, a:2, c")
             );
         }
+        assert_eq!(message(&world, "\u{7}"), "`\\u{7}` is no start; write `vertex:facing`");
+        assert_eq!(message(&world, "w\n:a"), "there is no vertex `w\\n`");
+        assert_eq!(
+            message(&world, "v:\u{1b}[1m"),
+            "no edge `\\u{1b}[1m` ends at vertex `v`; there end b, c"
+        );
         assert_eq!(message(&path(), "v1:v1"), "vertex `v1` has no neighbour `v1`; it has v0, v2");
     }
 

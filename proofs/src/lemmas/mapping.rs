@@ -8,14 +8,14 @@ use toposlam_model::{
     check::{Algorithm, Algorithm1},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
-    mapping::{Choices, Event, Exploration, FACING, Journey, PartialMap, map_world},
+    mapping::{Event, Exploration, FACING, Journey, map_world},
     percept::Door,
     world::GraphWorld,
 };
 
 use crate::{
     choose::{Case, Choose, Exhibit, claim},
-    draw,
+    draw::{self, OpenChoices},
     lemma::declare,
 };
 
@@ -77,20 +77,6 @@ declare! {
         exhaustive "every run on every start with up to 4 edges, whatever the choices", 504_196 cases:
             the_theorem::<_, 1, 4>;
         sampled "starts with up to 20 edges, any choices": the_theorem::<_, 1, 20>;
-    }
-}
-
-/// Chooses what Algorithm 1 leaves open.
-struct Drawn<'c, C>(&'c mut C);
-
-impl<C: Choose> Choices for Drawn<'_, C> {
-    fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
-        let place = self.0.below(map.unexplored_count() as u8);
-        map.unexplored().nth(place.into()).unwrap_or(nearest)
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-        self.0.below(hypotheses.len() as u8).into()
     }
 }
 
@@ -161,7 +147,7 @@ fn run<'g, C: Choose>(
     };
     let mut exploration = Exploration::new(2 * graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
-    let ended = map_world(&mut world, &mut Drawn(&mut *choose), &mut exploration, &mut watch);
+    let ended = map_world(&mut world, &mut OpenChoices(choose), &mut exploration, &mut watch);
     choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;
     claim("the run ends", ended.is_ok())?;

@@ -1,0 +1,195 @@
+//! What fuzzers try to break: for each parser, and for Algorithm 1, what it promises of any bytes.
+//!
+//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by a test on stable Rust, on the seeds
+//! in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
+
+use std::fmt;
+
+use toposlam_model::{
+    check::{Algorithm, Algorithm1, judge},
+    embedded_graph::{Dart, EmbeddedGraph},
+    format::{
+        named_world::NamedWorld,
+        plantri::{self, Code},
+        world_file,
+    },
+    isomorphism::Candidate,
+    mapping::{Event, Exploration, Journey, map_world},
+    world::GraphWorld,
+};
+
+use crate::{
+    bytes::Bytes,
+    definition::{is_simple, is_world},
+    draw::{self, OpenChoices},
+};
+
+/// A body for a fuzzer.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// The name of the body, of the target in `fuzz/`, and of the folder of its seeds.
+    pub name: &'static str,
+    /// The body.
+    pub body: fn(&[u8]),
+}
+
+macro_rules! targets {
+    ($($name:ident),*) => {
+        /// All bodies.
+        pub const TARGETS: &[Target] = &[$(Target { name: stringify!($name), body: $name }),*];
+    };
+}
+targets!(world_file, planar_code, edge_code, mapping);
+
+/// Any bytes are a world file that tells a world, or there is one message that says why not. A world
+/// that was read is written, as TOML and as JSON, so that it reads as the same world.
+///
+/// # Panics
+/// Where that does not hold.
+pub fn world_file(bytes: &[u8]) {
+    let world = match world_file::read(bytes) {
+        Ok(world) => world,
+        Err(error) => return assert_is_a_message(&error),
+    };
+    assert!(is_world(&world.graph), "{world:?} is no world");
+    assert_is_named(&world);
+    let json = world_file::to_json(&world).to_string();
+    for text in [world_file::to_toml(&world), world_file::to_json_text(&world), json] {
+        let again = world_file::read(text.as_bytes());
+        assert!(
+            again.as_ref() == Ok(&world),
+            "{world:?}\nis written as\n{text}\nread as\n{again:?}"
+        );
+    }
+}
+
+/// Any bytes are worlds in `planar_code`, and then nothing, or an error that tells where it is. What
+/// was read is written so that it reads as the same worlds.
+///
+/// # Panics
+/// Where that does not hold.
+pub fn planar_code(bytes: &[u8]) {
+    let worlds = read(bytes, Code::Planar);
+    // This code tells a world in one way, if its numbers have one byte.
+    let is_header = bytes.starts_with(b">>");
+    if let (Some(first), Some(1..), false) = (worlds.first(), bytes.first(), is_header) {
+        let written = plantri::write(std::slice::from_ref(first), Code::Planar);
+        let told = written.as_deref().ok().and_then(|file| file.strip_prefix(b">>planar_code<<"));
+        assert!(told.is_some_and(|told| bytes.starts_with(told)), "{first:?} is not what is told");
+    }
+}
+
+/// The same of `edge_code`.
+///
+/// # Panics
+/// Where that does not hold.
+pub fn edge_code(bytes: &[u8]) {
+    read(bytes, Code::Edge);
+}
+
+/// Algorithm 1 maps every world of up to 24 edges rightly, whatever it chooses at lines 5 and 9.
+///
+/// # Panics
+/// Where it does not.
+pub fn mapping(bytes: &[u8]) {
+    let mut choose = Bytes::new(bytes.to_vec());
+    let graph = match draw::start_of::<1, 24>(&mut choose) {
+        Ok(graph) => graph,
+        Err(stop) => panic!("no start was drawn: {stop:?}"),
+    };
+    let facing = Dart(0);
+    let mut world = GraphWorld::new(&graph, facing);
+    let mut exploration = Exploration::new(graph.dart_count());
+    let bound = Algorithm1.move_bound(graph.edge_count(), graph.vertex_count());
+    // A run that would not end fails too.
+    let mut watch = |journey: &Journey, _: Event| {
+        assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
+    };
+    let mut open = OpenChoices(&mut choose);
+    let flaw = match map_world(&mut world, &mut open, &mut exploration, &mut watch) {
+        Err(error) => Some(error.into()),
+        Ok(()) => judge(&Algorithm1, &exploration, facing, &world, &mut Candidate::default()).err(),
+    };
+    assert!(flaw.is_none(), "{flaw:?} in {graph:?}");
+}
+
+/// The worlds of a file of plantri's, up to the first error: each is one, and they are written in
+/// each code that can tell them so that they read as the same worlds.
+fn read(bytes: &[u8], code: Code) -> Vec<EmbeddedGraph> {
+    let mut worlds = Vec::new();
+    let mut results = plantri::read_headerless(bytes, code);
+    while let Some(result) = results.next() {
+        match result {
+            Ok(graph) => {
+                assert!(is_world(&graph), "{graph:?} is no world");
+                worlds.push(graph);
+            }
+            Err(error) => {
+                assert_is_a_message(&error);
+                assert!(error.offset <= bytes.len(), "byte {} is not there", error.offset);
+                assert_eq!(error.world, worlds.len() + 1, "the world is counted");
+                assert!(results.next().is_none(), "something follows the error {error}");
+            }
+        }
+    }
+    for code in [Code::Planar, Code::Edge] {
+        match plantri::write(&worlds, code) {
+            Ok(file) if worlds.is_empty() => {
+                assert!(plantri::read(&file).all(|result| result.is_err()), "nothing is a world");
+            }
+            Ok(file) => {
+                let again: Result<Vec<_>, _> = plantri::read(&file).collect();
+                assert!(again.as_ref() == Ok(&worlds), "{worlds:?} are read as {again:?}");
+            }
+            Err(error) => {
+                assert_is_a_message(&error);
+                assert!(code == Code::Planar, "edge_code tells every world: {error}");
+                let is_told = |graph: &EmbeddedGraph| is_simple(graph) && is_small(graph);
+                assert!(!worlds.iter().all(is_told), "planar_code tells these: {error}");
+            }
+        }
+    }
+    worlds
+}
+
+/// One line that a person can read.
+fn assert_is_a_message(error: &impl fmt::Display) {
+    let message = error.to_string();
+    assert!(!message.is_empty(), "an error says nothing");
+    assert!(!message.contains(char::is_control), "a message has control characters: {message:?}");
+}
+
+/// Every vertex has a name of its own; every edge has one, or none has and the world is simple; the
+/// start is a dart, and its text tells it.
+fn assert_is_named(world: &NamedWorld) {
+    let NamedWorld { graph, vertex_names, edge_names, .. } = world;
+    assert_eq!(vertex_names.len(), graph.vertex_count(), "every vertex has a name");
+    let mut names: Vec<_> = vertex_names.iter().collect();
+    names.sort_unstable();
+    assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?} are different");
+    match edge_names {
+        None => assert!(is_simple(graph), "neighbours do not tell {graph:?}"),
+        Some(edges) => {
+            assert_eq!(edges.len(), graph.dart_count(), "every dart has its edge's name");
+            let mut named: Vec<_> = graph.edges().map(|(dart, _)| &edges[dart.at()]).collect();
+            named.sort_unstable();
+            assert!(named.windows(2).all(|pair| pair[0] != pair[1]), "{named:?} are different");
+            for (dart, other) in graph.edges() {
+                assert_eq!(edges[dart.at()], edges[other.at()], "both ends have the edge's name");
+            }
+        }
+    }
+    if let Some(start) = world.start {
+        assert!(start.at() < graph.dart_count(), "{start:?} is a dart");
+        assert_eq!(world.start_from_text(&world.start_text(start)), Ok(start), "a start is told");
+    }
+    let junctions = world.plan.as_ref().map(|plan| plan.junctions().len());
+    let positions = world.positions.as_ref().map(Vec::len);
+    assert_eq!(junctions, positions, "every junction of a plan has its position");
+    assert!(junctions.is_none_or(|count| count == graph.vertex_count()), "junctions are vertices");
+}
+
+/// Two bytes number its vertices.
+fn is_small(graph: &EmbeddedGraph) -> bool {
+    u16::try_from(graph.vertex_count()).is_ok()
+}

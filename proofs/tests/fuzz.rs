@@ -1,0 +1,200 @@
+//! The bodies of the fuzz targets on stable Rust: on every seed, and on a fixed number of mutations
+//! of the seeds, always the same ones; what fails is shrunk.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::{collections::BTreeSet, fs, path::PathBuf};
+
+use proptest::{
+    collection::vec,
+    prelude::*,
+    sample::Index,
+    test_runner::{RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner},
+};
+use toposlam_model::format::{
+    plantri::{self, Code},
+    world_file,
+};
+use toposlam_proofs::fuzz::{TARGETS, Target};
+
+/// A file or folder of the repository.
+fn repository(path: &str) -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(path)
+}
+
+/// What stands in a folder, in the order of the names.
+fn names_in(folder: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(repository(folder)).unwrap();
+    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+/// The seeds of a target, each with its name; what cargo-fuzz has added to them is named by its hash.
+fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
+    let folder = format!("fuzz/corpus/{target}");
+    let is_hash = |name: &String| name.len() == 40 && name.bytes().all(|b| b.is_ascii_hexdigit());
+    let names = names_in(&folder).into_iter().filter(|name| !is_hash(name));
+    names.map(|name| (name.clone(), fs::read(repository(&folder).join(name)).unwrap())).collect()
+}
+
+fn target(name: &str) -> Target {
+    *TARGETS.iter().find(|target| target.name == name).unwrap()
+}
+
+/// One change of a file.
+#[derive(Clone, Debug)]
+enum Edit {
+    Truncate { at: Index },
+    Delete { at: Index, bytes: usize },
+    Flip { at: Index, bit: u8 },
+    Replace { at: Index, byte: u8 },
+    Insert { at: Index, bytes: Vec<u8> },
+    Splice { at: Index, from: Index, bytes: usize, of: Index },
+}
+
+impl Edit {
+    fn apply(&self, file: &mut Vec<u8>, seeds: &[(String, Vec<u8>)]) {
+        let place = |at: &Index| at.index(file.len() + 1);
+        match self {
+            Self::Truncate { at } => file.truncate(place(at)),
+            Self::Delete { at, bytes } => {
+                let at = place(at);
+                file.drain(at..file.len().min(at + bytes));
+            }
+            Self::Flip { at, bit } => {
+                let at = place(at);
+                if let Some(byte) = file.get_mut(at) {
+                    *byte ^= 1 << bit;
+                }
+            }
+            Self::Replace { at, byte: new } => {
+                let at = place(at);
+                if let Some(byte) = file.get_mut(at) {
+                    *byte = *new;
+                }
+            }
+            Self::Insert { at, bytes } => {
+                let at = place(at);
+                file.splice(at..at, bytes.iter().copied());
+            }
+            Self::Splice { at, from, bytes, of } => {
+                let (_, other) = of.get(seeds);
+                let from = from.index(other.len() + 1);
+                let part = &other[from..other.len().min(from + bytes)];
+                let at = place(at);
+                file.splice(at..at, part.iter().copied());
+            }
+        }
+    }
+}
+
+fn any_edit() -> impl Strategy<Value = Edit> {
+    let at = any::<Index>;
+    // Small numbers, the bounds of a byte, and what stands in text.
+    let byte = || prop_oneof![0..6_u8, Just(255), Just(b'\n'), b' '..=b'~', any::<u8>()];
+    prop_oneof![
+        at().prop_map(|at| Edit::Truncate { at }),
+        (at(), 1..9_usize).prop_map(|(at, bytes)| Edit::Delete { at, bytes }),
+        (at(), 0..8_u8).prop_map(|(at, bit)| Edit::Flip { at, bit }),
+        (at(), byte()).prop_map(|(at, byte)| Edit::Replace { at, byte }),
+        (at(), vec(byte(), 1..5)).prop_map(|(at, bytes)| Edit::Insert { at, bytes }),
+        (at(), at(), 1..40_usize, at()).prop_map(|(at, from, bytes, of)| Edit::Splice {
+            at,
+            from,
+            bytes,
+            of
+        }),
+    ]
+}
+
+/// Runs a body on the seeds, and on so many mutations of them.
+fn holds(name: &str, mutations: u32) {
+    let Target { body, .. } = target(name);
+    let seeds = seeds(name);
+    for (_, seed) in &seeds {
+        body(seed);
+    }
+    let mutated = |(seed, edits): (Index, Vec<Edit>)| {
+        let (_, mut file) = seed.get(&seeds).clone();
+        for edit in edits {
+            edit.apply(&mut file, &seeds);
+        }
+        file
+    };
+    let config =
+        ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(mutations) };
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let result = TestRunner::new_with_rng(config, rng).run(
+        &(any::<Index>(), vec(any_edit(), 1..6)),
+        |case| {
+            body(&mutated(case));
+            Ok::<(), TestCaseError>(())
+        },
+    );
+    match result {
+        Ok(()) => {}
+        Err(TestError::Fail(reason, case)) => {
+            panic!("{reason}\nthe bytes: b\"{}\"", mutated(case).escape_ascii())
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn world_files_hold() {
+    holds("world_file", 30_000);
+}
+
+#[test]
+fn planar_code_holds() {
+    holds("planar_code", 100_000);
+}
+
+#[test]
+fn edge_code_holds() {
+    holds("edge_code", 100_000);
+}
+
+#[test]
+fn mapping_holds() {
+    holds("mapping", 30_000);
+}
+
+#[test]
+fn every_target_has_a_body_and_seeds_and_is_run() {
+    let names: BTreeSet<String> = TARGETS.iter().map(|target| target.name.to_owned()).collect();
+    assert_eq!(names_in("fuzz/corpus"), names);
+    let manifest = fs::read_to_string(repository("fuzz/Cargo.toml")).unwrap();
+    let manifest: toml::Table = manifest.parse().unwrap();
+    let bins = manifest["bin"].as_array().unwrap().iter();
+    let bins: BTreeSet<_> = bins.map(|bin| bin["name"].as_str().unwrap().to_owned()).collect();
+    assert_eq!(bins, names);
+    let workflow = fs::read_to_string(repository(".github/workflows/fuzz.yml")).unwrap();
+    let (_, list) = workflow.split_once("target: [").expect("the workflow lists the targets");
+    let list = list.split_once(']').unwrap().0.split(", ").map(str::to_owned);
+    assert_eq!(list.collect::<BTreeSet<_>>(), names);
+    for name in &names {
+        let main = fs::read_to_string(repository(&format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
+        assert!(main.contains(&format!("toposlam_proofs::fuzz::{name}(bytes)")), "{name}: {main}");
+        let seeds = seeds(name);
+        assert!(seeds.len() >= 8, "{name} has {} seeds", seeds.len());
+        for (seed, bytes) in seeds {
+            assert!(bytes.len() < 2000, "{name}/{seed} is large: {} bytes", bytes.len());
+        }
+    }
+}
+
+/// A seed that is in error is called so, and no other.
+#[test]
+fn seeds_are_what_they_are_called() {
+    for target in ["world_file", "planar_code", "edge_code"] {
+        for (name, bytes) in seeds(target) {
+            let all = |code| plantri::read_headerless(&bytes, code).all(|result| result.is_ok());
+            let is_read = match target {
+                "planar_code" => all(Code::Planar),
+                "edge_code" => all(Code::Edge),
+                _ => world_file::read(&bytes).is_ok(),
+            };
+            assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
+        }
+    }
+}
