@@ -39,7 +39,7 @@ impl EmbeddedGraph {
         }
         let mut number = vec![UNPAIRED; opposite.len()];
         let mut inverse = Vec::with_capacity(opposite.len());
-        let mut degrees = Vec::new();
+        let mut degrees = Vec::with_capacity(opposite.len());
         for least in 0..opposite.len() {
             let before = inverse.len();
             let mut dart = least;
@@ -164,6 +164,7 @@ impl EmbeddedGraph {
     /// The graph with these degrees and this `opposite`, which the caller has checked.
     pub(super) fn from_degrees(degrees: &[u32], opposite: Vec<Dart>) -> Self {
         let mut graph = Self::unfinished();
+        graph.reserve(degrees.len(), opposite.len());
         for &degree in degrees {
             graph.add_vertex(degree);
         }
@@ -174,7 +175,8 @@ impl EmbeddedGraph {
     /// The first vertex that cannot be reached from the first of all.
     fn unreached_vertex(&self) -> Option<Vertex> {
         let mut reached = vec![false; self.vertex_count()];
-        let mut open = vec![Vertex(0)];
+        let mut open = Vec::with_capacity(self.vertex_count());
+        open.push(Vertex(0));
         reached[0] = true;
         while let Some(vertex) = open.pop() {
             for dart in self.darts_of(vertex) {

@@ -21,6 +21,14 @@ impl EmbeddedGraph {
         self.around.clear();
     }
 
+    /// Makes room for so many vertices and darts.
+    pub(crate) fn reserve(&mut self, vertices: usize, darts: usize) {
+        self.darts_of.reserve_exact(vertices);
+        self.vertex.reserve_exact(darts);
+        self.opposite.reserve_exact(darts);
+        self.around.reserve_exact(darts);
+    }
+
     /// Adds a vertex with the given number of free darts.
     pub(crate) fn add_vertex(&mut self, degree: u32) -> Vertex {
         let vertex = Vertex(self.darts_of.len() as u32);
