@@ -41,23 +41,21 @@ pub fn start<const MOST: usize>(
         // The last two free darts may be joined, and the last one may lead to a dead end, only if
         // nothing is left to be reached.
         let joins = if free == 0 || (free == 2 && unmet > 0) { 0 } else { free - 1 };
-        let least = if free == 1 && unmet > 1 { 2 } else { 1 };
-        let options = joins + (unmet + 1).saturating_sub(least);
-        let option = usize::from(choose.below(options as u8));
-        if option < joins {
-            let mut other = this;
-            let mut passed = 0;
-            while passed <= option {
-                other += 1;
+        if joins > 0 && (unmet == 0 || choose.below(2) == 0) {
+            let mut pass = choose.below(joins as u8);
+            let mut other = this + 1;
+            while opposite[other] != FREE || pass > 0 {
                 if opposite[other] == FREE {
-                    passed += 1;
+                    pass -= 1;
                 }
+                other += 1;
             }
             opposite[this] = other as u32;
             opposite[other] = this as u32;
             free -= 2;
         } else {
-            let degree = least + option - joins;
+            let least = if free == 1 && unmet > 1 { 2 } else { 1 };
+            let degree = degree(choose, least, unmet);
             let mut dart = met;
             while dart < met + degree {
                 clockwise[dart] = dart as u32 + 1;
@@ -77,6 +75,14 @@ pub fn start<const MOST: usize>(
     let graph = world(opposite, clockwise)?;
     choose.show(|| Exhibit::World { graph: graph.clone(), facing: Dart(0) });
     Ok(graph)
+}
+
+/// A degree from `least`, which is at most 4, to `most`. One of more than 4 is a choice among the small
+/// ones, so that worlds drawn at random have many vertices and not a few large ones.
+fn degree(choose: &mut impl Choose, least: usize, most: usize) -> usize {
+    let small = most.min(4) + 1 - least;
+    let option = usize::from(choose.below((small + usize::from(most > 4)) as u8));
+    if option < small { least + option } else { 5 + usize::from(choose.below((most - 4) as u8)) }
 }
 
 /// A start with at least `LEAST` and at most `MOST` edges, whose facing dart is dart 0.

@@ -27,7 +27,7 @@ use report::Report;
 Examples:
   toposlam proofs              what each lemma says, and how it is checked
   toposlam proofs --run all    check every lemma in every case within its bound
-  toposlam proofs --run the_way_back_retraces_the_path --choices 2,2,1,1,0,1,2,2,0,1
+  toposlam proofs --run the_way_back_retraces_the_path --choices 2,2,1,1,1,0,0,1,2,1,1,0
 
 The last makes one case again and shows it: its worlds, as world files, and its walks, step by step.
 A robot at v2:1 has come in by the dart 1 place clockwise from the first that the file lists at v2.
