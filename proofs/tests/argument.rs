@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use toposlam_proofs::Lemma;
+use toposlam_proofs::lemmas;
 
 const ARGUMENT: &str = include_str!("../README.md");
 
@@ -16,6 +16,6 @@ fn the_argument_names_every_lemma_and_no_other() {
         .filter(|word| word.bytes().all(|b| b.is_ascii_lowercase() || b"_1".contains(&b)))
         .filter(|word| word.matches('_').count() > 1)
         .collect();
-    let lemmas: BTreeSet<_> = Lemma::all().map(|lemma| lemma.name).collect();
+    let lemmas: BTreeSet<_> = lemmas::all().map(|lemma| lemma.name).collect();
     assert_eq!(named, lemmas);
 }

@@ -12,7 +12,7 @@ mod tests;
 use std::{io::Write, num::ParseIntError, str::FromStr};
 
 use clap::ValueEnum;
-use toposlam_proofs::Lemma;
+use toposlam_proofs::{Lemma, lemmas};
 
 use super::{Failure, Outcome, progress::Progress, words::grouped};
 use again::Again;
@@ -96,7 +96,7 @@ impl Engine {
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
-        self.run_with(&Lemma::all().collect::<Vec<_>>(), out)
+        self.run_with(&lemmas::all().collect::<Vec<_>>(), out)
     }
 
     fn run_with(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {

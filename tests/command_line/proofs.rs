@@ -5,7 +5,7 @@ use std::{fs, process::Output};
 
 use serde_json::Value;
 use toposlam_model::format::world_file;
-use toposlam_proofs::{Exhibit, Lemma, replay::Misfit};
+use toposlam_proofs::{Exhibit, Lemma, lemmas, replay::Misfit};
 
 use crate::{folder, objects, run, said, stderr, stdout};
 
@@ -17,7 +17,7 @@ fn listed() -> (Vec<Value>, Value) {
 
 /// The two lemmas with the fewest cases, or the only one.
 fn quick() -> Vec<&'static Lemma> {
-    let mut lemmas: Vec<_> = Lemma::all().collect();
+    let mut lemmas: Vec<_> = lemmas::all().collect();
     lemmas.sort_by_key(|lemma| lemma.exhaustive.cases);
     lemmas.truncate(2);
     lemmas
@@ -34,7 +34,7 @@ fn case_with_a_walk() -> (&'static Lemma, Vec<u8>) {
             }
         }
     };
-    let (lemma, choices, _) = Lemma::all()
+    let (lemma, choices, _) = lemmas::all()
         .map(first_case)
         .find(|(_, _, shown)| {
             let is_walk = |exhibit: &Exhibit| matches!(exhibit, Exhibit::Walk { .. });
@@ -66,7 +66,7 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     // As it was before it was broken into lines.
     let flowing = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    for (line, lemma) in lines.iter().zip(Lemma::all()) {
+    for (line, lemma) in lines.iter().zip(lemmas::all()) {
         assert_eq!(line["lemma"], lemma.name);
         assert!(text.contains(&format!("{}\n  ", lemma.name)), "{text}");
         for part in ["sentence", "paper", "file"].map(|key| line[key].as_str().unwrap()) {
@@ -80,7 +80,7 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
     }
     let cases: u64 = lines.iter().map(|line| line["exhaustive"]["cases"].as_u64().unwrap()).sum();
     assert_eq!((&totals["lemmas"], &totals["cases"]), (&lines.len().into(), &cases.into()));
-    assert_eq!(lines.len(), Lemma::all().count());
+    assert_eq!(lines.len(), lemmas::all().count());
     assert!(flowing.contains("neither this program nor cargo test does it"), "{text}");
     let last = text.lines().last().unwrap();
     assert!(last.starts_with(&format!("{} lemma", lines.len())), "{last}");
@@ -111,7 +111,7 @@ fn a_lemma_is_checked_in_every_case() {
 #[test]
 fn an_unknown_name_lists_those_that_exist() {
     let message = refusal(&run(["proofs", "--run", "the_moon_is_round"]));
-    let names: Vec<_> = Lemma::all().map(|lemma| lemma.name).collect();
+    let names: Vec<_> = lemmas::all().map(|lemma| lemma.name).collect();
     let cause = "--run: there is no lemma `the_moon_is_round`; there are:";
     assert_eq!(message, format!("error: {cause}\n  {}\n", names.join("\n  ")));
 }
@@ -172,7 +172,7 @@ fn a_sampled_case_is_made_again_within_its_own_bound() {
     let sampled = |choices: &str, lemma: &Lemma| {
         run(["proofs", "--run", lemma.name, "--engine", "sampled", "--choices", choices])
     };
-    for lemma in Lemma::all() {
+    for lemma in lemmas::all() {
         let output = sampled("", lemma);
         let message = stderr(&output);
         match lemma.sampled {
@@ -180,7 +180,7 @@ fn a_sampled_case_is_made_again_within_its_own_bound() {
             Some(_) => assert!(message.contains("begins so has at least") || message.is_empty()),
         }
     }
-    let Some(lemma) = Lemma::all().find(|lemma| lemma.sampled.is_some()) else { return };
+    let Some(lemma) = lemmas::all().find(|lemma| lemma.sampled.is_some()) else { return };
     let mut choices = Vec::new();
     let text = loop {
         let output = sampled(&choices_text(&choices), lemma);

@@ -13,8 +13,13 @@ mod retracing;
 mod sighting;
 mod validation;
 
+/// All lemmas, in the order in which the theorem needs them.
+pub fn all() -> impl Iterator<Item = &'static Lemma> {
+    THEMES.iter().copied().flatten()
+}
+
 /// The lemmas of each file.
-pub(crate) const ALL: &[&[Lemma]] = &[
+const THEMES: &[&[Lemma]] = &[
     arithmetic::LEMMAS,
     embedded_graph::LEMMAS,
     retracing::LEMMAS,
@@ -26,3 +31,19 @@ pub(crate) const ALL: &[&[Lemma]] = &[
     certificates::LEMMAS,
     decoders::LEMMAS,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_given_once_and_every_sentence_is_one() {
+        let mut names: Vec<_> = all().map(|lemma| lemma.name).collect();
+        assert!(names.len() > 12);
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+        for Lemma { name, sentence, .. } in all() {
+            assert!(sentence.ends_with('.') && sentence.starts_with(char::is_uppercase), "{name}");
+        }
+    }
+}

@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toposlam_proofs::Lemma;
+use toposlam_proofs::lemmas;
 
 fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -28,7 +28,7 @@ fn scratch(name: &str) -> PathBuf {
 
 /// The harnesses of the table, as Kani names them, each with its unwinding.
 fn table() -> BTreeSet<String> {
-    let harnesses = Lemma::all().filter_map(|lemma| lemma.kani.as_ref());
+    let harnesses = lemmas::all().filter_map(|lemma| lemma.kani.as_ref());
     harnesses.map(|kani| format!("{} {}", within(kani.harness), kani.unwind)).collect()
 }
 
