@@ -79,6 +79,7 @@ fn steps_out_of_order_do_nothing() {
     fresh.close_loop(Dart(0), &mut ());
     fresh.add_place::<()>(&mut ()).unwrap();
     assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
+    assert_eq!(fresh.map().complete(), None);
     let (mut done, mut world) = mapped(&graph);
     let map = done.map().clone();
     done.explore(Dart(0), &mut world, &mut ()).unwrap();
@@ -89,6 +90,27 @@ fn steps_out_of_order_do_nothing() {
     world.traverse(Door(1)).unwrap();
     done.begin(&mut world, &mut ()).unwrap_err();
     assert_eq!((done.robot(), done.moves(), done.map().dart_count()), (Dart(0), 0, 0));
+}
+
+/// A loop is closed by another unexplored dart than the one that is being explored, or not at all.
+#[test]
+fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
+    let graph = theta(["c", "b", "a"]);
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    let mut exploration = Exploration::new(6);
+    exploration.begin(&mut world, &mut ()).unwrap();
+    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
+    exploration.add_place::<()>(&mut ()).unwrap();
+    let map = exploration.map().clone();
+    for explored in [Dart(0), Dart(3), Dart(4)] {
+        let (mut world, mut exploration) = (world.clone(), exploration.clone());
+        exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
+        exploration.close_loop(explored, &mut ());
+        assert_eq!(exploration.map(), &map);
+        // Nor is the edge explored any more.
+        exploration.close_loop(Dart(1), &mut ());
+        assert_eq!(exploration.map(), &map);
+    }
 }
 
 /// The dearest run for its vertices, and the first start that takes the most moves.
