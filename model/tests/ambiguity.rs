@@ -2,11 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{collections::BTreeSet, ops::ControlFlow};
+use std::{
+    collections::BTreeSet,
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use toposlam_model::{
     ambiguity::{
         Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Unfinished, Walk, replay,
+        state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, SizeError, Watch},
@@ -280,8 +285,9 @@ fn a_relation_that_is_not_kept_proves_nothing() {
     assert!(!Relation(Vec::new()).verify(&one, &other));
     // Nor does one that speaks of what is not there.
     for nowhere in [
-        State { pose: Dart(99), ..one.state() },
-        State { placed: Some(Dart(99)), ..one.state() },
+        // A triangle has the darts 0 to 5.
+        State { pose: Dart(6), ..one.state() },
+        State { placed: Some(Dart(6)), ..one.state() },
         State { placed: None, ..one.state() },
     ] {
         let more = [&pairs[..], &[(nowhere, other.state())]].concat();
@@ -347,6 +353,56 @@ fn an_interrupted_search_says_so() {
     }
     let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
     assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
+    /// Breaks off one part of the search, and no other.
+    struct StopOnce(AtomicBool);
+    impl Watch for StopOnce {
+        fn stop(&self) -> bool {
+            self.0.swap(false, Ordering::Relaxed)
+        }
+    }
+    assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
+}
+
+/// A cycle of junctions, from each of which a chain leads to a dead end; they are of one length, but
+/// for that from the last junction.
+fn comb(junctions: usize, chain: usize, last: usize) -> EmbeddedGraph {
+    let mut lists = Vec::new();
+    for junction in 0..junctions {
+        let next = (junction + 1) % junctions;
+        let length = if next == 0 { last } else { chain };
+        let edge = |place: usize| format!("chain-{junction}-{place}");
+        let around = vec![format!("cycle-{junction}"), format!("cycle-{next}"), edge(0)];
+        lists.push((format!("junction-{junction}"), around));
+        for place in 1..length {
+            lists.push((edge(place), vec![edge(place - 1), edge(place)]));
+        }
+        lists.push((edge(length), vec![edge(length - 1)]));
+    }
+    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+}
+
+/// Robots in cycles of 9 and of 10 junctions come into a great many pairs of poses before one of
+/// them comes to the end of the one chain that is longer.
+#[test]
+fn a_difference_that_many_pairs_come_before_is_found() {
+    let chain = 120;
+    let (one, other) = (comb(9, chain, chain), comb(10, chain, chain + 1));
+    let none = named("none").unwrap();
+    let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+    let poses = [Dart(0), Dart(0)];
+    let walk = comparison.walk(poses).unwrap();
+    let [here, there] = comparison.starts(poses);
+    assert!(walk.verify(&here, &there));
+    assert_eq!(comparison.relation(poses), None);
+    // Also once it is known that they can be told apart.
+    assert!(!comparison.indistinguishable(poses));
+    assert_eq!(comparison.walk(poses), Some(walk));
+    // Without the longer one no walk tells them apart.
+    let like = comb(10, chain, chain);
+    let comparison = Comparison::new(none, (&one, Dart(0)), (&like, Dart(0)));
+    let [here, there] = comparison.starts(poses);
+    assert!(comparison.relation(poses).unwrap().verify(&here, &there));
+    assert_eq!(comparison.walk(poses), None);
 }
 
 /// A chain of three edges, seen from an end and from a vertex beside it.
@@ -372,4 +428,14 @@ fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() 
     assert_eq!(like("undirected", [2, 1]), Some(2));
     assert_eq!(like("undirected", [2, 3]), Some(3));
     assert_eq!(like("undirected", [0, 1]), None);
+}
+
+/// Where the robot is, and, with a marker that it can carry, where that lies, or that it is carried.
+#[test]
+fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
+    let [triangle, _] = cycles();
+    let count = |marker| state_count(&triangle, named(marker).unwrap());
+    assert_eq!(count("undirected"), 6);
+    assert_eq!(count("directional"), 6);
+    assert_eq!(count("movable"), 6 * (3 + 1));
 }

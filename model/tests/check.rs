@@ -69,8 +69,15 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     assert!(all.complete);
     let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
     assert!(!some.complete && some.states < all.states);
-    // Too deep to begin with.
-    assert!(!every_way(&Algorithm1, &cycle(101), Dart(0), 1000, &()).unwrap().complete);
+    // Too deep to begin with, though there is no choice.
+    let is_complete = |edges, budget| {
+        every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().complete
+    };
+    assert!(is_complete(100, 1000));
+    assert!(!is_complete(101, 1000));
+    // A chain of one edge: line 4, line 8 without a hypothesis, line 4 again.
+    assert!(is_complete(1, 3));
+    assert!(!is_complete(1, 2));
     let tally = check_worlds(&[graph], &AllChoices { budget: 3, ..ALL_CHOICES }, &());
     assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
 }
@@ -142,6 +149,18 @@ fn cycle(edges: usize) -> EmbeddedGraph {
     EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
 }
 
+/// Dart 0 is at one of its ends.
+fn chain(edges: usize) -> EmbeddedGraph {
+    let lists: Vec<_> = (0..=edges)
+        .map(|vertex: usize| {
+            let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
+            let right = (vertex < edges).then(|| format!("e{vertex}"));
+            (format!("v{vertex}"), left.into_iter().chain(right).collect())
+        })
+        .collect();
+    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+}
+
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, facing);
@@ -162,14 +181,7 @@ fn a_cycle_of_m_edges_costs_m_from_every_start() {
 #[test]
 fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
-        let lists: Vec<_> = (0..=edges)
-            .map(|vertex: usize| {
-                let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
-                let right = (vertex < edges).then(|| format!("e{vertex}"));
-                (format!("v{vertex}"), left.into_iter().chain(right).collect())
-            })
-            .collect();
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let graph = chain(edges);
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
         let ways = every_way(&Algorithm1, &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);

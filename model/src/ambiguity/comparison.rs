@@ -221,3 +221,32 @@ impl<'c, 'a> Pairs<'c, 'a> {
         Look::Difference(Walk { actions, percepts })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marker::named;
+
+    fn cycle(edges: usize) -> EmbeddedGraph {
+        let name = |edge: usize| (edge % edges).to_string();
+        let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
+        EmbeddedGraph::from_edge_lists(&(0..edges).map(around).collect::<Vec<_>>()).unwrap()
+    }
+
+    /// Without a marker no walk tells cycles apart: where their lengths are coprime, a robot in each
+    /// comes into every pair of poses that agree on the sense, `2 n m` of them.
+    #[test]
+    fn the_partition_is_made_only_where_there_are_many_pairs() {
+        for (shorter, longer, is_made) in [(3, 4, false), (8, 9, true)] {
+            let (one, other) = (cycle(shorter), cycle(longer));
+            let none = named("none").unwrap();
+            let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+            let pairs = 2 * shorter * longer;
+            let states = 2 * (shorter + longer);
+            assert_eq!(pairs > 4 * states, is_made);
+            assert!(pairs > 4 + states);
+            assert_eq!(comparison.relation([Dart(0); 2]).unwrap().0.len(), pairs);
+            assert_eq!(comparison.class.get().is_some(), is_made);
+        }
+    }
+}

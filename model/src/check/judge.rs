@@ -148,13 +148,11 @@ fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
         let Some(entry) = darts.next() else {
             return false;
         };
-        let parent = if entry == FACING { None } else { map.opposite(entry) };
-        let mut at = match parent {
-            None if entry == FACING => facing,
-            parent => match parent.and_then(|dart: Dart| image[dart.at()]) {
-                Some(dart) => graph.opposite(dart),
-                None => return false,
-            },
+        let came_from = map.opposite(entry).and_then(|dart| image[dart.at()]);
+        let mut at = match came_from {
+            _ if entry == FACING => facing,
+            Some(dart) => graph.opposite(dart),
+            None => return false,
         };
         if map.degree(vertex) != graph.degree(graph.vertex(at)) {
             return false;
