@@ -7,13 +7,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, check_worlds,
-        every_way,
+        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Flaw, OpenChoices, Order, Shard,
+        Sweep, Tally, check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
-    mapping::Exploration,
-    world::GraphWorld,
+    mapping::{Exploration, MappingError, Observer},
+    marker::Directional,
+    world::{GraphWorld, Refused},
 };
 
 const ALL_CHOICES: AllChoices<Algorithm1> =
@@ -194,6 +195,56 @@ fn no_run_takes_fewer_moves_than_there_are_edges() {
     for edges in 1..=4 {
         let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
         assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
+    }
+}
+
+/// Algorithm 1, that claims to need no more moves than these.
+struct Claimed(u64);
+
+impl Algorithm for Claimed {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        "Algorithm 1, with a claim"
+    }
+
+    fn order(&self) -> Order {
+        Algorithm1.order()
+    }
+
+    fn move_bound(&self, _: usize, _: usize) -> u64 {
+        self.0
+    }
+
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        Algorithm1.run(world, exploration, observer)
+    }
+}
+
+impl OpenChoices for Claimed {}
+
+/// States are explored once, so the dearest run may be none that was followed to its end.
+#[test]
+fn the_dearest_of_all_runs_is_held_against_the_bound() {
+    for edges in 1..=3 {
+        let enumeration = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        let _ = enumeration.for_each(&mut |found| {
+            let with_bound = |bound| {
+                every_way(&Claimed(bound), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
+            };
+            let moves = with_bound(u64::MAX).unwrap().costs.max().unwrap();
+            assert!(with_bound(moves).is_ok());
+            let bound = moves - 1;
+            let flaw = with_bound(bound).unwrap_err();
+            assert!(matches!(flaw, Flaw::TooManyMoves { bound: b, .. } if b == bound));
+            std::ops::ControlFlow::Continue(())
+        });
     }
 }
 
