@@ -363,48 +363,6 @@ fn an_interrupted_search_says_so() {
     assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
 }
 
-/// A cycle of junctions, from each of which a chain leads to a dead end; they are of one length, but
-/// for that from the last junction.
-fn comb(junctions: usize, chain: usize, last: usize) -> EmbeddedGraph {
-    let mut lists = Vec::new();
-    for junction in 0..junctions {
-        let next = (junction + 1) % junctions;
-        let length = if next == 0 { last } else { chain };
-        let edge = |place: usize| format!("chain-{junction}-{place}");
-        let around = vec![format!("cycle-{junction}"), format!("cycle-{next}"), edge(0)];
-        lists.push((format!("junction-{junction}"), around));
-        for place in 1..length {
-            lists.push((edge(place), vec![edge(place - 1), edge(place)]));
-        }
-        lists.push((edge(length), vec![edge(length - 1)]));
-    }
-    EmbeddedGraph::from_edge_lists(&lists).unwrap()
-}
-
-/// Robots in cycles of 9 and of 10 junctions come into a great many pairs of poses before one of
-/// them comes to the end of the one chain that is longer.
-#[test]
-fn a_difference_that_many_pairs_come_before_is_found() {
-    let chain = 120;
-    let (one, other) = (comb(9, chain, chain), comb(10, chain, chain + 1));
-    let none = named("none").unwrap();
-    let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
-    let poses = [Dart(0), Dart(0)];
-    let walk = comparison.walk(poses).unwrap();
-    let [here, there] = comparison.starts(poses);
-    assert!(walk.verify(&here, &there));
-    assert_eq!(comparison.relation(poses), None);
-    // Also once it is known that they can be told apart.
-    assert!(!comparison.indistinguishable(poses));
-    assert_eq!(comparison.walk(poses), Some(walk));
-    // Without the longer one no walk tells them apart.
-    let like = comb(10, chain, chain);
-    let comparison = Comparison::new(none, (&one, Dart(0)), (&like, Dart(0)));
-    let [here, there] = comparison.starts(poses);
-    assert!(comparison.relation(poses).unwrap().verify(&here, &there));
-    assert_eq!(comparison.walk(poses), None);
-}
-
 /// A chain of three edges, seen from an end and from a vertex beside it.
 #[test]
 fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() {

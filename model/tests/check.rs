@@ -235,9 +235,8 @@ fn the_dearest_of_all_runs_is_held_against_the_bound() {
     for edges in 1..=3 {
         let enumeration = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
         let _ = enumeration.for_each(&mut |found| {
-            let with_bound = |bound| {
-                every_way(&Claimed(bound), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &())
-            };
+            let with_bound =
+                |bound| every_way(&Claimed(bound), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &());
             let moves = with_bound(u64::MAX).unwrap().costs.max().unwrap();
             assert!(with_bound(moves).is_ok());
             let bound = moves - 1;

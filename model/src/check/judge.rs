@@ -148,11 +148,12 @@ fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
         let Some(entry) = darts.next() else {
             return false;
         };
-        let came_from = map.opposite(entry).and_then(|dart| image[dart.at()]);
-        let mut at = match came_from {
-            _ if entry == FACING => facing,
-            Some(dart) => graph.opposite(dart),
-            None => return false,
+        let mut at = if entry == FACING {
+            facing
+        } else if let Some(dart) = map.opposite(entry).and_then(|dart| image[dart.at()]) {
+            graph.opposite(dart)
+        } else {
+            return false;
         };
         if map.degree(vertex) != graph.degree(graph.vertex(at)) {
             return false;
