@@ -351,8 +351,6 @@ fn an_interrupted_search_says_so() {
             true
         }
     }
-    let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
-    assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
     /// Breaks off one part of the search, and no other.
     struct StopOnce(AtomicBool);
     impl Watch for StopOnce {
@@ -360,6 +358,8 @@ fn an_interrupted_search_says_so() {
             self.0.swap(false, Ordering::Relaxed)
         }
     }
+    let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
+    assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
     assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
 }
 
