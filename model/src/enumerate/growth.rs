@@ -39,8 +39,8 @@ pub(super) struct Growth {
     /// The first dart of each vertex, and its degree.
     pub(super) first: [u8; MAX_EDGES + 1],
     pub(super) degree: [u8; MAX_EDGES + 1],
-    /// For each vertex, as bits, itself and its neighbours: those to which a simple graph lets it not
-    /// be joined again.
+    /// For each vertex, as bits, itself and the later ones joined to it: a simple graph lets none of
+    /// these be joined to it again. (When its turn comes, earlier ones have no free dart.)
     adjacent: [u64; MAX_EDGES + 1],
     vertices: usize,
     darts: usize,
@@ -284,7 +284,6 @@ impl Growth {
         self.free &= !(1 << other);
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
         self.adjacent[from] |= 1 << to;
-        self.adjacent[to] |= 1 << from;
         self.words[self.edges] = word;
         self.edges += 1;
     }
@@ -296,7 +295,6 @@ impl Growth {
         self.free |= 1 << other;
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
         self.adjacent[from] &= !(1 << to);
-        self.adjacent[to] &= !(1 << from);
         self.edges -= 1;
     }
 

@@ -184,5 +184,6 @@ mod tests {
         let lists: Vec<_> = (0..30).map(around).collect();
         let cycle = EmbeddedGraph::from_edge_lists(&lists).unwrap();
         assert!(matches!(by_rare_darts(&cycle, &cycle), Verdict::TooManyCandidates));
+        assert!(isomorphism(&cycle, &cycle).unwrap().verify(&cycle, &cycle));
     }
 }
