@@ -4,7 +4,7 @@
 
 use toposlam_model::{
     check::{Algorithm, Algorithm1, Flaw, Shard, Sweep, Tally, judge},
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     isomorphism::{Candidate, code},
     mapping::{DEFAULT_DART_BOUND, Exploration, MappingError, Nearest, map_world},
@@ -111,6 +111,34 @@ fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
         exploration.close_loop(Dart(1), &mut ());
         assert_eq!(exploration.map(), &map);
     }
+}
+
+/// Whoever follows a path of his own tells the robot where it ended.
+#[test]
+fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
+    let graph = theta(["c", "b", "a"]);
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    let mut exploration = Exploration::new(6);
+    exploration.begin(&mut world, &mut ()).unwrap();
+    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
+    exploration.add_place::<()>(&mut ()).unwrap();
+    exploration.set_out();
+    exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
+    exploration.arrive_at_marker(Dart(0));
+    // Out, back, out again and over the edge.
+    exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
+    assert_eq!((exploration.moves(), exploration.robot()), (4, Dart(3)));
+}
+
+#[test]
+fn a_dart_of_the_map_is_found_by_its_vertex_and_its_index() {
+    let graph = theta(["c", "b", "a"]);
+    let (exploration, _) = mapped(&graph);
+    let map = exploration.map();
+    for dart in map.vertices().flat_map(|vertex| map.darts_of(vertex)) {
+        assert_eq!(map.dart(map.vertex(dart), map.index(dart)), Some(dart));
+    }
+    assert_eq!(map.dart(Vertex(0), 3), None);
 }
 
 /// The dearest run for its vertices, and the first start that takes the most moves.
