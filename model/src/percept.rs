@@ -184,6 +184,24 @@ mod tests {
         }
     }
 
+    /// A mark on an edge is noticed by whoever has just come over it.
+    #[test]
+    fn what_lies_on_the_edge_of_another_entry_is_taken_for_nothing() {
+        for sighting in [Sighting::Passed, Sighting::PassedAlong, Sighting::PassedAgainst] {
+            let percept = Percept { degree: 3, sighting };
+            assert_eq!(percept.seen_from(Door::BACK), percept);
+            let nothing = Percept { degree: 3, sighting: Sighting::Nothing };
+            assert_eq!(percept.seen_from(Door(1)), nothing);
+        }
+    }
+
+    #[test]
+    fn a_percept_is_told_in_words() {
+        let told = |degree, sighting| Percept { degree, sighting }.to_string();
+        assert_eq!(told(1, Sighting::Nothing), "1 door");
+        assert_eq!(told(3, Sighting::Pointing(Door(1))), "3 doors, marker along door 1");
+    }
+
     #[test]
     fn the_way_back_ends_where_the_path_began_turned_by_its_first_door() {
         let graph = k4();

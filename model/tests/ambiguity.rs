@@ -2,11 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{collections::BTreeSet, ops::ControlFlow};
+use std::{
+    collections::BTreeSet,
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use toposlam_model::{
     ambiguity::{
         Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Unfinished, Walk, replay,
+        state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, SizeError, Watch},
@@ -280,8 +285,9 @@ fn a_relation_that_is_not_kept_proves_nothing() {
     assert!(!Relation(Vec::new()).verify(&one, &other));
     // Nor does one that speaks of what is not there.
     for nowhere in [
-        State { pose: Dart(99), ..one.state() },
-        State { placed: Some(Dart(99)), ..one.state() },
+        // A triangle has the darts 0 to 5.
+        State { pose: Dart(6), ..one.state() },
+        State { placed: Some(Dart(6)), ..one.state() },
         State { placed: None, ..one.state() },
     ] {
         let more = [&pairs[..], &[(nowhere, other.state())]].concat();
@@ -345,8 +351,16 @@ fn an_interrupted_search_says_so() {
             true
         }
     }
+    /// Breaks off one part of the search, and no other.
+    struct StopOnce(AtomicBool);
+    impl Watch for StopOnce {
+        fn stop(&self) -> bool {
+            self.0.swap(false, Ordering::Relaxed)
+        }
+    }
     let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
     assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
+    assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
 }
 
 /// A chain of three edges, seen from an end and from a vertex beside it.
@@ -372,4 +386,14 @@ fn the_start_that_is_like_another_is_found_among_those_that_the_marker_allows() 
     assert_eq!(like("undirected", [2, 1]), Some(2));
     assert_eq!(like("undirected", [2, 3]), Some(3));
     assert_eq!(like("undirected", [0, 1]), None);
+}
+
+/// Where the robot is, and, with a marker that it can carry, where that lies, or that it is carried.
+#[test]
+fn the_states_of_a_triangle_are_its_poses_times_the_places_of_the_marker() {
+    let [triangle, _] = cycles();
+    let count = |marker| state_count(&triangle, named(marker).unwrap());
+    assert_eq!(count("undirected"), 6);
+    assert_eq!(count("directional"), 6);
+    assert_eq!(count("movable"), 6 * (3 + 1));
 }

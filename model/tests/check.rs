@@ -7,13 +7,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Shard, Sweep, Tally, check_worlds,
-        every_way,
+        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Flaw, OpenChoices, Order, Shard,
+        Sweep, Tally, check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
-    mapping::Exploration,
-    world::GraphWorld,
+    mapping::{Exploration, MappingError, Observer},
+    marker::Directional,
+    world::{GraphWorld, Refused},
 };
 
 const ALL_CHOICES: AllChoices<Algorithm1> =
@@ -69,8 +70,15 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     assert!(all.complete);
     let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
     assert!(!some.complete && some.states < all.states);
-    // Too deep to begin with.
-    assert!(!every_way(&Algorithm1, &cycle(101), Dart(0), 1000, &()).unwrap().complete);
+    // Too deep to begin with, though there is no choice.
+    let is_complete = |edges, budget| {
+        every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().complete
+    };
+    assert!(is_complete(100, 1000));
+    assert!(!is_complete(101, 1000));
+    // A chain of one edge: line 4, line 8 without a hypothesis, line 4 again.
+    assert!(is_complete(1, 3));
+    assert!(!is_complete(1, 2));
     let tally = check_worlds(&[graph], &AllChoices { budget: 3, ..ALL_CHOICES }, &());
     assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
 }
@@ -142,6 +150,18 @@ fn cycle(edges: usize) -> EmbeddedGraph {
     EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
 }
 
+/// Dart 0 is at one of its ends.
+fn chain(edges: usize) -> EmbeddedGraph {
+    let lists: Vec<_> = (0..=edges)
+        .map(|vertex: usize| {
+            let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
+            let right = (vertex < edges).then(|| format!("e{vertex}"));
+            (format!("v{vertex}"), left.into_iter().chain(right).collect())
+        })
+        .collect();
+    EmbeddedGraph::from_edge_lists(&lists).unwrap()
+}
+
 fn moves(graph: &EmbeddedGraph, facing: Dart) -> u64 {
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, facing);
@@ -162,14 +182,7 @@ fn a_cycle_of_m_edges_costs_m_from_every_start() {
 #[test]
 fn a_chain_of_m_edges_costs_m_from_an_end() {
     for edges in 1..40 {
-        let lists: Vec<_> = (0..=edges)
-            .map(|vertex: usize| {
-                let left = vertex.checked_sub(1).map(|left| format!("e{left}"));
-                let right = (vertex < edges).then(|| format!("e{vertex}"));
-                (format!("v{vertex}"), left.into_iter().chain(right).collect())
-            })
-            .collect();
-        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let graph = chain(edges);
         assert_eq!(moves(&graph, Dart(0)), edges as u64);
         let ways = every_way(&Algorithm1, &graph, Dart(0), DEFAULT_STATE_BUDGET, &()).unwrap();
         assert_eq!(ways.costs.iter().collect::<Vec<_>>(), [edges as u64]);
@@ -182,6 +195,55 @@ fn no_run_takes_fewer_moves_than_there_are_edges() {
     for edges in 1..=4 {
         let tally = sweep(Class::Multigraph, edges, &ALL_CHOICES);
         assert_eq!(tally.extremes.map(|(least, _)| least), Some(edges as u64));
+    }
+}
+
+/// Algorithm 1, that claims to need no more moves than these.
+struct Claimed(u64);
+
+impl Algorithm for Claimed {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        "Algorithm 1, with a claim"
+    }
+
+    fn order(&self) -> Order {
+        Algorithm1.order()
+    }
+
+    fn move_bound(&self, _: usize, _: usize) -> u64 {
+        self.0
+    }
+
+    fn run(
+        &self,
+        world: &mut GraphWorld,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer,
+    ) -> Result<(), MappingError<Refused>> {
+        Algorithm1.run(world, exploration, observer)
+    }
+}
+
+impl OpenChoices for Claimed {}
+
+/// States are explored once, so the dearest run may be none that was followed to its end.
+#[test]
+fn the_dearest_of_all_runs_is_held_against_the_bound() {
+    for edges in 1..=3 {
+        let enumeration = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        let _ = enumeration.for_each(&mut |found| {
+            let with_bound =
+                |bound| every_way(&Claimed(bound), found.graph, Dart(0), DEFAULT_STATE_BUDGET, &());
+            let moves = with_bound(u64::MAX).unwrap().costs.max().unwrap();
+            assert!(with_bound(moves).is_ok());
+            let bound = moves - 1;
+            let flaw = with_bound(bound).unwrap_err();
+            assert!(matches!(flaw, Flaw::TooManyMoves { bound: b, .. } if b == bound));
+            std::ops::ControlFlow::Continue(())
+        });
     }
 }
 

@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 use toposlam_model::{
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
     mapping::{Contradiction, Event, Exploration, Journey, MappingError, Nearest, map_world},
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused, World},
@@ -54,6 +54,18 @@ fn a_world_without_end_runs_into_the_bound() {
     assert_eq!(scripted(&[marked(3, 0), plain(3)]), MappingError::Bound { bound: BOUND });
     assert_eq!(scripted(&[marked(u32::MAX, 0)]), MappingError::Bound { bound: BOUND });
     assert_eq!(scripted(&[marked(3, 0), plain(u32::MAX)]), MappingError::Bound { bound: BOUND });
+}
+
+#[test]
+fn the_bound_is_never_more_than_the_darts_that_can_be_numbered() {
+    let begin = |mut exploration: Exploration| {
+        exploration.begin(&mut Script { percepts: &[marked(u32::MAX, 0)], moves: 0 }, &mut ())
+    };
+    let exploration = Exploration::new(usize::MAX);
+    assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
+    let mut exploration = Exploration::new(BOUND);
+    exploration.set_bound(usize::MAX);
+    assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
-    marker::{MARKERS, Marker, named},
+    marker::{MARKERS, Marker, Part, named},
     percept::{Door, Sighting},
     world::{Action, GraphWorld, Handling, Refused, World},
 };
@@ -135,10 +135,27 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
     }
 }
 
+/// Whoever holds a marker by a reference has the marker.
+#[test]
+fn a_reference_to_a_marker_tells_what_the_marker_tells() {
+    type Told = (&'static str, &'static str, Vec<Dart>, Vec<Part>, bool);
+    fn told<M: Marker + ?Sized>(marker: &M) -> Told {
+        let (graph, facing) = (junction(), Dart(2));
+        let starts = marker.starts(&graph, facing);
+        let parts = marker.parts(&graph, facing);
+        (marker.name(), marker.about(), starts, parts, marker.is_movable())
+    }
+    for marker in MARKERS {
+        assert_eq!(told(&marker), told(marker));
+    }
+}
+
 #[test]
 fn a_name_that_no_marker_has_is_refused_with_those_that_there_are() {
     for marker in MARKERS {
         assert_eq!(named(marker.name()), Ok(marker));
+        assert_eq!(format!("{marker:?}"), marker.name());
+        assert_eq!(MARKERS.into_iter().filter(|&other| other == marker).count(), 1);
         assert!(!marker.about().is_empty());
     }
     assert_eq!(

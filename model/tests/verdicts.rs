@@ -4,7 +4,7 @@
 
 use toposlam_model::{
     check::{Algorithm, Algorithm1, Flaw, Shard, Sweep, Tally, judge},
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     isomorphism::{Candidate, code},
     mapping::{DEFAULT_DART_BOUND, Exploration, MappingError, Nearest, map_world},
@@ -79,6 +79,7 @@ fn steps_out_of_order_do_nothing() {
     fresh.close_loop(Dart(0), &mut ());
     fresh.add_place::<()>(&mut ()).unwrap();
     assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
+    assert_eq!(fresh.map().complete(), None);
     let (mut done, mut world) = mapped(&graph);
     let map = done.map().clone();
     done.explore(Dart(0), &mut world, &mut ()).unwrap();
@@ -89,6 +90,55 @@ fn steps_out_of_order_do_nothing() {
     world.traverse(Door(1)).unwrap();
     done.begin(&mut world, &mut ()).unwrap_err();
     assert_eq!((done.robot(), done.moves(), done.map().dart_count()), (Dart(0), 0, 0));
+}
+
+/// A loop is closed by another unexplored dart than the one that is being explored, or not at all.
+#[test]
+fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
+    let graph = theta(["c", "b", "a"]);
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    let mut exploration = Exploration::new(6);
+    exploration.begin(&mut world, &mut ()).unwrap();
+    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
+    exploration.add_place::<()>(&mut ()).unwrap();
+    let map = exploration.map().clone();
+    for explored in [Dart(0), Dart(3), Dart(4)] {
+        let (mut world, mut exploration) = (world.clone(), exploration.clone());
+        exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
+        exploration.close_loop(explored, &mut ());
+        assert_eq!(exploration.map(), &map);
+        // Nor is the edge explored any more.
+        exploration.close_loop(Dart(1), &mut ());
+        assert_eq!(exploration.map(), &map);
+    }
+}
+
+/// Whoever follows a path of his own tells the robot where it ended.
+#[test]
+fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
+    let graph = theta(["c", "b", "a"]);
+    let mut world = GraphWorld::new(&graph, Dart(0));
+    let mut exploration = Exploration::new(6);
+    exploration.begin(&mut world, &mut ()).unwrap();
+    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
+    exploration.add_place::<()>(&mut ()).unwrap();
+    exploration.set_out();
+    exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
+    exploration.arrive_at_marker(Dart(0));
+    // Out, back, out again and over the edge.
+    exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
+    assert_eq!((exploration.moves(), exploration.robot()), (4, Dart(3)));
+}
+
+#[test]
+fn a_dart_of_the_map_is_found_by_its_vertex_and_its_index() {
+    let graph = theta(["c", "b", "a"]);
+    let (exploration, _) = mapped(&graph);
+    let map = exploration.map();
+    for dart in map.vertices().flat_map(|vertex| map.darts_of(vertex)) {
+        assert_eq!(map.dart(map.vertex(dart), map.index(dart)), Some(dart));
+    }
+    assert_eq!(map.dart(Vertex(0), 3), None);
 }
 
 /// The dearest run for its vertices, and the first start that takes the most moves.

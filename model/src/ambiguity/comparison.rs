@@ -221,3 +221,76 @@ impl<'c, 'a> Pairs<'c, 'a> {
         Look::Difference(Walk { actions, percepts })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::marker::named;
+
+    fn cycle(edges: usize) -> EmbeddedGraph {
+        let name = |edge: usize| (edge % edges).to_string();
+        let around = |vertex: usize| (name(vertex), vec![name(vertex), name(vertex + 1)]);
+        EmbeddedGraph::from_edge_lists(&(0..edges).map(around).collect::<Vec<_>>()).unwrap()
+    }
+
+    /// A cycle of junctions, to each of which both ends of a long way are joined; these are of one
+    /// length, but for that at the last junction.
+    fn cycle_of_ways(junctions: usize, length: usize, last: usize) -> EmbeddedGraph {
+        let mut lists = Vec::new();
+        for junction in 0..junctions {
+            let next = (junction + 1) % junctions;
+            let length = if next == 0 { last } else { length };
+            let on_the_way = |place: usize| format!("way-{junction}-{place}");
+            let on_the_cycle = |junction: usize| format!("cycle-{junction}");
+            let ways = [on_the_cycle(junction), on_the_cycle(next)];
+            let both_ends = [on_the_way(0), on_the_way(length - 1)];
+            lists.push((format!("junction-{junction}"), [ways, both_ends].concat()));
+            for place in 1..length {
+                lists.push((on_the_way(place), vec![on_the_way(place - 1), on_the_way(place)]));
+            }
+        }
+        EmbeddedGraph::from_edge_lists(&lists).unwrap()
+    }
+
+    /// Without a marker no walk tells cycles apart: where their lengths are coprime, a robot in each
+    /// comes into every pair of poses that agree on the sense, `2 n m` of them.
+    #[test]
+    fn the_partition_is_made_only_where_there_are_many_pairs() {
+        let none = named("none").unwrap();
+        for (shorter, longer, is_made) in [(3, 4, false), (8, 9, true)] {
+            let (one, other) = (cycle(shorter), cycle(longer));
+            let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+            let pairs = 2 * shorter * longer;
+            let states = 2 * (shorter + longer);
+            assert_eq!(pairs > 4 * states, is_made);
+            assert!(pairs > 4 + states);
+            let asked = comparison();
+            assert_eq!(asked.relation([Dart(0); 2]).unwrap().0.len(), pairs);
+            assert_eq!(asked.class.get().is_some(), is_made);
+            let asked = comparison();
+            assert_eq!(asked.walk([Dart(0); 2]), None);
+            assert_eq!(asked.class.get().is_some(), is_made);
+        }
+    }
+
+    /// Robots in cycles of 9 and of 10 junctions come into a great many pairs of poses before one of
+    /// them comes to the end of the one way that is longer.
+    #[test]
+    fn a_difference_is_found_that_many_pairs_come_before() {
+        let length = 400;
+        let one = cycle_of_ways(9, length, length);
+        let other = cycle_of_ways(10, length, length + 1);
+        let none = named("none").unwrap();
+        let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+        let poses = [Dart(0); 2];
+        let asked = comparison();
+        let walk = asked.walk(poses).unwrap();
+        assert!(asked.class.get().is_some());
+        let [here, there] = asked.starts(poses);
+        assert!(walk.verify(&here, &there));
+        // Also once the partition is made, and for the relation.
+        assert_eq!(asked.walk(poses), Some(walk));
+        assert_eq!(asked.relation(poses), None);
+        assert_eq!(comparison().relation(poses), None);
+    }
+}

@@ -228,6 +228,21 @@ mod tests {
         assert!(matches!(search.grouped(same, &()), Err(Unfinished::Unconfirmed(_))));
     }
 
+    /// A cover has at least twice as many edges.
+    #[test]
+    fn a_world_whose_states_can_be_told_apart_is_a_candidate_only_where_it_has_covers() {
+        let search = Search::new(Class::Simple, 5, named("undirected").unwrap()).unwrap();
+        let counts = |edges: usize| {
+            let seen = search.look_at(&search.sizes[edges - 1], &());
+            (seen.placed_worlds, seen.candidates.len())
+        };
+        // A chain of two, marked at an end or in the middle, might have a cover with 4 edges.
+        assert_eq!(counts(2), (2, 2));
+        // With 3 edges there is a triangle, or a star marked in the middle, and two chains and a star
+        // in which the robot always knows where it is.
+        assert_eq!(counts(3), (5, 2));
+    }
+
     /// Of all facing darts that place a marker alike, that with the least code stands for it.
     #[test]
     fn a_placed_world_is_told_by_its_least_start() {

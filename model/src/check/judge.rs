@@ -148,13 +148,12 @@ fn embeds(map: &PartialMap, graph: &EmbeddedGraph, facing: Dart) -> bool {
         let Some(entry) = darts.next() else {
             return false;
         };
-        let parent = if entry == FACING { None } else { map.opposite(entry) };
-        let mut at = match parent {
-            None if entry == FACING => facing,
-            parent => match parent.and_then(|dart: Dart| image[dart.at()]) {
-                Some(dart) => graph.opposite(dart),
-                None => return false,
-            },
+        let mut at = if entry == FACING {
+            facing
+        } else if let Some(dart) = map.opposite(entry).and_then(|dart| image[dart.at()]) {
+            graph.opposite(dart)
+        } else {
+            return false;
         };
         if map.degree(vertex) != graph.degree(graph.vertex(at)) {
             return false;

@@ -64,3 +64,19 @@ impl FromStr for Class {
         class.ok_or_else(|| UnknownClass(name.to_owned()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_class_is_told_and_found_by_its_name() {
+        let names = ["multigraph", "simple", "corridor", "planar"];
+        assert_eq!(Class::ALL.map(|class| class.to_string()), names);
+        assert_eq!(names.map(str::parse), Class::ALL.map(Ok));
+        assert_eq!(
+            "tree".parse::<Class>().unwrap_err().to_string(),
+            "`tree` is no class of worlds; there are multigraph, simple, corridor and planar"
+        );
+    }
+}

@@ -39,7 +39,8 @@ pub(super) struct Growth {
     /// The first dart of each vertex, and its degree.
     pub(super) first: [u8; MAX_EDGES + 1],
     pub(super) degree: [u8; MAX_EDGES + 1],
-    /// The vertices, as bits, that are neighbours of each vertex.
+    /// For each vertex, as bits, itself and the later ones joined to it: a simple graph lets none of
+    /// these be joined to it again. (When its turn comes, earlier ones have no free dart.)
     adjacent: [u64; MAX_EDGES + 1],
     vertices: usize,
     darts: usize,
@@ -166,7 +167,8 @@ impl Growth {
                 self.unjoin(dart, other);
             }
         }
-        for degree in (1..=self.highest_degree().min(2 * left + 2 - free.min(2 * left + 2))).rev() {
+        let most = (2 * left + 2).saturating_sub(free);
+        for degree in (1..=self.highest_degree().min(most)).rev() {
             if can_end(free + degree - 2, left) {
                 let entry = self.darts;
                 self.add_vertex(degree);
@@ -187,7 +189,7 @@ impl Growth {
         let mut partners = self.free & !(1 << dart);
         if self.class.is_simple() {
             let vertex = self.vertex[dart] as usize;
-            for neighbour in bits(self.adjacent[vertex] | 1 << vertex) {
+            for neighbour in bits(self.adjacent[vertex]) {
                 partners &= !self.darts_of(neighbour);
             }
         }
@@ -256,6 +258,7 @@ impl Growth {
         let new = self.vertices;
         self.first[new] = self.darts as u8;
         self.degree[new] = degree as u8;
+        self.adjacent[new] = 1 << new;
         self.vertex[self.darts..self.darts + degree].fill(new as u8);
         self.vertices += 1;
         self.darts += degree;
@@ -277,10 +280,10 @@ impl Growth {
     fn join(&mut self, one: usize, other: usize, word: u8) {
         self.opposite[one] = other as u8;
         self.opposite[other] = one as u8;
-        self.free &= !(1 << one | 1 << other);
+        self.free &= !(1 << one);
+        self.free &= !(1 << other);
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
         self.adjacent[from] |= 1 << to;
-        self.adjacent[to] |= 1 << from;
         self.words[self.edges] = word;
         self.edges += 1;
     }
@@ -288,10 +291,10 @@ impl Growth {
     fn unjoin(&mut self, one: usize, other: usize) {
         self.opposite[one] = FREE;
         self.opposite[other] = FREE;
-        self.free |= 1 << one | 1 << other;
+        self.free |= 1 << one;
+        self.free |= 1 << other;
         let (from, to) = (self.vertex[one] as usize, self.vertex[other] as usize);
         self.adjacent[from] &= !(1 << to);
-        self.adjacent[to] &= !(1 << from);
         self.edges -= 1;
     }
 
@@ -309,5 +312,61 @@ impl Growth {
             graph.join(Dart(dart as u32), Dart(u32::from(other)));
         }
         visit(Found { graph, automorphisms: self.rivals.count_ones() + 1 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Vertices of these degrees, and edges between some of their darts.
+    fn grown(class: Class, degrees: &[usize], edges: &[(usize, usize)]) -> Growth {
+        let mut growth = Growth::new(class, MAX_EDGES, Each::Start);
+        for &degree in degrees {
+            growth.add_vertex(degree);
+        }
+        for &(one, other) in edges {
+            growth.join(one, other, other as u8);
+        }
+        growth
+    }
+
+    #[test]
+    fn a_word_tells_the_degree_of_a_new_vertex_and_is_no_dart() {
+        for degree in 1..=DARTS as u8 {
+            assert_eq!(new_vertex(new_vertex(degree)), degree);
+            assert!(usize::from(new_vertex(degree)) >= DARTS);
+        }
+    }
+
+    /// An edge uses up two free darts, but not two at one vertex.
+    #[test]
+    fn free_darts_at_one_vertex_need_an_edge_each() {
+        let needed = |degrees: &[usize]| {
+            let growth = grown(Class::Simple, degrees, &[]);
+            growth.edges_needed(growth.free)
+        };
+        assert_eq!(needed(&[1, 1, 1, 1]), 2);
+        assert_eq!(needed(&[1, 1, 1]), 2);
+        assert_eq!(needed(&[3, 1, 1]), 3);
+        assert_eq!(needed(&[4]), 4);
+        let can_still_end = |class, left| grown(class, &[3, 1, 1], &[]).can_still_end(left);
+        assert!(can_still_end(Class::Simple, 3) && !can_still_end(Class::Simple, 2));
+        assert!(can_still_end(Class::Multigraph, 2));
+    }
+
+    /// A triangle with two free darts: in the plane, one inside and one outside are not joined.
+    #[test]
+    fn free_darts_in_two_faces_need_an_edge_each_in_the_plane() {
+        let triangle = |class, free_at_one| {
+            // Clockwise 3, 4, 5 at the one: the side of the free dart is that of the turn.
+            let out = if free_at_one == 4 { 5 } else { 4 };
+            grown(class, &[3, 3, 2], &[(0, 3), (out, 6), (7, 2)])
+        };
+        assert_eq!(triangle(Class::Planar, 4).free_in_face(1), 1 << 1);
+        assert_eq!(triangle(Class::Planar, 5).free_in_face(1), 1 << 1 | 1 << 5);
+        assert!(!triangle(Class::Planar, 4).can_still_end(1));
+        assert!(triangle(Class::Planar, 5).can_still_end(1));
+        assert!(triangle(Class::Simple, 4).can_still_end(1));
     }
 }

@@ -89,7 +89,32 @@ mod tests {
         story
     }
 
+    /// Chooses what is not there.
+    struct Elsewhere;
+
+    impl Choices for Elsewhere {
+        fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
+            Dart(map.dart_count() as u32)
+        }
+
+        fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+            hypotheses.len()
+        }
+    }
+
+    #[test]
+    fn the_default_hypothesis_is_the_last() {
+        let exploration = Exploration::new(0);
+        let hypotheses = [Dart(5), Dart(3), Dart(1)];
+        assert_eq!(Nearest.next_hypothesis(exploration.map(), &hypotheses), 2);
+    }
+
     proptest! {
+        #[test]
+        fn a_choice_of_what_is_not_there_is_the_default(graph in any_graph(Class::Multigraph, 40)) {
+            prop_assert_eq!(story(&graph, &mut Elsewhere), story(&graph, &mut Nearest));
+        }
+
         // paper: alg1.5, alg1.9
         #[test]
         fn the_default_choices_are_those_of_the_design(graph in any_graph(Class::Multigraph, 40)) {
