@@ -42,3 +42,14 @@ fn the_pictures_are_what_the_program_draws() {
     toposlam(&["explore", "worlds/shape-8.toml", "--svg", map.to_str().unwrap()]);
     assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));
 }
+
+#[test]
+fn every_test_of_the_model_is_in_its_fast_tier() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("model/tests");
+    let tier = fs::read_to_string(folder.join("fast_tier.rs")).unwrap();
+    for entry in fs::read_dir(folder).unwrap() {
+        let file = entry.unwrap().path();
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        assert!(name == "fast_tier" || tier.contains(&format!("mod {name};\n")), "{name}");
+    }
+}
