@@ -152,6 +152,8 @@ fn run<'g, C: Choose>(
     verdict?;
     claim("the run ends", ended.is_ok())?;
     claim("the truth is the world's", truth.pose == world.pose())?;
+    let moves = truth.doors.len() as u64;
+    claim("the moves are the doors taken", exploration.moves() == moves)?;
     Ok((exploration, truth))
 }
 
