@@ -55,7 +55,9 @@ fn relabelled<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usi
     };
     let facing = numbers[image[0] as usize];
     claim("the codes are the same", code(&graph, Dart(0)) == code(&copy, facing))?;
-    claim("they become equal", as_discovered(&copy, facing) == as_discovered(&graph, Dart(0)))
+    // It was drawn in the order in which a robot meets it.
+    claim("as a robot meets it, a start stays as it is", as_discovered(&graph, Dart(0)) == graph)?;
+    claim("they become equal", as_discovered(&copy, facing) == graph)
 }
 
 // paper: world.isomorphic

@@ -145,13 +145,16 @@ fn run<'g, C: Choose>(
             verdict = judge(&truth, journey, event);
         }
     };
-    let mut exploration = Exploration::new(2 * graph.dart_count());
+    // No more need be known than there is.
+    let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let ended = map_world(&mut world, &mut OpenChoices(choose), &mut exploration, &mut watch);
     choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;
     claim("the run ends", ended.is_ok())?;
     claim("the truth is the world's", truth.pose == world.pose())?;
+    let moves = truth.doors.len() as u64;
+    claim("the moves are the doors taken", exploration.moves() == moves)?;
     Ok((exploration, truth))
 }
 
