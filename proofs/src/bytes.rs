@@ -26,6 +26,7 @@ impl Bytes {
 
 impl Choose for Bytes {
     fn below(&mut self, n: u8) -> u8 {
+        assert!(n > 0, "there is something to choose from");
         let byte = self.bytes.get(self.choices.len()).copied();
         let choice = byte.unwrap_or_default() % n;
         self.choices.push(choice);

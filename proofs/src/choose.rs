@@ -10,7 +10,10 @@ use toposlam_model::{
 
 /// Who makes the choices of a lemma.
 pub trait Choose {
-    /// A number below `n`, which is at least 1.
+    /// A number below `n`.
+    ///
+    /// # Panics
+    /// Where `n` is 0: a lemma that has nothing to choose from is at fault.
     fn below(&mut self, n: u8) -> u8;
 
     /// Whether this is a case to go on with; the lemma says nothing about the others.

@@ -135,8 +135,9 @@ pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) ->
     one.0.dart_count() == other.0.dart_count() && one.0.darts().all(is_paired_once)
 }
 
-/// Whether these pairs of states are a bisimulation with the starts of the two worlds among them: in
-/// each pair robots perceive the same and can do the same, and whatever both do leads to a pair.
+/// Whether these pairs of states are a bisimulation with the starts of the two worlds among them: the
+/// states exist, with a marker that stays where it is placed; in each pair robots perceive the same
+/// and can do the same; and whatever both do leads to a pair.
 #[must_use]
 pub fn is_bisimulation<M: Marker + Clone>(
     pairs: &[(State, State)],
@@ -145,7 +146,7 @@ pub fn is_bisimulation<M: Marker + Clone>(
 ) -> bool {
     let exists = |world: &GraphWorld<M>, state: State| {
         let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
-        is_dart(state.pose) && state.placed.is_none_or(is_dart)
+        is_dart(state.pose) && state.placed.map_or(world.marker().is_movable(), is_dart)
     };
     pairs.contains(&(one.state(), other.state()))
         && pairs.iter().all(|&(here, there)| {

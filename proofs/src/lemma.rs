@@ -108,8 +108,8 @@ macro_rules! declare {
         $name:ident {
         $sentence:literal,
         paper $paper:literal,
-        exhaustive $bound:literal, $cases:literal cases: $exhaustive:expr;
-        $(sampled $sampled_bound:literal: $sampled:expr;)?
+        exhaustive $bound:tt, $cases:tt cases: $exhaustive:expr;
+        $(sampled $sampled_bound:tt: $sampled:expr;)?
         $(kani $kani_bound:literal, unwind $unwind:tt: $kani:expr;)?
         }
     )*) => {
@@ -204,7 +204,7 @@ pub(crate) mod tests {
             Err(Failure::Cases { pinned, found }) => {
                 panic!("there are {found} cases; there must be {pinned}, and at least one")
             }
-            Err(Failure::Case(Counterexample { choices, claim })) => panic!(
+            Err(Failure::Case(Counterexample { choices, claim, .. })) => panic!(
                 "it does not hold that {claim}:\n  toposlam proofs --run {name} --choices {}",
                 listed(&choices)
             ),
@@ -215,7 +215,7 @@ pub(crate) mod tests {
         let sampled = named(lemmas, name).sampled.expect("it is sampled");
         // Where few cases are those of which the lemma speaks, more are drawn.
         let config = ProptestConfig { max_global_rejects: 1 << 16, ..ProptestConfig::default() };
-        proptest!(config, |(bytes in proptest::collection::vec(any::<u8>(), 0..=256))| {
+        proptest!(config, |(bytes in proptest::collection::vec(any::<u8>(), 0..=1024))| {
             let mut choose = Bytes::new(bytes);
             match (sampled.body)(&mut choose) {
                 Ok(()) => {}

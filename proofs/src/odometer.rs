@@ -46,7 +46,7 @@ impl Odometer {
             };
             if let Some(claim) = fails {
                 let choices = odometer.digits.iter().map(|&(choice, _)| choice).collect();
-                return Err(Counterexample { choices, claim });
+                return Err(Counterexample { choices, claim, cases: accepted });
             }
             if !odometer.turn() {
                 return Ok(accepted);
@@ -72,6 +72,7 @@ const PROGRESS: u64 = 1 << 16;
 impl Choose for Odometer {
     #[inline]
     fn below(&mut self, n: u8) -> u8 {
+        assert!(n > 0, "there is something to choose from");
         let choice = if let Some(&(choice, of)) = self.digits.get(self.made) {
             self.wavered |= of != n;
             choice
@@ -96,6 +97,8 @@ pub struct Counterexample {
     pub choices: Vec<u8>,
     /// What should hold, and does not.
     pub claim: &'static str,
+    /// In how many cases before it the lemma holds.
+    pub cases: u64,
 }
 
 /// The choices stand with commas between them, as they are written to make the case again.

@@ -49,13 +49,10 @@ impl fmt::Display for Misfit {
                 write!(out, "choice number {place} is {choice}; it is at most {}", of - 1)
             }
             Self::TooFew { choices, needed } => {
-                write!(
-                    out,
-                    "these are {choices} choices; a case that begins so has at least {needed}"
-                )
+                write!(out, "a case that begins so has at least {needed} choices, not {choices}")
             }
             Self::TooMany { choices, needed } => {
-                write!(out, "these are {choices} choices; the case that begins so has {needed}")
+                write!(out, "the case that begins so has {needed} choices, not {choices}")
             }
         }
     }
@@ -90,6 +87,7 @@ impl Replay {
 
 impl Choose for Replay {
     fn below(&mut self, n: u8) -> u8 {
+        assert!(n > 0, "there is something to choose from");
         self.made += 1;
         match self.choices.get(self.made - 1) {
             Some(&choice) if choice < n => choice,

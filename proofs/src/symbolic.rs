@@ -8,6 +8,7 @@ pub struct Symbolic;
 
 impl Choose for Symbolic {
     fn below(&mut self, n: u8) -> u8 {
+        assert!(n > 0, "there is something to choose from");
         // The only choice there is stays a constant, and so do the bounds of loops made of it.
         if n == 1 {
             return 0;

@@ -3,6 +3,7 @@
 //!
 //! Nothing here is the specification's but embedded graphs, percepts and the verifier of a bijection:
 //! the map, the walks in it and the hypotheses are written anew, and stateright explores the states.
+//! The way back is not: after a rejection the robot is where it was.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 

@@ -156,6 +156,9 @@ fn named<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
     if let Some(lemma) = lemmas.iter().find(|lemma| lemma.name == name) {
         return Ok(lemma);
     }
+    if name.is_empty() {
+        return Err(Failure::at("--run", "the name of a lemma is missing"));
+    }
     let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
         [lemma] => return Ok(lemma),

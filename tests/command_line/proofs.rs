@@ -157,11 +157,10 @@ fn choices_that_make_no_case_are_refused_with_their_place() {
     let length = choices.len();
     let place = format!("error: --choices: {}: ", lemma.name);
     let message = refused(&choices[1..]);
-    let few =
-        format!("these are {} choices; a case that begins so has at least {length}", length - 1);
+    let few = format!("a case that begins so has at least {length} choices, not {}", length - 1);
     assert_eq!(message, format!("{place}{few}\n"));
     let message = refused(&[&choices[..], &[0]].concat());
-    let many = format!("these are {} choices; the case that begins so has {length}", length + 1);
+    let many = format!("the case that begins so has {length} choices, not {}", length + 1);
     assert_eq!(message, format!("{place}{many}\n"));
     let message = refused(&[&[255], &choices[1..]].concat());
     assert!(message.starts_with(&format!("{place}choice number 1 is 255; it is at most ")));

@@ -5,6 +5,8 @@
 
 use thiserror::Error;
 
+use super::MAX_EDGES;
+
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Fault {
@@ -68,6 +70,16 @@ pub enum Fault {
     },
 }
 
+/// Why a graph cannot have so many darts; `None` if it can.
+#[must_use]
+pub fn size_fault(darts: usize) -> Option<Fault> {
+    match darts / 2 {
+        0 => Some(Fault::NoEdge),
+        edges if edges > MAX_EDGES => Some(Fault::TooManyEdges),
+        _ => None,
+    }
+}
+
 /// Why `opposite` is not an involution without fixed points on its own indices; `None` if it is.
 #[must_use]
 pub fn opposite_fault(opposite: &[u32]) -> Option<Fault> {
@@ -107,4 +119,17 @@ pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<Fault> {
         dart += 1;
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_graph_has_at_least_one_edge_and_not_more_than_can_be_numbered() {
+        assert_eq!(size_fault(0), Some(Fault::NoEdge));
+        assert_eq!(size_fault(2), None);
+        assert_eq!(size_fault(2 * MAX_EDGES), None);
+        assert_eq!(size_fault(2 * (MAX_EDGES + 1)), Some(Fault::TooManyEdges));
+    }
 }

@@ -2,7 +2,7 @@
 //! Section 2.1.
 
 use toposlam_model::{
-    embedded_graph::MAX_EDGES,
+    embedded_graph::{Fault, MAX_EDGES, size_fault},
     percept::{Door, Percept, Sighting},
 };
 
@@ -41,18 +41,18 @@ declare! {
         exhaustive "every start with up to 4 edges, every pose, doors up to 15 and the 16 highest \
                     numbers", 196_352 cases: behind::<_, 1, 4, 1>;
         sampled "starts with up to 40 edges, any number of 32 bits": behind::<_, 1, 40, 8>;
-        kani "every start with 2 edges, every pose, any number of 32 bits", unwind 9:
-            behind::<_, 2, 2, 8>;
+        kani "every start with 2 edges, every pose, doors up to 255 and the 256 highest numbers",
+            unwind 8: behind::<_, 2, 2, 2>;
     }
     the_highest_numbers_fit {
-        "A vertex of any degree can be added to a graph of any size that a constructor accepts: the \
-         sum fits in 32 bits, no dart has the number that stands for none, and the words of a code \
-         for darts and for vertices differ.",
+        "A graph is refused for its size exactly if it has no edge, or more than can be numbered; and \
+         to a graph that is not, a vertex can be added with as many darts, so that all numbers fit in \
+         32 bits, and none is that which stands for none.",
         paper "2.1",
-        exhaustive "a size and a degree, each up to 255 or within 256 of the most", 262_144 cases:
+        exhaustive "two numbers within 256 of 0 or of the most darts", 261_121 cases:
             the_highest::<_, 2>;
-        sampled "any size and degree": the_highest::<_, 8>;
-        kani "any size and degree", unwind 9: the_highest::<_, 8>;
+        sampled "any numbers of 32 bits": the_highest::<_, 8>;
+        kani "any numbers of 32 bits", unwind 9: the_highest::<_, 8>;
     }
 }
 
@@ -118,22 +118,24 @@ fn behind<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     claim("it stands so many places clockwise", u64::from(graph.index(dart)) == place)
 }
 
+/// The most darts that a graph can have, and one more that makes no edge.
+const MOST_DARTS: usize = 2 * MAX_EDGES + 1;
+
 fn the_highest<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
-    let most = 2 * MAX_EDGES;
-    // From either end of what is possible.
-    let upto = |number: u32| match number as usize {
-        number if number <= most => Some(number),
-        number => most.checked_sub(u32::MAX as usize - number),
+    // Around each place where anything could change.
+    let mut near = || {
+        let place = [0, MOST_DARTS as u32][usize::from(choose.below(2))];
+        place.wrapping_add(draw::number::<NIBBLES>(choose)) as usize
     };
-    let (darts, degree) =
-        (upto(draw::number::<NIBBLES>(choose)), upto(draw::number::<NIBBLES>(choose)));
-    choose
-        .show(|| Exhibit::Value { name: "darts, degree", value: format!("{darts:?}, {degree:?}") });
-    let (Some(darts), Some(degree)) = (darts, degree) else {
-        return given(choose, false);
+    let (darts, degree) = (near(), near());
+    choose.show(|| Exhibit::Value { name: "darts, degree", value: format!("{darts}, {degree}") });
+    let expected = match darts {
+        0 | 1 => Some(Fault::NoEdge),
+        2..=MOST_DARTS => None,
+        _ => Some(Fault::TooManyEdges),
     };
-    claim("the sum fits", u32::try_from(darts + degree).is_ok())?;
-    let (darts, degree) = (darts as u32, degree as u32);
-    claim("no dart has the number that stands for none", darts + degree != u32::MAX)?;
-    claim("words of darts and of vertices differ", darts < u32::MAX - degree)
+    claim("it is refused exactly for its size", size_fault(darts) == expected)?;
+    given(choose, expected.is_none() && size_fault(degree).is_none())?;
+    let sum = u32::try_from(darts + degree);
+    claim("all numbers fit, and none stands for none", sum.is_ok_and(|sum| sum < u32::MAX))
 }

@@ -12,11 +12,18 @@ use toposlam_model::{
 
 use crate::{
     choose::{Case, Choose, Exhibit, Stop, claim, given},
+    definition::isomorphic,
     draw,
     lemma::declare,
 };
 
 declare! {
+    the_worlds_of_figure_1_differ {
+        "No dart of the second world of Figure 1 makes it isomorphic, as a start, to the first: the two \
+         worlds are not isomorphic.",
+        paper "2.2, Figure 1",
+        exhaustive "every dart", 16 cases: differ::<_>;
+    }
     the_starts_of_figure_1_are_related {
         "The base of the printed proof: the starts of the two worlds of Figure 1 are related, and a \
          robot that leaves by any door comes to a vertex with 3 doors, which lead to vertices with 4, \
@@ -78,6 +85,14 @@ fn related([one, other]: &[EmbeddedGraph; 2], here: Dart, there: Dart) -> bool {
     one.degree_around(here) == other.degree_around(there)
         && seen(one, here) == seen(other, there)
         && neighbours(one, here) == neighbours(other, there)
+}
+
+// paper: fig1.different
+fn differ<C: Choose>(choose: &mut C) -> Case {
+    let [one, other] = worlds(choose)?;
+    let there = draw::dart(choose, &other);
+    choose.show(|| Exhibit::Value { name: "dart", value: there.0.to_string() });
+    claim("the starts are not isomorphic", !isomorphic((&one, FACING), (&other, there)))
 }
 
 // paper: fig1.base

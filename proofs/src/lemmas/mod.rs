@@ -20,16 +20,16 @@ pub fn all() -> impl Iterator<Item = &'static Lemma> {
 
 /// The lemmas of each file.
 const THEMES: &[&[Lemma]] = &[
-    arithmetic::LEMMAS,
     embedded_graph::LEMMAS,
-    retracing::LEMMAS,
+    decoders::LEMMAS,
+    arithmetic::LEMMAS,
     codes::LEMMAS,
     sighting::LEMMAS,
+    retracing::LEMMAS,
     validation::LEMMAS,
     mapping::LEMMAS,
     figure_1::LEMMAS,
     certificates::LEMMAS,
-    decoders::LEMMAS,
 ];
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use toposlam_model::{
     embedded_graph::Dart,
     marker::{Directional, Marker, Undirected},
-    percept::Sighting,
+    percept::{Percept, Sighting},
 };
 
 use crate::{
@@ -21,6 +21,16 @@ declare! {
         exhaustive "every start with up to 4 edges, any two poses", 48_016 cases: directional::<_, 1, 4>;
         sampled "starts with up to 40 edges": directional::<_, 1, 40>;
         kani "every start with 2 edges, any two poses", unwind 8: directional::<_, 2, 2>;
+    }
+    a_turned_robot_perceives_the_turned_percept {
+        "What a robot perceives that has come in by the dart behind a door is what it perceives in its \
+         pose, with doors counted from that door.",
+        paper "2.1; Algorithm 1, line 15",
+        // The squares of the degrees of all vertices.
+        exhaustive "every start with up to 4 edges, every pose, every door", 28_788 cases:
+            turned::<_, 1, 4>;
+        sampled "starts with up to 40 edges": turned::<_, 1, 40>;
+        kani "every start with 2 edges, every pose, every door", unwind 8: turned::<_, 2, 2>;
     }
     an_undirected_sighting_does_not_tell_the_entry_dart {
         "There are worlds where an undirected marker gives the same sighting, at the marked vertex, \
@@ -56,6 +66,20 @@ fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
         "the same sighting at the marked vertex means the same entry dart",
         !(is_here(one) && is_here(other) && seen(one) == seen(other) && one != other),
     )
+}
+
+// paper: alg1.15
+fn turned<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+    let graph = draw::start_of::<LEAST, MOST>(choose)?;
+    let pose = draw::dart(choose, &graph);
+    let door = draw::door(choose, &graph, pose);
+    choose.show(|| Exhibit::walk(pose, &[door]));
+    let perceived = |pose| Percept {
+        degree: graph.degree_around(pose),
+        sighting: Directional.sighting(&graph, Dart(0), pose),
+    };
+    let turned = perceived(graph.behind(pose, door));
+    claim("it is the percept, turned", turned == perceived(pose).seen_from(door))
 }
 
 // paper: marker.undirected-insufficient

@@ -48,7 +48,7 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// Prints it, and answers what it comes to. A case that the lemma excludes shows nothing.
+    /// Prints it, and answers what it comes to. A case that the lemma excludes proves nothing.
     pub(super) fn tell(&self, json: bool, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let (outcome, word) = match self.case {
             Ok(()) => (Outcome::Holds, "holds"),

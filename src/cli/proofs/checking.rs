@@ -30,13 +30,13 @@ pub(super) enum Ending {
 }
 
 impl Ending {
-    /// In how many cases the lemma holds, as far as that is known.
-    pub(super) fn cases(&self) -> Option<u64> {
+    /// In how many cases the lemma holds; where it fails, in how many before that.
+    pub(super) fn cases(&self) -> u64 {
         match *self {
             Self::Holds { cases }
             | Self::Interrupted { cases }
-            | Self::Miscounted { found: cases, .. } => Some(cases),
-            Self::Fails(_) => None,
+            | Self::Miscounted { found: cases, .. }
+            | Self::Fails(Counterexample { cases, .. }) => cases,
         }
     }
 }

@@ -19,7 +19,7 @@ const ENGINES: [(&str, &str); 3] = [
     (
         KANI,
         "every case within the bound, made symbolic: proofs/kani/verify, where Kani is installed; \
-         neither this program nor cargo test does it",
+         neither this program nor cargo test does it, and no result of it stands here",
     ),
 ];
 

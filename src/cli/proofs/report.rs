@@ -62,7 +62,10 @@ impl<'o> Report<'o> {
                 self.held += 1;
                 self.cases += cases;
             }
-            Ending::Interrupted { .. } => self.interrupted = true,
+            Ending::Interrupted { cases } => {
+                self.interrupted = true;
+                self.cases += cases;
+            }
             failed => self.failed.push((lemma, failed)),
         }
         Ok(())
@@ -75,7 +78,7 @@ impl<'o> Report<'o> {
             Ending::Fails(_) | Ending::Miscounted { .. } => "fails",
             Ending::Interrupted { .. } => "interrupted",
         };
-        let cases = ending.cases().map_or("-".to_owned(), cases);
+        let cases = cases(ending.cases());
         let [name, width] = self.widths;
         writeln!(self.out, "{:name$}  {cases:>width$}  {seconds:>6.2} s  {word}", lemma.name)
     }
@@ -121,7 +124,7 @@ impl<'o> Report<'o> {
 fn print_failure(out: &mut dyn Write, lemma: &Lemma, ending: &Ending) -> io::Result<()> {
     match ending {
         Ending::Fails(failed) => {
-            let Counterexample { choices, claim } = failed;
+            let Counterexample { choices, claim, .. } = failed;
             print_head(out, lemma, Engine::Exhaustive, choices, Some(claim))?;
             match again(lemma, failed) {
                 Some(again) => again.shown.tell(out),
@@ -150,8 +153,8 @@ fn again<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<Again<'a>> 
 struct Line<'a> {
     schema: u32,
     lemma: &'a str,
-    /// None where it fails in one.
-    cases: Option<u64>,
+    /// Where it fails in one, those before that.
+    cases: u64,
     seconds: f64,
     holds: bool,
     choices: Option<&'a [u8]>,
@@ -197,7 +200,7 @@ struct TotalsLine {
     schema: u32,
     lemmas: usize,
     held: usize,
-    /// Of the lemmas that hold.
+    /// In which a lemma was seen to hold.
     cases: u64,
     seconds: f64,
     #[serde(skip_serializing_if = "std::ops::Not::not")]

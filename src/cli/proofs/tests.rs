@@ -105,7 +105,7 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_makes_it_again() {
     assert_eq!(outcome.unwrap(), Outcome::Violated);
     let rows: Vec<_> = text.lines().take(2).collect();
     assert!(rows[0].starts_with("low    4 cases  ") && rows[0].ends_with(" s  holds"), "{text}");
-    assert!(rows[1].starts_with("entry        -  ") && rows[1].ends_with(" s  fails"), "{text}");
+    assert!(rows[1].starts_with("entry   1 case  ") && rows[1].ends_with(" s  fails"), "{text}");
     let (_, failed) = text.split_at(rows[0].len() + rows[1].len() + 2);
     assert_eq!(failed, format!("{FAILED}1 of 2 lemmas hold, 4 cases\n"));
     // As the line says.
@@ -123,7 +123,7 @@ fn a_program_is_told_the_same() {
     let lines = objects(&text);
     let [failed, held, totals] = lines.as_slice() else { panic!("{text}") };
     assert_eq!((&failed["lemma"], &failed["holds"]), (&json!("entry"), &json!(false)));
-    assert_eq!((&failed["cases"], &failed["choices"]), (&Value::Null, &json!([0, 1, 0, 0, 0])));
+    assert_eq!((&failed["cases"], &failed["choices"]), (&json!(1), &json!([0, 1, 0, 0, 0])));
     assert_eq!(failed["claim"], "the robot has come in by the facing dart");
     let world = world_file::read(failed["worlds"][0].to_string().as_bytes()).unwrap();
     assert_eq!((world.graph.edge_count(), world.start), (1, Some(Dart(0))));
