@@ -14,22 +14,24 @@ use crate::{
 
 declare! {
     doors_stay_in_their_range {
-        "At a vertex of any degree, the door from one dart to another is below the degree and leads \
-         there, its inverse leads back, and it is the door that is seen from the one.",
+        "At a vertex of any degree, the door from one dart to another is below the degree and \
+         leads there, its inverse leads back, and it is the door that is seen from the one.",
         paper "2.1",
         // The squares of 0 ... 31.
-        exhaustive "two darts and a degree, each up to 15 or among the 16 highest numbers", 10_416 cases:
+        exhaustive "two darts and a degree, each up to 15 or among the 16 highest \
+                    numbers", 10_416 cases:
             doors::<_, 1>;
         sampled "any numbers of 32 bits": doors::<_, 8>;
         kani "any numbers of 32 bits", unwind 9: doors::<_, 8>;
     }
     a_percept_can_be_turned_and_turned_back {
-        "The percept of a vertex, seen from another entry and from there again from the first, is the \
-         same percept, if what was seen does not lie on the edge of the entry.",
+        "The percept of a vertex, seen from another entry and from there again from the first, is \
+         the same percept, if what was seen does not lie on the edge of the entry.",
         paper "2.1",
         // The squares of 0 ... 31, for each of six sightings.
-        exhaustive "an entry, a sighting and a degree, each up to 15 or among the 16 highest numbers",
-            62_496 cases: turned::<_, 1>;
+        exhaustive "an entry, a sighting and a degree, each up to 15 or among the 16 highest \
+                    numbers", 62_496 cases:
+            turned::<_, 1>;
         sampled "any numbers of 32 bits": turned::<_, 8>;
         kani "any numbers of 32 bits", unwind 9: turned::<_, 8>;
     }
@@ -39,15 +41,17 @@ declare! {
         paper "2.1",
         // 2 2 + 10 4 + 74 6 + 706 8 poses.
         exhaustive "every start with up to 4 edges, every pose, doors up to 15 and the 16 highest \
-                    numbers", 196_352 cases: behind::<_, 1, 4, 1>;
+                    numbers", 196_352 cases:
+            behind::<_, 1, 4, 1>;
         sampled "starts with up to 40 edges, any number of 32 bits": behind::<_, 1, 40, 8>;
-        kani "every start with 2 edges, every pose, doors up to 255 and the 256 highest numbers",
-            unwind 8: behind::<_, 2, 2, 2>;
+        kani "every start with 2 edges, every pose, doors up to 255 and the 256 highest \
+              numbers", unwind 8:
+            behind::<_, 2, 2, 2>;
     }
     the_highest_numbers_fit {
-        "A graph is refused for its size exactly if it has no edge, or more than can be numbered; and \
-         to a graph that is not, a vertex can be added with as many darts, so that all numbers fit in \
-         32 bits, and none is that which stands for none.",
+        "A graph is refused for its size exactly if it has no edge, or more than can be numbered; \
+         and to a graph that is not, a vertex can be added with as many darts, so that all numbers \
+         fit in 32 bits, and none is that which stands for none.",
         paper "2.1",
         exhaustive "two numbers within 256 of 0 or of the most darts", 261_121 cases:
             the_highest::<_, 2>;

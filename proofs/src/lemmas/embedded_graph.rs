@@ -14,46 +14,54 @@ use crate::{
 
 declare! {
     opposite_is_checked {
-        "An array is refused as `opposite` exactly if it is no involution without fixed points, and \
-         the fault that is told is there.",
+        "An array is refused as `opposite` exactly if it is no involution without fixed points, \
+         and the fault that is told is there.",
         paper "2.1",
-        exhaustive "every array of up to 6 entries, each up to 6 or the highest number", 299_593 cases:
+        exhaustive "every array of up to 6 entries, each up to 6 or the highest \
+                    number", 299_593 cases:
             opposite_is_checked::<_, 0, 6, 0>;
-        sampled "involutions of up to 60 darts, up to two entries altered": altered_opposite::<_, 60>;
+        sampled "involutions of up to 60 darts, up to two entries altered":
+            altered_opposite::<_, 60>;
         kani "every array of 6 numbers of 32 bits", unwind 9: opposite_is_checked::<_, 6, 6, 8>;
     }
     clockwise_is_checked {
         "An array is refused as `clockwise` exactly if it is no permutation, and the fault that is \
          told is there.",
         paper "2.1",
-        exhaustive "every array of up to 6 entries, each up to 6 or the highest number", 299_593 cases:
+        exhaustive "every array of up to 6 entries, each up to 6 or the highest \
+                    number", 299_593 cases:
             clockwise_is_checked::<_, 0, 6, 0>;
-        sampled "permutations of up to 60 darts, up to two entries altered": altered_clockwise::<_, 60>;
+        sampled "permutations of up to 60 darts, up to two entries altered":
+            altered_clockwise::<_, 60>;
         kani "every array of 6 numbers of 32 bits", unwind 9: clockwise_is_checked::<_, 6, 6, 8>;
     }
     arrays_are_accepted_exactly_if_they_are_a_graph {
-        "Two arrays are accepted exactly if they are `opposite` and `clockwise` of a connected graph \
-         with an edge, and then the graph has them, under the numbers that are told.",
+        "Two arrays are accepted exactly if they are `opposite` and `clockwise` of a connected \
+         graph with an edge, and then the graph has them, under the numbers that are told.",
         paper "2.1",
-        exhaustive "any two arrays of up to 4 entries, each up to 4 or the highest number", 2_418_025 cases:
+        exhaustive "any two arrays of up to 4 entries, each up to 4 or the highest \
+                    number", 2_418_025 cases:
             arrays_are_accepted::<_, 0, 4, 0>;
         kani "any two arrays of 4 numbers of 32 bits", unwind 9: arrays_are_accepted::<_, 4, 4, 8>;
     }
     permutations_are_accepted_exactly_if_connected {
-        "An involution without fixed points and a permutation are accepted exactly if each dart can \
-         be reached from each other, and then the graph has them, under the numbers that are told.",
+        "An involution without fixed points and a permutation are accepted exactly if each dart \
+         can be reached from each other, and then the graph has them, under the numbers that are \
+         told.",
         paper "2.1",
         // 2 + 3 4! + 15 6! + 105 8!
         exhaustive "every two such permutations of up to 8 darts", 4_244_474 cases:
             permutations_are_accepted::<_, 1, 4, 8>;
         sampled "permutations of up to 40 darts": permutations_are_accepted::<_, 1, 20, 40>;
-        kani "every two such permutations of 4 darts", unwind 5: permutations_are_accepted::<_, 2, 2, 4>;
+        kani "every two such permutations of 4 darts", unwind 5:
+            permutations_are_accepted::<_, 2, 2, 4>;
     }
     darts_that_nothing_leads_out_of_are_all_darts {
-        "A set of darts, not empty, that holds with each dart its opposite and the next one clockwise \
-         is the set of all darts.",
+        "A set of darts, not empty, that holds with each dart its opposite and the next one \
+         clockwise is the set of all darts.",
         paper "2.1",
-        exhaustive "every such set in every start with up to 4 edges", 792 cases: closed_sets::<_, 1, 4>;
+        exhaustive "every such set in every start with up to 4 edges", 792 cases:
+            closed_sets::<_, 1, 4>;
         kani "every such set in every start with 2 edges", unwind 8: closed_sets::<_, 2, 2>;
     }
 }

@@ -19,22 +19,22 @@ use crate::{
 
 declare! {
     the_worlds_of_figure_1_differ {
-        "No dart of the second world of Figure 1 makes it isomorphic, as a start, to the first: the two \
-         worlds are not isomorphic.",
+        "No dart of the second world of Figure 1 makes it isomorphic, as a start, to the first: \
+         the two worlds are not isomorphic.",
         paper "2.2, Figure 1",
         exhaustive "every dart", 16 cases: differ::<_>;
     }
     the_starts_of_figure_1_are_related {
-        "The base of the printed proof: the starts of the two worlds of Figure 1 are related, and a \
-         robot that leaves by any door comes to a vertex with 3 doors, which lead to vertices with 4, \
-         3 and 3.",
+        "The base of the printed proof: the starts of the two worlds of Figure 1 are related, and \
+         a robot that leaves by any door comes to a vertex with 3 doors, which lead to vertices \
+         with 4, 3 and 3.",
         paper "2.2, Figure 1",
         exhaustive "every door", 4 cases: base::<_>;
         kani "every door", unwind 17: base::<_>;
     }
     related_poses_of_figure_1_stay_related {
-        "The step of the printed proof: from any two related poses of the two worlds of Figure 1, each \
-         door leads to related poses.",
+        "The step of the printed proof: from any two related poses of the two worlds of Figure 1, \
+         each door leads to related poses.",
         paper "2.2, Figure 1",
         // 4 poses of each of the four kinds in either world; 4 doors for one kind, 3 for the others.
         exhaustive "any two related poses, every door", 208 cases: step::<_>;

@@ -28,8 +28,8 @@ const LARGER_RUNS: &str = "starts with up to 20 edges, any choices";
 
 declare! {
     the_map_embeds_in_the_world {
-        "After each round the known map embeds in the world, dart for dart, with degrees, orders and \
-         edges kept, and the robot is where it believes to be.",
+        "After each round the known map embeds in the world, dart for dart, with degrees, orders \
+         and edges kept, and the robot is where it believes to be.",
         paper "2.3; Algorithm 1, lines 18 to 23",
         exhaustive EVERY_RUN, RUNS cases:
             the_map_embeds::<_, 1, 4>;
@@ -44,8 +44,8 @@ declare! {
         sampled LARGER_RUNS: confirmed_is_true::<_, 1, 20>;
     }
     the_true_hypothesis_is_never_rejected {
-        "If the edge explored leads to a known vertex, then the true hypothesis is not rejected, and \
-         the loop is closed there; if not, none is confirmed, and a vertex is added.",
+        "If the edge explored leads to a known vertex, then the true hypothesis is not rejected, \
+         and the loop is closed there; if not, none is confirmed, and a vertex is added.",
         paper "2.3; Algorithm 1, lines 7 to 17",
         exhaustive EVERY_RUN, RUNS cases:
             true_is_not_rejected::<_, 1, 4>;
@@ -53,8 +53,8 @@ declare! {
     }
     each_round_explores_one_edge {
         "A round takes from U the dart explored, and one more where it closes a loop; else it adds \
-         one less than the degree of the new vertex. There are as many rounds as edges, and then U is \
-         empty.",
+         one less than the degree of the new vertex. There are as many rounds as edges, and then U \
+         is empty.",
         paper "2.3; Algorithm 1, lines 4 to 23",
         exhaustive EVERY_RUN, RUNS cases:
             one_edge_a_round::<_, 1, 4>;
@@ -69,15 +69,16 @@ declare! {
         sampled LARGER_RUNS: a_round_costs::<_, 1, 20>;
     }
     the_rounds_together_cost_the_bound {
-        "Added up over the rounds r = 1 ... m, n + 2 (2 m - 2 r + 1) (n - 1) is m n + 2 m^2 (n - 1).",
+        "Added up over the rounds r = 1 ... m, n + 2 (2 m - 2 r + 1) (n - 1) is m n + 2 m^2 (n - \
+         1).",
         paper "2.3, cost",
         exhaustive "m and n from 1 to 64", 4096 cases: the_sum::<_, 64>;
         sampled "m and n from 1 to 240": the_sum::<_, 240>;
         kani "m and n from 1 to 8", unwind 9: the_sum::<_, 8>;
     }
     algorithm_1_maps_the_world {
-        "Algorithm 1 ends, with a map isomorphic to the world as a start, the robot where it believes \
-         to be, after at most m n + 2 m^2 (n - 1) moves.",
+        "Algorithm 1 ends, with a map isomorphic to the world as a start, the robot where it \
+         believes to be, after at most m n + 2 m^2 (n - 1) moves.",
         paper "2.3",
         exhaustive EVERY_RUN, RUNS cases:
             the_theorem::<_, 1, 4>;

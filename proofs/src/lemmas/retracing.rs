@@ -10,11 +10,12 @@ use crate::{
 
 declare! {
     the_way_back_retraces_the_path {
-        "After doors d1 ... dk from a pose, the doors 0, -dk, ..., -d2 lead to the vertex where the \
-         path began, by the dart d1 places clockwise from the pose; and one more door, -d1, over the \
-         edge of the pose.",
+        "After doors d1 ... dk from a pose, the doors 0, -dk, ..., -d2 lead to the vertex where \
+         the path began, by the dart d1 places clockwise from the pose; and one more door, -d1, \
+         over the edge of the pose.",
         paper "2.1; Algorithm 1, line 15",
-        exhaustive "every start with up to 3 edges, every pose, every path of up to 4 moves", 213_132 cases:
+        exhaustive "every start with up to 3 edges, every pose, every path of up to 4 \
+                    moves", 213_132 cases:
             the_way_back::<_, 1, 3, 4>;
         sampled "starts with up to 20 edges, paths of up to 40 moves": the_way_back::<_, 1, 20, 40>;
         kani "every start with 2 edges, every pose, every path of up to 2 moves", unwind 8:

@@ -14,17 +14,18 @@ use crate::{
 
 declare! {
     a_directional_sighting_tells_the_entry_dart {
-        "At the marked vertex a directional marker is seen along a door, and from any two different \
-         entry darts along different doors; nowhere else is it seen.",
+        "At the marked vertex a directional marker is seen along a door, and from any two \
+         different entry darts along different doors; nowhere else is it seen.",
         paper "2.3",
         // Each start with m edges, its facing dart, and 2 m times 2 m poses.
-        exhaustive "every start with up to 4 edges, any two poses", 48_016 cases: directional::<_, 1, 4>;
+        exhaustive "every start with up to 4 edges, any two poses", 48_016 cases:
+            directional::<_, 1, 4>;
         sampled "starts with up to 40 edges": directional::<_, 1, 40>;
         kani "every start with 2 edges, any two poses", unwind 8: directional::<_, 2, 2>;
     }
     a_turned_robot_perceives_the_turned_percept {
-        "What a robot perceives that has come in by the dart behind a door is what it perceives in its \
-         pose, with doors counted from that door.",
+        "What a robot perceives that has come in by the dart behind a door is what it perceives in \
+         its pose, with doors counted from that door.",
         paper "2.1; Algorithm 1, line 15",
         // The squares of the degrees of all vertices.
         exhaustive "every start with up to 4 edges, every pose, every door", 28_788 cases:
@@ -33,12 +34,13 @@ declare! {
         kani "every start with 2 edges, every pose, every door", unwind 8: turned::<_, 2, 2>;
     }
     an_undirected_sighting_does_not_tell_the_entry_dart {
-        "There are worlds where an undirected marker gives the same sighting, at the marked vertex, \
-         for two entry darts.",
+        "There are worlds where an undirected marker gives the same sighting, at the marked \
+         vertex, for two entry darts.",
         paper "2.2",
         exhaustive "witnesses among the starts with up to 3 edges, any two poses", 1046 cases:
             undirected::<_, 1, 3>;
-        kani "witnesses among the starts with 2 edges, any two poses", unwind 8: undirected::<_, 2, 2>;
+        kani "witnesses among the starts with 2 edges, any two poses", unwind 8:
+            undirected::<_, 2, 2>;
     }
 }
 

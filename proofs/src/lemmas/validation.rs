@@ -15,8 +15,8 @@ use crate::{
 
 declare! {
     a_door_is_injective {
-        "The same door, taken from two poses at which it exists, leads to the same pose only if these \
-         are the same.",
+        "The same door, taken from two poses at which it exists, leads to the same pose only if \
+         these are the same.",
         paper "2.1",
         exhaustive "every start with up to 4 edges, any two poses, every door", 201_988 cases:
             a_door_is_injective::<_, 1, 4>;
@@ -25,12 +25,14 @@ declare! {
             a_door_is_injective::<_, 2, 2>;
     }
     validation_is_sound {
-        "If the same doors can be taken from two poses of one world, and lead to the directional marker \
-         with the same sighting, then the poses are the same.",
+        "If the same doors can be taken from two poses of one world, and lead to the directional \
+         marker with the same sighting, then the poses are the same.",
         paper "2.3; Algorithm 1, lines 10 to 17",
-        exhaustive "every start with up to 3 edges, any two poses, every path of up to 4 moves", 188_115 cases:
+        exhaustive "every start with up to 3 edges, any two poses, every path of up to 4 \
+                    moves", 188_115 cases:
             validation_is_sound::<_, 1, 3, 4>;
-        sampled "starts with up to 4 edges, paths of up to 6 moves": validation_is_sound::<_, 1, 4, 6>;
+        sampled "starts with up to 4 edges, paths of up to 6 moves":
+            validation_is_sound::<_, 1, 4, 6>;
         kani "every start with 2 edges, any two poses, every path of up to 2 moves", unwind 8:
             validation_is_sound::<_, 2, 2, 2>;
     }
