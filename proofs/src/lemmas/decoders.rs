@@ -40,8 +40,8 @@ declare! {
         kani "any 5 bytes, read and not written", unwind 9: only_read::<_, 5, 0>;
     }
     wide_planar_code_is_an_error_or_worlds {
-        "The same of planar_code with numbers of two bytes, but that writing may take fewer bytes: \
-         the worlds written read as the same worlds.",
+        "Whatever bytes stand for planar_code with numbers of two bytes, each world read of them is \
+         a simple one, and the worlds written read as the same worlds; else there is an error.",
         paper "2.1",
         // The powers of 3 from 0 to 11.
         exhaustive "up to 11 bytes from 0 to 2, after a header that tells the order", 265_720 cases:
