@@ -277,6 +277,10 @@ mod tests {
             "edge `e` stands 1 times (a); an edge has two ends"
         );
         assert_eq!(
+            message(edges(&[("a", &["e"; 8])])),
+            "edge `e` stands 8 times (a, a, a, a, a, a, a, a); an edge has two ends"
+        );
+        assert_eq!(
             message(edges(&[("a", &["e"; 9])])),
             "edge `e` stands 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends"
         );
