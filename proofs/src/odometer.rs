@@ -114,3 +114,53 @@ impl fmt::Display for Counterexample {
 pub fn listed(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choose::{claim, given};
+
+    fn exhaust(lemma: impl FnMut(&mut Odometer) -> Case) -> Result<u64, Counterexample> {
+        Odometer::exhaust(lemma, &mut |_| {})
+    }
+
+    #[test]
+    fn later_choices_may_depend_on_earlier_ones() {
+        let mut cases = Vec::new();
+        let count = exhaust(|choose| {
+            let first = choose.below(3);
+            let second = if first == 1 { choose.below(2) } else { 0 };
+            given(choose, first < 2)?;
+            cases.push((first, second));
+            Ok(())
+        });
+        assert_eq!((count, cases), (Ok(3), vec![(0, 0), (1, 0), (1, 1)]));
+    }
+
+    #[test]
+    fn the_first_case_that_fails_is_told_with_its_choices() {
+        let failed = exhaust(|choose| {
+            let (one, other) = (choose.below(3), choose.below(3));
+            claim("they are not both 1", one != 1 || other != 1)
+        });
+        let claim = "they are not both 1";
+        assert_eq!(failed, Err(Counterexample { choices: vec![1, 1], claim, cases: 4 }));
+    }
+
+    #[test]
+    fn a_lemma_that_chooses_otherwise_the_next_time_fails() {
+        let claim = "the lemma has the same choices after the same choices";
+        for (then, choices) in [(vec![3, 2], vec![0, 1]), (vec![2], vec![0, 1])] {
+            let mut made = 0;
+            let wavering = exhaust(|choose| {
+                made += 1;
+                let ways: &[u8] = if made == 1 { &[2, 2] } else { &then };
+                for &n in ways {
+                    choose.below(n);
+                }
+                Ok(())
+            });
+            assert_eq!(wavering, Err(Counterexample { choices, claim, cases: 1 }));
+        }
+    }
+}
