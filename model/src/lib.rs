@@ -13,6 +13,7 @@
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
 //! * [`ambiguity`]: worlds that a marker cannot tell apart, with witnesses (Section 2.2);
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and what they stand on (Section 2.3);
+//! * [`driving`]: what sensing tells of a place (Sections 3 and 4);
 //! * [`check`]: an algorithm on every start, judged.
 //!
 //! ```
@@ -38,6 +39,7 @@
 
 pub mod ambiguity;
 pub mod check;
+pub mod driving;
 pub mod embedded_graph;
 pub mod enumerate;
 pub mod floor_plan;

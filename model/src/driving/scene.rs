@@ -1,0 +1,200 @@
+//! What sensing tells of one image: a hallway, a junction or neither, and the marker. Section 3.
+//!
+//! Floor coordinates have the robot's centre as origin, x ahead and y to the left, in metres. Angles
+//! are radians counter-clockwise seen from above, relative to the robot's heading, in (-pi, pi].
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
+
+/// All that one image tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Where the robot is.
+    pub place: Place,
+    /// The marker, where it is seen.
+    pub marker: Option<MarkerView>,
+}
+
+/// Where the robot is, as far as one image tells.
+// paper: sense.edge-or-vertex
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// On an edge.
+    Hallway(HallwayView),
+    /// At a vertex.
+    Junction(JunctionView),
+    /// The image does not tell.
+    Unknown(Reason),
+}
+
+/// How the robot lies in a hallway.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HallwayView {
+    /// The hallway's direction, in (-pi/2, pi/2].
+    pub heading: f64,
+    /// From the robot's centre to the wall plane on its left, perpendicular, in metres.
+    pub left: f64,
+    /// The same on its right.
+    pub right: f64,
+    /// Whether the robot may go on as fast as it likes.
+    pub status: Status,
+    /// How well what was seen fits, from 0 to 1.
+    pub confidence: f64,
+}
+
+/// Whether a hallway is clear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Nothing but two walls, or more only behind.
+    Clear,
+    /// Go on with care.
+    Unclear(Unclear),
+}
+
+/// Why a hallway is unclear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unclear {
+    /// There are clusters ahead of the robot.
+    ClustersAhead,
+    /// The two major clusters are of very different sizes.
+    SizesDiffer,
+    /// One of the two major clusters is behind the robot.
+    ClusterBehind,
+}
+
+/// A junction, and where the robot is in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JunctionView {
+    /// The doors, clockwise from the entry door, and their centre lines; never empty.
+    pub doors: Vec<CentreLine>,
+    /// Where the centre lines meet.
+    pub turning_point: [f64; 2],
+    /// How well what was seen fits, from 0 to 1.
+    pub confidence: f64,
+}
+
+/// The middle of a hallway that ends at a junction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CentreLine {
+    /// A point of it: the turning point.
+    pub through: [f64; 2],
+    /// Out of the junction.
+    pub direction: f64,
+}
+
+/// Where the robot is along the entry centre line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turning {
+    /// Not yet at the turning point.
+    Before,
+    /// Within [`AT`] of it.
+    At,
+    /// Beyond it.
+    Past,
+}
+
+/// How near the turning point counts as being at it, in metres along the entry centre line.
+pub const AT: f64 = 0.10;
+
+/// The marker as seen in one image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerView {
+    /// Its middle.
+    pub position: [f64; 2],
+    /// The direction of its longer side, in (-pi/2, pi/2].
+    pub axis: f64,
+    /// At an L, the door that it points along; clockwise from the entry door.
+    pub door: Option<usize>,
+}
+
+/// Why an image tells of no place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// There is no floor around the robot in it.
+    NoFloor,
+    /// Too few walls are to be seen.
+    FewWalls,
+    /// What is seen is neither a hallway nor a junction.
+    NothingFits,
+    /// What is seen fits different places equally well.
+    Ambiguous,
+}
+
+/// An angle brought into (-pi, pi].
+#[must_use]
+pub fn wrapped(angle: f64) -> f64 {
+    let angle = angle.rem_euclid(TAU);
+    if angle > PI { angle - TAU } else { angle }
+}
+
+/// The direction of a line, for which opposite angles are the same, in (-pi/2, pi/2].
+#[must_use]
+pub fn undirected(angle: f64) -> f64 {
+    let angle = angle.rem_euclid(PI);
+    if angle > FRAC_PI_2 { angle - PI } else { angle }
+}
+
+impl JunctionView {
+    /// How far the turning point is along the entry centre line, in metres: positive before it.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        let [x, y] = self.turning_point;
+        let inwards = self.doors.first().map_or(0.0, |entry| entry.direction + PI);
+        x * inwards.cos() + y * inwards.sin()
+    }
+
+    /// Where the robot is along the entry centre line.
+    #[must_use]
+    pub fn turning(&self) -> Turning {
+        let distance = self.distance();
+        if distance > AT {
+            Turning::Before
+        } else if distance < -AT {
+            Turning::Past
+        } else {
+            Turning::At
+        }
+    }
+
+    /// The same junction, entered by the door that lies nearest to a direction: the entry door as
+    /// odometry carries it while the robot turns.
+    #[must_use]
+    pub fn entered_from(mut self, direction: f64) -> Self {
+        let away = |door: &CentreLine| wrapped(door.direction - direction).abs();
+        let nearest = (0..self.doors.len())
+            .min_by(|&one, &other| away(&self.doors[one]).total_cmp(&away(&self.doors[other])));
+        self.doors.rotate_left(nearest.unwrap_or(0));
+        self
+    }
+}
+
+impl fmt::Display for Unclear {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::ClustersAhead => "clusters-ahead",
+            Self::SizesDiffer => "sizes-differ",
+            Self::ClusterBehind => "cluster-behind",
+        })
+    }
+}
+
+impl fmt::Display for Turning {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Before => "before",
+            Self::At => "at",
+            Self::Past => "past",
+        })
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::NoFloor => "no-floor",
+            Self::FewWalls => "few-walls",
+            Self::NothingFits => "nothing-fits",
+            Self::Ambiguous => "ambiguous",
+        })
+    }
+}

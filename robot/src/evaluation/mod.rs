@@ -1,0 +1,1 @@
+//! Sensing, judged against the truth of the floor plan.

@@ -1,0 +1,5 @@
+//! The SuperScout robot: a simulated building that its camera sees, and what sensing makes of the images,
+//! judged against the floor plan. Sections 2.4, 2.5 and 6.
+
+pub mod evaluation;
+pub mod simulator;
