@@ -16,7 +16,7 @@ pub struct Scene {
 }
 
 /// Where the robot is, as far as one image tells.
-// paper: sense.edge-or-vertex
+// paper: sense.place
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// On an edge.
