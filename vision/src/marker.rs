@@ -1,6 +1,9 @@
 //! The marker: a plain rectangle of a colour of its own on the floor. Section 5.1, Figure 10.
 
-use toposlam_model::driving::scene::{JunctionView, MarkerView, undirected};
+use toposlam_model::{
+    driving::scene::{JunctionView, MarkerView, undirected},
+    percept::Door,
+};
 
 use crate::{
     boundary::{BEARINGS, Boundary},
@@ -63,7 +66,7 @@ pub fn marker(
     Some(MarkerView {
         position: junction.turning_point,
         axis: undirected(junction.doors[door].direction),
-        door: Some(door),
+        door: Some(Door(door as u32)),
     })
 }
 
