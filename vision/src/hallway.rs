@@ -86,7 +86,7 @@ fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Opti
         frame,
         axis,
         square,
-        status: status(axis, square, walls),
+        status: status(axis, frame.ahead(axis), square, walls),
         agreement,
     })
 }
@@ -111,9 +111,7 @@ fn major(axis: Axis, side: f64, walls: &[Wall]) -> Option<&Wall> {
 fn goes_on(axis: Axis, sign: f64, square: Square, boundary: &Boundary, frame: &Frame) -> bool {
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
-    // The frame's x is nearest to ahead.
-    let ahead = if axis == Axis::X { sign > 0.0 } else { whither[0] > 0.0 };
-    let least = square.half + if ahead { AHEAD } else { BEHIND };
+    let least = square.half + if sign == frame.ahead(axis) { AHEAD } else { BEHIND };
     let bearing = whither[1].atan2(whither[0]) / std::f64::consts::TAU * BEARINGS as f64;
     let first = (bearing.round() as i64 - SECTOR as i64).rem_euclid(BEARINGS as i64) as usize;
     let (mut far, mut near) = (0, 0);
@@ -129,33 +127,37 @@ fn goes_on(axis: Axis, sign: f64, square: Square, boundary: &Boundary, frame: &F
     far > 2 * near && far > SECTOR / 3
 }
 
-/// Whether the hallway is clear; by its direction that is nearer to ahead.
+/// Whether the hallway along an axis is clear, on the way ahead.
 // paper: sense.clear.two
 // paper: sense.clear.behind
 // paper: sense.unclear.ahead
 // paper: sense.unclear.sizes
 // paper: sense.unclear.behind
-pub(crate) fn status(axis: Axis, square: Square, walls: &[Wall]) -> Status {
+pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> Status {
     let (_, across) = axis.split();
-    let centre = square.middle[across];
-    let on = |wall: &&Wall, side: f64| {
-        wall.along == axis && (wall.offset - centre - side * square.half).abs() < OFF
+    let off = |wall: &Wall, side: f64| wall.offset - square.middle[across] - side * square.half;
+    let side = |side: f64| {
+        walls.iter().filter(move |wall| wall.along == axis && off(wall, side).abs() < OFF)
     };
-    let is_major = |wall: &Wall| on(&wall, 1.0) || on(&wall, -1.0);
+    let (left, right) = (side(1.0), side(-1.0));
     let forwards = |wall: &Wall| {
-        if wall.along == axis { f64::midpoint(wall.from, wall.to) } else { wall.offset }
+        let parts = if wall.along == axis { [wall.from, wall.to] } else { [wall.offset; 2] };
+        ahead * f64::midpoint(parts[0], parts[1])
     };
+    let is_major =
+        |wall: &Wall| wall.along == axis && off(wall, 1.0).abs().min(off(wall, -1.0).abs()) < OFF;
     if walls.iter().any(|wall| !is_major(wall) && forwards(wall) > ABREAST) {
         return Status::Unclear(Unclear::ClustersAhead);
     }
-    let sides = [1.0, -1.0].map(|side| walls.iter().filter(move |wall| on(wall, side)));
-    let [left, right] = sides.clone().map(|side| side.map(Wall::length).sum::<f64>());
-    if left.min(right) < SIZES * left.max(right) {
-        return Status::Unclear(Unclear::SizesDiffer);
-    }
-    let ends = sides.map(|side| side.map(|wall| wall.to).fold(f64::MIN, f64::max));
+    let foremost = |wall: &Wall| (ahead * wall.from).max(ahead * wall.to);
+    let ends = [left.clone(), right.clone()]
+        .map(|side| side.map(foremost).fold(f64::NEG_INFINITY, f64::max));
     if ends.iter().any(|&end| end < 0.0) {
         return Status::Unclear(Unclear::ClusterBehind);
+    }
+    let sizes = [left, right].map(|side| side.map(Wall::length).sum::<f64>());
+    if sizes[0].min(sizes[1]) < SIZES * sizes[0].max(sizes[1]) {
+        return Status::Unclear(Unclear::SizesDiffer);
     }
     Status::Clear
 }
@@ -167,11 +169,10 @@ impl Hallway {
     pub fn view(&self, margin: f64) -> HallwayView {
         let heading = undirected(self.frame.angle() + self.axis.direction());
         let (_, across) = self.axis.split();
-        // The robot's left is where the frame's y is, or the opposite of its x for a hallway along y.
+        // Left of x is y, and left of y is the opposite of x.
         let leftwards = match self.axis {
             Axis::X => 1.0,
-            Axis::Y if heading > 0.0 => -1.0,
-            Axis::Y => 1.0,
+            Axis::Y => -self.frame.ahead(Axis::Y),
         };
         let centre = leftwards * self.square.middle[across];
         let half = self.square.half + margin;
@@ -181,6 +182,67 @@ impl Hallway {
             right: half - centre,
             status: self.status,
             confidence: self.agreement.trust() * self.agreement.cover().sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
+
+    fn wall(along: Axis, offset: f64, from: f64, to: f64) -> Wall {
+        Wall { along, offset, from, to, cluster: 0 }
+    }
+
+    fn clear_or_not(more: &[Wall], left: [f64; 2], right: [f64; 2]) -> Status {
+        let major = |offset, [from, to]: [f64; 2]| wall(Axis::X, offset, from, to);
+        let walls = [&[major(0.8, left), major(-0.8, right)], more].concat();
+        status(Axis::X, 1.0, SQUARE, &walls)
+    }
+
+    // paper: sense.clear.two
+    // paper: sense.hallway.major
+    #[test]
+    fn two_walls_and_no_more_are_clear_and_so_are_broken_ones() {
+        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-2.0, 2.0]), Status::Clear);
+        let broken = [wall(Axis::X, 0.82, 1.0, 2.0), wall(Axis::X, -0.78, 1.0, 2.0)];
+        assert_eq!(clear_or_not(&broken, [-2.0, 0.7], [-2.0, 0.8]), Status::Clear);
+    }
+
+    // paper: sense.clear.behind
+    // paper: sense.unclear.ahead
+    #[test]
+    fn a_further_cluster_counts_ahead_and_not_behind() {
+        let across = |at| clear_or_not(&[wall(Axis::Y, at, -0.8, 0.8)], [-2.0, 2.0], [-2.0, 2.0]);
+        assert_eq!(across(1.9), Status::Unclear(Unclear::ClustersAhead));
+        assert_eq!(across(-1.9), Status::Clear);
+    }
+
+    // paper: sense.unclear.sizes
+    // paper: sense.unclear.behind
+    #[test]
+    fn a_major_cluster_that_is_short_or_behind_is_unclear() {
+        let sizes = Status::Unclear(Unclear::SizesDiffer);
+        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-1.0, 0.9]), sizes);
+        let behind = Status::Unclear(Unclear::ClusterBehind);
+        assert_eq!(clear_or_not(&[], [-2.0, 0.5], [-2.0, -0.1]), behind);
+    }
+
+    #[test]
+    fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
+        for (turned, heading, left) in [(0.1, 0.1 - 1.570_796, 1.0), (-0.1, 1.470_796, 0.6)] {
+            let hallway = Hallway {
+                frame: Frame::along(turned),
+                axis: Axis::Y,
+                square: Square { middle: [0.2, 0.0], half: 0.8 },
+                status: Status::Clear,
+                agreement: Agreement { support: 1, silent: 0, against: 0 },
+            };
+            let view = hallway.view(0.0);
+            assert!((view.heading - heading).abs() < 1e-5, "{view:?}");
+            assert!((view.left - left).abs() < 1e-9, "{view:?}");
         }
     }
 }

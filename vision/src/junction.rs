@@ -180,7 +180,7 @@ impl Junction {
         let axis = self.arm()?;
         let mut square = self.square;
         square.middle[axis.split().0] = 0.0;
-        let status = status(axis, square, walls);
+        let status = status(axis, self.frame.ahead(axis), square, walls);
         Some(Hallway { frame: self.frame, axis, square, status, agreement: self.agreement })
     }
 

@@ -10,8 +10,10 @@
 //! * [`outline`]: a place of a given form, held against what is seen;
 //! * [`hallway`], [`corner`], [`junction`]: what place it is;
 //! * [`marker`]: whether the marker is there, and along which hallway it lies;
-//! * [`sensing`]: all of it.
+//! * [`sensing`]: all of it;
+//! * [`annotate`]: a picture of each step.
 
+pub mod annotate;
 pub mod boundary;
 pub mod camera;
 pub mod cluster;

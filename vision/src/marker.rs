@@ -12,6 +12,7 @@ use crate::{
     line::Line,
 };
 
+// paper: marker-sense.shape
 /// The marker's length, in metres.
 pub const LENGTH: f64 = 0.60;
 /// Its width, in metres.
@@ -27,8 +28,7 @@ const FAR: f64 = 0.40;
 const CENTRED: f64 = 0.30;
 
 /// The marker, if enough of its colour is seen on the floor.
-// paper: marker.colour
-// paper: marker.pca
+// paper: marker-sense.present, marker-sense.direction
 #[must_use]
 pub fn marker(
     view: &GroundView,
@@ -98,4 +98,85 @@ fn is_within(view: &GroundView, index: usize) -> bool {
         index.and_then(|index| view.classes.get(index)).is_some_and(|&class| class == Class::Marker)
     };
     of_marker(index.checked_sub(1)) && of_marker(index.checked_sub(GroundView::SIDE))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use toposlam_model::driving::scene::CentreLine;
+
+    use super::*;
+    use crate::boundary::Bearings;
+
+    /// Floor everywhere but under the body, and a marker on it.
+    fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
+        let mut view = GroundView::unseen();
+        for index in 0..view.classes.len() {
+            let [x, y] = GroundView::ground(index);
+            let (sine, cosine) = axis.sin_cos();
+            let [dx, dy] = [x - position[0], y - position[1]];
+            let [along, across] = [cosine * dx + sine * dy, cosine * dy - sine * dx];
+            let on_it = along.abs() <= LENGTH / 2.0 && across.abs() <= WIDTH / 2.0;
+            view.classes[index] = match () {
+                () if x.hypot(y) < 0.32 => Class::Unseen,
+                () if on_it => Class::Marker,
+                () => Class::Floor,
+            };
+            if view.classes[index] == Class::Marker {
+                view.marker.push(index as u32);
+            }
+        }
+        view
+    }
+
+    fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
+        let view = floor_with_marker(position, axis);
+        marker(&view, &Bearings::default().look(&view), junction)
+    }
+
+    // paper: marker-sense.direction
+    // paper: marker-sense.shape
+    #[test]
+    fn a_whole_marker_is_where_it_is_and_lies_as_it_lies() {
+        for axis in [0.0, 0.7, 1.5, -1.2] {
+            let view = found([1.0, 0.2], axis, None).unwrap();
+            assert!((view.position[0] - 1.0).abs() < 0.01 && (view.position[1] - 0.2).abs() < 0.01);
+            assert!(undirected(view.axis - axis).abs() < 0.02, "{} is not {axis}", view.axis);
+            assert_eq!(view.door, None);
+        }
+    }
+
+    // paper: marker-sense.present
+    #[test]
+    fn under_the_body_and_behind_a_wall_there_is_none() {
+        assert_eq!(found([0.0, 0.0], 0.0, None), None);
+        let mut view = floor_with_marker([1.5, 0.0], 0.3);
+        for index in 0..view.classes.len() {
+            let [x, _] = GroundView::ground(index);
+            if (1.0..1.05).contains(&x) {
+                view.classes[index] = Class::Stripe;
+            } else if x > 1.05 && view.classes[index] == Class::Floor {
+                view.classes[index] = Class::Other;
+            }
+        }
+        assert_eq!(marker(&view, &Bearings::default().look(&view), None), None);
+    }
+
+    #[test]
+    fn a_marker_half_hidden_by_the_body_still_tells_its_door() {
+        let l = |distance: f64| JunctionView {
+            doors: [PI, FRAC_PI_2]
+                .map(|direction| CentreLine { through: [distance, 0.0], direction })
+                .to_vec(),
+            turning_point: [distance, 0.0],
+            confidence: 1.0,
+        };
+        for distance in [0.3, 0.5, 0.8] {
+            for (axis, door) in [(0.0, 0), (FRAC_PI_2, 1)] {
+                let view = found([distance, 0.0], axis, Some(&l(distance))).unwrap();
+                assert_eq!(view.door, Some(Door(door)), "{distance} before, lying at {axis}");
+            }
+        }
+    }
 }

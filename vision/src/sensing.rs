@@ -5,6 +5,7 @@ use thiserror::Error;
 use toposlam_model::driving::scene::{Place, Reason, Scene};
 
 use crate::{
+    annotate,
     boundary::{Bearings, Boundary},
     camera::Camera,
     cluster::{Cluster, clusters},
@@ -21,7 +22,7 @@ use crate::{
 /// Sensing with one camera in one building: its tables, made once.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    image: [u32; 2],
+    camera: Camera,
     unwrapping: Unwrapping,
     bearings: Bearings,
     model: ColourModel,
@@ -63,6 +64,9 @@ pub struct Trace {
     pub junction: Option<Junction>,
 }
 
+/// The name of each step, and its picture.
+pub type Stages = [(&'static str, RgbImage); 6];
+
 /// Fewer boundary points than these tell of no place.
 const FEW: usize = 40;
 /// Less floor than this around the robot is no floor: a part of all bearings.
@@ -73,7 +77,7 @@ impl Sensor {
     #[must_use]
     pub fn new(camera: &Camera, colours: &ColourModel) -> Self {
         Self {
-            image: camera.image,
+            camera: camera.clone(),
             unwrapping: Unwrapping::new(camera),
             bearings: Bearings::default(),
             colours: colours.table(),
@@ -96,10 +100,11 @@ impl Sensor {
     /// As [`Self::sense`].
     pub fn trace(&mut self, image: &RgbImage) -> Result<(Scene, Trace), WrongSize> {
         let found = [image.width(), image.height()];
-        if found != self.image {
-            return Err(WrongSize { found, expected: self.image });
+        if found != self.camera.image {
+            return Err(WrongSize { found, expected: self.camera.image });
         }
         let Some(gain) = self.model.gain(self.unwrapping.ring(image)) else {
+            self.view = GroundView::unseen();
             let scene = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
             return Ok((scene, Trace::default()));
         };
@@ -107,10 +112,21 @@ impl Sensor {
         Ok(interpreted(&self.view, &self.bearings, self.model.stripe))
     }
 
-    /// What the floor showed in the last image.
-    #[must_use]
-    pub fn ground_view(&self) -> &GroundView {
-        &self.view
+    /// The scene in an image, and a picture of each step on the way to it, with its name.
+    ///
+    /// # Errors
+    /// As [`Self::sense`].
+    pub fn stages(&mut self, image: &RgbImage) -> Result<(Scene, Stages), WrongSize> {
+        let (scene, trace) = self.trace(image)?;
+        let stages = [
+            ("1-classes", annotate::classes(&self.view)),
+            ("2-boundary", annotate::boundary(&trace)),
+            ("3-clusters", annotate::clusters(&trace)),
+            ("4-lines", annotate::lines(&trace)),
+            ("5-scene", annotate::scene(&scene, &trace)),
+            ("6-image", annotate::over(image, &self.camera, &scene)),
+        ];
+        Ok((scene, stages))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Walls: lines that stand at right angles to each other. Section 2.4.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use toposlam_model::driving::scene::wrapped;
 
@@ -79,6 +79,12 @@ impl Frame {
     #[must_use]
     pub fn angle(&self) -> f64 {
         self.angle
+    }
+
+    /// Which way along an axis is rather ahead than behind: 1 or -1.
+    #[must_use]
+    pub fn ahead(&self, axis: Axis) -> f64 {
+        if axis == Axis::Y && self.angle > 0.0 { -1.0 } else { 1.0 }
     }
 
     /// A point or vector of the robot's floor coordinates, in the frame.
@@ -166,6 +172,8 @@ impl Wall {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_4;
+
     use super::*;
 
     fn line(from: [f64; 2], to: [f64; 2]) -> Line {
