@@ -1,7 +1,7 @@
 //! Sensing, judged against the truth of the floor plan.
 
 pub mod bound;
-pub mod form;
+pub mod class;
 pub mod quantile;
 pub mod random_plan;
 pub mod truth;

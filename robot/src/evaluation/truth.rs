@@ -7,12 +7,14 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use toposlam_model::{
-    driving::scene::{undirected, wrapped},
+    driving::{
+        scene::{undirected, wrapped},
+        visit::Form,
+    },
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
 };
 
-use super::form::Form;
 use crate::simulator::Pose;
 
 /// So near a turning point the robot is at the junction, in metres.
@@ -49,22 +51,13 @@ pub struct JunctionTruth {
     pub vertex: Vertex,
     /// Dead end, L or T.
     pub kind: JunctionKind,
-    /// Whether one of its doors is behind the robot.
-    pub entry: Entry,
+    /// What it looks like from the door behind the robot; `None` where there is none.
+    pub form: Option<Form>,
     /// The directions of the doors, clockwise from the one behind the robot, or, where there is
     /// none, from any.
     pub doors: Vec<f64>,
     /// The turning point, through which all centre lines go.
     pub turning_point: [f64; 2],
-}
-
-/// By which door the robot came, as far as one image can tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Entry {
-    /// By the one behind it.
-    Behind,
-    /// It has turned: behind it is a wall.
-    Elsewhere,
 }
 
 /// Where the marker lies before the robot.
@@ -166,16 +159,17 @@ impl JunctionTruth {
     #[must_use]
     pub fn of(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
         let junction = plan.junction(vertex);
-        let darts = plan.graph().darts_of(vertex);
-        let mut doors: Vec<_> =
-            darts.map(|dart| wrapped(angle(plan.direction(dart)) - pose.heading)).collect();
-        let behind = doors.iter().position(|door| wrapped(door - PI).abs() <= FRAC_PI_4);
-        doors.rotate_left(behind.unwrap_or(0));
+        let mut directions: Vec<_> =
+            plan.graph().darts_of(vertex).map(|dart| plan.direction(dart)).collect();
+        let relative_angle = |&direction: &Direction| wrapped(angle(direction) - pose.heading);
+        let is_behind = |door: &Direction| wrapped(relative_angle(door) - PI).abs() <= FRAC_PI_4;
+        let behind = directions.iter().position(is_behind);
+        directions.rotate_left(behind.unwrap_or(0));
         Self {
             vertex,
             kind: junction.kind,
-            entry: if behind.is_some() { Entry::Behind } else { Entry::Elsewhere },
-            doors,
+            form: behind.map(|_| form(&directions)),
+            doors: directions.iter().map(relative_angle).collect(),
             turning_point: relative(junction.position, pose),
         }
     }
@@ -186,13 +180,7 @@ impl JunctionTruth {
     pub fn distance(&self) -> Option<f64> {
         let [x, y] = self.turning_point;
         let inwards = self.doors.first()? + PI;
-        (self.entry == Entry::Behind).then(|| x * inwards.cos() + y * inwards.sin())
-    }
-
-    /// What it looks like from the door behind the robot; `None` where there is none.
-    #[must_use]
-    pub fn form(&self) -> Option<Form> {
-        if self.entry == Entry::Behind { Form::of(&self.doors) } else { None }
+        self.form.map(|_| x * inwards.cos() + y * inwards.sin())
     }
 }
 
@@ -208,14 +196,19 @@ impl MarkerTruth {
             position: junction.turning_point,
             axis: undirected(points),
             points,
-            door: junction
-                .doors
-                .iter()
-                .position(number)
-                .filter(|_| junction.entry == Entry::Behind),
+            door: junction.form.and(junction.doors.iter().position(number)),
             distance: junction.distance(),
         }
     }
+}
+
+/// What a junction looks like from the first of its doors, which stand clockwise.
+fn form(doors: &[Direction]) -> Form {
+    let mut form = [false; 4];
+    for &door in doors {
+        form[(door as usize + 4 - doors[0] as usize) % 4] = true;
+    }
+    Form(form)
 }
 
 /// A direction, in radians counter-clockwise from east.
@@ -241,6 +234,7 @@ mod tests {
     use toposlam_model::format::world_file;
 
     use super::*;
+    use crate::evaluation::class::Class;
 
     /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
     fn shape_6() -> FloorPlan {
@@ -308,19 +302,19 @@ mod tests {
     fn doors_are_told_clockwise_from_the_one_behind() {
         let (left, ahead, right, behind) = (FRAC_PI_2, 0.0, -FRAC_PI_2, PI);
         let cases = [
-            (3.6, 8.0, 0.0, vec![behind], Form::DeadEnd),
-            (0.4, 8.0, 180.0, vec![behind, left], Form::LeftL),
-            (0.0, 7.6, 90.0, vec![behind, right], Form::RightL),
-            (0.4, 4.0, 180.0, vec![behind, left, right], Form::StemT),
-            (0.0, 3.6, 90.0, vec![behind, ahead, right], Form::StemRightT),
-            (0.0, 4.4, 270.0, vec![behind, left, ahead], Form::StemLeftT),
+            (3.6, 8.0, 0.0, vec![behind], "dead-end"),
+            (0.4, 8.0, 180.0, vec![behind, left], "l-left"),
+            (0.0, 7.6, 90.0, vec![behind, right], "l-right"),
+            (0.4, 4.0, 180.0, vec![behind, left, right], "t-by-stem"),
+            (0.0, 3.6, 90.0, vec![behind, ahead, right], "t-stem-right"),
+            (0.0, 4.4, 270.0, vec![behind, left, ahead], "t-stem-left"),
         ];
-        for (x, y, heading, doors, form) in cases {
+        for (x, y, heading, doors, name) in cases {
             let junction = junction(at(x, y, heading));
             let found: Vec<_> = junction.doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             let expected: Vec<_> = doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             close(&found, &expected);
-            assert_eq!(junction.form(), Some(form));
+            assert_eq!(Class::Junction(junction.form.unwrap()).to_string(), name);
             close(&[junction.distance().unwrap()], &[0.4]);
             close(&junction.turning_point, &[0.4, 0.0]);
         }
@@ -340,10 +334,7 @@ mod tests {
     #[test]
     fn a_robot_that_has_turned_has_no_door_behind_it() {
         let junction = junction(at(0.3, 8.0, 0.0));
-        assert_eq!(
-            (junction.entry, junction.form(), junction.distance()),
-            (Entry::Elsewhere, None, None)
-        );
+        assert_eq!((junction.form, junction.distance()), (None, None));
         assert_eq!(junction.kind, JunctionKind::L);
     }
 

@@ -9,7 +9,7 @@ use toposlam_model::{
     floor_plan::JunctionKind,
 };
 
-use super::truth::{Entry, HallwayTruth, JunctionTruth, MarkerTruth, Truth};
+use super::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
 /// How a scene's place compares with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -113,10 +113,7 @@ fn kind(view: &JunctionView) -> Option<JunctionKind> {
 /// The true directions of the doors, in the view's order; `None` where one of them is another door.
 /// Where the robot has turned, any door may be the first.
 fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
-    let rotations = match truth.entry {
-        Entry::Behind => 1,
-        Entry::Elsewhere => truth.doors.len(),
-    };
+    let rotations = if truth.form.is_some() { 1 } else { truth.doors.len() };
     let mut doors = truth.doors.clone();
     for _ in 0..rotations {
         let same =
@@ -193,7 +190,10 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use toposlam_model::{
-        driving::scene::{Reason, Status},
+        driving::{
+            scene::{Reason, Status},
+            visit::Form,
+        },
         embedded_graph::Vertex,
     };
 
@@ -201,11 +201,14 @@ mod tests {
 
     const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.1, left: 0.9, right: 0.7 };
 
-    fn junction(doors: &[f64], entry: Entry) -> JunctionTruth {
+    /// Which form it is does not matter here.
+    const ENTERED: Option<Form> = Some(Form([true; 4]));
+
+    fn junction(doors: &[f64], form: Option<Form>) -> JunctionTruth {
         JunctionTruth {
             vertex: Vertex(0),
             kind: [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T][doors.len() - 1],
-            entry,
+            form,
             doors: doors.to_vec(),
             turning_point: [0.4, 0.0],
         }
@@ -231,7 +234,7 @@ mod tests {
 
     #[test]
     fn at_a_junction_kind_and_entry_decide() {
-        let truth = Truth::Junction(junction(&[PI, FRAC_PI_2], Entry::Behind));
+        let truth = Truth::Junction(junction(&[PI, FRAC_PI_2], ENTERED));
         assert_eq!(says(&truth, &[PI - 0.3, FRAC_PI_2 + 0.2]), Verdict::Right);
         assert_eq!(says(&truth, &[-PI + 0.3, FRAC_PI_2]), Verdict::Right);
         assert_eq!(says(&truth, &[FRAC_PI_2, PI]), Verdict::WrongEntry);
@@ -246,7 +249,7 @@ mod tests {
 
     #[test]
     fn where_the_robot_has_turned_any_door_is_the_entry() {
-        let truth = Truth::Junction(junction(&[FRAC_PI_2, 0.0], Entry::Elsewhere));
+        let truth = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
         assert_eq!(says(&truth, &[FRAC_PI_2, 0.0]), Verdict::Right);
         assert_eq!(says(&truth, &[0.0, FRAC_PI_2]), Verdict::Right);
         assert_eq!(says(&truth, &[0.0, -FRAC_PI_2]), Verdict::WrongEntry);
@@ -255,14 +258,14 @@ mod tests {
 
     #[test]
     fn between_either_answer_is_right_if_it_is_the_right_junction() {
-        let near = junction(&[PI, FRAC_PI_2], Entry::Behind);
+        let near = junction(&[PI, FRAC_PI_2], ENTERED);
         let truth = Truth::Between(HALLWAY, vec![near.clone()]);
         let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
         assert_eq!(judge(&truth, &scene(place)), Verdict::Right);
         assert_eq!(says(&truth, &[PI, FRAC_PI_2]), Verdict::Right);
         assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), Verdict::WrongEntry);
         assert_eq!(says(&truth, &[PI]), Verdict::WrongKind);
-        let other = junction(&[PI], Entry::Behind);
+        let other = junction(&[PI], ENTERED);
         assert_eq!(says(&Truth::Between(HALLWAY, vec![near, other]), &[PI]), Verdict::Right);
     }
 
@@ -287,7 +290,7 @@ mod tests {
 
     #[test]
     fn the_errors_of_a_junction_are_those_of_its_centre_lines() {
-        let truth = junction(&[PI, FRAC_PI_2], Entry::Behind);
+        let truth = junction(&[PI, FRAC_PI_2], ENTERED);
         let mut seen = view(&[PI - 0.02, FRAC_PI_2]);
         seen.turning_point = [0.43, 0.04];
         seen.doors[0].through = [0.4, 0.04];
