@@ -85,7 +85,7 @@ impl Body {
             return Some(if inside < 0.012 { Part::LaptopEdge } else { Part::Laptop });
         }
         let [x, y] = at_height(ray, TOP);
-        let from_middle = x.hypot(y);
+        let from_middle = (x * x + y * y).sqrt();
         (from_middle < RADIUS).then_some(if from_middle > RADIUS - 0.012 {
             Part::BodyEdge
         } else {

@@ -149,6 +149,14 @@ impl Lights {
     }
 }
 
+impl Lamp {
+    pub(super) fn rectangle(&self) -> Rectangle {
+        let edge =
+            |side: f32| [0, 1].map(|axis| f64::from(self.middle[axis] + side * self.half[axis]));
+        Rectangle { least: edge(-1.0), greatest: edge(1.0) }
+    }
+}
+
 impl Wall {
     /// Whether the wall stands between two places.
     fn between(&self, one: [f64; 2], other: [f64; 2]) -> bool {
