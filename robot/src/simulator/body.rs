@@ -58,7 +58,7 @@ impl Body {
     pub(super) fn met(&self, ray: &PixelRay) -> Option<Part> {
         if self.strut_half > 0 {
             // Opposite struts: half a turn more or less is the same.
-            let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1) as i16) / 2;
+            let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1).cast_signed()) / 2;
             if away.abs() <= self.strut_half && self.strut_reaches(ray) {
                 return Some(Part::Strut);
             }

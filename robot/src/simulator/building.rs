@@ -21,6 +21,9 @@ const DOOR_WIDTH: f64 = 0.90;
 const DOOR_HEIGHT: f32 = 2.05;
 const FRAME: f32 = 0.07;
 
+/// How long things on a wall are at most, in metres.
+const LONGEST: f32 = 1.01;
+
 /// A building that can be looked at.
 #[derive(Clone, Debug)]
 pub struct Building {
@@ -189,8 +192,13 @@ impl Building {
         self.floors.iter().any(|floor| floor.holds(position))
     }
 
-    fn things(&self, face: &Face) -> &[Thing] {
-        &self.things[face.things[0]..face.things[1]]
+    /// The things that a wall has at a place along it, and perhaps others near there.
+    #[inline]
+    fn things(&self, face: &Face, along: f32) -> impl Iterator<Item = (usize, &Thing)> {
+        let things = &self.things[face.things[0]..face.things[1]];
+        let first = things.partition_point(|thing| thing.from < along - LONGEST);
+        let things = things[first..].iter().take_while(move |thing| thing.from <= along);
+        (face.things[0] + first..).zip(things)
     }
 
     /// What part of a wall is so far along it and so high up.
@@ -198,8 +206,8 @@ impl Building {
         let stripe = self.look.stripe;
         let low = stripe.kind == StripeKind::OnWall && height < stripe.width as f32;
         let mut part = if low { WallPart::Baseboard } else { WallPart::Bare };
-        for (number, thing) in self.things(face).iter().enumerate() {
-            if along < thing.from || thing.to < along {
+        for (number, thing) in self.things(face, along) {
+            if thing.to < along {
                 continue;
             }
             match thing.kind {
@@ -209,7 +217,7 @@ impl Building {
                     return if edge < FRAME { WallPart::Frame } else { WallPart::Leaf };
                 }
                 Kind::Poster { low, high, .. } if low < height && height < high => {
-                    return WallPart::Poster((face.things[0] + number) as u32);
+                    return WallPart::Poster(number as u32);
                 }
                 _ => {}
             }
@@ -243,9 +251,9 @@ impl Building {
             let width = self.look.stripe.width as f32;
             (0.0..=width).contains(&out)
                 && (face.taped[0]..=face.taped[1]).contains(&along)
-                && !self.things(face).iter().any(|thing| {
+                && !self.things(face, along).any(|(_, thing)| {
                     matches!(thing.kind, Kind::Gap | Kind::Door { taped: false })
-                        && (thing.from..=thing.to).contains(&along)
+                        && along <= thing.to
                 })
         })
     }
@@ -287,7 +295,7 @@ impl Face {
     }
 }
 
-/// Doors, posters and gaps of one wall.
+/// Doors, posters and gaps of one wall, in the order in which they begin.
 fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
     let length = wall.length();
     let mut things: Vec<Thing> = Vec::new();
@@ -311,6 +319,7 @@ fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Th
         let to = from + missing;
         things.push(Thing { kind: Kind::Gap, from: from as f32, to: to as f32 });
     }
+    things.sort_by(|one, other| one.from.total_cmp(&other.from));
     things
 }
 

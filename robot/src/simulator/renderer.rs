@@ -96,14 +96,14 @@ impl<'a> Shot<'a> {
             return (Surface::Robot(part), part.colour().map(|channel| channel * light));
         }
         if ray.by == By::Itself {
-            if self.from_middle(place) < self.holder {
+            if self.off_middle(place) < self.holder {
                 return (Surface::Holder, [0.01; 3]);
             }
             let (surface, colour) = self.view.seen(&self.world(ray), || [0.0; 2]);
             return (surface, colour.map(|channel| channel * BESIDE_MIRROR));
         }
         self.view.seen(&self.world(ray), || {
-            let from_middle = self.from_middle(place);
+            let from_middle = self.off_middle(place);
             let [x, y, down] = ray.direction;
             let range = -ray.origin[2] / down * (x * x + y * y).sqrt();
             [self.rig.stride(from_middle) * size, range / from_middle.max(1.0) * size]
@@ -130,7 +130,7 @@ impl<'a> Shot<'a> {
         sum.map(|channel| channel / (FINE * FINE) as f32)
     }
 
-    fn from_middle(&self, place: [f32; 2]) -> f32 {
+    fn off_middle(&self, place: [f32; 2]) -> f32 {
         let [u, v] = self.rig.optics.centre;
         let [u, v] = [place[0] - u as f32, place[1] - v as f32];
         (u * u + v * v).sqrt()
@@ -280,5 +280,51 @@ impl Scan for Rows<'_> {
             }
         }
         sum.map(|sum| sum / count.max(1) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::camera::Camera;
+
+    use super::*;
+    use crate::simulator::{RigErrors, sight_lines::TURN_ERROR, sized};
+
+    fn apart(one: &PixelRay, other: &PixelRay) -> f32 {
+        let square = |axis: usize| (one.direction[axis] - other.direction[axis]).powi(2);
+        (0..3).map(square).sum::<f32>().sqrt()
+    }
+
+    #[test]
+    fn rays_within_a_pixel_are_as_good_as_straight() {
+        for width in [640, 1280] {
+            let camera = sized(&Camera::superscout(), [width, width * 3 / 4]);
+            let errors = RigErrors { tilt: 0.03, towards: 1.0, ..RigErrors::default() };
+            let rig = Rig::with_errors(&camera, &errors);
+            let [width, height] = rig.image();
+            let mut straight = 0;
+            let pixels =
+                (0..width).step_by(7).flat_map(|u| (0..height).step_by(5).map(move |v| [u, v]));
+            for [u, v] in pixels {
+                let bundle = Bundle::new(&rig, u as usize, v as usize);
+                straight += u32::from(matches!(bundle, Bundle::Straight { .. }));
+                let [u, v] = [u, v].map(f64::from);
+                let exact = |right, down| PixelRay::from(rig.ray([u + right, v + down]));
+                let here = exact(0.0, 0.0);
+                let pixel = apart(&here, &exact(1.0, 0.0)).max(apart(&here, &exact(0.0, 1.0)));
+                // At the rim the mirror turns away faster and faster.
+                let [middle_u, middle_v] = rig.optics.centre;
+                let within = (u - middle_u).hypot(v - middle_v) < 0.97 * rig.optics.rim();
+                let allowed = if within { 0.03 } else { 0.5 };
+                for [right, down] in [[-0.375, 0.25], [0.5, 0.5], [0.0, -0.5]] {
+                    let ray = bundle.ray(right as f32, down as f32);
+                    let exact = exact(right, down);
+                    assert!(apart(&ray, &exact) < allowed * pixel, "{u} {v}");
+                    let turned = ray.turn.wrapping_sub(exact.turn).cast_signed();
+                    assert!(i64::from(turned.abs()) < TURN_ERROR, "{u} {v}: {turned}");
+                }
+            }
+            assert!(straight > width * height / 70, "{straight}");
+        }
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
 
 /// The side of a mesh's squares: that wished for, unless there would be millions of them.
 pub(super) fn side(wished: f64, size: [f64; 2]) -> f64 {
-    wished.max((size[0] * size[1] / 4e6).sqrt()).max(size[0].max(size[1]) / 1e6)
+    wished.max((size[0] * size[1] / 2.5e5).sqrt()).max(size[0].max(size[1]) / 1e5)
 }
 
 impl Squares {
@@ -73,5 +73,35 @@ impl Squares {
         }
         let square = row * self.columns + column;
         &self.numbers[self.begin[square] as usize..self.begin[square + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_holds_a_place_is_in_its_square() {
+        let rectangle = |x: f64, y: f64, width: f64, height: f64| Rectangle {
+            least: [x, y],
+            greatest: [x + width, y + height],
+        };
+        let floors = [rectangle(-3.0, -2.0, 9.0, 2.0), rectangle(2.0, -2.0, 2.0, 11.0)];
+        let rectangles: Vec<_> = (0..40)
+            .map(|number| {
+                let number = f64::from(number);
+                rectangle(-4.0 + 0.29 * number, -3.0 + 0.31 * number, 0.1 + 0.05 * number, 0.2)
+            })
+            .collect();
+        let squares = Squares::new(&floors, 0.25, &rectangles);
+        for (x, y) in (0..90).flat_map(|x| (0..110).map(move |y| (x, y))) {
+            let place = [-3.0 + 0.1 * x as f32, -2.0 + 0.1 * y as f32];
+            let found = squares.at(place);
+            for (number, rectangle) in (0..).zip(&rectangles) {
+                assert!(!rectangle.holds(place.map(f64::from)) || found.contains(&number));
+            }
+            assert!(found.len() < rectangles.len());
+        }
+        assert!(squares.at([1e9, 0.0]).is_empty() && squares.at([0.0, 1e9]).is_empty());
     }
 }

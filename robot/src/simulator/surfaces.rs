@@ -166,10 +166,8 @@ impl View<'_> {
 
     #[inline]
     fn on_floor(&self, place: [f32; 2]) -> Surface {
-        if let Some(marker) = self.building.marker {
-            if marker.holds(place.map(f64::from)) {
-                return Surface::Marker;
-            }
+        if self.building.marker.is_some_and(|marker| marker.holds(place.map(f64::from))) {
+            return Surface::Marker;
         }
         if self.building.tape_at(place) { Surface::Tape } else { Surface::Floor }
     }
@@ -187,19 +185,19 @@ impl View<'_> {
         }
         let shade = match building.look.floor {
             Floor::Plain => 1.0,
-            Floor::Tiled { side, joint, joint_shade } => {
+            Floor::Tiled { sides, joint, joint_shade } => {
                 let [radial, across] = footprint();
                 let [x, y] = [ray.direction[0].abs(), ray.direction[1].abs()];
                 let level = (x * x + y * y).sqrt().max(1e-6);
                 let (cosine, sine) = (x / level, y / level);
                 let size = [radial * cosine + across * sine, radial * sine + across * cosine];
-                let (side, joint) = (side as f32, joint as f32);
-                let open = [0, 1]
-                    .map(|axis| 1.0 - joint_share(place[axis], size[axis].max(1e-4), side, joint));
-                let tile =
-                    speckle((place[0] / side).floor() as i32, (place[1] / side).floor() as i32, 5);
+                let (sides, joint) = (sides.map(|side| side as f32), joint as f32);
+                let open = [0, 1].map(|axis| {
+                    1.0 - joint_share(place[axis], size[axis].max(1e-4), sides[axis], joint)
+                });
+                let tile = speckle(floor(place[0] / sides[0]), floor(place[1] / sides[1]), 5);
                 let joints = 1.0 - open[0] * open[1];
-                let faint = (side / size[0].max(size[1])).min(1.0);
+                let faint = (sides[0].min(sides[1]) / size[0].max(size[1])).min(1.0);
                 (1.0 + 0.03 * strength * tile * faint)
                     * (1.0 + joints * strength * (joint_shade as f32 - 1.0))
             }
