@@ -1,0 +1,28 @@
+//! Calibration files: which camera it is, in numbers.
+//!
+//! ```toml
+//! [camera]
+//! kind = "spherical-mirror"
+//! image = [1280, 960]          # pixels
+//! centre = [640.0, 480.0]      # of the mirror in the image, u to the right, v down
+//! focal = 1272.8               # pixels
+//! mirror_radius = 0.05         # metres
+//! mirror_distance = 0.15       # sphere's centre above the pinhole
+//! camera_height = 0.90         # pinhole above the floor
+//! rim = 450.0                  # pixels; optional, checked against the others
+//! ahead = 90.0                 # degrees in the image, counter-clockwise from u
+//! seen_from = "below"
+//! mask = "mask.png"            # optional: white where the floor can be seen
+//! ```
+
+mod error;
+mod read;
+mod table;
+mod write;
+
+pub use error::{CalibrationError, Cause, Place};
+pub use read::{Files, read};
+pub use write::to_toml;
+
+#[cfg(test)]
+mod tests;
