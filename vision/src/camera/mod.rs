@@ -10,10 +10,17 @@
 
 pub mod calibration;
 mod mask;
+mod mei;
+mod ocam;
+mod optics_file;
 mod root;
 mod spherical;
+mod yaml;
 
-pub use mask::Mask;
+pub use mask::{Mask, MaskError};
+pub use mei::Mei;
+pub use ocam::OCam;
+pub use optics_file::OpticsFileError;
 pub use spherical::SphericalMirror;
 
 /// From where the camera sees what it sees.
@@ -30,6 +37,10 @@ pub enum SeenFrom {
 pub enum Optics {
     /// A pinhole under a spherical mirror.
     SphericalMirror(SphericalMirror),
+    /// A single viewpoint, in OCamCalib's polynomial model.
+    OCamCalib(OCam),
+    /// A single viewpoint, in the unified model of OpenCV's omnidir and camodocal.
+    Mei(Mei),
 }
 
 /// A calibrated camera on the robot.
@@ -71,6 +82,8 @@ impl Optics {
     fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
         match self {
             Self::SphericalMirror(mirror) => mirror.ray(pixel),
+            Self::OCamCalib(ocam) => ocam.ray(pixel),
+            Self::Mei(mei) => mei.ray(pixel),
         }
     }
 
@@ -78,6 +91,8 @@ impl Optics {
     fn pixel(&self, ground: [f64; 2]) -> Option<[f64; 2]> {
         match self {
             Self::SphericalMirror(mirror) => mirror.pixel(ground),
+            Self::OCamCalib(ocam) => ocam.pixel(ground),
+            Self::Mei(mei) => mei.pixel(ground),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::{fmt, io};
 
 use thiserror::Error;
 
-use crate::camera::mask::MaskError;
+use crate::camera::{MaskError, OpticsFileError};
 
 /// Why bytes are not a calibration: one message that names place and cause.
 #[derive(Debug, Error)]
@@ -109,6 +109,23 @@ pub enum Cause {
     /// A file that is named cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
+    /// The file of another tool cannot be understood.
+    #[error(transparent)]
+    Optics(#[from] OpticsFileError),
+    /// The file of another tool is for images of another size.
+    #[error(
+        "{} by {} pixels do not go with the file, which is for images of {} by {}",
+        .told[0], .told[1], .found[0], .found[1]
+    )]
+    OtherImage {
+        /// Width and height as the calibration tells them.
+        told: [u32; 2],
+        /// Width and height as the file tells them.
+        found: [u32; 2],
+    },
+    /// Nobody tells how large the images are.
+    #[error("the file does not tell the size of the images; the key `image` must")]
+    NoImage,
     /// The mask is none.
     #[error(transparent)]
     Mask(#[from] MaskError),

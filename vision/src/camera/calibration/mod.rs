@@ -14,6 +14,18 @@
 //! seen_from = "below"
 //! mask = "mask.png"            # optional: white where the floor can be seen
 //! ```
+//!
+//! A camera that OCamCalib, OpenCV's omnidir or camodocal has calibrated is told by their own file:
+//!
+//! ```toml
+//! [camera]
+//! kind = "ocamcalib"           # or "mei", for OpenCV's omnidir and camodocal
+//! file = "calib_results.txt"   # beside this file
+//! viewpoint_height = 1.02      # metres above the floor
+//! ahead = 90.0
+//! seen_from = "below"
+//! image = [1280, 960]          # only needed where the file does not tell it
+//! ```
 
 mod error;
 mod read;
@@ -21,6 +33,7 @@ mod table;
 mod write;
 
 pub use error::{CalibrationError, Cause, Place};
+pub(super) use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;
 

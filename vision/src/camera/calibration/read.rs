@@ -6,7 +6,7 @@ use super::{
     error::{CalibrationError, Cause},
     table::{Range, Table},
 };
-use crate::camera::{Camera, Mask, Optics, SeenFrom, SphericalMirror};
+use crate::camera::{Camera, Mask, Mei, OCam, Optics, OpticsFileError, SeenFrom, SphericalMirror};
 
 /// How the files are read that a calibration names, by their names in it.
 pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
@@ -14,7 +14,10 @@ pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 /// The keys of every camera.
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
 
-const SIDE: Range = Range { what: "the side of an image in pixels", low: 16.0, high: 16384.0 };
+/// Between how many pixels the side of an image lies.
+pub(in crate::camera) const SIDES: [f64; 2] = [16.0, 16384.0];
+
+const SIDE: Range = Range { what: "the side of an image in pixels", low: SIDES[0], high: SIDES[1] };
 const FOCAL: Range = Range { what: "a focal length in pixels", low: 1.0, high: 1e6 };
 const RADIUS: Range = Range { what: "the radius of a mirror in metres", low: 1e-3, high: 1.0 };
 const HEIGHT: Range = Range { what: "a height above the floor in metres", low: 0.01, high: 10.0 };
@@ -32,8 +35,17 @@ pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationEr
     let file = parse(bytes)?;
     let values = Table::new("", &file, &["camera"])?.table("camera")?;
     let table = Table::unchecked("camera", values);
-    table.word("kind", &["spherical-mirror"])?;
-    let mut camera = spherical_mirror(values)?;
+    let mut camera = match table.word("kind", &["spherical-mirror", "ocamcalib", "mei"])? {
+        "spherical-mirror" => spherical_mirror(values)?,
+        "ocamcalib" => single_viewpoint(values, files, |file, bytes, height| {
+            let ocam = OCam::read(file, bytes, height)?;
+            Ok((Some(ocam.image()), Optics::OCamCalib(ocam)))
+        })?,
+        _ => single_viewpoint(values, files, |file, bytes, height| {
+            let mei = Mei::read(file, bytes, height)?;
+            Ok((mei.image(), Optics::Mei(mei)))
+        })?,
+    };
     if table.has("mask") {
         let file = table.text("mask")?;
         let cause = |cause: Cause| cause.in_named("mask", file);
@@ -86,6 +98,30 @@ fn spherical_mirror(values: &toml::Table) -> Result<Camera, CalibrationError> {
         }
     }
     on_robot(&table, image, Optics::SphericalMirror(mirror))
+}
+
+/// A camera that another tool has calibrated, by its own file.
+fn single_viewpoint(
+    values: &toml::Table,
+    files: &mut Files<'_>,
+    read: impl FnOnce(&str, &[u8], f64) -> Result<(Option<[u32; 2]>, Optics), OpticsFileError>,
+) -> Result<Camera, CalibrationError> {
+    let table =
+        Table::new("camera", values, &[&COMMON[..], &["file", "viewpoint_height"]].concat())?;
+    let height = table.number("viewpoint_height", HEIGHT)?;
+    let told = table.has("image").then(|| table.whole_pair("image", SIDE)).transpose()?;
+    let file = table.text("file")?;
+    let cause = |cause: Cause| cause.in_named("file", file);
+    let bytes = files(file).map_err(|error| cause(Cause::Unreadable(error)))?;
+    let (found, optics) = read(file, &bytes, height).map_err(|error| cause(error.into()))?;
+    let image = match (told, found) {
+        (Some(told), Some(found)) if told != found => {
+            return Err(table.error("image", Cause::OtherImage { told, found }));
+        }
+        (Some(image), _) | (None, Some(image)) => image,
+        (None, None) => return Err(table.error("file", Cause::NoImage)),
+    };
+    on_robot(&table, image, optics)
 }
 
 fn on_robot(table: &Table, image: [u32; 2], optics: Optics) -> Result<Camera, CalibrationError> {

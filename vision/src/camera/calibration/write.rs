@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use crate::camera::{Camera, Optics, SeenFrom};
+use crate::camera::{Camera, Mei, OCam, Optics, SeenFrom};
 
 /// The calibration file of a camera; the files that it names are those of the camera.
 #[must_use]
@@ -33,7 +33,19 @@ pub fn to_toml(camera: &Camera) -> String {
             line("mirror_distance", distance, "sphere's centre above the pinhole");
             let height = format!("{:?}", mirror.camera_height);
             line("camera_height", height, "pinhole above the floor");
-            line("rim", format!("{:.1}", mirror.rim()), "pixels; follows from focal");
+            line("rim", format!("{:.1}", mirror.rim()), "pixels; follows from the others");
+        }
+        Optics::OCamCalib(OCam { file, viewpoint_height, .. }) => {
+            line("kind", quoted("ocamcalib"), "");
+            line("image", format!("[{width}, {height}]"), "pixels");
+            line("file", quoted(file), "");
+            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
+        }
+        Optics::Mei(Mei { file, viewpoint_height, .. }) => {
+            line("kind", quoted("mei"), "");
+            line("image", format!("[{width}, {height}]"), "pixels");
+            line("file", quoted(file), "");
+            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
         }
     }
     let ahead = format!("{:?}", degrees(camera.ahead));
@@ -60,6 +72,6 @@ fn degrees(radians: f64) -> f64 {
         let scale = 10.0_f64.powi(digits);
         (exactly * scale).round() / scale
     });
-    let mut same = rounded.filter(|degrees| degrees.to_radians() == radians);
+    let mut same = rounded.filter(|degrees| degrees.to_radians().to_bits() == radians.to_bits());
     same.next().unwrap_or(exactly)
 }
