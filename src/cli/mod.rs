@@ -15,6 +15,7 @@ mod output;
 mod paper;
 mod progress;
 mod proofs;
+mod render;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -56,6 +57,7 @@ enum Verb {
     Draw(draw::Arguments),
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
+    Render(render::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -120,6 +122,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
+        Some(Verb::Render(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

@@ -1,0 +1,392 @@
+//! A building: walls with doors and posters, the stripe along them, lamps, and the marker. Section 2.4.
+
+use rand::RngExt;
+use toposlam_model::embedded_graph::Dart;
+use toposlam_model::floor_plan::{FloorPlan, Rectangle};
+use toposlam_vision::colour::StripeKind;
+
+use super::chance::{For, about, clouds, stream};
+use super::effects::Effects;
+use super::light_map::LightMap;
+use super::lights::{CEILING, Lamp, Lights};
+use super::looks::{Look, linear};
+use super::walls::{Wall, walls};
+
+/// The marker, along its hallway and across it, in metres.
+const MARKER: [f64; 2] = [0.60, 0.18];
+
+/// A door's width and height, and the width of its frame, in metres.
+const DOOR_WIDTH: f64 = 0.90;
+const DOOR_HEIGHT: f32 = 2.05;
+const FRAME: f32 = 0.07;
+
+/// A building that can be looked at.
+#[derive(Clone, Debug)]
+pub struct Building {
+    pub(super) look: Look,
+    pub(super) colours: Colours,
+    floors: Vec<Rectangle>,
+    walls: Vec<Wall>,
+    pub(super) faces: Vec<Face>,
+    things: Vec<Thing>,
+    /// Where on the floor there may be tape.
+    taped: Taped,
+    pub(super) light: LightMap,
+    pub(super) lamps: Vec<Lamp>,
+    pub(super) marker: Option<Rectangle>,
+    pub(super) texture: f32,
+    pub(super) gloss: f32,
+    scuffs: f32,
+}
+
+/// The look's colours, in linear light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colours {
+    pub(super) floor: [f32; 3],
+    pub(super) wall: [f32; 3],
+    pub(super) stripe: [f32; 3],
+    pub(super) door: [f32; 3],
+    pub(super) frame: [f32; 3],
+    pub(super) ceiling: [f32; 3],
+    pub(super) marker: [f32; 3],
+}
+
+/// A wall as rays meet it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    pub(super) along: usize,
+    pub(super) plane: f32,
+    pub(super) floor_side: f32,
+    pub(super) span: [f32; 2],
+    /// Where tape lies along it: as far as the wall, and round a corner that juts out.
+    taped: [f32; 2],
+    /// Its things.
+    things: [usize; 2],
+}
+
+/// What a wall has on some stretch.
+#[derive(Clone, Copy, Debug)]
+struct Thing {
+    kind: Kind,
+    from: f32,
+    to: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// The stripe is missing.
+    Gap,
+    Door {
+        taped: bool,
+    },
+    Poster {
+        low: f32,
+        high: f32,
+        colour: [f32; 3],
+    },
+}
+
+/// What part of a wall is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum WallPart {
+    Bare,
+    Baseboard,
+    Leaf,
+    Frame,
+    Poster(u32),
+}
+
+impl Building {
+    /// The building of a floor plan; with a marker on the floor of the dart's junction, along the dart's
+    /// hallway, where there is one.
+    ///
+    /// Of the effects, those of the building count. The same seed makes the same building.
+    #[must_use]
+    pub fn new(
+        plan: &FloorPlan,
+        look: &Look,
+        marker: Option<Dart>,
+        effects: &Effects,
+        seed: u64,
+    ) -> Self {
+        let walls = walls(plan);
+        let lights = Lights::new(plan, &walls, effects, seed);
+        let floors: Vec<_> = plan.floor().collect();
+        let mut things = Vec::new();
+        let faces: Vec<_> = walls
+            .iter()
+            .enumerate()
+            .map(|(number, wall)| {
+                let begin = things.len();
+                things.extend(things_of(wall, number, effects, seed));
+                let round = look.stripe.width;
+                let [before, beyond] = wall.juts.map(|juts| if juts { round } else { 0.0 });
+                Face {
+                    along: wall.along,
+                    plane: wall.plane as f32,
+                    floor_side: wall.floor_side as f32,
+                    span: wall.span.map(|at| at as f32),
+                    taped: [(wall.span[0] - before) as f32, (wall.span[1] + beyond) as f32],
+                    things: [begin, things.len()],
+                }
+            })
+            .collect();
+        let width = match look.stripe.kind {
+            StripeKind::OnFloor => look.stripe.width,
+            StripeKind::OnWall => 0.0,
+        };
+        Self {
+            look: *look,
+            colours: Colours {
+                floor: linear(look.floor_colour),
+                wall: linear(look.wall_colour),
+                stripe: linear(look.stripe_colour),
+                door: linear(look.door_colour),
+                frame: linear(look.frame_colour),
+                ceiling: linear(look.ceiling_colour),
+                marker: linear(look.marker_colour),
+            },
+            taped: Taped::new(&floors, &faces, width as f32),
+            light: LightMap::new(&floors, &walls, &lights),
+            lamps: lights.lamps,
+            marker: marker.map(|dart| marker_at(plan, dart)),
+            texture: effects.texture as f32,
+            gloss: (effects.gloss * look.gloss) as f32,
+            scuffs: effects.scuffs as f32,
+            floors,
+            walls,
+            faces,
+            things,
+        }
+    }
+
+    /// Its look.
+    #[must_use]
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// Its walls.
+    #[must_use]
+    pub fn walls(&self) -> &[Wall] {
+        &self.walls
+    }
+
+    /// Where the marker lies.
+    #[must_use]
+    pub fn marker(&self) -> Option<Rectangle> {
+        self.marker
+    }
+
+    /// Whether there is floor at this place.
+    #[must_use]
+    pub fn has_floor(&self, position: [f64; 2]) -> bool {
+        self.floors.iter().any(|floor| floor.holds(position))
+    }
+
+    fn things(&self, face: &Face) -> &[Thing] {
+        &self.things[face.things[0]..face.things[1]]
+    }
+
+    /// What part of a wall is so far along it and so high up.
+    pub(super) fn wall_part(&self, face: &Face, along: f32, height: f32) -> WallPart {
+        let stripe = self.look.stripe;
+        let low = stripe.kind == StripeKind::OnWall && height < stripe.width as f32;
+        let mut part = if low { WallPart::Baseboard } else { WallPart::Bare };
+        for (number, thing) in self.things(face).iter().enumerate() {
+            if along < thing.from || thing.to < along {
+                continue;
+            }
+            match thing.kind {
+                Kind::Gap if low => part = WallPart::Bare,
+                Kind::Door { .. } if height < DOOR_HEIGHT => {
+                    let edge = (along - thing.from).min(thing.to - along).min(DOOR_HEIGHT - height);
+                    return if edge < FRAME { WallPart::Frame } else { WallPart::Leaf };
+                }
+                Kind::Poster { low, high, .. } if low < height && height < high => {
+                    return WallPart::Poster((face.things[0] + number) as u32);
+                }
+                _ => {}
+            }
+        }
+        part
+    }
+
+    /// How much light part of a wall throws back.
+    pub(super) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
+        match part {
+            WallPart::Bare => self.colours.wall,
+            WallPart::Baseboard => self.scuffed(along, height),
+            WallPart::Leaf => self.colours.door,
+            WallPart::Frame => self.colours.frame,
+            WallPart::Poster(number) => match self.things[number as usize] {
+                Thing { kind: Kind::Poster { low, high, colour }, from, to } => {
+                    poster(colour, [(along - from) / (to - from), (height - low) / (high - low)])
+                }
+                _ => self.colours.wall,
+            },
+        }
+    }
+
+    /// Whether there is tape at a place of the floor.
+    #[inline]
+    pub(super) fn tape_at(&self, place: [f32; 2]) -> bool {
+        self.taped.faces(place).iter().any(|&number| {
+            let face = &self.faces[number as usize];
+            let (along, out) = (place[face.along], place[1 - face.along]);
+            let out = (out - face.plane) * face.floor_side;
+            let width = self.look.stripe.width as f32;
+            (0.0..=width).contains(&out)
+                && (face.taped[0]..=face.taped[1]).contains(&along)
+                && !self.things(face).iter().any(|thing| {
+                    matches!(thing.kind, Kind::Gap | Kind::Door { taped: false })
+                        && (thing.from..=thing.to).contains(&along)
+                })
+        })
+    }
+
+    /// How much light the stripe throws back.
+    pub(super) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
+        if self.scuffs == 0.0 {
+            return self.colours.stripe;
+        }
+        let wear = 0.5 * clouds(x * 5.0, y * 5.0, 77) + 0.5 * clouds(x * 31.0, y * 31.0, 78);
+        // Worn tape is nearer to the colour of what it sticks on, and dirt to grey.
+        let share = self.scuffs * (0.5 + 0.5 * wear);
+        [0, 1, 2].map(|c| {
+            self.colours.stripe[c] * (1.0 - share)
+                + share * 0.5 * (self.colours.floor[c] + self.colours.wall[c])
+        })
+    }
+
+    /// How much light tape throws back at a place.
+    pub(super) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
+        self.scuffed(place[0], place[1])
+    }
+}
+
+/// Doors, posters and gaps of one wall.
+fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
+    let length = wall.length();
+    let mut things: Vec<Thing> = Vec::new();
+    let mut rng = stream(seed, For::Doors, number);
+    for _ in 0..about(effects.doors * length / 10.0, &mut rng) {
+        let (share, taped) = (rng.random::<f64>(), rng.random::<f64>() >= effects.untaped_doors);
+        place(wall, &mut things, share, DOOR_WIDTH, 0.25, Kind::Door { taped });
+    }
+    let mut rng = stream(seed, For::Posters, number);
+    for _ in 0..about(effects.posters * length / 10.0, &mut rng) {
+        let (share, width) = (rng.random::<f64>(), rng.random_range(0.4..=1.0));
+        let low = rng.random_range(0.9..=1.4);
+        let high = low + rng.random_range(0.4..=0.8);
+        let colour = [(); 3].map(|()| rng.random_range(0.02..=0.75));
+        place(wall, &mut things, share, width, 0.1, Kind::Poster { low, high, colour });
+    }
+    let mut rng = stream(seed, For::Gaps, number);
+    for _ in 0..about(effects.gaps * length / 10.0, &mut rng) {
+        let missing = effects.gap_length * rng.random_range(0.2..=1.0);
+        let from = wall.span[0] + rng.random::<f64>() * (length - missing).max(0.0);
+        let to = from + missing;
+        things.push(Thing { kind: Kind::Gap, from: from as f32, to: to as f32 });
+    }
+    things
+}
+
+/// Puts a thing on a wall, that share of the way along it, if it has room there between the others.
+fn place(wall: &Wall, things: &mut Vec<Thing>, share: f64, width: f64, apart: f64, kind: Kind) {
+    let room = wall.length() - width - 2.0 * apart;
+    if room < 0.0 {
+        return;
+    }
+    let from = (wall.span[0] + apart + share * room) as f32;
+    let thing = Thing { kind, from, to: from + width as f32 };
+    let apart = apart as f32;
+    if things.iter().all(|other| thing.to + apart < other.from || other.to + apart < thing.from) {
+        things.push(thing);
+    }
+}
+
+/// A poster: a frame of paper, and two fields.
+fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
+    let edge = along.min(1.0 - along).min(up.min(1.0 - up));
+    if edge < 0.05 {
+        [0.75; 3]
+    } else if up > 0.65 {
+        [colour[2], colour[0], colour[1]]
+    } else {
+        colour
+    }
+}
+
+/// The marker's rectangle on a dart's junction.
+fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
+    let position = plan.junction(plan.graph().vertex(dart)).position;
+    let along = plan.direction(dart).vector();
+    let half = [0, 1].map(|axis| if along[axis] == 0.0 { MARKER[1] } else { MARKER[0] } / 2.0);
+    Rectangle {
+        least: [0, 1].map(|axis| position[axis] - half[axis]),
+        greatest: [0, 1].map(|axis| position[axis] + half[axis]),
+    }
+}
+
+/// Which walls may have tape at a place of the floor: squares of the floor, and the walls of each.
+#[derive(Clone, Debug)]
+struct Taped {
+    least: [f32; 2],
+    per_metre: f32,
+    columns: usize,
+    /// Where the walls of each square begin in `faces`.
+    begin: Vec<u32>,
+    faces: Vec<u32>,
+}
+
+impl Taped {
+    fn new(floors: &[Rectangle], faces: &[Face], width: f32) -> Self {
+        let (least, size) = super::light_map::extent(floors);
+        let side = super::light_map::cell(0.25, size);
+        let [columns, rows] = size.map(|length| (length / side) as usize + 1);
+        let (least, per_metre) = (least.map(|at| at as f32), (1.0 / side) as f32);
+        let mut squares = vec![Vec::new(); if width > 0.0 { columns * rows } else { 0 }];
+        if width > 0.0 {
+            for (number, face) in faces.iter().enumerate() {
+                let mut corners = [[0.0; 2]; 2];
+                let inner = face.plane + face.floor_side * width;
+                for (corner, (along, across)) in
+                    corners.iter_mut().zip(face.taped.into_iter().zip([face.plane, inner]))
+                {
+                    corner[face.along] = along;
+                    corner[1 - face.along] = across;
+                }
+                let squares_of = |axis: usize, count: usize| {
+                    let ends = corners.map(|corner| (corner[axis] - least[axis]) * per_metre);
+                    let first = ends[0].min(ends[1]).floor().max(0.0) as usize;
+                    first..=(ends[0].max(ends[1]).max(0.0) as usize).min(count - 1)
+                };
+                for row in squares_of(1, rows) {
+                    for column in squares_of(0, columns) {
+                        squares[row * columns + column].push(number as u32);
+                    }
+                }
+            }
+        }
+        let mut begin = vec![0];
+        begin.extend(squares.iter().scan(0, |sum, faces| {
+            *sum += faces.len() as u32;
+            Some(*sum)
+        }));
+        Self { least, per_metre, columns, begin, faces: squares.concat() }
+    }
+
+    #[inline]
+    fn faces(&self, place: [f32; 2]) -> &[u32] {
+        let [column, row] =
+            [0, 1].map(|axis| ((place[axis] - self.least[axis]) * self.per_metre) as usize);
+        match self.begin.get(row * self.columns + column..) {
+            Some([begin, end, ..]) => &self.faces[*begin as usize..*end as usize],
+            _ => &[],
+        }
+    }
+}
+
+/// The ceiling's height, in metres.
+pub(super) const HEIGHT: f32 = CEILING as f32;

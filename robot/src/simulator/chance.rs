@@ -1,0 +1,59 @@
+//! Chance that is the same wherever and whenever it is asked: streams of numbers from a seed, and
+//! noise that hangs on the place alone.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// What a stream of random numbers is for; each has a stream of its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum For {
+    Lamps,
+    Spots,
+    Shadows,
+    Gaps,
+    Doors,
+    Posters,
+    Sensor,
+}
+
+/// The stream of a seed for this purpose and, say, this wall.
+pub(super) fn stream(seed: u64, purpose: For, number: usize) -> Xoshiro256PlusPlus {
+    let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
+    Xoshiro256PlusPlus::seed_from_u64(mixed)
+}
+
+/// How many there are where so many are to be expected: that number, rounded up or down by chance.
+pub(super) fn about(expected: f64, rng: &mut Xoshiro256PlusPlus) -> usize {
+    (expected.min(1e4) + rng.random::<f64>()) as usize
+}
+
+/// Murmur's finalizer.
+fn mixed(mut bits: u64) -> u64 {
+    bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ bits >> 31
+}
+
+/// A number from -1 to 1 for each cell of a plane.
+#[inline]
+pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
+    let mut bits = (x as u32).wrapping_mul(0x9e37_79b1)
+        ^ (y as u32).wrapping_mul(0x85eb_ca6b).rotate_left(13)
+        ^ salt;
+    bits = (bits ^ bits >> 15).wrapping_mul(0x2c1b_3c6d);
+    bits = (bits ^ bits >> 12).wrapping_mul(0x297a_2d39);
+    bits ^= bits >> 15;
+    bits as f32 * (2.0 / u32::MAX as f32) - 1.0
+}
+
+/// The same, smooth: cells of side one flow into each other.
+#[inline]
+pub(super) fn clouds(x: f32, y: f32, salt: u32) -> f32 {
+    let (left, low) = (x.floor(), y.floor());
+    let ease = |share: f32| share * share * (3.0 - 2.0 * share);
+    let (across, up) = (ease(x - left), ease(y - low));
+    let corner = |right, top| speckle(left as i32 + right, low as i32 + top, salt);
+    let mix = |one: f32, other: f32, share: f32| one + (other - one) * share;
+    mix(mix(corner(0, 0), corner(1, 0), across), mix(corner(0, 1), corner(1, 1), across), up)
+}

@@ -1,0 +1,190 @@
+//! Effects: what makes a picture harder to read than a plain one, each with a knob.
+
+use std::ops::RangeInclusive;
+
+use rand::{Rng, RngExt};
+use thiserror::Error;
+
+/// What a knob changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The building: the same in every picture of it.
+    Building,
+    /// The robot and its camera, and the one picture.
+    Picture,
+}
+
+/// A knob: an effect's name, meaning and range.
+#[derive(Clone, Debug)]
+pub struct Knob {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// What it changes.
+    pub of: Of,
+    /// What it is, and in which unit.
+    pub about: &'static str,
+    /// The value at which there is no effect.
+    pub plain: f64,
+    /// What a value may be.
+    pub allowed: RangeInclusive<f64>,
+    /// From where [`Effects::drawn`] draws it.
+    pub default: RangeInclusive<f64>,
+}
+
+/// Why a knob cannot be set.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum KnobError {
+    /// There is no such knob.
+    #[error("there is no effect `{name}`; there are {}", names())]
+    Unknown {
+        /// What was asked for.
+        name: String,
+    },
+    /// The value is out of range.
+    #[error("`{name}` is {value}; it may be from {least} to {greatest}")]
+    OutOfRange {
+        /// The knob.
+        name: &'static str,
+        /// What was asked for.
+        value: f64,
+        /// The least value.
+        least: f64,
+        /// The greatest value.
+        greatest: f64,
+    },
+}
+
+fn names() -> String {
+    KNOBS.iter().map(|knob| knob.name).collect::<Vec<_>>().join(", ")
+}
+
+macro_rules! knobs {
+    ($($field:ident $name:literal $of:ident $plain:literal $allowed:expr, $default:expr, $about:literal;)*) => {
+        /// What makes a picture harder to read, all knobs together.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Effects {
+            $(#[doc = $about] pub $field: f64,)*
+        }
+
+        /// All knobs.
+        pub const KNOBS: &[Knob] = &[$(Knob {
+            name: $name,
+            of: Of::$of,
+            about: $about,
+            plain: $plain,
+            allowed: $allowed,
+            default: $default,
+        },)*];
+
+        impl Effects {
+            /// No effects at all.
+            #[must_use]
+            pub const fn plain() -> Self {
+                Self { $($field: $plain,)* }
+            }
+
+            /// All knobs, in the order of [`KNOBS`].
+            fn values(&mut self) -> [&mut f64; KNOBS.len()] {
+                [$(&mut self.$field,)*]
+            }
+        }
+    };
+}
+
+knobs! {
+    lamp_spread "lamp-spread" Building 0.0 0.0..=1.0, 0.0..=0.35,
+        "By which share the lamps' brightnesses differ.";
+    lamp_falloff "lamp-falloff" Building 0.0 0.0..=1.0, 0.3..=0.8,
+        "How much less light there is away from the lamps: 0 is even light, 1 lamps alone.";
+    lamps_out "lamps-out" Building 0.0 0.0..=1.0, 0.0..=0.15,
+        "Share of the lamps that are out.";
+    hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.8,
+        "How much more light there is in hot spots on the floor, as a share.";
+    shadows "shadows" Building 0.0 0.0..=1.0, 0.0..=0.45,
+        "Which share of the light is gone in shadows.";
+    texture "texture" Building 0.0 0.0..=2.0, 0.6..=1.2,
+        "How strongly tiles' joints and carpets' tufts show; 1 as the look has them.";
+    gloss "gloss" Building 0.0 0.0..=2.0, 0.4..=1.2,
+        "How much the floor shines; 1 as the look has it.";
+    gaps "gaps" Building 0.0 0.0..=10.0, 0.0..=3.0,
+        "Gaps in the stripe for each 10 m of wall.";
+    gap_length "gap-length" Building 0.25 0.0..=1.0, 0.08..=0.25,
+        "Length of the longest gap in the stripe, in metres.";
+    scuffs "scuffs" Building 0.0 0.0..=1.0, 0.0..=0.25,
+        "By which share the stripe's brightness differs from place to place.";
+    doors "doors" Building 0.0 0.0..=10.0, 0.0..=2.0,
+        "Doors for each 10 m of wall; a baseboard ends at them.";
+    untaped_doors "untaped-doors" Building 0.0 0.0..=1.0, 0.0..=0.4,
+        "Share of the doors across which no tape runs.";
+    posters "posters" Building 0.0 0.0..=10.0, 0.0..=3.0,
+        "Posters for each 10 m of wall.";
+    body "body" Picture 0.0 0.0..=1.0, 1.0..=1.0,
+        "Whether the robot sees itself: below 0.5 it does not.";
+    lens "lens" Picture 0.0 0.0..=0.03, 0.012..=0.016,
+        "Radius of the camera that the mirror shows in the middle, in metres.";
+    struts "struts" Picture 0.0 0.0..=20.0, 1.5..=4.0,
+        "Angle that each of the mirror's two struts hides, in degrees.";
+    strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
+        "Where one of the struts is, the other being opposite, in degrees from ahead to the left.";
+    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.6,
+        "How much the picture is overexposed, in stops.";
+    cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
+        "How yellow the light is: which share of the blue is gone, and a fifth of it of the green.";
+    tint "tint" Picture 0.0 -0.5..=0.5, -0.08..=0.08,
+        "How green the light is, or, below 0, how magenta: by which share green differs.";
+    vignetting "vignetting" Picture 0.0 0.0..=1.0, 0.1..=0.5,
+        "Which share of the light is gone at the mirror's rim.";
+    blur "blur" Picture 0.0 0.0..=4.0, 0.3..=1.1,
+        "How blurred the picture is: standard deviation in pixels of an image 1280 wide.";
+    glare "glare" Picture 0.0 0.0..=0.5, 0.0..=0.03,
+        "Share of all light that is spread evenly over the picture by a dusty mirror.";
+    noise "noise" Picture 0.0 0.0..=0.5, 0.004..=0.02,
+        "Sensor noise: standard deviation at white, as a share of it.";
+    jpeg_loss "jpeg-loss" Picture 0.0 0.0..=99.0, 5.0..=35.0,
+        "How much JPEG loses: 100 less its quality; at 0 there is no compression.";
+}
+
+impl Effects {
+    /// Every knob somewhere in its default range.
+    #[must_use]
+    pub fn drawn(rng: &mut impl Rng) -> Self {
+        let mut effects = Self::plain();
+        effects.draw(rng, |_| true);
+        effects
+    }
+
+    /// The same building in another picture: the knobs of the picture are drawn again.
+    #[must_use]
+    pub fn of_another_picture(&self, rng: &mut impl Rng) -> Self {
+        let mut effects = self.clone();
+        effects.draw(rng, |knob| knob.of == Of::Picture);
+        effects
+    }
+
+    fn draw(&mut self, rng: &mut impl Rng, which: impl Fn(&Knob) -> bool) {
+        for (knob, value) in KNOBS.iter().zip(self.values()) {
+            // Also drawn where it is not used: no knob's value hangs on which others are.
+            let drawn = rng.random_range(knob.default.clone());
+            if which(knob) {
+                *value = drawn;
+            }
+        }
+    }
+
+    /// Turns a knob.
+    ///
+    /// # Errors
+    /// There is no such knob, or it does not turn so far.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), KnobError> {
+        let Some((knob, place)) = KNOBS.iter().zip(self.values()).find(|(k, _)| k.name == name)
+        else {
+            return Err(KnobError::Unknown { name: name.to_owned() });
+        };
+        if !knob.allowed.contains(&value) {
+            let (&least, &greatest) = (knob.allowed.start(), knob.allowed.end());
+            return Err(KnobError::OutOfRange { name: knob.name, value, least, greatest });
+        }
+        *place = value;
+        Ok(())
+    }
+}

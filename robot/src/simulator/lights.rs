@@ -1,0 +1,164 @@
+//! The light in a building: lamps along the hallways, hot spots and shadows.
+
+use rand::RngExt;
+use toposlam_model::floor_plan::{FloorPlan, Rectangle};
+
+use super::chance::{For, about, stream};
+use super::effects::Effects;
+use super::walls::Wall;
+
+/// From floor to ceiling, in metres.
+pub(super) const CEILING: f64 = 2.5;
+
+/// How bright a lamp is to look at; a white surface in its mean light has 1.
+const LAMP_BRIGHTNESS: f64 = 6.0;
+
+/// How far the light of a lamp reaches, in metres.
+const REACH: f64 = 6.0;
+
+/// A lamp in the ceiling.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lamp {
+    pub(super) middle: [f32; 2],
+    /// Half its length along x and along y.
+    pub(super) half: [f32; 2],
+    pub(super) brightness: f32,
+}
+
+/// A place on the floor where there is more light or less.
+struct Spot {
+    middle: [f64; 2],
+    /// Half its extent along x and along y.
+    half: [f64; 2],
+    /// By how much the light changes in its middle, as a share.
+    change: f64,
+}
+
+/// Lamps and other lights, before it is known what they shine on.
+pub(super) struct Lights {
+    pub(super) lamps: Vec<Lamp>,
+    spots: Vec<Spot>,
+    falloff: f64,
+    /// For each lamp, the walls that its light may meet.
+    walls_near: Vec<Vec<Wall>>,
+}
+
+/// The middle line of a hallway: where it begins, its length and its axis.
+fn middle_line(floor: &Rectangle, width: f64) -> ([f64; 2], f64, usize) {
+    let size = [0, 1].map(|axis| floor.greatest[axis] - floor.least[axis]);
+    let along = usize::from(size[1] > size[0]);
+    (floor.least.map(|least| least + width / 2.0), size[along] - width, along)
+}
+
+impl Lights {
+    pub(super) fn new(plan: &FloorPlan, walls: &[Wall], effects: &Effects, seed: u64) -> Self {
+        let width = plan.hallway_width();
+        let mut lamps = Vec::new();
+        let mut spots = Vec::new();
+        for (number, floor) in plan.floor().enumerate() {
+            let (start, length, along) = middle_line(&floor, width);
+            let count = (length / 2.4).round().clamp(1.0, 1e4);
+            let mut rng = stream(seed, For::Lamps, number);
+            for lamp in 0..count as usize {
+                let mut middle = start;
+                middle[along] += length * (lamp as f64 + 0.5) / count;
+                let share = 1.0 + effects.lamp_spread * rng.random_range(-1.0..=1.0);
+                let burns = rng.random::<f64>() >= effects.lamps_out;
+                let mut half = [0.15; 2];
+                half[along] = 0.6;
+                lamps.push(Lamp {
+                    middle: middle.map(|coordinate| coordinate as f32),
+                    half: half.map(|length| length as f32),
+                    brightness: if burns { (LAMP_BRIGHTNESS * share) as f32 } else { 0.35 },
+                });
+            }
+            let strewn = [
+                (For::Spots, effects.hot_spots, 0.2..=0.6, 1.0),
+                (For::Shadows, -effects.shadows, 0.3..=1.2, 3.0),
+            ];
+            for (purpose, change, sizes, apart) in strewn {
+                let mut rng = stream(seed, purpose, number);
+                for _ in 0..about(length / apart, &mut rng) {
+                    let mut middle = start;
+                    middle[along] += length * rng.random::<f64>();
+                    middle[1 - along] += width * rng.random_range(-0.5..=0.5);
+                    let half = [(); 2].map(|()| rng.random_range(sizes.clone()));
+                    let change = change * rng.random_range(0.4..=1.0);
+                    spots.push(Spot { middle, half, change });
+                }
+            }
+        }
+        spots.retain(|spot| spot.change != 0.0);
+        let walls_near = lamps
+            .iter()
+            .map(|lamp| {
+                let reach = Rectangle {
+                    least: lamp.middle.map(|at| f64::from(at) - REACH),
+                    greatest: lamp.middle.map(|at| f64::from(at) + REACH),
+                };
+                let near = |wall: &&Wall| {
+                    let [one, other] = wall.span.map(|at| wall.foot(at));
+                    reach.meets(&Rectangle { least: one, greatest: other })
+                };
+                walls.iter().filter(near).copied().collect()
+            })
+            .collect();
+        Self { lamps, spots, falloff: effects.lamp_falloff, walls_near }
+    }
+
+    /// Whether the light is the same everywhere.
+    pub(super) fn even(&self) -> bool {
+        self.falloff == 0.0 && self.spots.is_empty()
+    }
+
+    /// The light that lamps throw on a surface at this place, up to a factor.
+    pub(super) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
+        let mut sum = 0.0;
+        for (lamp, walls) in self.lamps.iter().zip(&self.walls_near) {
+            let middle = lamp.middle.map(f64::from);
+            let [x, y] = [middle[0] - place[0], middle[1] - place[1]];
+            let height = CEILING - place[2];
+            let square = x * x + y * y + height * height;
+            let facing = x * normal[0] + y * normal[1] + height * normal[2];
+            if facing <= 0.0 || x * x + y * y > REACH * REACH {
+                continue;
+            }
+            let size = f64::from(lamp.half[0].max(lamp.half[1]));
+            // The lamp is no point: its nearness has a limit.
+            let square = square + size * size / 3.0;
+            let ground = [place[0], place[1]];
+            if walls.iter().all(|wall| !wall.between(ground, middle)) {
+                sum += f64::from(lamp.brightness) * facing * height / (square * square);
+            }
+        }
+        sum
+    }
+
+    /// The light at a place, where so much lamplight falls and so much falls on the floor's average.
+    pub(super) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
+        let lamps = if average > 0.0 { lamplight / average } else { 0.0 };
+        let mut light = 1.0 - self.falloff + self.falloff * lamps;
+        for spot in &self.spots {
+            let [x, y] = [0, 1].map(|axis| (ground[axis] - spot.middle[axis]) / spot.half[axis]);
+            let square = x * x + y * y;
+            if square < 6.0 {
+                light *= 1.0 + spot.change * (-square * square / 2.0).exp();
+            }
+        }
+        light as f32
+    }
+}
+
+impl Wall {
+    /// Whether the wall stands between two places.
+    fn between(&self, one: [f64; 2], other: [f64; 2]) -> bool {
+        let across = 1 - self.along;
+        let [before, behind] = [one, other].map(|place| place[across] - self.plane);
+        if before * behind >= 0.0 {
+            return false;
+        }
+        let share = before / (before - behind);
+        let at = one[self.along] + share * (other[self.along] - one[self.along]);
+        self.span[0] <= at && at <= self.span[1]
+    }
+}

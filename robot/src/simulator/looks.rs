@@ -1,0 +1,219 @@
+//! Looks: what floors, walls, stripes and markers of real buildings look like. Section 2.4.
+//!
+//! A colour is red, green and blue from 0 to 255, as a camera shows the surface under white light that
+//! is neither too bright nor too dim.
+
+use toposlam_vision::colour::{Stripe, StripeKind};
+
+/// A colour as a camera shows it.
+pub type Colour = [u8; 3];
+
+/// What a floor is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Floor {
+    /// One colour throughout.
+    Plain,
+    /// Square tiles with joints between them.
+    Tiled {
+        /// From joint to joint, in metres.
+        side: f64,
+        /// How wide a joint is, in metres.
+        joint: f64,
+        /// How bright a joint is, as a share of the tiles.
+        joint_shade: f64,
+    },
+    /// Tufts, each of a shade of its own.
+    Carpet {
+        /// How large a tuft is, in metres.
+        tuft: f64,
+        /// By which share their shades differ.
+        spread: f64,
+    },
+}
+
+/// What a building looks like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Its name.
+    pub name: &'static str,
+    /// What is to be seen, in a few words.
+    pub about: &'static str,
+    /// What the floor is made of.
+    pub floor: Floor,
+    /// The floor's colour.
+    pub floor_colour: Colour,
+    /// How much the floor shines, from 0 (not at all) to 1 (polished).
+    pub gloss: f64,
+    /// The walls' colour.
+    pub wall_colour: Colour,
+    /// Where the stripe is and how wide.
+    pub stripe: Stripe,
+    /// The stripe's colour.
+    pub stripe_colour: Colour,
+    /// The doors' colour.
+    pub door_colour: Colour,
+    /// The colour of the doors' frames.
+    pub frame_colour: Colour,
+    /// The ceiling's colour.
+    pub ceiling_colour: Colour,
+    /// The marker's colour, like nothing else in the building.
+    pub marker_colour: Colour,
+}
+
+const fn tape(width: f64) -> Stripe {
+    Stripe { kind: StripeKind::OnFloor, width }
+}
+
+const fn baseboard(width: f64) -> Stripe {
+    Stripe { kind: StripeKind::OnWall, width }
+}
+
+const MAGENTA: Colour = [205, 35, 140];
+const ORANGE: Colour = [235, 110, 20];
+const CYAN: Colour = [15, 150, 190];
+
+/// All looks; the first is the default.
+pub const LOOKS: [Look; 9] = [
+    Look {
+        name: "laboratory",
+        about: "white tape on grey carpet, beige walls",
+        floor: Floor::Carpet { tuft: 0.012, spread: 0.22 },
+        floor_colour: [104, 106, 110],
+        gloss: 0.0,
+        wall_colour: [206, 190, 158],
+        stripe: tape(0.05),
+        stripe_colour: [232, 231, 224],
+        door_colour: [126, 86, 56],
+        frame_colour: [84, 80, 76],
+        ceiling_colour: [214, 212, 206],
+        marker_colour: MAGENTA,
+    },
+    Look {
+        name: "tiles",
+        about: "black tape on light tiles, white walls",
+        floor: Floor::Tiled { side: 0.30, joint: 0.005, joint_shade: 0.62 },
+        floor_colour: [186, 180, 166],
+        gloss: 0.25,
+        wall_colour: [212, 212, 206],
+        stripe: tape(0.05),
+        stripe_colour: [30, 30, 32],
+        door_colour: [92, 112, 132],
+        frame_colour: [150, 150, 148],
+        ceiling_colour: [220, 220, 216],
+        marker_colour: MAGENTA,
+    },
+    Look {
+        name: "vinyl",
+        about: "black baseboard on polished vinyl, white walls",
+        floor: Floor::Plain,
+        floor_colour: [158, 154, 140],
+        gloss: 0.8,
+        wall_colour: [216, 214, 206],
+        stripe: baseboard(0.10),
+        stripe_colour: [26, 25, 26],
+        door_colour: [150, 116, 76],
+        frame_colour: [96, 92, 88],
+        ceiling_colour: [214, 214, 210],
+        marker_colour: ORANGE,
+    },
+    Look {
+        name: "office",
+        about: "white baseboard on brown carpet, cream walls",
+        floor: Floor::Carpet { tuft: 0.010, spread: 0.25 },
+        floor_colour: [112, 80, 58],
+        gloss: 0.0,
+        wall_colour: [206, 196, 164],
+        stripe: baseboard(0.09),
+        stripe_colour: [236, 234, 228],
+        door_colour: [168, 132, 92],
+        frame_colour: [224, 220, 210],
+        ceiling_colour: [216, 214, 206],
+        marker_colour: CYAN,
+    },
+    Look {
+        name: "hospital",
+        about: "black baseboard on polished green linoleum, pale green walls",
+        floor: Floor::Plain,
+        floor_colour: [124, 146, 118],
+        gloss: 0.6,
+        wall_colour: [188, 204, 182],
+        stripe: baseboard(0.10),
+        stripe_colour: [32, 32, 34],
+        door_colour: [198, 168, 122],
+        frame_colour: [132, 132, 130],
+        ceiling_colour: [222, 222, 218],
+        marker_colour: MAGENTA,
+    },
+    Look {
+        name: "basement",
+        about: "white tape on painted concrete, grey walls as bright as the floor",
+        floor: Floor::Carpet { tuft: 0.060, spread: 0.07 },
+        floor_colour: [122, 118, 110],
+        gloss: 0.15,
+        wall_colour: [128, 130, 134],
+        stripe: tape(0.05),
+        stripe_colour: [234, 232, 226],
+        door_colour: [78, 88, 96],
+        frame_colour: [60, 62, 64],
+        ceiling_colour: [150, 148, 144],
+        marker_colour: ORANGE,
+    },
+    Look {
+        name: "school",
+        about: "black tape on red tiles, yellow walls",
+        floor: Floor::Tiled { side: 0.20, joint: 0.006, joint_shade: 1.35 },
+        floor_colour: [158, 98, 76],
+        gloss: 0.3,
+        wall_colour: [210, 186, 118],
+        stripe: tape(0.06),
+        stripe_colour: [34, 33, 33],
+        door_colour: [58, 92, 74],
+        frame_colour: [108, 104, 96],
+        ceiling_colour: [212, 210, 202],
+        marker_colour: CYAN,
+    },
+    Look {
+        name: "theatre",
+        about: "white tape on dark blue carpet, dark panelled walls",
+        floor: Floor::Carpet { tuft: 0.012, spread: 0.25 },
+        floor_colour: [54, 62, 88],
+        gloss: 0.0,
+        wall_colour: [104, 74, 52],
+        stripe: tape(0.05),
+        stripe_colour: [222, 220, 212],
+        door_colour: [66, 40, 30],
+        frame_colour: [44, 34, 28],
+        ceiling_colour: [120, 116, 110],
+        marker_colour: ORANGE,
+    },
+    Look {
+        name: "gallery",
+        about: "black baseboard on pale wooden boards, grey walls",
+        floor: Floor::Tiled { side: 0.12, joint: 0.003, joint_shade: 0.7 },
+        floor_colour: [196, 166, 122],
+        gloss: 0.4,
+        wall_colour: [162, 162, 160],
+        stripe: baseboard(0.08),
+        stripe_colour: [38, 37, 38],
+        door_colour: [214, 212, 206],
+        frame_colour: [120, 118, 116],
+        ceiling_colour: [208, 208, 206],
+        marker_colour: MAGENTA,
+    },
+];
+
+impl Look {
+    /// The look of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        LOOKS.iter().find(|look| look.name == name)
+    }
+}
+
+/// How much light a surface of this colour throws back, as a share, for red, green and blue.
+pub(super) fn linear(colour: Colour) -> [f32; 3] {
+    colour.map(|value| {
+        let value = f32::from(value) / 255.0;
+        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    })
+}

@@ -1,0 +1,161 @@
+//! The mirror, ray by ray: from the pinhole up to the sphere, and reflected there. Section 2.5.
+//!
+//! The robot's coordinates: its centre on the floor as origin, x ahead, y to the left, z up, in metres.
+
+use std::f64::consts::TAU;
+
+use toposlam_vision::camera::{Camera, SeenFrom};
+
+type Vector = [f64; 3];
+
+/// By how much a camera is not as its calibration says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigErrors {
+    /// How far the axis leans, in radians.
+    pub tilt: f64,
+    /// Whither it leans, in radians from ahead to the left.
+    pub towards: f64,
+    /// How far the mirror is from where it should be in the image, in pixels.
+    pub centre: [f64; 2],
+    /// How much too high the camera is, in metres.
+    pub height: f64,
+}
+
+/// What a pixel looks along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it comes from: the mirror, or the pinhole.
+    pub origin: Vector,
+    /// Whither; of length one.
+    pub direction: Vector,
+    /// Whether it has met the mirror.
+    pub by: By,
+}
+
+/// How a ray comes to the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// By way of the mirror.
+    Mirror,
+    /// Past the mirror.
+    Itself,
+}
+
+/// A pinhole camera that looks up, and a mirrored sphere above it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Optics {
+    pub(super) image: [u32; 2],
+    pub(super) centre: [f64; 2],
+    focal: f64,
+    radius: f64,
+    distance: f64,
+    pub(super) height: f64,
+    /// The image's axes, right and up, as directions in the plane of the floor.
+    right: [f64; 2],
+    up: [f64; 2],
+    tilt: f64,
+    towards: f64,
+}
+
+impl Optics {
+    pub(super) fn new(camera: &Camera, errors: &RigErrors) -> Self {
+        let mirror = &camera.optics;
+        let (sine, cosine) = camera.ahead.sin_cos();
+        // Ahead in the image is (cosine, sine). Seen from below, left is a quarter turn clockwise.
+        let (right, up) = match camera.seen_from {
+            SeenFrom::Below => ([cosine, sine], [sine, -cosine]),
+            SeenFrom::Above => ([cosine, -sine], [sine, cosine]),
+        };
+        Self {
+            image: camera.image,
+            centre: [0, 1].map(|axis| mirror.centre[axis] + errors.centre[axis]),
+            focal: mirror.focal,
+            radius: mirror.mirror_radius,
+            distance: mirror.mirror_distance,
+            height: mirror.camera_height + errors.height,
+            right,
+            up,
+            tilt: errors.tilt,
+            towards: errors.towards,
+        }
+    }
+
+    /// The ray that a pixel looks along.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
+        let across = (pixel[0] - self.centre[0]) / self.focal;
+        let upwards = (self.centre[1] - pixel[1]) / self.focal;
+        let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
+        let out = unit([x, y, 1.0]);
+        // The sphere's centre is straight above the pinhole, which is the origin for now.
+        let middle = [0.0, 0.0, self.distance];
+        let along = dot(out, middle);
+        let beyond = along * along - (self.distance * self.distance - self.radius * self.radius);
+        let (origin, direction, by) = if beyond > 0.0 {
+            let met = scaled(out, along - beyond.sqrt());
+            let normal = scaled(minus(met, middle), 1.0 / self.radius);
+            let back = minus(out, scaled(normal, 2.0 * dot(out, normal)));
+            (met, unit(back), By::Mirror)
+        } else {
+            ([0.0; 3], out, By::Itself)
+        };
+        let mut origin = self.leaning(origin);
+        origin[2] += self.height;
+        Ray { origin, direction: self.leaning(direction), by }
+    }
+
+    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
+    fn leaning(&self, vector: Vector) -> Vector {
+        if self.tilt == 0.0 {
+            return vector;
+        }
+        let ((sine, cosine), (left, ahead)) = (self.tilt.sin_cos(), self.towards.sin_cos());
+        let along = vector[0] * ahead + vector[1] * left;
+        let across = vector[1] * ahead - vector[0] * left;
+        let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
+        [along * ahead - across * left, along * left + across * ahead, up]
+    }
+
+    /// How far from its middle the mirror ends in the image, in pixels.
+    pub(super) fn rim(&self) -> f64 {
+        let sine = (self.radius / self.distance).min(0.999);
+        self.focal * sine / (1.0 - sine * sine).sqrt()
+    }
+}
+
+impl Ray {
+    /// Where it meets the floor, in the robot's coordinates, if nothing is in its way.
+    #[must_use]
+    pub fn floor(&self) -> Option<[f64; 2]> {
+        let length = -self.origin[2] / self.direction[2];
+        (self.direction[2] < 0.0)
+            .then(|| [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis]))
+    }
+
+    /// The share of a full turn from ahead to the left, in [0, 1).
+    pub(super) fn turn(&self) -> f64 {
+        (self.direction[1].atan2(self.direction[0]) / TAU).rem_euclid(1.0)
+    }
+
+    /// How far it passes from the robot's axis, seen from above.
+    pub(super) fn off_axis(&self) -> f64 {
+        let [x, y, _] = self.direction;
+        let level = x.hypot(y);
+        if level == 0.0 { 0.0 } else { (self.origin[0] * y - self.origin[1] * x).abs() / level }
+    }
+}
+
+fn dot(one: Vector, other: Vector) -> f64 {
+    one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+}
+
+fn scaled(vector: Vector, by: f64) -> Vector {
+    vector.map(|coordinate| coordinate * by)
+}
+
+fn minus(one: Vector, other: Vector) -> Vector {
+    [0, 1, 2].map(|axis| one[axis] - other[axis])
+}
+
+fn unit(vector: Vector) -> Vector {
+    scaled(vector, 1.0 / dot(vector, vector).sqrt())
+}

@@ -1,0 +1,106 @@
+//! A camera on a robot, with what each of its pixels looks along. Section 2.5.
+
+use toposlam_vision::camera::Camera;
+
+use super::optics::{By, Optics, Ray, RigErrors};
+
+/// A camera under its mirror, on a robot; made once and used for any number of pictures.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    pub(super) optics: Optics,
+    pub(super) rays: Vec<PixelRay>,
+    /// How much farther out on the floor each pixel looks than the one before it, by pixels from the
+    /// middle; in metres, with the rig upright.
+    strides: Vec<f32>,
+    /// How far rays pass from the robot's axis at most, seen from above, in metres.
+    pub(super) off_axis: f64,
+}
+
+/// What the middle of a pixel looks along, in the robot's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelRay {
+    pub(super) origin: [f32; 3],
+    pub(super) direction: [f32; 3],
+    /// From ahead to the left, of 65,536 to a full turn.
+    pub(super) turn: u16,
+    pub(super) by: By,
+}
+
+impl From<Ray> for PixelRay {
+    fn from(ray: Ray) -> Self {
+        Self {
+            origin: ray.origin.map(|coordinate| coordinate as f32),
+            direction: ray.direction.map(|coordinate| coordinate as f32),
+            turn: (ray.turn() * 65_536.0) as u32 as u16,
+            by: ray.by,
+        }
+    }
+}
+
+/// The same camera with another size of image: every pixel larger or smaller.
+#[must_use]
+pub fn sized(camera: &Camera, image: [u32; 2]) -> Camera {
+    let factor = f64::from(image[0]) / f64::from(camera.image[0]);
+    let mut sized = camera.clone();
+    sized.image = image;
+    // Pixel centres are integers, so the image begins at -0.5.
+    sized.optics.centre = camera.optics.centre.map(|at| (at + 0.5) * factor - 0.5);
+    sized.optics.focal *= factor;
+    sized
+}
+
+impl Rig {
+    /// A camera as its calibration says.
+    #[must_use]
+    pub fn new(camera: &Camera) -> Self {
+        Self::with_errors(camera, &RigErrors::default())
+    }
+
+    /// A camera that is not quite as its calibration says.
+    #[must_use]
+    pub fn with_errors(camera: &Camera, errors: &RigErrors) -> Self {
+        let optics = Optics::new(camera, errors);
+        let [width, height] = optics.image;
+        let mut off_axis: f64 = 0.0;
+        let mut rays = Vec::with_capacity(width as usize * height as usize);
+        for v in 0..height {
+            for u in 0..width {
+                let ray = optics.ray([u, v].map(f64::from));
+                off_axis = off_axis.max(ray.off_axis());
+                rays.push(ray.into());
+            }
+        }
+        let upright = Optics::new(camera, &RigErrors::default());
+        let range = |pixels: f64| {
+            let [u, v] = upright.centre;
+            let [x, y] = upright.ray([u + pixels, v]).floor()?;
+            Some(x.hypot(y))
+        };
+        let strides = (0..upright.rim() as u32)
+            .map_while(|pixels| {
+                let pixels = f64::from(pixels);
+                Some((range(pixels + 0.5)? - range((pixels - 0.5).max(0.0))?) as f32)
+            })
+            .collect();
+        Self { optics, rays, strides, off_axis }
+    }
+
+    /// Width and height of its pictures, in pixels.
+    #[must_use]
+    pub fn image(&self) -> [u32; 2] {
+        self.optics.image
+    }
+
+    /// What a pixel looks along.
+    #[must_use]
+    pub fn ray(&self, pixel: [f64; 2]) -> Ray {
+        self.optics.ray(pixel)
+    }
+
+    /// The radial extent on the floor of a pixel that is so far from the middle.
+    #[inline]
+    pub(super) fn stride(&self, from_middle: f32) -> f32 {
+        let last = self.strides.last().copied().unwrap_or(1.0);
+        self.strides.get(from_middle as usize).copied().unwrap_or(last)
+    }
+}

@@ -1,0 +1,253 @@
+//! What a ray meets in a building, and how it looks there.
+
+use super::building::{Building, HEIGHT, WallPart};
+use super::chance::{clouds, speckle};
+use super::looks::Floor;
+use super::sight_lines::SightLines;
+
+/// How a ceiling is lit, as a share of the floor.
+const CEILING_LIGHT: f32 = 0.6;
+
+/// What is seen; different things have different ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Surface {
+    Floor,
+    Tape,
+    Marker,
+    Wall(u32, WallPart),
+    Ceiling,
+    Lamp,
+    Robot(super::body::Part),
+    /// The holder around the mirror.
+    Holder,
+    /// Nothing: there is no building in this direction.
+    Nothing,
+}
+
+/// A ray in the building's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorldRay {
+    pub(super) origin: [f32; 3],
+    pub(super) direction: [f32; 3],
+    /// From east counter-clockwise, of 65,536 to a full turn.
+    pub(super) turn: u16,
+}
+
+/// Where a ray ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum End {
+    Floor { place: [f32; 2] },
+    Wall { wall: u32, along: f32, height: f32 },
+    Ceiling { place: [f32; 2] },
+    Nothing,
+}
+
+/// How large a pixel is on the floor: along the ray as seen from above, and across it, in metres.
+pub(super) type Footprint = [f32; 2];
+
+/// A building from one place.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) building: &'a Building,
+    pub(super) lines: &'a SightLines,
+}
+
+impl View<'_> {
+    /// How far a ray goes as far as the first wall, and which wall that is.
+    #[inline]
+    fn wall(&self, ray: &WorldRay) -> Option<(f32, u32, f32)> {
+        let mut nearest = (f32::INFINITY, u32::MAX, 0.0);
+        for &number in self.lines.walls(ray.turn) {
+            let face = &self.building.faces[number as usize];
+            let across = 1 - face.along;
+            let length = (face.plane - ray.origin[across]) / ray.direction[across];
+            if length > 0.0 && length < nearest.0 {
+                let along = ray.origin[face.along] + length * ray.direction[face.along];
+                // Rounding leaves no gap at corners.
+                if face.span[0] - 1e-4 <= along && along <= face.span[1] + 1e-4 {
+                    nearest = (length, number, along);
+                }
+            }
+        }
+        (nearest.1 != u32::MAX).then_some(nearest)
+    }
+
+    /// Where a ray ends, given the first wall on its way.
+    #[inline]
+    fn end(ray: &WorldRay, wall: Option<(f32, u32, f32)>) -> End {
+        let (origin, direction) = (ray.origin, ray.direction);
+        let level = if direction[2] < 0.0 { 0.0 } else { HEIGHT };
+        let length = (level - origin[2]) / direction[2];
+        match wall {
+            Some((before, wall, along)) if before <= length || direction[2] == 0.0 => {
+                End::Wall { wall, along, height: origin[2] + before * direction[2] }
+            }
+            _ if direction[2] == 0.0 => End::Nothing,
+            _ => {
+                let place = [0, 1].map(|axis| origin[axis] + length * direction[axis]);
+                if direction[2] < 0.0 { End::Floor { place } } else { End::Ceiling { place } }
+            }
+        }
+    }
+
+    /// What there is where a ray ends.
+    #[inline]
+    pub(super) fn surface(&self, ray: &WorldRay) -> Surface {
+        match Self::end(ray, self.wall(ray)) {
+            End::Floor { place } => self.on_floor(place),
+            End::Wall { wall, along, height } => {
+                let face = &self.building.faces[wall as usize];
+                Surface::Wall(wall, self.building.wall_part(face, along, height))
+            }
+            End::Ceiling { place } => self.on_ceiling(place),
+            End::Nothing => Surface::Nothing,
+        }
+    }
+
+    /// What a ray meets, and the light that comes back along it.
+    #[inline]
+    pub(super) fn seen(
+        &self,
+        ray: &WorldRay,
+        footprint: impl Fn() -> Footprint,
+    ) -> (Surface, [f32; 3]) {
+        let wall = self.wall(ray);
+        match Self::end(ray, wall) {
+            End::Floor { place } => {
+                let surface = self.on_floor(place);
+                let mut colour = match surface {
+                    Surface::Marker => self.building.colours.marker,
+                    Surface::Tape => self.building.tape_colour(place),
+                    _ => self.floor_colour(place, ray, footprint),
+                };
+                let light = self.building.light.on_floor(place);
+                colour = colour.map(|channel| channel * light);
+                if self.building.gloss > 0.0 {
+                    self.add_reflection(ray, wall, &mut colour);
+                }
+                (surface, colour)
+            }
+            End::Wall { wall, along, height } => self.on_wall(wall, along, height),
+            End::Ceiling { place } => (self.on_ceiling(place), self.ceiling_colour(place, 0.02)),
+            End::Nothing => (Surface::Nothing, [0.2; 3]),
+        }
+    }
+
+    #[inline]
+    fn on_floor(&self, place: [f32; 2]) -> Surface {
+        if let Some(marker) = self.building.marker {
+            if marker.holds(place.map(f64::from)) {
+                return Surface::Marker;
+            }
+        }
+        if self.building.tape_at(place) { Surface::Tape } else { Surface::Floor }
+    }
+
+    fn floor_colour(
+        &self,
+        place: [f32; 2],
+        ray: &WorldRay,
+        footprint: impl Fn() -> Footprint,
+    ) -> [f32; 3] {
+        let building = self.building;
+        let strength = building.texture;
+        if strength == 0.0 {
+            return building.colours.floor;
+        }
+        let shade = match building.look.floor {
+            Floor::Plain => 1.0,
+            Floor::Tiled { side, joint, joint_shade } => {
+                let [radial, across] = footprint();
+                let [x, y] = [ray.direction[0].abs(), ray.direction[1].abs()];
+                let level = x.hypot(y).max(1e-6);
+                let (cosine, sine) = (x / level, y / level);
+                let size = [radial * cosine + across * sine, radial * sine + across * cosine];
+                let (side, joint) = (side as f32, joint as f32);
+                let open = [0, 1]
+                    .map(|axis| 1.0 - joint_share(place[axis], size[axis].max(1e-4), side, joint));
+                let tile =
+                    speckle((place[0] / side).floor() as i32, (place[1] / side).floor() as i32, 5);
+                let joints = 1.0 - open[0] * open[1];
+                let faint = (side / size[0].max(size[1])).min(1.0);
+                (1.0 + 0.03 * strength * tile * faint)
+                    * (1.0 + joints * strength * (joint_shade as f32 - 1.0))
+            }
+            Floor::Carpet { tuft, spread } => {
+                let [radial, across] = footprint();
+                let (tuft, spread) = (tuft as f32, spread as f32 * strength);
+                // Where a pixel holds many tufts, it shows what they are on average.
+                let faint = (tuft / radial.max(tuft)) * (tuft / across.max(tuft)).sqrt();
+                let [x, y] = place.map(|at| (at / tuft).floor() as i32);
+                1.0 + spread * faint * speckle(x, y, 9)
+            }
+        };
+        let worn = 1.0 + 0.05 * strength * clouds(place[0] * 1.7, place[1] * 1.7, 3);
+        building.colours.floor.map(|channel| channel * (shade * worn).max(0.0))
+    }
+
+    fn on_wall(&self, wall: u32, along: f32, height: f32) -> (Surface, [f32; 3]) {
+        let building = self.building;
+        let part = building.wall_part(&building.faces[wall as usize], along, height);
+        let light = building.light.on_wall(wall as usize, along, height);
+        let colour = building.wall_colour(part, along, height);
+        (Surface::Wall(wall, part), colour.map(|channel| channel * light))
+    }
+
+    #[inline]
+    fn on_ceiling(&self, place: [f32; 2]) -> Surface {
+        let above = self.building.lamps.iter().any(|lamp| {
+            (0..2).all(|axis| (place[axis] - lamp.middle[axis]).abs() <= lamp.half[axis])
+        });
+        if above { Surface::Lamp } else { Surface::Ceiling }
+    }
+
+    /// The light of the ceiling and its lamps, whose edges are seen blurred over so many metres.
+    fn ceiling_colour(&self, place: [f32; 2], blurred: f32) -> [f32; 3] {
+        let ceiling = self.building.colours.ceiling.map(|channel| channel * CEILING_LIGHT);
+        for lamp in &self.building.lamps {
+            let [x, y] = [0, 1].map(|axis| {
+                let inside = lamp.half[axis] - (place[axis] - lamp.middle[axis]).abs();
+                (0.5 + inside / blurred).clamp(0.0, 1.0)
+            });
+            let share = x * y;
+            if share > 0.0 {
+                return ceiling.map(|channel| channel + share * (lamp.brightness - channel));
+            }
+        }
+        ceiling
+    }
+
+    /// What the floor mirrors: the ray goes on below it as if the building stood on its head there.
+    fn add_reflection(&self, ray: &WorldRay, wall: Option<(f32, u32, f32)>, colour: &mut [f32; 3]) {
+        let gloss = self.building.gloss;
+        let down = -ray.direction[2];
+        let graze = 1.0 - down;
+        let square = graze * graze;
+        // Schlick's approximation of Fresnel's share, of a surface that is not quite smooth.
+        let share = gloss * (0.04 + 0.6 * square * square * graze);
+        let above = HEIGHT + ray.origin[2];
+        let up = above / down;
+        let mirrored = match wall {
+            Some((length, wall, along)) if length < up => {
+                self.on_wall(wall, along, length * down - ray.origin[2]).1
+            }
+            _ => {
+                let place = [0, 1].map(|axis| ray.origin[axis] + up * ray.direction[axis]);
+                self.ceiling_colour(place, 0.1 + 0.6 * (1.0 - gloss).max(0.0))
+            }
+        };
+        for (channel, mirrored) in colour.iter_mut().zip(mirrored) {
+            *channel += share * mirrored;
+        }
+    }
+}
+
+/// Which share of a stretch of this size around a place is joint.
+fn joint_share(at: f32, size: f32, side: f32, joint: f32) -> f32 {
+    // How much joint there is from 0 as far as a place.
+    let before = |at: f32| {
+        let tiles = (at / side).floor();
+        tiles * joint + (at - tiles * side).min(joint)
+    };
+    (before(at + size / 2.0) - before(at - size / 2.0)) / size
+}

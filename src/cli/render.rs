@@ -1,0 +1,203 @@
+//! `toposlam render`: what the robot's camera would see from a pose in a floor plan. Section 2.5.
+
+use std::{
+    ffi::OsStr,
+    io::{Cursor, Write},
+    path::{Path, PathBuf},
+};
+
+use clap::{
+    ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
+use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    embedded_graph::Dart,
+    floor_plan::{FloorPlan, JunctionKind},
+};
+use toposlam_robot::simulator::{
+    Building, Effects, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render, sized,
+};
+use toposlam_vision::camera::Camera;
+
+use super::{Failure, Outcome, input, output};
+
+/// Render what the robot's camera would see from a pose in a floor plan
+#[derive(clap::Args)]
+#[command(after_help = after_help())]
+pub(super) struct Arguments {
+    /// The floor plan
+    plan: PathBuf,
+    /// Where the robot is, in metres, x to the east, y to the north, and its heading in degrees
+    /// counter-clockwise from east [default: at the plan's start, its back to the facing hallway]
+    #[arg(long, value_name = "X,Y,HEADING", value_parser = read_pose, allow_hyphen_values = true)]
+    pose: Option<Pose>,
+    /// The file to write: .png, .jpg or .jpeg
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Width and height of the picture, in pixels
+    #[arg(long, default_value = "1280x960", value_name = "SIZE")]
+    size: Size,
+    /// What the building looks like
+    #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
+    look: &'static Look,
+    /// Which effects there are
+    #[arg(long, default_value = "default", value_name = "WHICH")]
+    effects: Which,
+    /// Set one effect; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
+    effect: Vec<(String, f64)>,
+    /// From which everything follows that is left to chance
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Put the marker at the plan's start, along the facing hallway; without a start at the first L
+    #[arg(long)]
+    marker: bool,
+    /// Also write what each pixel shows, as a .png: floor green, stripe red, marker blue, anything
+    /// else black, the robot and what lies beyond the mirror white
+    #[arg(long, value_name = "FILE")]
+    labels: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Size {
+    /// Small
+    #[value(name = "640x480")]
+    Small,
+    /// Large
+    #[value(name = "1280x960")]
+    Large,
+}
+
+impl Size {
+    fn pixels(self) -> [u32; 2] {
+        match self {
+            Self::Small => [640, 480],
+            Self::Large => [1280, 960],
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// Each drawn from its default range
+    Default,
+    /// None
+    None,
+}
+
+impl Arguments {
+    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, Failure> {
+        output::check_place(&self.out, &["png", "jpg", "jpeg"])?;
+        if let Some(path) = &self.labels {
+            output::check_place(path, &["png"])?;
+        }
+        let world = input::read_world(&self.plan)?;
+        let Some(plan) = &world.plan else {
+            let cause = "this world is no floor plan: there is no [floor] in it";
+            return Err(Failure::in_file(&self.plan, cause));
+        };
+        let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
+        let marker = if self.marker { Some(self.marked(plan, world.start)?) } else { None };
+        let effects = self.effects()?;
+        let building = Building::new(plan, self.look, marker, &effects, self.seed);
+        if !building.has_floor(pose.position) {
+            let [x, y] = pose.position;
+            return Err(Failure::at("--pose", format!("there is no floor at {x},{y}")));
+        }
+        let rig = Rig::new(&sized(&Camera::superscout(), self.size.pixels()));
+        let picture = render(&rig, &building, pose, &effects, self.seed);
+        let picture = encoded(&self.out, &picture)?;
+        let mask = match &self.labels {
+            Some(path) => {
+                let mask = label_mask(&rig, &labels(&rig, &building, pose, &effects));
+                Some((path, encoded(path, &mask)?))
+            }
+            None => None,
+        };
+        output::write_whole(&self.out, &picture)?;
+        if let Some((path, mask)) = mask {
+            output::write_whole(path, &mask)?;
+        }
+        Ok(Outcome::Holds)
+    }
+
+    fn effects(&self) -> Result<Effects, Failure> {
+        let mut effects = match self.effects {
+            Which::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(self.seed)),
+            Which::None => Effects::plain(),
+        };
+        for (name, value) in &self.effect {
+            effects.set(name, *value).map_err(|error| Failure::at("--effect", error))?;
+        }
+        Ok(effects)
+    }
+
+    /// The dart that the marker points along.
+    fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, Failure> {
+        let graph = plan.graph();
+        let at_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
+        start
+            .or_else(|| graph.darts().find(at_l))
+            .ok_or_else(|| Failure::in_file(&self.plan, "there is neither a start nor an L in it"))
+    }
+}
+
+/// On the dart's junction, the back to the dart's hallway.
+fn start_pose(plan: &FloorPlan, start: Dart) -> Pose {
+    let [x, y] = plan.direction(start).reversed().vector();
+    let junction = plan.junction(plan.graph().vertex(start));
+    Pose { position: junction.position, heading: y.atan2(x) }
+}
+
+fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Cursor::new(Vec::new());
+    let jpeg = path.extension().and_then(OsStr::to_str).is_some_and(|ending| ending != "png");
+    let written = if jpeg {
+        picture.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, 95))
+    } else {
+        picture.write_to(&mut bytes, ImageFormat::Png)
+    };
+    written.map_err(|error| Failure::in_file(path, error))?;
+    Ok(bytes.into_inner())
+}
+
+fn looks() -> impl TypedValueParser<Value = &'static Look> {
+    let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
+    PossibleValuesParser::new(looks)
+        .try_map(|name| Look::named(&name).ok_or_else(|| format!("there is no look `{name}`")))
+}
+
+fn read_pose(text: &str) -> Result<Pose, String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
+        .collect();
+    match numbers.as_deref() {
+        Some(&[x, y, degrees]) => Ok(Pose { position: [x, y], heading: degrees.to_radians() }),
+        _ => Err("write three numbers: x,y,heading, as in 2,4,90".to_owned()),
+    }
+}
+
+fn read_setting(text: &str) -> Result<(String, f64), String> {
+    let setting = text
+        .split_once('=')
+        .and_then(|(name, value)| Some((name.trim().to_owned(), value.trim().parse().ok()?)));
+    setting.ok_or_else(|| "write NAME=VALUE, as in blur=1.5".to_owned())
+}
+
+/// The effects, and an example.
+fn after_help() -> String {
+    let mut text = "Effects, and the range that each is drawn from:\n".to_owned();
+    for (of, title) in [(Of::Building, "Of the building"), (Of::Picture, "Of the picture")] {
+        text += &format!("  {title}\n");
+        for knob in KNOBS.iter().filter(|knob| knob.of == of) {
+            let range = format!("{}..{}", knob.default.start(), knob.default.end());
+            text += &format!("    {:<14} {range:<12} {}\n", knob.name, knob.about);
+        }
+    }
+    text + "\nExample:\n  toposlam render worlds/shape-8.toml --pose 2,8,0 --look vinyl \
+            --effect blur=1.5 --out view.png"
+}
