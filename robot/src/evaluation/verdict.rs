@@ -157,9 +157,9 @@ pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<Jun
 pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> MarkerVerdict {
     match (truth, seen) {
         (_, None) => MarkerVerdict::NotSeen,
-        (Some(truth), Some(seen)) if is_on(truth, seen.position) => {
-            MarkerVerdict::Seen(seen.door.zip(truth.door).map(|(seen, door)| seen.0 as usize == door))
-        }
+        (Some(truth), Some(seen)) if is_on(truth, seen.position) => MarkerVerdict::Seen(
+            seen.door.zip(truth.door).map(|(seen, door)| seen.0 as usize == door),
+        ),
         (_, Some(_)) => MarkerVerdict::Phantom,
     }
 }

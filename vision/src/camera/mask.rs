@@ -81,6 +81,16 @@ impl Mask {
         Ok(bytes)
     }
 
+    /// The same in another size: each pixel as the nearest is here.
+    pub(super) fn sized(&self, size: [u32; 2]) -> Self {
+        let nearest = |at: u32, axis: usize| {
+            (u64::from(at) * u64::from(self.size[axis]) / u64::from(size[axis])) as u32
+        };
+        let pixels = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| [u, v]));
+        let seen = pixels.map(|[u, v]| self.sees([nearest(u, 0), nearest(v, 1)])).collect();
+        Self::new(&self.file, size, seen)
+    }
+
     /// Width and height, in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {

@@ -11,7 +11,7 @@ use super::{
     calibration::SIDES,
     optics_file::{OpticsFileError, shown, within},
     root::{first_change, polynomial, root},
-    yaml,
+    scaled_place, yaml,
 };
 
 /// A camera with a single viewpoint, in the unified model.
@@ -123,6 +123,21 @@ impl Mei {
     #[must_use]
     pub fn image(&self) -> Option<[u32; 2]> {
         self.image
+    }
+
+    pub(super) fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// The same, with every pixel larger.
+    pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
+        Self {
+            image: Some(image),
+            focal: self.focal.map(|focal| factor * focal),
+            skew: factor * self.skew,
+            centre: scaled_place(self.centre, factor),
+            ..self.clone()
+        }
     }
 
     /// The ray of a pixel, in the image's axes.

@@ -43,6 +43,12 @@ pub enum Optics {
     Mei(Mei),
 }
 
+/// Where something at a place of an image is, once every pixel is larger by a factor: pixel centres
+/// are integers, so an image begins at -0.5.
+fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
+    place.map(|at| (at + 0.5) * factor - 0.5)
+}
+
 /// A calibrated camera on the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -117,6 +123,40 @@ impl Camera {
                 camera_height: 0.90,
             }),
             mask: None,
+        }
+    }
+
+    /// The same camera with another size of image: every pixel larger or smaller. The larger image
+    /// shows what the smaller shows, and its proportions should be the same.
+    #[must_use]
+    pub fn sized(&self, image: [u32; 2]) -> Self {
+        let factor = f64::from(image[0]) / f64::from(self.image[0]);
+        let optics = match &self.optics {
+            Optics::SphericalMirror(mirror) => Optics::SphericalMirror(mirror.scaled(factor)),
+            Optics::OCamCalib(ocam) => Optics::OCamCalib(ocam.scaled(factor, image)),
+            Optics::Mei(mei) => Optics::Mei(mei.scaled(factor, image)),
+        };
+        let mask = self.mask.as_ref().map(|mask| mask.sized(image));
+        Self { image, optics, mask, ..*self }
+    }
+
+    /// The pixel that looks straight down.
+    #[must_use]
+    pub fn middle(&self) -> [f64; 2] {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.centre,
+            Optics::OCamCalib(ocam) => ocam.centre(),
+            Optics::Mei(mei) => mei.centre(),
+        }
+    }
+
+    /// How high above the floor the pinhole or the single viewpoint is, in metres.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height,
+            Optics::OCamCalib(ocam) => ocam.viewpoint_height,
+            Optics::Mei(mei) => mei.viewpoint_height,
         }
     }
 

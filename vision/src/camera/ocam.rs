@@ -16,6 +16,7 @@ use super::{
     calibration::SIDES,
     optics_file::{OpticsFileError, shown, within},
     root::{first_change, polynomial, root},
+    scaled_place,
 };
 
 /// A camera with a single viewpoint, as OCamCalib calibrates it.
@@ -110,6 +111,24 @@ impl OCam {
     #[must_use]
     pub fn image(&self) -> [u32; 2] {
         self.image
+    }
+
+    pub(super) fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// The same, with every pixel larger: both of the plane's coordinates, and f with them.
+    pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
+        let mut scaled = self.clone();
+        scaled.image = image;
+        scaled.centre = scaled_place(self.centre, factor);
+        for (coefficient, power) in scaled.down.iter_mut().zip(0..) {
+            *coefficient *= factor.powi(1 - power);
+        }
+        scaled.inverse.iter_mut().for_each(|coefficient| *coefficient *= factor);
+        scaled.reach *= factor;
+        scaled.horizon *= factor;
+        scaled
     }
 
     /// A pixel in the plane of the model: to the right, and to the top.

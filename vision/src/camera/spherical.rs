@@ -9,7 +9,7 @@
 //! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
 //! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
 
-use super::{Ray, root::root};
+use super::{Ray, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +51,11 @@ impl SphericalMirror {
     #[must_use]
     pub fn radius(&self, range: f64) -> Option<f64> {
         range.is_finite().then(|| self.radius_at(self.angle_of(range.abs())))
+    }
+
+    /// The same, with every pixel larger.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self { centre: scaled_place(self.centre, factor), focal: factor * self.focal, ..*self }
     }
 
     /// The ray of a pixel, in the image's axes.
