@@ -1,4 +1,4 @@
-//! Worlds from files, whatever their format.
+//! Worlds from files, whatever their format; and cameras from calibration files.
 
 use std::{
     fs,
@@ -10,6 +10,8 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, plantri, world_file},
 };
+
+use toposlam_vision::camera::{Camera, calibration};
 
 use super::Failure;
 
@@ -33,6 +35,14 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
         world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
     }
     Ok(world)
+}
+
+/// The camera of a calibration file. The files that it names are those beside it.
+#[expect(dead_code, reason = "the verbs that read images come next")]
+pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))
+        .map_err(|error| Failure::in_file(path, error))
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.
