@@ -6,3 +6,4 @@ pub mod quantile;
 pub mod random_plan;
 pub mod truth;
 pub mod verdict;
+pub mod view;
