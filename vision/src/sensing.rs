@@ -103,7 +103,7 @@ impl Sensor {
         if found != self.camera.image {
             return Err(WrongSize { found, expected: self.camera.image });
         }
-        let Some(gain) = self.model.gain(self.unwrapping.ring(image)) else {
+        let Some(gain) = self.model.gain(&self.unwrapping.ring(image).collect::<Vec<_>>()) else {
             self.view = GroundView::unseen();
             let scene = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
             return Ok((scene, Trace::default()));

@@ -423,7 +423,7 @@ mod tests {
         assert!((400..600).contains(&random), "{random}");
         assert!((300..700).contains(&marked), "{marked}");
         for (form, name) in FORMS {
-            assert!(forms[&Some(form)] > 30, "{name}: {}", forms[&Some(form)]);
+            assert!(forms[&Some(form)] > 20, "{name}: {}", forms[&Some(form)]);
         }
     }
 

@@ -1,10 +1,26 @@
 //! Colour classes: what a pixel shows. Section 3.
+//!
+//! A [`Training`] learns a [`ColourModel`] from images with label masks. An image is brought to the
+//! light of the model by the colour of its [`FloorRing`]; then one lookup in a [`LitTable`] tells the
+//! class of a pixel.
 
+#![allow(clippy::cast_sign_loss, reason = "levels and pixels are never negative")]
+
+mod confusion;
+mod file;
+mod hsv;
+mod labels;
+mod light;
 mod model;
 mod table;
+mod training;
 
-pub use model::{ColourModel, Stripe, StripeKind};
+pub use confusion::Confusion;
+pub use file::{Cause, ColourFileError, Place};
+pub use light::{FloorRing, LightError};
+pub use model::{ColourModel, Priors, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
+pub use training::{Example, ExampleError, Training, TrainingError, View};
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,4 +39,22 @@ pub enum Class {
     Marker,
     /// Anything else: walls, doors, posters.
     Other,
+}
+
+impl Class {
+    /// The classes that are learned.
+    pub const LEARNED: [Self; 4] = [Self::Floor, Self::Stripe, Self::Marker, Self::Other];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unseen => "unseen",
+            Self::Unknown => "unknown",
+            Self::Floor => "floor",
+            Self::Stripe => "stripe",
+            Self::Marker => "marker",
+            Self::Other => "other",
+        }
+    }
 }

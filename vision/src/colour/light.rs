@@ -1,0 +1,153 @@
+//! The light of an image, by the floor beside the robot's body.
+
+use image::RgbImage;
+use thiserror::Error;
+
+use super::Gain;
+use crate::camera::Camera;
+
+/// The floor beside the robot's body, where there is floor wherever the robot is: a ring of samples,
+/// evenly spread in bearing and range.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FloorRing {
+    size: [u32; 2],
+    /// Pixels of an image, row by row.
+    pixels: Vec<usize>,
+}
+
+/// From where to where the ring lies, in metres from the robot's centre. The body hides all that is
+/// nearer, walls may be all that is farther.
+const RING: [f64; 2] = [0.34, 0.50];
+const BEARINGS: u32 = 240;
+const RANGES: u32 = 12;
+
+impl FloorRing {
+    /// Where a camera sees the ring.
+    #[must_use]
+    pub fn new(camera: &Camera) -> Self {
+        let [width, height] = camera.image;
+        let samples = (0..RANGES).flat_map(|nth| {
+            let range = RING[0] + (RING[1] - RING[0]) * f64::from(nth) / f64::from(RANGES - 1);
+            (0..BEARINGS).map(move |nth| {
+                let bearing = std::f64::consts::TAU * f64::from(nth) / f64::from(BEARINGS);
+                [range * bearing.cos(), range * bearing.sin()]
+            })
+        });
+        let pixels = samples
+            .filter_map(|ground| {
+                let [u, v] = camera.ground_to_pixel(ground)?.map(f64::round);
+                let inside = u >= 0.0 && v >= 0.0 && u < f64::from(width) && v < f64::from(height);
+                let pixel = [u as u32, v as u32];
+                (inside && camera.sees(pixel))
+                    .then(|| pixel[1] as usize * width as usize + pixel[0] as usize)
+            })
+            .collect();
+        Self { size: camera.image, pixels }
+    }
+
+    /// The colours that an image of this camera shows there; none in one of another size.
+    #[must_use]
+    pub fn colours(&self, image: &RgbImage) -> Vec<[u8; 3]> {
+        if <[u32; 2]>::from(image.dimensions()) != self.size {
+            return Vec::new();
+        }
+        let (colours, _) = image.as_raw().as_chunks::<3>();
+        self.pixels.iter().filter_map(|&pixel| colours.get(pixel).copied()).collect()
+    }
+}
+
+/// Why a ring of samples does not tell the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum LightError {
+    /// There are no samples.
+    #[error("no floor beside the robot's body is seen")]
+    Unseen,
+    /// Most samples have a channel at its end.
+    #[error("the floor beside the robot's body is burnt out")]
+    BurntOut,
+    /// There is too little light.
+    #[error("the floor beside the robot's body is too dark")]
+    TooDark,
+    /// No colour is that of many samples.
+    #[error("the floor beside the robot's body has no common colour")]
+    Mixed,
+}
+
+/// From this level on a channel may have been brighter than it can tell.
+const BURNT: u8 = 250;
+/// Below this level of the brightest channel, steps of one level are too coarse to be multiplied.
+const DARK: f64 = 16.0;
+/// Levels below this are noise.
+const NOISE: f64 = 4.0;
+/// Samples of the floor differ from its colour by no more than this factor.
+const SPREAD: f64 = 1.35;
+/// At least this share of the samples is floor.
+const AGREEING: f64 = 0.3;
+
+/// The colour of the floor in a ring of samples.
+///
+/// It begins with the median of each channel, and goes on to the mean of the samples near to it in all
+/// channels. The median is not moved far by what is not floor, a wall, a stripe, the marker, the
+/// reflection of a lamp, as long as that is less than half; then it is left out, and moves the mean
+/// not at all. Where the light changes around the robot, the mean is that of the middle: a mode would
+/// choose an end.
+pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
+    let lit: Vec<_> =
+        ring.iter().copied().filter(|colour| colour.iter().all(|&level| level < BURNT)).collect();
+    if ring.is_empty() {
+        return Err(LightError::Unseen);
+    }
+    if lit.len() * 2 < ring.len() {
+        return Err(LightError::BurntOut);
+    }
+    let mut floor = median(&lit);
+    let mut share = 1.0;
+    for _ in 0..4 {
+        let near = lit.iter().filter(|colour| is_near(floor, **colour));
+        let (mut count, mut sum) = (0_u32, [0_u32; 3]);
+        for colour in near {
+            count += 1;
+            for (sum, &level) in sum.iter_mut().zip(colour) {
+                *sum += u32::from(level);
+            }
+        }
+        if count > 0 {
+            floor = sum.map(|sum| f64::from(sum) / f64::from(count));
+        }
+        share = f64::from(count) / ring.len() as f64;
+    }
+    if floor.into_iter().fold(0.0, f64::max) < DARK {
+        Err(LightError::TooDark)
+    } else if share < AGREEING {
+        Err(LightError::Mixed)
+    } else {
+        Ok(floor)
+    }
+}
+
+fn is_near(floor: [f64; 3], colour: [u8; 3]) -> bool {
+    floor.into_iter().zip(colour).all(|(floor, level)| {
+        let (floor, level) = (floor.max(NOISE), f64::from(level).max(NOISE));
+        level <= floor * SPREAD + NOISE && level >= floor / SPREAD - NOISE
+    })
+}
+
+fn median(colours: &[[u8; 3]]) -> [f64; 3] {
+    std::array::from_fn(|channel| {
+        let mut counts = [0; 256];
+        for colour in colours {
+            counts[usize::from(colour[channel])] += 1;
+        }
+        let mut below = 0;
+        let level = counts.iter().position(|&count: &usize| {
+            below += count;
+            below * 2 >= colours.len()
+        });
+        level.unwrap_or_default() as f64
+    })
+}
+
+/// By what an image is multiplied in which the floor has one colour and should have another.
+pub(super) fn gain(from: [f64; 3], to: [f64; 3]) -> Gain {
+    Gain(std::array::from_fn(|channel| to[channel].max(NOISE) / from[channel].max(NOISE)))
+}

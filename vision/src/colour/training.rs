@@ -1,0 +1,312 @@
+//! Learning colours from images and label masks.
+
+use image::RgbImage;
+use thiserror::Error;
+
+use super::{
+    Class, ColourModel, Confusion, FloorRing, Priors, Stripe,
+    hsv::{BINS, Bin},
+    light::{self, LightError},
+    model::Histogram,
+    table::{self, CELLS},
+};
+use crate::camera::Camera;
+
+/// How far from the robot's centre the floor is looked at, in metres.
+const RANGE: f64 = 3.0;
+
+/// How far pixels spread over the bins around theirs.
+const SMOOTHING: f64 = 0.8;
+/// The share of a class below which it does not have a colour.
+const UNKNOWN_BELOW: f64 = 1e-5;
+
+/// The pixels of a camera that matter.
+#[derive(Clone, Debug)]
+pub struct View {
+    camera: Camera,
+    /// Those that show the ground view, row by row.
+    ground: Vec<usize>,
+    ring: FloorRing,
+}
+
+impl View {
+    /// What this camera sees.
+    #[must_use]
+    pub fn new(camera: &Camera) -> Self {
+        let [width, height] = camera.image;
+        let shows_floor = |pixel: [u32; 2]| {
+            let ground = camera.pixel_to_ground(pixel.map(f64::from));
+            ground.is_some_and(|[x, y]| x.hypot(y) <= RANGE) && camera.sees(pixel)
+        };
+        let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));
+        let ground = pixels
+            .enumerate()
+            .filter_map(|(nth, pixel)| shows_floor(pixel).then_some(nth))
+            .collect();
+        Self { camera: camera.clone(), ground, ring: FloorRing::new(camera) }
+    }
+}
+
+/// Why an image and its labels cannot be learned from.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ExampleError {
+    /// The image is not of this camera.
+    #[error(
+        "the image has {} x {} pixels; the calibration is for {} x {}",
+        found[0], found[1], expected[0], expected[1]
+    )]
+    ImageSize {
+        /// Width and height of the image.
+        found: [u32; 2],
+        /// Those of the calibration.
+        expected: [u32; 2],
+    },
+    /// The labels are not of this image.
+    #[error(
+        "the labels have {} x {} pixels; their image has {} x {}",
+        found[0], found[1], expected[0], expected[1]
+    )]
+    LabelSize {
+        /// Width and height of the labels.
+        found: [u32; 2],
+        /// Those of the image.
+        expected: [u32; 2],
+    },
+    /// A colour of the labels tells nothing.
+    #[error(
+        "the label at pixel ({}, {}) has the colour ({}, {}, {}); there can be {}",
+        pixel[0], pixel[1], colour[0], colour[1], colour[2], allowed()
+    )]
+    LabelColour {
+        /// Where it is, u and v.
+        pixel: [u32; 2],
+        /// The colour.
+        colour: [u8; 3],
+    },
+    /// The light of the image is not known.
+    #[error(transparent)]
+    Light(#[from] LightError),
+}
+
+/// The colours of label masks.
+fn allowed() -> String {
+    let labels = Class::LEARNED.map(|class| (class.name(), class.label()));
+    let labels = labels.into_iter().chain([("ignore", Class::Unseen.label())]);
+    let told = labels.map(|(name, [red, green, blue])| format!("{name} ({red},{green},{blue})"));
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// An image and its labels, as far as they matter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Example {
+    /// The floor's colour in this light.
+    floor: [f64; 3],
+    /// Which colours of which classes there are, in order, and in how many pixels.
+    colours: Vec<([u8; 3], Class, u32)>,
+}
+
+impl Example {
+    /// What an image shows where the robot sees the floor's surroundings, by its labels.
+    ///
+    /// # Errors
+    /// Image or labels have another size, a label's colour tells nothing, or the light is not known.
+    pub fn new(view: &View, image: &RgbImage, labels: &RgbImage) -> Result<Self, ExampleError> {
+        let expected = view.camera.image;
+        let [found, labelled] = [image, labels].map(|image| <[u32; 2]>::from(image.dimensions()));
+        if found != expected {
+            return Err(ExampleError::ImageSize { found, expected });
+        }
+        if labelled != found {
+            return Err(ExampleError::LabelSize { found: labelled, expected: found });
+        }
+        let [(colours, _), (labels, _)] =
+            [image, labels].map(|image| image.as_raw().as_chunks::<3>());
+        if let Some(nth) = labels.iter().position(|&label| Class::of_label(label).is_none()) {
+            let (nth, width) = (nth as u32, expected[0]);
+            let (pixel, colour) = ([nth % width, nth / width], labels[nth as usize]);
+            return Err(ExampleError::LabelColour { pixel, colour });
+        }
+        let floor = light::floor_colour(&view.ring.colours(image))?;
+        let mut pixels: Vec<_> = view
+            .ground
+            .iter()
+            .filter_map(|&pixel| {
+                let class = Class::of_label(labels[pixel]).unwrap_or_default();
+                (class != Class::Unseen).then_some((colours[pixel], class))
+            })
+            .collect();
+        pixels.sort_unstable();
+        let alike = pixels.chunk_by(|a, b| a == b);
+        let colours = alike.map(|group| (group[0].0, group[0].1, group.len() as u32)).collect();
+        Ok(Self { floor, colours })
+    }
+}
+
+/// Why nothing can be learned.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum TrainingError {
+    /// There is nothing to learn from.
+    #[error("there is no image to learn from")]
+    NoImage,
+    /// There is nothing to learn a class from.
+    #[error("no pixel within 3 m is labelled as {}", class.name())]
+    NoPixel {
+        /// Floor or stripe.
+        class: Class,
+    },
+    /// The images cannot be parted so.
+    #[error("{images} images cannot be parted in {folds}; there can be from 2 to {images} parts")]
+    Folds {
+        /// How many parts were asked for.
+        folds: usize,
+        /// How many images there are.
+        images: usize,
+    },
+    /// One part cannot be classified by what is learned from the others.
+    #[error("without part {fold} of the images {cause}")]
+    InFold {
+        /// The part, from 1.
+        fold: usize,
+        /// Why nothing can be learned from the others.
+        cause: Box<TrainingError>,
+    },
+}
+
+/// What has been seen of a building, to learn its colours from.
+#[derive(Clone, Debug)]
+pub struct Training {
+    stripe: Stripe,
+    view: Option<View>,
+    examples: Vec<Example>,
+}
+
+impl Training {
+    /// Nothing seen yet, of a building with such a stripe.
+    #[must_use]
+    pub fn new(stripe: Stripe) -> Self {
+        Self { stripe, view: None, examples: Vec::new() }
+    }
+
+    /// Sees an image of this camera with its labels.
+    ///
+    /// # Errors
+    /// They do not fit, or the light is not known; then they are left out.
+    pub fn add(
+        &mut self,
+        camera: &Camera,
+        image: &RgbImage,
+        labels: &RgbImage,
+    ) -> Result<(), ExampleError> {
+        let view = match self.view.take() {
+            Some(view) if view.camera == *camera => view,
+            _ => View::new(camera),
+        };
+        let example = Example::new(&view, image, labels);
+        self.view = Some(view);
+        self.push(example?);
+        Ok(())
+    }
+
+    /// Sees an example.
+    pub fn push(&mut self, example: Example) {
+        self.examples.push(example);
+    }
+
+    /// How many images have been seen.
+    #[must_use]
+    pub fn images(&self) -> usize {
+        self.examples.len()
+    }
+
+    /// What is learned from all that has been seen.
+    ///
+    /// # Errors
+    /// There is no image, or no pixel of floor or stripe.
+    pub fn model(&self) -> Result<ColourModel, TrainingError> {
+        self.model_of(&self.examples.iter().collect::<Vec<_>>())
+    }
+
+    /// Parts the images in so many parts, as they come, and classifies each part by what is learned
+    /// from the others.
+    ///
+    /// # Errors
+    /// There are fewer images than parts, or from the others nothing can be learned.
+    pub fn cross_validate(&self, folds: usize) -> Result<Confusion, TrainingError> {
+        let images = self.examples.len();
+        if folds < 2 || folds > images {
+            return Err(TrainingError::Folds { folds, images });
+        }
+        let mut confusion = Confusion::default();
+        for fold in 0..folds {
+            let examples = self.examples.iter().enumerate();
+            let (left_out, others): (Vec<_>, Vec<_>) =
+                examples.partition(|(nth, _)| nth % folds == fold);
+            let others: Vec<_> = others.into_iter().map(|(_, example)| example).collect();
+            let model = self.model_of(&others).map_err(|cause| TrainingError::InFold {
+                fold: fold + 1,
+                cause: Box::new(cause),
+            })?;
+            let table = model.table();
+            for (_, example) in left_out {
+                let lit = table.lit(light::gain(example.floor, model.floor));
+                for &(colour, class, pixels) in &example.colours {
+                    confusion.count(class, lit.class(colour), pixels.into());
+                }
+            }
+        }
+        Ok(confusion)
+    }
+
+    fn model_of(&self, examples: &[&Example]) -> Result<ColourModel, TrainingError> {
+        let floor = common_floor(examples)?;
+        let histograms = histograms(examples, floor);
+        let needed = [(Class::Floor, &histograms[0]), (Class::Stripe, &histograms[1])];
+        if let Some(&(class, _)) = needed.iter().find(|(_, histogram)| histogram.is_empty()) {
+            return Err(TrainingError::NoPixel { class });
+        }
+        Ok(ColourModel {
+            stripe: self.stripe,
+            floor,
+            priors: Priors::EQUAL,
+            smoothing: SMOOTHING,
+            unknown_below: UNKNOWN_BELOW,
+            histograms,
+        })
+    }
+}
+
+/// The median of the floor's colours, to a hundredth, which people can read.
+fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
+    if examples.is_empty() {
+        return Err(TrainingError::NoImage);
+    }
+    Ok(std::array::from_fn(|channel| {
+        let mut levels: Vec<_> = examples.iter().map(|example| example.floor[channel]).collect();
+        levels.sort_by(f64::total_cmp);
+        (levels[levels.len() / 2].max(1.0) * 100.0).round() / 100.0
+    }))
+}
+
+/// The colours of each class, in the light in which the floor has this colour, as the table has them.
+fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
+    let mut cells = Class::LEARNED.map(|class| (class, vec![0_u64; CELLS]));
+    for example in examples {
+        let offsets = light::gain(example.floor, floor).offsets();
+        for &(colour, class, pixels) in &example.colours {
+            let counts = cells.iter_mut().filter(|(learned, _)| *learned == class);
+            counts.for_each(|(_, counts)| {
+                counts[table::index(&offsets, colour)] += u64::from(pixels);
+            });
+        }
+    }
+    cells.map(|(_, cells)| {
+        let mut bins: Vec<(Option<Bin>, u64)> = vec![(None, 0); BINS];
+        for (cell, &count) in cells.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let bin = Bin::of(table::centre(cell));
+            let (known, counted) = &mut bins[bin.index()];
+            *known = Some(bin);
+            *counted += count;
+        }
+        bins.into_iter().filter_map(|(bin, count)| Some((bin?, count))).collect()
+    })
+}

@@ -1,0 +1,263 @@
+//! The classifier of colours on pictures made of a few colours, under many lights.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+#![allow(clippy::cast_sign_loss, reason = "levels are never negative")]
+
+use std::sync::LazyLock;
+
+use image::{Rgb, RgbImage};
+use proptest::prelude::*;
+use toposlam_vision::{
+    camera::Camera,
+    colour::{
+        Class, ColourModel, Example, ExampleError, FloorRing, Gain, LightError, Stripe, StripeKind,
+        Training, TrainingError, View,
+    },
+};
+
+static CAMERA: LazyLock<Camera> = LazyLock::new(Camera::superscout);
+static VIEW: LazyLock<View> = LazyLock::new(|| View::new(&CAMERA));
+/// What the floor point is that each pixel shows.
+static GROUND: LazyLock<Vec<Option<[f64; 2]>>> = LazyLock::new(|| {
+    let [width, height] = CAMERA.image;
+    let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v].map(f64::from)));
+    pixels.map(|pixel| CAMERA.pixel_to_ground(pixel)).collect()
+});
+
+const TAPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
+
+/// Colours of floor, stripe, marker and wall.
+const COLOURS: [[f64; 3]; 4] =
+    [[104.0, 106.0, 110.0], [225.0, 224.0, 216.0], [205.0, 35.0, 140.0], [176.0, 150.0, 112.0]];
+
+/// A hallway along x, seen from its middle, with a marker ahead.
+fn class(ground: [f64; 2]) -> Class {
+    let [x, y] = [ground[0], ground[1].abs()];
+    if y > 0.8 {
+        Class::Other
+    } else if y > 0.75 {
+        Class::Stripe
+    } else if (0.4..1.0).contains(&x) && y < 0.09 {
+        Class::Marker
+    } else {
+        Class::Floor
+    }
+}
+
+/// Chance, the same each time: from -1 to 1.
+fn chance(seed: u64, nth: u64) -> f64 {
+    let mut mixed = (seed << 40 ^ nth).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    mixed = (mixed ^ mixed >> 31).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// How a picture is taken.
+#[derive(Clone, Copy, Debug)]
+struct Taken {
+    /// By what the colours are multiplied.
+    light: [f64; 3],
+    /// By how many levels they differ at most.
+    noise: f64,
+    seed: u64,
+}
+
+/// A picture and its labels.
+fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
+    let [width, height] = CAMERA.image;
+    let (mut image, mut labels) = (RgbImage::new(width, height), RgbImage::new(width, height));
+    let pixels = image.pixels_mut().zip(labels.pixels_mut()).zip(GROUND.iter());
+    for (nth, ((pixel, label), ground)) in pixels.enumerate() {
+        let class = ground.map_or(Class::Other, class);
+        let place = Class::LEARNED.iter().position(|&learned| learned == class).unwrap();
+        *label = Rgb(class.label());
+        *pixel = Rgb(std::array::from_fn(|channel| {
+            let chance = chance(seed, nth as u64 * 3 + channel as u64);
+            (COLOURS[place][channel] * light[channel] + noise * chance).round() as u8
+        }));
+    }
+    (image, labels)
+}
+
+const LIGHTS: [[f64; 3]; 4] = [[1.0; 3], [0.6, 0.62, 0.7], [1.1, 1.05, 0.8], [0.8, 0.9, 0.5]];
+
+/// What is learned from pictures under all lights but one.
+fn trained_without(left_out: usize) -> Training {
+    let mut training = Training::new(TAPE);
+    for (seed, &light) in LIGHTS.iter().enumerate().filter(|(nth, _)| *nth != left_out) {
+        let (image, labels) = taken(Taken { light, noise: 6.0, seed: seed as u64 });
+        training.push(Example::new(&VIEW, &image, &labels).unwrap());
+    }
+    training
+}
+
+static TRAINED: LazyLock<ColourModel> = LazyLock::new(|| trained_without(9).model().unwrap());
+
+/// Which share of each class is recognised.
+fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
+    let table = model.table();
+    let lit = table.lit(gain);
+    let mut counts = [[0.0; 2]; 4];
+    for (pixel, ground) in image.pixels().zip(GROUND.iter()) {
+        let near = ground.filter(|[x, y]| (0.35..3.0).contains(&x.hypot(*y)));
+        let Some(class) = near.map(class) else { continue };
+        let place = Class::LEARNED.iter().position(|&learned| learned == class).unwrap();
+        counts[place][0] += 1.0;
+        counts[place][1] += f64::from(u8::from(lit.class(pixel.0) == class));
+    }
+    counts.map(|[all, right]| right / all)
+}
+
+#[test]
+fn colours_are_recognised_under_a_light_that_was_never_seen() {
+    let ring = FloorRing::new(&CAMERA);
+    for (left_out, &light) in LIGHTS.iter().enumerate() {
+        let model = trained_without(left_out).model().unwrap();
+        let (image, _) = taken(Taken { light, noise: 6.0, seed: 77 });
+        let gain = model.gain(&ring.colours(&image)).unwrap();
+        let recalls = recalls(&model, &image, gain);
+        assert!(recalls.iter().all(|&recall| recall > 0.99), "{light:?}: {recalls:?}");
+    }
+}
+
+#[test]
+fn without_its_gain_an_image_is_not_recognised() {
+    let (image, _) = taken(Taken { light: [0.5, 0.5, 0.4], noise: 4.0, seed: 5 });
+    let gain = TRAINED.gain(&FloorRing::new(&CAMERA).colours(&image)).unwrap();
+    assert!(recalls(&TRAINED, &image, gain)[0] > 0.99);
+    assert!(recalls(&TRAINED, &image, Gain([1.0; 3]))[0] < 0.01);
+}
+
+#[test]
+fn a_colour_that_no_class_has_is_unknown() {
+    let table = TRAINED.table();
+    let lit = table.lit(Gain([1.0; 3]));
+    for colour in [[0, 255, 0], [0, 0, 255], [255, 255, 0], [20, 90, 30], [0, 0, 0]] {
+        assert_eq!(lit.class(colour), Class::Unknown, "{colour:?}");
+    }
+    // In the light to which images are brought.
+    let gain = [0, 1, 2].map(|channel| TRAINED.floor[channel] / COLOURS[0][channel]);
+    let lit = table.lit(Gain(gain));
+    let seen = COLOURS.map(|colour| lit.class(colour.map(|level| level as u8)));
+    assert_eq!(seen, Class::LEARNED);
+}
+
+#[test]
+fn cross_validation_counts_every_labelled_pixel_once() {
+    let training = trained_without(9);
+    let model = training.model().unwrap();
+    for folds in [2, 3, 4] {
+        let confusion = training.cross_validate(folds).unwrap();
+        let all: u64 = Class::LEARNED.map(|class| confusion.of(class)).iter().sum();
+        let shown = |ground: &&Option<[f64; 2]>| {
+            ground.is_some_and(|[x, y]| (0.32..=3.0).contains(&x.hypot(y)))
+        };
+        assert_eq!(all, 4 * GROUND.iter().filter(shown).count() as u64);
+        for class in Class::LEARNED {
+            assert!(confusion.recall(class).unwrap() > 0.98, "{class:?} {confusion:?}");
+            assert!(confusion.precision(class).unwrap() > 0.98, "{class:?} {confusion:?}");
+        }
+    }
+    assert_eq!(training.images(), 4);
+    assert_eq!(model.stripe, TAPE);
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let (image, labels) = taken(Taken { light: [1.0; 3], noise: 2.0, seed: 1 });
+    let mut training = Training::new(TAPE);
+    let small = RgbImage::new(640, 480);
+    let refused = training.add(&CAMERA, &small, &labels).unwrap_err();
+    let message = "the image has 640 x 480 pixels; the calibration is for 1280 x 960";
+    assert_eq!(refused.to_string(), message);
+    let refused = training.add(&CAMERA, &image, &small).unwrap_err();
+    let message = "the labels have 640 x 480 pixels; their image has 1280 x 960";
+    assert_eq!(refused.to_string(), message);
+    let mut wrong = labels.clone();
+    wrong.put_pixel(3, 959, Rgb([0, 254, 0]));
+    let refused = training.add(&CAMERA, &image, &wrong).unwrap_err();
+    let message = "the label at pixel (3, 959) has the colour (0, 254, 0); there can be floor (0,255,0), \
+                   stripe (255,0,0), marker (0,0,255), other (0,0,0), ignore (255,255,255)";
+    assert_eq!(refused.to_string(), message);
+    for (light, cause) in [(0.1, LightError::TooDark), (3.0, LightError::BurntOut)] {
+        let (image, labels) = taken(Taken { light: [light; 3], noise: 2.0, seed: 1 });
+        let refused = training.add(&CAMERA, &image, &labels).unwrap_err();
+        assert_eq!(refused, ExampleError::Light(cause));
+        assert_eq!(TRAINED.gain(&FloorRing::new(&CAMERA).colours(&image)), None);
+    }
+    assert_eq!(training.images(), 0);
+    assert_eq!(training.model().unwrap_err(), TrainingError::NoImage);
+    training.add(&CAMERA, &image, &labels).unwrap();
+    training.model().unwrap();
+    let refused = training.cross_validate(2).unwrap_err();
+    assert_eq!(refused, TrainingError::Folds { folds: 2, images: 1 });
+}
+
+#[test]
+fn floor_and_stripe_are_needed_and_the_marker_is_not() {
+    let (image, labels) = taken(Taken { light: [1.0; 3], noise: 2.0, seed: 1 });
+    let without = |missing: Class| {
+        let mut training = Training::new(TAPE);
+        let mut labels = labels.clone();
+        for label in labels.pixels_mut().filter(|label| label.0 == missing.label()) {
+            *label = Rgb(Class::Unseen.label());
+        }
+        training.add(&CAMERA, &image, &labels).unwrap();
+        training.model()
+    };
+    for class in [Class::Floor, Class::Stripe] {
+        assert_eq!(without(class).unwrap_err(), TrainingError::NoPixel { class });
+    }
+    let model = without(Class::Marker).unwrap();
+    let marker = COLOURS[2].map(|level| level as u8);
+    assert_eq!(model.table().lit(Gain([1.0; 3])).class(marker), Class::Unknown);
+    without(Class::Other).unwrap();
+    // The first part has a stripe, the second has none.
+    let mut training = Training::new(TAPE);
+    training.add(&CAMERA, &image, &labels).unwrap();
+    let mut no_stripe = labels.clone();
+    for label in no_stripe.pixels_mut().filter(|label| label.0 == Class::Stripe.label()) {
+        *label = Rgb(Class::Unseen.label());
+    }
+    training.add(&CAMERA, &image, &no_stripe).unwrap();
+    assert_eq!(
+        training.cross_validate(2).unwrap_err().to_string(),
+        "without part 1 of the images no pixel within 3 m is labelled as stripe"
+    );
+}
+
+#[test]
+fn what_is_learned_does_not_hang_on_the_order_of_the_images() {
+    let forwards = trained_without(9).model().unwrap();
+    let mut training = Training::new(TAPE);
+    for (seed, &light) in LIGHTS.iter().enumerate().rev() {
+        let (image, labels) = taken(Taken { light, noise: 6.0, seed: seed as u64 });
+        training.add(&CAMERA, &image, &labels).unwrap();
+    }
+    assert_eq!(training.model().unwrap(), forwards);
+}
+
+#[test]
+fn a_colour_file_reads_as_the_model_that_was_written() {
+    let text = TRAINED.to_toml();
+    let again = ColourModel::read(text.as_bytes()).unwrap();
+    assert_eq!(again, *TRAINED);
+    assert_eq!(again.to_toml(), text);
+    assert_eq!(again.table(), TRAINED.table());
+    assert!(text.lines().all(|line| line.len() <= 100));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn any_light_is_told_by_the_ring(
+        light in prop::array::uniform3(0.3..1.1_f64), noise in 0.0..8.0_f64, seed in 0..1000_u64,
+    ) {
+        let (image, _) = taken(Taken { light, noise, seed });
+        let gain = TRAINED.gain(&FloorRing::new(&CAMERA).colours(&image)).unwrap();
+        for channel in 0..3 {
+            let expected = TRAINED.floor[channel] / (COLOURS[0][channel] * light[channel]);
+            prop_assert!((gain.0[channel] / expected - 1.0).abs() < 0.02, "{gain:?}");
+        }
+    }
+}
