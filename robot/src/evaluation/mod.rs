@@ -1,9 +1,15 @@
 //! Sensing, judged against the truth of the floor plan.
 
 pub mod bound;
+pub mod causes;
 pub mod class;
+pub mod judging;
+mod learning;
 pub mod quantile;
 pub mod random_plan;
+pub mod report;
 pub mod truth;
 pub mod verdict;
 pub mod view;
+
+pub use learning::LearningError;
