@@ -59,15 +59,11 @@ impl GroundView {
 pub struct Unwrapping {
     /// For each pixel of the ground view, the index of the image's pixel, or [`Self::UNSEEN`].
     pixels: Vec<u32>,
-    /// The image's pixels that show the floor ring beside the robot's body.
-    ring: Vec<u32>,
 }
 
 impl Unwrapping {
     /// In place of a pixel, where none shows the floor.
     const UNSEEN: u32 = u32::MAX;
-    /// The floor ring: from so many metres from the robot's centre to so many.
-    pub const RING: [f64; 2] = [0.34, 0.50];
 
     /// The table for a camera.
     #[must_use]
@@ -75,24 +71,7 @@ impl Unwrapping {
         let pixels: Vec<u32> = (0..GroundView::SIDE * GroundView::SIDE)
             .map(|index| pixel_of(camera, GroundView::ground(index)).unwrap_or(Self::UNSEEN))
             .collect();
-        let [near, far] = Self::RING;
-        let mut ring: Vec<u32> = (0..pixels.len())
-            .filter(|&index| {
-                let [x, y] = GroundView::ground(index);
-                (near..=far).contains(&x.hypot(y))
-            })
-            .map(|index| pixels[index])
-            .filter(|&pixel| pixel != Self::UNSEEN)
-            .collect();
-        ring.sort_unstable();
-        ring.dedup();
-        Self { pixels, ring }
-    }
-
-    /// The colours of the floor ring beside the robot's body, in an image of the camera's size.
-    pub fn ring<'a>(&'a self, image: &'a RgbImage) -> impl Iterator<Item = [u8; 3]> + 'a {
-        let raw = image.as_raw();
-        self.ring.iter().map(|&pixel| colour(raw, pixel as usize))
+        Self { pixels }
     }
 
     /// What the floor shows in an image of the camera's size.

@@ -9,7 +9,7 @@ use crate::{
     boundary::{Bearings, Boundary},
     camera::Camera,
     cluster::{Cluster, clusters},
-    colour::{ColourModel, ColourTable, Stripe, StripeKind},
+    colour::{ColourModel, ColourTable, FloorRing, Stripe, StripeKind},
     corner::{Corner, corners},
     ground_view::{GroundView, Unwrapping},
     hallway::{Hallway, hallway},
@@ -24,6 +24,7 @@ use crate::{
 pub struct Sensor {
     camera: Camera,
     unwrapping: Unwrapping,
+    ring: FloorRing,
     bearings: Bearings,
     model: ColourModel,
     colours: ColourTable,
@@ -79,6 +80,7 @@ impl Sensor {
         Self {
             camera: camera.clone(),
             unwrapping: Unwrapping::new(camera),
+            ring: FloorRing::new(camera),
             bearings: Bearings::default(),
             colours: colours.table(),
             model: colours.clone(),
@@ -103,7 +105,7 @@ impl Sensor {
         if found != self.camera.image {
             return Err(WrongSize { found, expected: self.camera.image });
         }
-        let Some(gain) = self.model.gain(&self.unwrapping.ring(image).collect::<Vec<_>>()) else {
+        let Some(gain) = self.model.gain(&self.ring.colours(image)) else {
             self.view = GroundView::unseen();
             let scene = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
             return Ok((scene, Trace::default()));
