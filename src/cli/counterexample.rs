@@ -118,7 +118,7 @@ impl Arguments {
             }
         }
         if let Some(folder) = &self.out {
-            found::make_folder(folder)?;
+            output::make_folder(folder)?;
         }
         let mut report = Report::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;

@@ -8,6 +8,7 @@ use std::{
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
 
@@ -33,6 +34,12 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
         world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
     }
     Ok(world)
+}
+
+/// The floor plan that a world is.
+pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, Failure> {
+    let cause = "this world is no floor plan: there is no [floor] in it";
+    world.plan.as_ref().ok_or_else(|| Failure::in_file(path, cause))
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.

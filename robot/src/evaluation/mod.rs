@@ -5,6 +5,7 @@ pub mod causes;
 pub mod class;
 pub mod judging;
 mod learning;
+mod plans;
 pub mod quantile;
 pub mod random_plan;
 pub mod report;
@@ -13,3 +14,4 @@ pub mod verdict;
 pub mod view;
 
 pub use learning::LearningError;
+pub use plans::plans;

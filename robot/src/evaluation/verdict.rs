@@ -157,7 +157,7 @@ pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> M
     match (truth, seen) {
         (_, None) => MarkerVerdict::NotSeen,
         (Some(truth), Some(seen)) if is_on(truth, seen.position) => {
-            MarkerVerdict::Seen(seen.door.zip(truth.door).map(|(seen, door)| seen.0 as usize == door))
+            MarkerVerdict::Seen(seen.door.zip(truth.door).map(|(seen, door)| seen == door))
         }
         (_, Some(_)) => MarkerVerdict::Phantom,
     }

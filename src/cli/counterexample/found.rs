@@ -86,12 +86,6 @@ impl Found {
     }
 }
 
-/// Makes the folder, if it is not there.
-pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
-}
-
 /// How the verb ends where a search does not.
 pub(super) fn unfinished(unfinished: &Unfinished) -> Outcome {
     eprintln!("{unfinished}");
