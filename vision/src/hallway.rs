@@ -80,8 +80,8 @@ fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Opti
         square.middle[axis.split().0] = 0.0;
     }
     let agreement = Outline::hallway(axis, square, -reach, reach).agreement(boundary, &frame, 1);
-    let goes_on = goes_on(axis, 1.0, square, boundary, &frame)
-        && goes_on(axis, -1.0, square, boundary, &frame);
+    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame)
+        && goes_on(axis, -1.0, square, walls, boundary, &frame);
     (agreement.trust() >= TRUST && agreement.cover() >= COVER && goes_on).then(|| Hallway {
         frame,
         axis,
@@ -108,7 +108,14 @@ fn major(axis: Axis, side: f64, walls: &[Wall]) -> Option<&Wall> {
 }
 
 /// Whether the floor goes on, ahead or behind, so far that no turning point is near.
-fn goes_on(axis: Axis, sign: f64, square: Square, boundary: &Boundary, frame: &Frame) -> bool {
+fn goes_on(
+    axis: Axis,
+    sign: f64,
+    square: Square,
+    walls: &[Wall],
+    boundary: &Boundary,
+    frame: &Frame,
+) -> bool {
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
     let least = square.half + if sign == frame.ahead(axis) { AHEAD } else { BEHIND };
@@ -118,13 +125,25 @@ fn goes_on(axis: Axis, sign: f64, square: Square, boundary: &Boundary, frame: &F
     for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];
         let forwards = sign * frame.framed(direction(bearing))[along];
-        match sight.wall {
+        match sight.sure() {
             Some(wall) if wall * forwards < least => near += 1,
             None if sight.floor * forwards < least => {}
             _ => far += 1,
         }
     }
-    far > 2 * near && far > SECTOR / 3
+    far > 2 * near && far > SECTOR / 3 && !is_closed(axis, sign * least, square, walls)
+}
+
+/// Whether a wall stands across, nearer than this.
+fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+    let centre = square.middle[axis.split().1];
+    walls.iter().any(|wall| {
+        let between = wall.from.max(centre - square.half)..wall.to.min(centre + square.half);
+        wall.along != axis
+            && wall.offset * least > 0.0
+            && wall.offset.abs() < least.abs()
+            && between.end - between.start > square.half
+    })
 }
 
 /// Whether the hallway along an axis is clear, on the way ahead.

@@ -134,16 +134,19 @@ impl Outline {
             // How far in front of the side something is, perpendicular to it.
             let (_, across) = side.along.split();
             let before = |range: f64| (at - range) * ray[across].abs();
-            if let Some(wall) = sight.wall {
-                let near = near(wall);
-                if before(wall).abs() < near && side.kind != Kind::Open
-                    || self.distance(ray.map(|part| wall * part)) < near
-                {
-                    agreement.support += 1;
-                } else if side.kind != Kind::Open || at > wall {
+            let is_wall = side.kind != Kind::Open;
+            let fits = |range: f64| {
+                let near = near(range);
+                is_wall && before(range).abs() < near
+                    || self.distance(ray.map(|part| range * part)) < near
+            };
+            if sight.edges().any(|edge| fits(edge.range)) {
+                agreement.support += 1;
+            } else if let Some(wall) = sight.sure() {
+                if is_wall || at > wall {
                     agreement.against += 1;
                 }
-            } else if side.kind != Kind::Open {
+            } else if is_wall {
                 if before(sight.floor) < -near(at) {
                     agreement.against += 1;
                 } else {

@@ -47,6 +47,12 @@ impl Camera {
         }
     }
 
+    /// How high above the floor the eye is that sees the floor, in metres.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.optics.camera_height + self.optics.mirror_distance
+    }
+
     /// The point of the floor that a pixel shows; `None` above the horizon and off the mirror.
     #[must_use]
     pub fn pixel_to_ground(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
