@@ -1,4 +1,4 @@
-//! Worlds from files, whatever their format.
+//! Worlds from files, whatever their format; and cameras from calibration files.
 
 use std::{
     fs,
@@ -11,6 +11,8 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
+
+use toposlam_vision::camera::{Camera, calibration};
 
 use super::Failure;
 
@@ -40,6 +42,13 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
 pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, Failure> {
     let cause = "this world is no floor plan: there is no [floor] in it";
     world.plan.as_ref().ok_or_else(|| Failure::in_file(path, cause))
+}
+
+/// The camera of a calibration file. The files that it names are those beside it.
+pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))
+        .map_err(|error| Failure::in_file(path, error))
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.

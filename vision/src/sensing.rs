@@ -81,7 +81,7 @@ impl Sensor {
             camera: camera.clone(),
             unwrapping: Unwrapping::new(camera),
             ring: FloorRing::new(camera),
-            bearings: Bearings::new(colours.stripe, camera.height()),
+            bearings: Bearings::new(colours.stripe, camera.eye_height()),
             colours: colours.table(),
             model: colours.clone(),
             view: GroundView::unseen(),

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use toposlam_vision::camera::{Camera, SeenFrom};
+use toposlam_vision::camera::{self, Camera, SeenFrom, SphericalMirror};
 
 type Vector = [f64; 3];
 
@@ -41,25 +41,105 @@ pub enum By {
     Itself,
 }
 
-/// A pinhole camera that looks up, and a mirrored sphere above it.
+/// A camera, and how it leans.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Optics {
     pub(super) image: [u32; 2],
+    /// The pixel that looks straight down.
     pub(super) centre: [f64; 2],
+    /// The pinhole's height, or the viewpoint's.
+    pub(super) height: f64,
+    kind: Kind,
+    errors: RigErrors,
+}
+
+/// Which camera it is.
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    UnderSphere(UnderSphere),
+    /// One with a single viewpoint.
+    Single(Camera),
+}
+
+/// A pinhole camera that looks up, and a mirrored sphere above it.
+#[derive(Clone, Debug, PartialEq)]
+struct UnderSphere {
     focal: f64,
     radius: f64,
     distance: f64,
-    pub(super) height: f64,
     /// The image's axes, right and up, as directions in the plane of the floor.
     right: [f64; 2],
     up: [f64; 2],
-    tilt: f64,
-    towards: f64,
 }
 
 impl Optics {
     pub(super) fn new(camera: &Camera, errors: &RigErrors) -> Self {
-        let mirror = &camera.optics;
+        let centre = camera.middle();
+        Self {
+            image: camera.image,
+            centre: [0, 1].map(|axis| centre[axis] + errors.centre[axis]),
+            height: camera.height() + errors.height,
+            kind: match &camera.optics {
+                camera::Optics::SphericalMirror(mirror) => {
+                    Kind::UnderSphere(UnderSphere::new(camera, mirror))
+                }
+                _ => Kind::Single(camera.clone()),
+            },
+            errors: *errors,
+        }
+    }
+
+    /// The ray that a pixel looks along.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
+        let mut ray = match &self.kind {
+            Kind::UnderSphere(rig) => {
+                rig.ray([pixel[0] - self.centre[0], self.centre[1] - pixel[1]])
+            }
+            Kind::Single(camera) => {
+                let intended = [0, 1].map(|axis| pixel[axis] - self.errors.centre[axis]);
+                match camera.ray(intended) {
+                    Some(ray) => Ray { origin: [0.0; 3], direction: ray.direction, by: By::Mirror },
+                    None => Ray { origin: [0.0; 3], direction: [0.0, 0.0, 1.0], by: By::Itself },
+                }
+            }
+        };
+        ray.origin = self.leaning(ray.origin);
+        ray.origin[2] += self.height;
+        ray.direction = self.leaning(ray.direction);
+        ray
+    }
+
+    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
+    fn leaning(&self, vector: Vector) -> Vector {
+        let RigErrors { tilt, towards, .. } = self.errors;
+        if tilt == 0.0 {
+            return vector;
+        }
+        let ((sine, cosine), (left, ahead)) = (tilt.sin_cos(), towards.sin_cos());
+        let along = vector[0] * ahead + vector[1] * left;
+        let across = vector[1] * ahead - vector[0] * left;
+        let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
+        [along * ahead - across * left, along * left + across * ahead, up]
+    }
+
+    /// How far from its middle the view ends in the image, in pixels: the mirror's rim, or the image's
+    /// corner.
+    pub(super) fn rim(&self) -> f64 {
+        match &self.kind {
+            Kind::UnderSphere(rig) => {
+                let sine = (rig.radius / rig.distance).min(0.999);
+                rig.focal * sine / (1.0 - sine * sine).sqrt()
+            }
+            Kind::Single(_) => {
+                let [width, height] = self.image.map(f64::from);
+                width.hypot(height) / 2.0
+            }
+        }
+    }
+}
+
+impl UnderSphere {
+    fn new(camera: &Camera, mirror: &SphericalMirror) -> Self {
         let (sine, cosine) = camera.ahead.sin_cos();
         // Ahead in the image is (cosine, sine). Seen from below, left is a quarter turn clockwise.
         let (right, up) = match camera.seen_from {
@@ -67,58 +147,31 @@ impl Optics {
             SeenFrom::Above => ([cosine, -sine], [sine, cosine]),
         };
         Self {
-            image: camera.image,
-            centre: [0, 1].map(|axis| mirror.centre[axis] + errors.centre[axis]),
             focal: mirror.focal,
             radius: mirror.mirror_radius,
             distance: mirror.mirror_distance,
-            height: mirror.camera_height + errors.height,
             right,
             up,
-            tilt: errors.tilt,
-            towards: errors.towards,
         }
     }
 
-    /// The ray that a pixel looks along.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
-        let across = (pixel[0] - self.centre[0]) / self.focal;
-        let upwards = (self.centre[1] - pixel[1]) / self.focal;
+    /// The ray of a pixel, given from the middle to the right and to the top, in the upright rig.
+    fn ray(&self, [right, top]: [f64; 2]) -> Ray {
+        let (across, upwards) = (right / self.focal, top / self.focal);
         let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
         let out = unit([x, y, 1.0]);
         // The sphere's centre is straight above the pinhole, which is the origin for now.
         let middle = [0.0, 0.0, self.distance];
         let along = dot(out, middle);
         let beyond = along * along - (self.distance * self.distance - self.radius * self.radius);
-        let (origin, direction, by) = if beyond > 0.0 {
+        if beyond > 0.0 {
             let met = scaled(out, along - beyond.sqrt());
             let normal = scaled(minus(met, middle), 1.0 / self.radius);
             let back = minus(out, scaled(normal, 2.0 * dot(out, normal)));
-            (met, unit(back), By::Mirror)
+            Ray { origin: met, direction: unit(back), by: By::Mirror }
         } else {
-            ([0.0; 3], out, By::Itself)
-        };
-        let mut origin = self.leaning(origin);
-        origin[2] += self.height;
-        Ray { origin, direction: self.leaning(direction), by }
-    }
-
-    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
-    fn leaning(&self, vector: Vector) -> Vector {
-        if self.tilt == 0.0 {
-            return vector;
+            Ray { origin: [0.0; 3], direction: out, by: By::Itself }
         }
-        let ((sine, cosine), (left, ahead)) = (self.tilt.sin_cos(), self.towards.sin_cos());
-        let along = vector[0] * ahead + vector[1] * left;
-        let across = vector[1] * ahead - vector[0] * left;
-        let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
-        [along * ahead - across * left, along * left + across * ahead, up]
-    }
-
-    /// How far from its middle the mirror ends in the image, in pixels.
-    pub(super) fn rim(&self) -> f64 {
-        let sine = (self.radius / self.distance).min(0.999);
-        self.focal * sine / (1.0 - sine * sine).sqrt()
     }
 }
 

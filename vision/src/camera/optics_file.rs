@@ -1,0 +1,105 @@
+//! What can be wrong with a file that another calibration tool wrote.
+
+use thiserror::Error;
+
+/// Why a file tells no optics.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum OpticsFileError {
+    /// The bytes are not UTF-8.
+    #[error("this is not UTF-8 text")]
+    NotText,
+    /// The text is not YAML.
+    #[error("line {line}: {message}")]
+    Syntax {
+        /// Counted from 1.
+        line: usize,
+        /// What the parser says.
+        message: String,
+    },
+    /// Something else stands where a number should.
+    #[error("line {line}: here should be {expected}, not `{found}`")]
+    NotANumber {
+        /// Counted from 1.
+        line: usize,
+        /// What should be here.
+        expected: &'static str,
+        /// What is here.
+        found: String,
+    },
+    /// The file ends too early.
+    #[error("the file ends before {0}")]
+    EndsBefore(&'static str),
+    /// The file goes on.
+    #[error("line {line}: nothing should follow the size of the image")]
+    GoesOn {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// The file says nothing of something.
+    #[error("the key `{0}` is missing")]
+    MissingKey(&'static str),
+    /// The file says something twice.
+    #[error("line {line}: the key `{key}` stands twice")]
+    Twice {
+        /// Counted from 1.
+        line: usize,
+        /// The key.
+        key: String,
+    },
+    /// There are more or fewer numbers than there should be.
+    #[error("`{key}` has {found} numbers; it should have {expected}")]
+    Count {
+        /// The key.
+        key: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// The file is that of another model.
+    #[error("`model_type` is `{0}`, not `MEI`")]
+    OtherModel(String),
+    /// A fraction where a whole number should be.
+    #[error("{what} is {value}; it should be whole")]
+    NotWhole {
+        /// What it says.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A number that no camera has.
+    #[error("{what} is {value}; it should lie between {low} and {high}")]
+    OutOfRange {
+        /// What it says.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// The least that it can be.
+        low: f64,
+        /// The most that it can be.
+        high: f64,
+    },
+    /// By these numbers, pixels farther from the middle of the image do not look farther out.
+    #[error("by these numbers no floor is seen around the middle of the image")]
+    NoView,
+}
+
+/// A number within bounds.
+pub(super) fn within(
+    what: &'static str,
+    value: f64,
+    [low, high]: [f64; 2],
+) -> Result<f64, OpticsFileError> {
+    if value >= low && value <= high {
+        Ok(value)
+    } else {
+        Err(OpticsFileError::OutOfRange { what, value, low, high })
+    }
+}
+
+/// A word of a file as an error shows it: its beginning, in one line.
+pub(super) fn shown(word: &str) -> String {
+    let beginning: String = word.chars().take(40).collect();
+    let escaped = beginning.escape_debug().to_string();
+    if beginning.len() < word.len() { format!("{escaped}...") } else { escaped }
+}
