@@ -13,7 +13,7 @@ use toposlam_model::{
     marker::{MARKERS, Marker},
 };
 
-use super::{Failure, Outcome, marker_kinds, progress::Progress, use_threads, walk_page};
+use super::{Failure, Outcome, marker_kinds, output, progress::Progress, use_threads, walk_page};
 use found::Found;
 use report::Report;
 

@@ -19,6 +19,7 @@ mod progress;
 mod proofs;
 mod render;
 mod scene;
+mod sense;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -61,6 +62,7 @@ enum Verb {
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
     Render(render::Arguments),
+    Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
     Completions(completions::Arguments),
 }
@@ -127,6 +129,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
+        Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),

@@ -123,8 +123,8 @@ mod tests {
 
     /// A boundary from the range on each bearing.
     fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {
-        let sights = (0..BEARINGS)
-            .map(|bearing| Sight::at(range(TAU * bearing as f64 / BEARINGS as f64)));
+        let sights =
+            (0..BEARINGS).map(|bearing| Sight::at(range(TAU * bearing as f64 / BEARINGS as f64)));
         Boundary { sights: sights.collect() }
     }
 

@@ -29,7 +29,7 @@ use super::{
     verdict::{MarkerVerdict, Verdict, judge, judge_marker},
     view::{NoView, View, Views},
 };
-use crate::simulator::{LOOKS, Look, Rig, RigErrors, sized};
+use crate::simulator::{LOOKS, Look, Rig, RigErrors};
 
 /// Whether the camera is as its calibration says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,7 +151,7 @@ impl Judge {
     ) -> Result<Self, JudgingError> {
         watch.parts(views.sizes.len() * LOOKS.len());
         let station = |&size: &[u32; 2]| {
-            let camera = sized(camera, size);
+            let camera = camera.sized(size);
             let right = Rig::new(&camera);
             let wrong = if calibrations.contains(&Calibration::Wrong) { WRONG_RIGS } else { 0 };
             let sensors = LOOKS.par_iter().map(|look| {

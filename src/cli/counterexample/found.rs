@@ -1,6 +1,6 @@
 //! What a search found, with names: the worlds that are told, and which of them are pairs.
 
-use std::{collections::BTreeMap, fs, path::Path, ptr};
+use std::{collections::BTreeMap, path::Path, ptr};
 
 use toposlam_model::{
     ambiguity::{Comparison, Findings, PlacedWorld, Unfinished},
