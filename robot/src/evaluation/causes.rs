@@ -19,6 +19,17 @@ pub struct Group {
     pub failed: usize,
     /// Of how many.
     pub of: usize,
+    /// Whether it is one of the two groups on either side of a median; the one not above it comes
+    /// first.
+    pub is_half: bool,
+}
+
+impl Group {
+    /// How many failed, as a share; 0 of none.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.failed as f64 / self.of.max(1) as f64
+    }
 }
 
 /// Groups of the views in hallways and at junctions (up to their turning points): by look, size, what
@@ -88,7 +99,7 @@ fn labelled(views: &[&Judged], by: &'static str, label: impl Fn(&Judged) -> Stri
         *failed += usize::from(failed_at(judged));
         *of += 1;
     }
-    let group = |(what, (failed, of))| Group { by, what, failed, of };
+    let group = |(what, (failed, of))| Group { by, what, failed, of, is_half: false };
     groups.into_iter().map(group).collect()
 }
 
@@ -120,6 +131,7 @@ fn halved(views: &[&Judged], numbers: impl Fn(&Judged) -> Vec<(&'static str, f64
                 what: format!("{side} {}", rounded(median)),
                 failed,
                 of,
+                is_half: true,
             };
             groups.extend([group("up to", below), group("above", above)]);
         }

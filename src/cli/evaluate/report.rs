@@ -29,6 +29,8 @@ pub(super) struct Printer<'o> {
     empty: usize,
 }
 
+/// So many of what halves the views are shown.
+const HALVES: usize = 10;
 /// The quantiles that are shown.
 const QUANTILES: [(f64, &str); 4] =
     [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %"), (1.0, "most")];
@@ -83,13 +85,13 @@ impl<'o> Printer<'o> {
         };
         writeln!(self.out, "\n{title}\n")?;
         let rates: Vec<_> = report.rates.iter().map(rate_row).collect();
-        let heads = ["of", "what", "seen", "of", "rate", "at most", "target", ""];
+        let heads = ["of", "what", "  seen", "     of", "     rate", "  at most", "   target", ""];
         print_rows(self.out, heads, &rates)?;
         if !report.errors.is_empty() {
             writeln!(self.out)?;
             let errors: Vec<_> = report.errors.iter().map(errors_row).collect();
-            let [median, p95, p99, most] = QUANTILES.map(|(_, name)| name);
-            let heads = ["of", "error of", "cases", median, p95, p99, most, "target", ""];
+            let [median, p95, p99, most] = QUANTILES.map(|(_, name)| format!("{name:>9}"));
+            let heads = ["of", "error of", "  cases", &median, &p95, &p99, &most, "target", ""];
             print_rows(self.out, heads, &errors)?;
         }
         writeln!(
@@ -155,7 +157,7 @@ impl<'o> Printer<'o> {
 
     pub(super) fn groups(&mut self, groups: &[Group]) -> Result<(), Failure> {
         if self.json {
-            for Group { by, what, failed, of } in groups {
+            for Group { by, what, failed, of, .. } in groups {
                 let line = json!({
                     "schema": 1, "kind": "failures", "by": by, "what": what, "failed": failed, "of": of,
                 });
@@ -170,19 +172,16 @@ impl<'o> Printer<'o> {
             self.out,
             "\n  How often such views are not right, by what they have in common:\n"
         )?;
-        let row = |group: &Group| {
-            let rate = share(group.failed as f64 / group.of.max(1) as f64);
-            let (failed, of) = (group.failed.to_string(), group.of.to_string());
-            [
-                group.by.to_owned(),
-                group.what.clone(),
-                right(&failed, 6),
-                right(&of, 7),
-                right(&rate, 9),
-            ]
-        };
-        let rows: Vec<_> = groups.iter().map(row).collect();
-        print_rows(self.out, ["by", "", "failed", "     of", "     rate"], &rows)?;
+        let rows: Vec<_> = groups.iter().filter(|group| !group.is_half).map(group_row).collect();
+        print_rows(self.out, ["by", "", "failed", "     of", "    rate"], &rows)?;
+        let halves: Vec<_> = groups.iter().filter(|group| group.is_half).collect();
+        let mut pairs: Vec<_> = halves.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        pairs.sort_by(|one, other| difference(other).total_cmp(&difference(one)));
+        pairs.truncate(HALVES);
+        writeln!(self.out)?;
+        let rows: Vec<_> = pairs.into_iter().map(pair_row).collect();
+        let heads = ["the most different by", "", " up to it", " above it"];
+        print_rows(self.out, heads, &rows)?;
         Ok(())
     }
 
@@ -240,23 +239,42 @@ struct ErrorsLine<'a> {
     met: Option<bool>,
 }
 
+fn group_row(group: &Group) -> [String; 5] {
+    let Group { by, what, failed, of, .. } = group;
+    let name = (*by).to_owned();
+    [name, what.clone(), format!("{failed:>6}"), format!("{of:>7}"), percent(group.rate())]
+}
+
+/// By how much the rates of two groups differ.
+fn difference([below, above]: &[&Group; 2]) -> f64 {
+    (above.rate() - below.rate()).abs()
+}
+
+fn pair_row([below, above]: [&Group; 2]) -> [String; 4] {
+    let rates = [below, above].map(|group| percent(group.rate()));
+    let [below_rate, above_rate] = rates;
+    [below.by.to_owned(), below.what.clone(), below_rate, above_rate]
+}
+
 fn rate_row(rate: &Rate) -> [String; 8] {
+    let figure = |share: Option<f64>| share.map_or_else(|| format!("{:>9}", "-"), percent);
     [
         rate.subject.name().to_owned(),
         rate.what.to_owned(),
-        rate.seen.to_string(),
-        rate.cases.to_string(),
-        rate.rate().map_or_else(|| "-".to_owned(), share),
-        if rate.cases == 0 { "-".to_owned() } else { share(rate.upper_bound()) },
-        rate.limit.map_or_else(String::new, share),
+        format!("{:>6}", rate.seen),
+        format!("{:>7}", rate.cases),
+        figure(rate.rate()),
+        figure(Some(rate.upper_bound()).filter(|_| rate.cases > 0)),
+        rate.limit.map_or_else(String::new, percent),
         standing(rate.limit.map(|_| rate.standing())),
     ]
 }
 
 fn errors_row(errors: &Errors) -> [String; 9] {
     let (_, short) = unit(errors.unit);
-    let [median, p95, p99, most] = QUANTILES.map(|(part, _)| {
-        errors.quantile(part).map_or_else(|| "-".to_owned(), |error| format!("{error:.2} {short}"))
+    let [median, p95, p99, most] = QUANTILES.map(|(part, _)| match errors.quantile(part) {
+        None => format!("{:>9}", "-"),
+        Some(error) => format!("{:>9}", format!("{error:.2} {short}")),
     });
     let limits = errors.limits.iter().map(|&(part, limit)| {
         let name = QUANTILES.iter().find(|(other, _)| *other == part).map_or("", |(_, name)| name);
@@ -265,7 +283,7 @@ fn errors_row(errors: &Errors) -> [String; 9] {
     let target = limits.collect::<Vec<_>>().join(", ");
     let asked = (!errors.limits.is_empty()).then(|| errors.standing());
     let (subject, what) = (errors.subject.name().to_owned(), errors.what.to_owned());
-    let cases = errors.sample.count().to_string();
+    let cases = format!("{:>7}", errors.sample.count());
     [subject, what, cases, median, p95, p99, most, target, standing(asked)]
 }
 
@@ -304,12 +322,8 @@ fn standing(standing: Option<Standing>) -> String {
 }
 
 /// A share in percent.
-fn share(share: f64) -> String {
-    format!("{:.3} %", 100.0 * share)
-}
-
-fn right(text: &str, width: usize) -> String {
-    format!("{text:>width$}")
+fn percent(share: f64) -> String {
+    format!("{:>9}", format!("{:.3} %", 100.0 * share))
 }
 
 /// A unit's name, and its sign.
