@@ -52,11 +52,13 @@ const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 const SEEN_WIDTH: f64 = 0.55;
 /// Between floor and stripe colours mix, over so many steps.
 const MIXED: usize = 10;
+/// Fewer steps of something else do not end a stripe.
+const SPECK: usize = 3;
 /// Behind a stripe so many steps are looked at;
 const BEHIND: usize = 30;
 /// if so many of them are floor, the edge is not sure.
 const FLOOR_BEHIND: usize = 10;
-/// Where no floor was seen for so many steps, what comes behind is not believed.
+/// Where something else was seen for so many steps, what comes behind is not believed.
 const LOST: usize = 60;
 
 /// The pixels of the ground view on each bearing, from the robot outwards.
@@ -115,22 +117,31 @@ impl Bearings {
         let mut sight = Sight::default();
         let mut edges = sight.edges.iter_mut();
         let mut floor: Option<usize> = None;
-        let mut step = 0;
+        let (mut step, mut lost) = (0, 0);
         while let Some(&class) = classes.get(step) {
             match class {
-                Class::Floor | Class::Marker => floor = Some(step),
+                Class::Floor | Class::Marker => {
+                    floor = Some(step);
+                    lost = 0;
+                }
                 Class::Stripe => {
                     let from = step;
-                    while classes.get(step + 1) == Some(&Class::Stripe) {
+                    while classes[step + 1..]
+                        .iter()
+                        .take(SPECK)
+                        .any(|&class| class == Class::Stripe)
+                    {
                         step += 1;
                     }
-                    let before = floor.filter(|&floor| from - floor <= MIXED);
-                    if let Some(before) = before
+                    if let Some(floor) = floor
                         && step + 1 - from >= self.least[from]
                     {
-                        // The edge is where the floor's last pixel ends.
-                        let sure = !floor_follows(&classes[step + 1..]);
-                        let edge = Edge { range: range(before as f64 + 0.5), sure };
+                        // The edge is where the floor's last pixel ends; floor that was taken for
+                        // something else has none.
+                        let (last, seen) =
+                            if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
+                        let sure = seen && !floor_follows(&classes[step + 1..]);
+                        let edge = Edge { range: range(last as f64 + 0.5), sure };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
@@ -138,9 +149,9 @@ impl Bearings {
                         }
                     }
                 }
-                Class::Unseen | Class::Unknown | Class::Other => {}
+                Class::Unseen | Class::Unknown | Class::Other => lost += 1,
             }
-            if floor.is_some_and(|floor| step > floor + LOST) {
+            if floor.is_some() && lost > LOST {
                 break;
             }
             step += 1;
@@ -170,10 +181,10 @@ impl Sight {
     }
 }
 
-/// Whether floor goes on behind a stripe.
+/// Whether floor goes on behind a stripe; more stripe tells nothing.
 fn floor_follows(behind: &[Class]) -> bool {
-    let floor = behind.iter().take(BEHIND).filter(|&&class| class == Class::Floor).count();
-    floor >= FLOOR_BEHIND
+    let behind = behind.iter().filter(|&&class| class != Class::Stripe).take(BEHIND);
+    behind.filter(|&&class| class == Class::Floor).count() >= FLOOR_BEHIND
 }
 
 /// How far away a step is.
@@ -240,6 +251,9 @@ mod tests {
         assert_eq!(wall_like_floor.sure(), None);
         assert_eq!(ranges(wall_like_floor), [range(23.5)]);
         assert_eq!(wall_like_floor.floor, range(95.5));
+        let floor_like_wall = sight("ffffooosoooo");
+        assert_eq!(floor_like_wall.sure(), None);
+        assert_eq!(ranges(floor_like_wall), [range(55.5)]);
     }
 
     #[test]
@@ -253,7 +267,7 @@ mod tests {
     #[test]
     fn a_stripe_without_floor_before_it_is_no_edge() {
         assert_eq!(sight("    soooo").edges().count(), 0);
-        assert_eq!(sight("fooooosooo").edges().count(), 0);
+        assert_eq!(sight("foooooooosooo").edges().count(), 0);
     }
 
     #[test]

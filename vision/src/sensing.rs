@@ -169,13 +169,18 @@ fn place(trace: &mut Trace, boundary: &Boundary, margin: f64) -> Place {
     let Some(frame) = trace.frame.filter(|_| boundary.points().count() >= FEW) else {
         return Place::Unknown(Reason::FewWalls);
     };
-    if let Some(hallway) = &trace.hallway {
-        return Place::Hallway(hallway.view(margin));
+    let in_hallway = |hallway: &Hallway| Place::Hallway(hallway.view(margin));
+    if let Some(hallway) = trace.hallway.as_ref().filter(|hallway| hallway.is_sure()) {
+        return in_hallway(hallway);
     }
     trace.corners = corners(&trace.walls);
+    let otherwise = |reason| match &trace.hallway {
+        Some(hallway) => in_hallway(hallway),
+        None => Place::Unknown(reason),
+    };
     match junction(&trace.corners, &trace.walls, boundary, &frame) {
-        Finding::Nothing => Place::Unknown(Reason::NothingFits),
-        Finding::Ambiguous => Place::Unknown(Reason::Ambiguous),
+        Finding::Nothing => otherwise(Reason::NothingFits),
+        Finding::Ambiguous => otherwise(Reason::Ambiguous),
         Finding::Junction(junction) => {
             trace.junction = Some(junction);
             if junction.is_here() {
@@ -183,7 +188,7 @@ fn place(trace: &mut Trace, boundary: &Boundary, margin: f64) -> Place {
             }
             trace.hallway = junction.hallway(&trace.walls);
             match &trace.hallway {
-                Some(hallway) => Place::Hallway(hallway.view(margin)),
+                Some(hallway) => in_hallway(hallway),
                 None => Place::Unknown(Reason::NothingFits),
             }
         }

@@ -126,17 +126,6 @@ impl Camera {
         }
     }
 
-    /// How high above the floor the eye is that sees the floor, in metres: the mirror, or the single
-    /// viewpoint.
-    #[must_use]
-    pub fn eye_height(&self) -> f64 {
-        match &self.optics {
-            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
-            Optics::OCamCalib(ocam) => ocam.viewpoint_height,
-            Optics::Mei(mei) => mei.viewpoint_height,
-        }
-    }
-
     /// The same camera with another size of image: every pixel larger or smaller. The larger image
     /// shows what the smaller shows, and its proportions should be the same.
     #[must_use]
@@ -168,6 +157,16 @@ impl Camera {
             Optics::SphericalMirror(mirror) => mirror.camera_height,
             Optics::OCamCalib(ocam) => ocam.viewpoint_height,
             Optics::Mei(mei) => mei.viewpoint_height,
+        }
+    }
+
+    /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
+    /// viewpoint.
+    #[must_use]
+    pub fn eye_height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
+            Optics::OCamCalib(_) | Optics::Mei(_) => self.height(),
         }
     }
 
