@@ -146,7 +146,8 @@ fn start_pose(plan: &FloorPlan, start: Dart) -> Pose {
     Pose { position: junction.position, heading: y.atan2(x) }
 }
 
-fn looks() -> impl TypedValueParser<Value = &'static Look> {
+/// Reads the name of a look.
+pub(super) fn looks() -> impl TypedValueParser<Value = &'static Look> {
     let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
     PossibleValuesParser::new(looks)
         .try_map(|name| Look::named(&name).ok_or_else(|| format!("there is no look `{name}`")))

@@ -29,7 +29,7 @@ use super::{
     verdict::{MarkerVerdict, Verdict, judge, judge_marker},
     view::{NoView, View, Views},
 };
-use crate::simulator::{LOOKS, Look, Rig, RigErrors};
+use crate::simulator::{Look, Rig, RigErrors};
 
 /// Whether the camera is as its calibration says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +139,8 @@ struct Sensors {
 }
 
 impl Judge {
-    /// Learns the colours of all looks for all sizes of the views' pictures, with a calibrated camera.
+    /// Learns the colours of all looks of the views, for all sizes of their pictures, with a calibrated
+    /// camera.
     ///
     /// # Errors
     /// Where the colours cannot be learned.
@@ -149,12 +150,12 @@ impl Judge {
         calibrations: &[Calibration],
         watch: &impl Watch,
     ) -> Result<Self, JudgingError> {
-        watch.parts(views.sizes.len() * LOOKS.len());
+        watch.parts(views.sizes.len() * views.looks.len());
         let station = |&size: &[u32; 2]| {
             let camera = camera.sized(size);
             let right = Rig::new(&camera);
             let wrong = if calibrations.contains(&Calibration::Wrong) { WRONG_RIGS } else { 0 };
-            let sensors = LOOKS.par_iter().map(|look| {
+            let sensors = views.looks.par_iter().map(|look| {
                 let sensors = Sensors::new(views, look, &camera, &right);
                 watch.part_done(1);
                 sensors

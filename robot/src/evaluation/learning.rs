@@ -40,7 +40,7 @@ pub enum LearningError {
 ///
 /// # Errors
 /// Where too little is to be seen.
-pub(super) fn learned(
+pub fn learned(
     views: &Views,
     look: &'static Look,
     camera: &Camera,

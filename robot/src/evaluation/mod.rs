@@ -13,5 +13,5 @@ pub mod truth;
 pub mod verdict;
 pub mod view;
 
-pub use learning::LearningError;
+pub use learning::{LearningError, learned};
 pub use plans::plans;

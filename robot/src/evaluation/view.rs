@@ -17,7 +17,7 @@ use super::{
     random_plan::random_plan,
     truth::{JunctionTruth, MarkerTruth, Truth, angle},
 };
-use crate::simulator::{Building, Effects, LOOKS, Look, Pose, Rig, render};
+use crate::simulator::{Building, Effects, Look, Pose, Rig, render};
 
 /// From so far before a turning point, to so far beyond it junctions are looked at, in metres.
 const APPROACH: [f64; 2] = [1.5, -0.3];
@@ -119,6 +119,8 @@ pub struct Views {
     pub plans: Vec<(String, Arc<FloorPlan>)>,
     /// Whether there are random plans, too.
     pub random_plans: bool,
+    /// What the buildings look like.
+    pub looks: Vec<&'static Look>,
     /// The sizes of pictures, which views have in turn.
     pub sizes: Vec<[u32; 2]>,
     /// Which effects there are.
@@ -134,6 +136,9 @@ pub enum NoView {
     /// There is nothing to look with.
     #[error("there is no size of pictures")]
     NoSize,
+    /// Nothing looks like anything.
+    #[error("there is no look")]
+    NoLook,
     /// There is something wrong with the random plans.
     #[error("random plan {seed} is not valid")]
     RandomPlan {
@@ -208,7 +213,7 @@ impl Views {
             None => return Err(NoView::NoPlan),
         };
         let size = number.checked_rem(self.sizes.len() as u64).ok_or(NoView::NoSize)?;
-        let look = LOOKS.choose(&mut chance).unwrap_or(&LOOKS[0]);
+        let look = self.looks.choose(&mut chance).copied().ok_or(NoView::NoLook)?;
         let drawn = Effects::drawn(&mut chance);
         let view = View {
             number,
@@ -361,7 +366,7 @@ mod tests {
     use toposlam_model::format::world_file;
 
     use super::*;
-    use crate::simulator::{Wall, walls};
+    use crate::simulator::{LOOKS, Wall, walls};
 
     fn views() -> Views {
         let text = include_bytes!("../../../worlds/shape-8.toml");
@@ -370,6 +375,7 @@ mod tests {
             seed: 1,
             plans: vec![("shape-8".to_owned(), Arc::new(plan))],
             random_plans: true,
+            looks: LOOKS.iter().collect(),
             sizes: vec![[1280, 960], [640, 480]],
             effects: WhichEffects::Default,
         }
@@ -445,5 +451,6 @@ mod tests {
         let none = Views { plans: Vec::new(), random_plans: false, ..views() };
         assert_eq!(none.view(0), Err(NoView::NoPlan));
         assert_eq!(Views { sizes: Vec::new(), ..views() }.view(0), Err(NoView::NoSize));
+        assert_eq!(Views { looks: Vec::new(), ..views() }.view(0), Err(NoView::NoLook));
     }
 }

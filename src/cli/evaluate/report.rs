@@ -12,7 +12,12 @@ use toposlam_robot::evaluation::{
     view::{Views, WhichEffects},
 };
 
-use crate::cli::{Failure, Outcome, columns::print_rows, json::print_object, words::grouped};
+use crate::cli::{
+    Failure, Outcome,
+    columns::{print_hanging, print_rows},
+    json::print_object,
+    words::grouped,
+};
 
 /// What is measured.
 pub(super) struct Header<'a> {
@@ -48,6 +53,7 @@ impl<'o> Printer<'o> {
         if source.random_plans {
             plans.push("random ones");
         }
+        let looks: Vec<_> = source.looks.iter().map(|look| look.name).collect();
         let effects = match source.effects {
             WhichEffects::Default => "default",
             WhichEffects::None => "none",
@@ -58,13 +64,14 @@ impl<'o> Printer<'o> {
                 self.out,
                 &json!({
                     "schema": 1, "kind": "source", "views": views, "visits": visits, "seed": seed,
-                    "sizes": sizes, "plans": plans, "effects": effects,
+                    "sizes": sizes, "plans": plans, "looks": looks, "effects": effects,
                 }),
             );
         }
         let (views, visits) = (grouped((*views).into()), grouped((*visits).into()));
         writeln!(self.out, "Sensing on {views} views and {visits} visits, seed {seed}")?;
-        writeln!(self.out, "  floor plans  {}", plans.join(", "))?;
+        print_hanging(self.out, "  floor plans  ", &plans.join(", "))?;
+        print_hanging(self.out, "  looks        ", &looks.join(", "))?;
         writeln!(self.out, "  pictures     {}", sizes.join(", "))?;
         writeln!(self.out, "  effects      {effects}")?;
         Ok(())

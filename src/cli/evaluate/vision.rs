@@ -8,12 +8,15 @@ use std::{
 };
 
 use toposlam_model::floor_plan::FloorPlan;
-use toposlam_robot::evaluation::{
-    causes::groups,
-    judging::{Calibration, Judge, Judged, JudgedVisit},
-    plans,
-    report::{Report, Standing},
-    view::{View, Views, WhichEffects},
+use toposlam_robot::{
+    evaluation::{
+        causes::groups,
+        judging::{Calibration, Judge, Judged, JudgedVisit},
+        plans,
+        report::{Report, Standing},
+        view::{Views, WhichEffects},
+    },
+    simulator::{LOOKS, Look},
 };
 use toposlam_vision::camera::Camera;
 
@@ -24,7 +27,7 @@ use super::{
 use crate::cli::{
     Failure, Outcome, input, output,
     progress::Progress,
-    render::{Size, Which},
+    render::{Size, Which, looks},
     use_threads,
 };
 
@@ -57,6 +60,9 @@ pub(super) struct Arguments {
     /// Width and height of the pictures [default: 1280x960 and 640x480 in turn]
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
+    /// What the buildings look like; may be given more than once [default: every look]
+    #[arg(long, value_name = "NAME", value_parser = looks())]
+    look: Vec<&'static Look>,
     /// Floor plans; may be given more than once [default: those of worlds/, and random ones]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     plan: Vec<PathBuf>,
@@ -156,12 +162,12 @@ impl Arguments {
     fn one(&self, views: &Views, number: u64, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let view = views.view(number).map_err(unmeasured)?;
         // Only what this view needs.
-        let views = Views { sizes: vec![view.image], ..views.clone() };
+        let views = Views { sizes: vec![view.image], looks: vec![view.look], ..views.clone() };
         let calibrations = self.calibrations();
         let judge = judge(&views, calibrations)?;
         let mut outcome = Outcome::Holds;
         for &calibration in calibrations {
-            let judged = judge.view(View::clone(&view), calibration).map_err(unmeasured)?;
+            let judged = judge.view(view.clone(), calibration).map_err(unmeasured)?;
             failing::print(out, &judged, calibration)?;
             if judged.verdict.is_wrong() {
                 outcome = Outcome::Violated;
@@ -188,6 +194,7 @@ impl Arguments {
             seed: self.seed,
             random_plans: given.is_empty(),
             plans: if given.is_empty() { plans().map_err(unmeasured)? } else { given },
+            looks: if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() },
             sizes: match self.size {
                 Some(size) => vec![size.pixels()],
                 None => vec![Size::Large.pixels(), Size::Small.pixels()],
