@@ -7,9 +7,11 @@ mod check;
 mod compare;
 mod counterexample;
 mod draw;
+mod evaluate;
 mod explore;
 mod help;
 mod proofs;
+mod sense;
 
 use std::{
     ffi::OsStr,

@@ -12,33 +12,35 @@ use super::effects::Effects;
 use super::rig::Rig;
 
 /// The light that comes to every pixel, as red, green and blue; at 1 the sensor is full.
-pub(super) struct Light {
-    pub(super) width: usize,
-    pub(super) pixels: Vec<[f32; 3]>,
+pub(super) trait Scan {
+    /// A row of it; rows are asked for in order.
+    fn row(&mut self, v: usize, out: &mut [f32]);
+
+    /// What it is on average.
+    fn mean(&self) -> [f32; 3];
 }
 
 /// The photograph of this light.
-pub(super) fn expose(light: Light, rig: &Rig, effects: &Effects, seed: u64) -> RgbImage {
-    let width = light.width;
-    let height = light.pixels.len() / width.max(1);
-    let light = light.pixels.into_flattened();
+pub(super) fn expose(light: &mut impl Scan, rig: &Rig, effects: &Effects, seed: u64) -> RgbImage {
+    let [width, height] = rig.image().map(|length| length as usize);
     let gain = gain(effects);
-    let veil = veil(&light, effects.glare as f32);
-    let mut rows = Blur::new(&light, width, effects.blur * width as f64 / 1280.0);
+    let glare = effects.glare as f32;
+    let veil = if glare > 0.0 { light.mean().map(|mean| glare * mean) } else { [0.0; 3] };
+    let mut blur = Blur::new([width, height], effects.blur * width as f64 / 1280.0);
     let mut noise = Noise::new(effects.noise as f32, stream(seed, For::Sensor, 0));
     let [middle_u, middle_v] = rig.optics.centre.map(|at| at as f32);
-    let darker = effects.vignetting as f32 / (rig.optics.rim() * rig.optics.rim()) as f32;
-    let keep = 1.0 - effects.glare as f32;
+    let rim = rig.optics.rim() as f32;
+    let darker = effects.vignetting as f32 / (rim * rim);
     let mut bytes = vec![0; width * height * 3];
     let mut row = vec![0.0; width * 3];
     for (v, out) in bytes.chunks_exact_mut((width * 3).max(1)).enumerate() {
-        rows.row(v, &mut row);
+        blur.row(light, v, &mut row);
         let down = v as f32 - middle_v;
         for (u, pixel) in row.as_chunks_mut::<3>().0.iter_mut().enumerate() {
             let across = u as f32 - middle_u;
             let left = (1.0 - darker * (across * across + down * down)).max(0.05);
             for (channel, value) in pixel.iter_mut().enumerate() {
-                *value = (*value * keep + veil[channel]) * left * gain[channel];
+                *value = (*value * (1.0 - glare) + veil[channel]) * left * gain[channel];
             }
         }
         noise.add(&mut row);
@@ -57,113 +59,81 @@ fn gain(effects: &Effects) -> [f32; 3] {
     [exposure, exposure * green, exposure * (1.0 - effects.cast)].map(|gain| gain as f32)
 }
 
-/// The light that glare spreads over the picture.
-fn veil(light: &[f32], share: f32) -> [f32; 3] {
-    if share == 0.0 {
-        return [0.0; 3];
-    }
-    let mut sum = [0.0_f64; 3];
-    // Every so many pixels tell the mean well enough.
-    let pixels = light.as_chunks::<3>().0.iter().step_by(31);
-    let count = pixels.len().max(1) as f64;
-    for pixel in pixels {
-        for (sum, &channel) in sum.iter_mut().zip(pixel) {
-            *sum += f64::from(channel);
-        }
-    }
-    sum.map(|sum| share * (sum / count) as f32)
-}
-
 /// Rows of a picture, blurred.
-struct Blur<'a> {
-    light: &'a [f32],
+struct Blur {
     width: usize,
+    height: usize,
     /// The weights from the middle outwards.
     weights: Vec<f32>,
     /// The latest rows, blurred along themselves, and the number of the next.
     across: Vec<Vec<f32>>,
     next: usize,
+    /// A row as it comes, with its ends repeated.
+    source: Vec<f32>,
 }
 
-impl<'a> Blur<'a> {
-    fn new(light: &'a [f32], width: usize, deviation: f64) -> Self {
+impl Blur {
+    fn new([width, height]: [usize; 2], deviation: f64) -> Self {
         let reach = (2.5 * deviation).ceil().min(width as f64) as usize;
-        let mut weights: Vec<f64> = (0..=reach)
-            .map(|away| {
-                if deviation == 0.0 {
-                    1.0
-                } else {
-                    (-0.5 * (away as f64 / deviation).powi(2)).exp()
-                }
-            })
-            .collect();
+        let weight = |away: usize| (-0.5 * (away as f64 / deviation.max(1e-9)).powi(2)).exp();
+        let weights: Vec<f64> = (0..=reach).map(weight).collect();
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
-        let across = vec![vec![0.0; width * 3]; 2 * reach + 1];
-        let weights = weights.into_iter().map(|weight| weight as f32).collect();
-        Self { light, width, weights, across, next: 0 }
+        Self {
+            width,
+            height,
+            weights: weights.into_iter().map(|weight| (weight / sum) as f32).collect(),
+            across: vec![vec![0.0; width * 3]; 2 * reach + 1],
+            next: 0,
+            source: vec![0.0; (width + 2 * reach) * 3],
+        }
     }
 
-    /// A row; rows are asked for in order.
-    fn row(&mut self, v: usize, out: &mut [f32]) {
+    /// A row of this light; rows are asked for in order.
+    fn row(&mut self, light: &mut impl Scan, v: usize, out: &mut [f32]) {
         let reach = self.weights.len() - 1;
-        let height = self.light.len() / (self.width * 3);
         if reach == 0 {
-            out.copy_from_slice(self.source(v));
+            light.row(v, out);
             return;
         }
-        while self.next < height.min(v + reach + 1) {
-            let slot = self.next % self.across.len();
-            let mut row = std::mem::take(&mut self.across[slot]);
-            self.along(self.next, &mut row);
-            self.across[slot] = row;
-            self.next += 1;
+        while self.next < self.height.min(v + reach + 1) {
+            self.along(light);
         }
         let row = |v: usize| &self.across[v % self.across.len()];
         for (out, &value) in out.iter_mut().zip(row(v)) {
             *out = self.weights[0] * value;
         }
         for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-            let (above, below) = (row(v.saturating_sub(away)), row((v + away).min(height - 1)));
+            let (above, below) =
+                (row(v.saturating_sub(away)), row((v + away).min(self.height - 1)));
             for ((out, &one), &other) in out.iter_mut().zip(above).zip(below) {
                 *out += weight * (one + other);
             }
         }
     }
 
-    fn source(&self, v: usize) -> &'a [f32] {
-        &self.light[v * self.width * 3..(v + 1) * self.width * 3]
-    }
-
-    /// A row blurred along itself.
-    fn along(&self, v: usize, out: &mut [f32]) {
-        let source = self.source(v);
-        let reach = (self.weights.len() - 1) * 3;
-        let inner = source.len().saturating_sub(reach);
-        for (at, out) in out.iter_mut().enumerate() {
-            if at < reach || at >= inner {
-                let (pixel, channel) = (at / 3, at % 3);
-                *out = self.weights[0] * source[at];
-                for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-                    let left = pixel.saturating_sub(away);
-                    let right = (pixel + away).min(self.width - 1);
-                    *out += weight * (source[left * 3 + channel] + source[right * 3 + channel]);
-                }
-            }
+    /// Takes the next row, and blurs it along itself.
+    fn along(&mut self, light: &mut impl Scan) {
+        let (reach, width) = (3 * (self.weights.len() - 1), 3 * self.width);
+        light.row(self.next, &mut self.source[reach..reach + width]);
+        for at in (0..reach).rev() {
+            self.source[at] = self.source[at + 3];
         }
-        if inner <= reach {
-            return;
+        for at in reach + width..self.source.len() {
+            self.source[at] = self.source[at - 3];
         }
-        let inside = &mut out[reach..inner];
-        for (out, &value) in inside.iter_mut().zip(&source[reach..inner]) {
+        let slot = self.next % self.across.len();
+        let out = &mut self.across[slot];
+        for (out, &value) in out.iter_mut().zip(&self.source[reach..]) {
             *out = self.weights[0] * value;
         }
         for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-            let (left, right) = (&source[reach - 3 * away..], &source[reach + 3 * away..]);
-            for ((out, &one), &other) in inside.iter_mut().zip(left).zip(right) {
+            let (left, right) =
+                (&self.source[reach - 3 * away..], &self.source[reach + 3 * away..]);
+            for ((out, &one), &other) in out.iter_mut().zip(left).zip(right) {
                 *out += weight * (one + other);
             }
         }
+        self.next += 1;
     }
 }
 
@@ -228,7 +198,7 @@ static RESPONSE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 /// What the camera makes of this light: sRGB's curve.
 #[inline]
 fn response(light: f32) -> u8 {
-    RESPONSE[(light.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as usize]
+    RESPONSE[(light.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as i32 as usize]
 }
 
 /// What JPEG leaves of a picture.

@@ -212,3 +212,85 @@ fn minus(one: Vector, other: Vector) -> Vector {
 fn unit(vector: Vector) -> Vector {
     scaled(vector, 1.0 / dot(vector, vector).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    fn cameras() -> [Camera; 3] {
+        let below = Camera::superscout();
+        let above = Camera { seen_from: SeenFrom::Above, ahead: 0.3, ..below.clone() };
+        let mut turned = Camera { ahead: -2.0, ..below.clone() };
+        turned.optics.centre = [611.5, 502.25];
+        [below, above, turned]
+    }
+
+    #[test]
+    fn the_mirror_ray_by_ray_agrees_with_its_closed_form() {
+        for camera in cameras() {
+            let optics = Optics::new(&camera, &RigErrors::default());
+            let mut seen = 0;
+            for (u, v) in (0..64).flat_map(|u| (0..48).map(move |v| (u, v))) {
+                let pixel = [f64::from(u) * 20.3, f64::from(v) * 20.1];
+                let ray = optics.ray(pixel);
+                let ground = ray.floor().filter(|_| ray.by == By::Mirror);
+                let expected = camera.pixel_to_ground(pixel);
+                assert_eq!(ground.is_some(), expected.is_some(), "{pixel:?}");
+                if let (Some([x, y]), Some(expected)) = (ground, expected) {
+                    let away = (x - expected[0]).hypot(y - expected[1]);
+                    // Towards the horizon the least rounding becomes a way.
+                    assert!(away < 1e-9 * x.hypot(y).max(1.0).powi(2), "{pixel:?}: {away}");
+                    seen += 1;
+                }
+            }
+            assert!(seen > 800, "{seen}");
+        }
+    }
+
+    #[test]
+    fn rays_come_from_the_sphere_and_have_length_one() {
+        let camera = Camera::superscout();
+        let optics = Optics::new(&camera, &RigErrors { tilt: 0.02, ..RigErrors::default() });
+        let middle = optics.leaning([0.0, 0.0, 0.15]);
+        for at in 0..200 {
+            let ray = optics.ray([640.0 + f64::from(at) * 2.2, 480.0 - f64::from(at)]);
+            assert!((dot(ray.direction, ray.direction) - 1.0).abs() < 1e-12);
+            if ray.by == By::Mirror {
+                let [x, y, z] = ray.origin;
+                let out = minus([x, y, z - 0.90], middle);
+                assert!((dot(out, out).sqrt() - 0.05).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rig_that_leans_sees_along_its_leaning_axis() {
+        let camera = Camera::superscout();
+        let tilt = 0.05_f64;
+        for towards in [0.0, FRAC_PI_2, 2.5] {
+            let errors = RigErrors { tilt, towards, ..RigErrors::default() };
+            let ray = Optics::new(&camera, &errors).ray([640.0, 480.0]);
+            // The axis goes through the pinhole, 0.9 m up: below it, the floor is this far back.
+            let back = 0.90 * tilt.tan();
+            let [x, y] = ray.floor().unwrap();
+            assert!((x + back * towards.cos()).abs() < 1e-12, "{x}");
+            assert!((y + back * towards.sin()).abs() < 1e-12, "{y}");
+        }
+    }
+
+    #[test]
+    fn errors_of_centre_and_height_move_what_a_pixel_shows() {
+        let camera = Camera::superscout();
+        let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
+        let optics = Optics::new(&camera, &errors);
+        let mut as_it_is = camera.clone();
+        as_it_is.optics.centre = [644.0, 477.0];
+        as_it_is.optics.camera_height = 0.92;
+        let (found, expected) =
+            (optics.ray([700.0, 300.0]).floor(), as_it_is.pixel_to_ground([700.0, 300.0]));
+        let ([x, y], [expected_x, expected_y]) = (found.unwrap(), expected.unwrap());
+        assert!((x - expected_x).hypot(y - expected_y) < 1e-9);
+    }
+}

@@ -166,6 +166,16 @@ impl Camera {
         }
     }
 
+    /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
+    /// viewpoint.
+    #[must_use]
+    pub fn eye_height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
+            Optics::OCamCalib(_) | Optics::Mei(_) => self.height(),
+        }
+    }
+
     /// What a pixel looks along; `None` off the mirror, and where the calibration says nothing.
     #[must_use]
     pub fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
