@@ -38,7 +38,6 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
 }
 
 /// The camera of a calibration file. The files that it names are those beside it.
-#[expect(dead_code, reason = "the verbs that read images come next")]
 pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
     calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))

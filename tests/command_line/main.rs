@@ -10,6 +10,7 @@ mod draw;
 mod explore;
 mod help;
 mod proofs;
+mod render;
 
 use std::{
     ffi::OsStr,
