@@ -43,6 +43,12 @@ pub enum Optics {
     Mei(Mei),
 }
 
+/// The length of a vector whose square is neither too large nor too small for a number.
+#[inline]
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 /// Where something at a place of an image is, once every pixel is larger by a factor: pixel centres
 /// are integers, so an image begins at -0.5.
 fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
