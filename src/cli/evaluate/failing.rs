@@ -10,7 +10,7 @@ use toposlam_model::{
 use toposlam_robot::evaluation::{
     class::Class,
     judging::{Calibration, Judge, Judged, JudgedVisit, Zone},
-    truth::Truth,
+    truth::{JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict},
     view::View,
 };
@@ -200,7 +200,7 @@ impl<'a> Line<'a> {
             }),
             effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
             truth,
-            distance: junction.and_then(|junction| junction.distance()),
+            distance: junction.and_then(JunctionTruth::distance),
             said: Class::of(&judged.scene).to_string(),
             verdict: judged.verdict.to_string(),
             answer: SceneLine::from(&judged.scene),
