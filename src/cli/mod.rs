@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod counterexample;
 mod draw;
+mod evaluate;
 mod explore;
 mod input;
 mod json;
@@ -13,9 +14,12 @@ mod movable;
 mod outcome;
 mod output;
 mod paper;
+mod picture_file;
 mod progress;
 mod proofs;
 mod render;
+mod scene;
+mod sense;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -58,6 +62,8 @@ enum Verb {
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
     Render(render::Arguments),
+    Sense(sense::Arguments),
+    Evaluate(evaluate::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -123,6 +129,8 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
+        Some(Verb::Sense(verb)) => verb.run(&mut out),
+        Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

@@ -1,16 +1,11 @@
 //! `toposlam render`: what the robot's camera would see from a pose in a floor plan. Section 2.5.
 
-use std::{
-    ffi::OsStr,
-    io::{Cursor, Write},
-    path::{Path, PathBuf},
-};
+use std::{io::Write, path::PathBuf};
 
 use clap::{
     ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
-use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
@@ -22,7 +17,7 @@ use toposlam_robot::simulator::{
 };
 use toposlam_vision::camera::Camera;
 
-use super::{Failure, Outcome, input, output};
+use super::{Failure, Outcome, input, output, picture_file::encoded};
 
 /// Render what the robot's camera would see from a pose in a floor plan
 #[derive(clap::Args)]
@@ -64,8 +59,9 @@ pub(super) struct Arguments {
     labels: Option<PathBuf>,
 }
 
+/// Width and height of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Size {
+pub(super) enum Size {
     /// Small
     #[value(name = "640x480")]
     Small,
@@ -75,7 +71,7 @@ enum Size {
 }
 
 impl Size {
-    fn pixels(self) -> [u32; 2] {
+    pub(super) fn pixels(self) -> [u32; 2] {
         match self {
             Self::Small => [640, 480],
             Self::Large => [1280, 960],
@@ -83,8 +79,9 @@ impl Size {
     }
 }
 
+/// Which effects there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Which {
+pub(super) enum Which {
     /// Each drawn from its default range
     Default,
     /// None
@@ -98,10 +95,7 @@ impl Arguments {
             output::check_place(path, &["png"])?;
         }
         let world = input::read_world(&self.plan)?;
-        let Some(plan) = &world.plan else {
-            let cause = "this world is no floor plan: there is no [floor] in it";
-            return Err(Failure::in_file(&self.plan, cause));
-        };
+        let plan = input::floor_plan(&self.plan, &world)?;
         let camera = self.camera()?;
         let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
         let marker = if self.marker { Some(self.marked(plan, world.start)?) } else { None };
@@ -167,19 +161,8 @@ fn start_pose(plan: &FloorPlan, start: Dart) -> Pose {
     Pose { position: junction.position, heading: y.atan2(x) }
 }
 
-fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Cursor::new(Vec::new());
-    let jpeg = path.extension().and_then(OsStr::to_str).is_some_and(|ending| ending != "png");
-    let written = if jpeg {
-        picture.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, 95))
-    } else {
-        picture.write_to(&mut bytes, ImageFormat::Png)
-    };
-    written.map_err(|error| Failure::in_file(path, error))?;
-    Ok(bytes.into_inner())
-}
-
-fn looks() -> impl TypedValueParser<Value = &'static Look> {
+/// Reads the name of a look.
+pub(super) fn looks() -> impl TypedValueParser<Value = &'static Look> {
     let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
     PossibleValuesParser::new(looks)
         .try_map(|name| Look::named(&name).ok_or_else(|| format!("there is no look `{name}`")))

@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 9] = [
+const VERBS: [(&str, &[&str]); 11] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -22,6 +22,8 @@ const VERBS: [(&str, &[&str]); 9] = [
         "render",
         &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
     ),
+    ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
+    ("evaluate", &["vision"]),
     ("completions", &[]),
 ];
 

@@ -84,8 +84,8 @@ pub fn boundary(trace: &Trace) -> RgbImage {
         if sight.floor > 0.0 {
             line(&mut picture, at(0.30), at(sight.floor), Rgb([40, 60, 40]));
         }
-        if let Some(wall) = sight.wall {
-            dot(&mut picture, at(wall), 1, WHITE);
+        for edge in sight.edges() {
+            dot(&mut picture, at(edge.range), 1, if edge.sure { WHITE } else { ORANGE });
         }
     }
     body(&mut picture);

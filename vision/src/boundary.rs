@@ -1,13 +1,17 @@
 //! Boundary points: where the floor ends at a stripe, as seen from the robot outwards. Section 3,
 //! Figure 6(d).
 //!
-//! Walls are higher than the camera, so that on each bearing the first stripe behind the floor is the
-//! only wall that can be seen. A stripe behind which the floor goes on is none: a joint between tiles,
-//! a lamp's reflection, a speck.
+//! Walls are higher than the camera, so that on each bearing one stripe behind the floor is that of the
+//! only wall that can be seen. Which one is not always plain: joints between tiles and reflections of
+//! lamps look like stripes, and walls may have the floor's colour. So on a bearing there may be several
+//! edges, the last of them sure or not; which of them are walls, their neighbours decide.
 
 use std::f64::consts::TAU;
 
-use crate::{colour::Class, ground_view::GroundView};
+use crate::{
+    colour::{Class, Stripe, StripeKind},
+    ground_view::GroundView,
+};
 
 /// What is seen on each bearing.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,12 +23,23 @@ pub struct Boundary {
 /// What is seen on one bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
-    /// How far away the floor ends at a stripe, in metres.
-    pub wall: Option<f64>,
-    /// How far away floor was seen, in metres; 0 if nowhere.
+    /// Where floor ends at a stripe, outwards; as many as there are come first.
+    edges: [Option<Edge>; EDGES],
+    /// How far away floor was seen, in metres; 0 if nowhere. Nothing is seen behind a sure edge.
     pub floor: f64,
 }
 
+/// Where floor ends at a stripe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// How far away, in metres.
+    pub range: f64,
+    /// Whether no floor is seen behind the stripe.
+    pub sure: bool,
+}
+
+/// No more edges than these are told of on a bearing.
+const EDGES: usize = 3;
 /// How many bearings are looked at.
 pub const BEARINGS: usize = 720;
 /// From where on floor is looked at, in metres.
@@ -33,15 +48,17 @@ const NEAREST: f64 = 0.30;
 pub const REACH: f64 = 2.6;
 /// Steps along a bearing, a pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
-/// A stripe is at least so wide, along a bearing, in steps.
-const STRIPE: usize = 2;
+/// A stripe is seen at least at this part of its width: a pixel may cover as much.
+const SEEN_WIDTH: f64 = 0.55;
 /// Between floor and stripe colours mix, over so many steps.
 const MIXED: usize = 10;
+/// Fewer steps of something else do not end a stripe.
+const SPECK: usize = 3;
 /// Behind a stripe so many steps are looked at;
 const BEHIND: usize = 30;
-/// if so many of them are floor, it is no wall.
+/// if so many of them are floor, the edge is not sure.
 const FLOOR_BEHIND: usize = 10;
-/// Where no floor was seen for so many steps, what comes behind is not believed.
+/// Where something else was seen for so many steps, what comes behind is not believed.
 const LOST: usize = 60;
 
 /// The pixels of the ground view on each bearing, from the robot outwards.
@@ -49,10 +66,15 @@ const LOST: usize = 60;
 pub struct Bearings {
     /// [`STEPS`] for each bearing.
     pixels: Vec<u32>,
+    /// How wide a stripe is at least that begins at a step, along a bearing, in steps.
+    least: Vec<usize>,
 }
 
-impl Default for Bearings {
-    fn default() -> Self {
+impl Bearings {
+    /// The bearings of a camera that is so high above the floor, in metres, where walls have such a
+    /// stripe.
+    #[must_use]
+    pub fn new(stripe: Stripe, height: f64) -> Self {
         let pixels = (0..BEARINGS)
             .flat_map(|bearing| {
                 let [x, y] = direction(bearing);
@@ -62,62 +84,107 @@ impl Default for Bearings {
                 })
             })
             .collect();
-        Self { pixels }
+        let least = (0..STEPS).map(|step| {
+            let width = match stripe.kind {
+                StripeKind::OnFloor => stripe.width,
+                // What is above the floor is seen as if it lay behind.
+                StripeKind::OnWall => {
+                    range(step as f64) * stripe.width / (height - stripe.width).max(stripe.width)
+                }
+            };
+            ((SEEN_WIDTH * width / GroundView::SCALE) as usize).max(1)
+        });
+        Self { pixels, least: least.collect() }
     }
-}
 
-impl Bearings {
     /// What is seen on each bearing of a ground view.
     // paper: sense.boundary
     // paper: sense.boundary-points
+    #[must_use]
     pub fn look(&self, view: &GroundView) -> Boundary {
         let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
             let mut classes = [Class::Unseen; STEPS];
             for (class, &pixel) in classes.iter_mut().zip(pixels) {
                 *class = view.classes[pixel as usize];
             }
-            sight(&classes)
+            self.sight(&classes)
         });
         Boundary { sights: sights.collect() }
     }
-}
 
-/// What is seen on one bearing, by the classes on it from the robot outwards.
-fn sight(classes: &[Class]) -> Sight {
-    let mut floor: Option<usize> = None;
-    let mut step = 0;
-    while let Some(&class) = classes.get(step) {
-        match class {
-            Class::Floor | Class::Marker => floor = Some(step),
-            Class::Stripe => {
-                let from = step;
-                while classes.get(step + 1) == Some(&Class::Stripe) {
-                    step += 1;
+    /// What is seen on one bearing, by the classes on it from the robot outwards.
+    fn sight(&self, classes: &[Class]) -> Sight {
+        let mut sight = Sight::default();
+        let mut edges = sight.edges.iter_mut();
+        let mut floor: Option<usize> = None;
+        let (mut step, mut lost) = (0, 0);
+        while let Some(&class) = classes.get(step) {
+            match class {
+                Class::Floor | Class::Marker => {
+                    floor = Some(step);
+                    lost = 0;
                 }
-                let before = floor.filter(|&floor| from - floor <= MIXED);
-                if let Some(before) = before
-                    && step + 1 - from >= STRIPE
-                    && is_wall(&classes[step + 1..])
-                {
-                    // The edge is where the floor's last pixel ends.
-                    let wall = range(before as f64 + 0.5);
-                    return Sight { wall: Some(wall), floor: wall };
+                Class::Stripe => {
+                    let from = step;
+                    while classes[step + 1..]
+                        .iter()
+                        .take(SPECK)
+                        .any(|&class| class == Class::Stripe)
+                    {
+                        step += 1;
+                    }
+                    if let Some(floor) = floor
+                        && step + 1 - from >= self.least[from]
+                    {
+                        // The edge is where the floor's last pixel ends; floor that was taken for
+                        // something else has none.
+                        let (last, seen) =
+                            if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
+                        let sure = seen && !floor_follows(&classes[step + 1..]);
+                        let edge = Edge { range: range(last as f64 + 0.5), sure };
+                        let Some(next) = edges.next() else { break };
+                        *next = Some(edge);
+                        if sure {
+                            break;
+                        }
+                    }
                 }
+                Class::Unseen | Class::Unknown | Class::Other => lost += 1,
             }
-            Class::Unseen | Class::Unknown | Class::Other => {}
+            if floor.is_some() && lost > LOST {
+                break;
+            }
+            step += 1;
         }
-        if floor.is_some_and(|floor| step > floor + LOST) {
-            break;
-        }
-        step += 1;
+        sight.floor = floor.map_or(0.0, |floor| range(floor as f64 + 0.5));
+        sight
     }
-    Sight { wall: None, floor: floor.map_or(0.0, |floor| range(floor as f64 + 0.5)) }
 }
 
-/// Whether what is behind a stripe is not floor.
-fn is_wall(behind: &[Class]) -> bool {
-    let floor = behind.iter().take(BEHIND).filter(|&&class| class == Class::Floor).count();
-    floor < FLOOR_BEHIND
+impl Sight {
+    /// A bearing on which there are only these edges.
+    #[cfg(test)]
+    pub(crate) fn at(range: Option<f64>) -> Self {
+        let edge = range.map(|range| Edge { range, sure: true });
+        Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
+    }
+
+    /// Where floor ends at a stripe, outwards.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        self.edges.iter().flatten().copied()
+    }
+
+    /// The edge behind which nothing is seen.
+    #[must_use]
+    pub fn sure(&self) -> Option<f64> {
+        self.edges().find(|edge| edge.sure).map(|edge| edge.range)
+    }
+}
+
+/// Whether floor goes on behind a stripe; more stripe tells nothing.
+fn floor_follows(behind: &[Class]) -> bool {
+    let behind = behind.iter().filter(|&&class| class != Class::Stripe).take(BEHIND);
+    behind.filter(|&&class| class == Class::Floor).count() >= FLOOR_BEHIND
 }
 
 /// How far away a step is.
@@ -135,9 +202,9 @@ pub fn direction(bearing: usize) -> [f64; 2] {
 impl Boundary {
     /// The boundary points, counter-clockwise from ahead: their bearing and their position.
     pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
-        self.sights.iter().enumerate().filter_map(|(bearing, sight)| {
-            let range = sight.wall?;
-            Some((bearing, direction(bearing).map(|part| range * part)))
+        self.sights.iter().enumerate().flat_map(|(bearing, sight)| {
+            let ray = direction(bearing);
+            sight.edges().map(move |edge| (bearing, ray.map(|part| edge.range * part)))
         })
     }
 }
@@ -159,32 +226,55 @@ mod tests {
         letters.chars().flat_map(|letter| [class(letter); 8]).collect()
     }
 
+    fn sight(letters: &str) -> Sight {
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
+        Bearings::new(stripe, 1.05).sight(&on(letters))
+    }
+
     #[test]
     fn a_wall_is_where_floor_ends_at_a_stripe() {
         for classes in ["ffffsoooo", "ffff?soooo", "   fsoooo", "ffmmsoooo", "ffffsoo?oo   "] {
-            let sight = sight(&on(classes));
-            assert!(sight.wall.is_some(), "{classes}");
-            assert_eq!(sight.wall, Some(sight.floor), "{classes}");
+            let sight = sight(classes);
+            assert!(sight.sure().is_some(), "{classes}");
+            assert_eq!(sight.sure(), Some(sight.floor), "{classes}");
         }
-        assert_eq!(sight(&on("ffffsoooo")).wall, Some(range(31.5)));
+        assert_eq!(sight("ffffsoooo").sure(), Some(range(31.5)));
     }
 
     #[test]
-    fn a_stripe_on_which_floor_follows_is_no_wall() {
-        assert_eq!(sight(&on("fffsfffsoooo")).wall, Some(range(55.5)));
-        assert_eq!(sight(&on("fffsffffffff")).wall, None);
+    fn an_edge_behind_which_floor_is_seen_is_not_sure() {
+        let ranges = |sight: Sight| sight.edges().map(|edge| edge.range).collect::<Vec<_>>();
+        let lamp = sight("fffsfffsoooo");
+        assert_eq!(lamp.sure(), Some(range(55.5)));
+        assert_eq!(ranges(lamp), [range(23.5), range(55.5)]);
+        let wall_like_floor = sight("fffsffffffff");
+        assert_eq!(wall_like_floor.sure(), None);
+        assert_eq!(ranges(wall_like_floor), [range(23.5)]);
+        assert_eq!(wall_like_floor.floor, range(95.5));
+        let floor_like_wall = sight("ffffooosoooo");
+        assert_eq!(floor_like_wall.sure(), None);
+        assert_eq!(ranges(floor_like_wall), [range(55.5)]);
     }
 
     #[test]
-    fn a_stripe_without_floor_before_it_is_no_wall() {
-        assert_eq!(sight(&on("    soooo")).wall, None);
-        assert_eq!(sight(&on("fooooosooo")).wall, None);
+    fn a_joint_between_tiles_is_narrower_than_the_stripe() {
+        let mut classes = on("ffffffffffff");
+        classes[40..42].fill(Class::Stripe);
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
+        assert_eq!(Bearings::new(stripe, 1.05).sight(&classes).edges().count(), 0);
+    }
+
+    #[test]
+    fn a_stripe_without_floor_before_it_is_no_edge() {
+        assert_eq!(sight("    soooo").edges().count(), 0);
+        assert_eq!(sight("foooooooosooo").edges().count(), 0);
     }
 
     #[test]
     fn without_a_wall_the_floor_seen_is_told() {
-        assert_eq!(sight(&on("fffffoooo")), Sight { wall: None, floor: range(39.5) });
-        assert_eq!(sight(&on("         ")), Sight::default());
-        assert_eq!(sight(&on("ffoofffffff")).floor, range(87.5));
+        assert_eq!(sight("fffffoooo").edges().count(), 0);
+        assert_eq!(sight("fffffoooo").floor, range(39.5));
+        assert_eq!(sight("         "), Sight::default());
+        assert_eq!(sight("ffoofffffff").floor, range(87.5));
     }
 }

@@ -27,24 +27,60 @@ const SHORTEST: f64 = 0.12;
 // paper: sense.small-clusters
 #[must_use]
 pub fn clusters(boundary: &Boundary) -> Vec<Cluster> {
-    let points: Vec<_> = boundary.points().collect();
-    let apart = |at: usize| {
-        let before = points[(at + points.len() - 1) % points.len()];
-        !follows(before, points[at])
-    };
-    // All the way around: the first cluster begins behind a gap, if there is one.
-    let first = (0..points.len()).find(|&at| apart(at)).unwrap_or(0);
-    let mut clusters: Vec<Cluster> = Vec::new();
-    for at in (first..points.len()).chain(0..first) {
-        if at == first || apart(at) {
-            clusters.push(Cluster::default());
-        }
-        if let Some(cluster) = clusters.last_mut() {
-            cluster.points.push(points[at].1);
+    let mut chains: Vec<Chain> = Vec::new();
+    // Those that may go on, by their index.
+    let mut open: Vec<usize> = Vec::new();
+    for point in boundary.points() {
+        open.retain(|&chain| point.0 <= chains[chain].last.0 + HIDDEN);
+        let nearest =
+            open.iter().copied().filter(|&chain| follows(chains[chain].last, point)).min_by(
+                |&one, &other| {
+                    let away = |chain: usize| distance(chains[chain].last.1, point.1);
+                    away(one).total_cmp(&away(other))
+                },
+            );
+        if let Some(chain) = nearest {
+            chains[chain].last = point;
+            chains[chain].cluster.points.push(point.1);
+        } else {
+            open.push(chains.len());
+            chains.push(Chain::new(point));
         }
     }
+    let mut clusters = joined_around(chains);
     clusters.retain(|cluster| cluster.points.len() >= LEAST && cluster.extent() >= SHORTEST);
     clusters
+}
+
+/// A cluster that grows: its first point and its last, with their bearings.
+struct Chain {
+    first: (usize, [f64; 2]),
+    last: (usize, [f64; 2]),
+    cluster: Cluster,
+}
+
+impl Chain {
+    fn new(point: (usize, [f64; 2])) -> Self {
+        Self { first: point, last: point, cluster: Cluster { points: vec![point.1] } }
+    }
+}
+
+/// The clusters, those that go on across straight ahead put together.
+fn joined_around(mut chains: Vec<Chain>) -> Vec<Cluster> {
+    let mut at = 0;
+    while at < chains.len() {
+        let goes_on = |other: &Chain| {
+            other.last.0 + HIDDEN >= BEARINGS && follows(other.last, chains[at].first)
+        };
+        let before = (at + 1..chains.len()).find(|&other| goes_on(&chains[other]));
+        if let Some(before) = before {
+            let mut front = chains.swap_remove(before).cluster;
+            front.points.append(&mut chains[at].cluster.points);
+            chains[at].cluster = front;
+        }
+        at += 1;
+    }
+    chains.into_iter().map(|chain| chain.cluster).collect()
 }
 
 /// Whether the second point goes on where the first was.
@@ -53,7 +89,7 @@ fn follows((bearing, one): (usize, [f64; 2]), (next, other): (usize, [f64; 2])) 
     let farther = range(one).max(range(other));
     // Behind a strut the wall may go on for as far as the strut hides it.
     let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
-    hidden <= HIDDEN && distance(one, other) <= GAP + GAP_BY_RANGE * farther + bridged
+    (1..=HIDDEN).contains(&hidden) && distance(one, other) <= GAP + GAP_BY_RANGE * farther + bridged
 }
 
 impl Cluster {
@@ -87,10 +123,8 @@ mod tests {
 
     /// A boundary from the range on each bearing.
     fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {
-        let sights = (0..BEARINGS).map(|bearing| Sight {
-            wall: range(TAU * bearing as f64 / BEARINGS as f64),
-            floor: 0.0,
-        });
+        let sights =
+            (0..BEARINGS).map(|bearing| Sight::at(range(TAU * bearing as f64 / BEARINGS as f64)));
         Boundary { sights: sights.collect() }
     }
 

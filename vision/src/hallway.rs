@@ -38,8 +38,10 @@ const CLOSED: f64 = 1.4;
 const MAJOR: f64 = 0.25;
 /// and begins no farther from the robot, along the hallway.
 const BESIDE: f64 = 0.9;
-/// What is seen must support the walls at least so much,
-const TRUST: f64 = 0.90;
+/// What is seen must support the walls at least so much for a hallway to be likely,
+const LIKELY: f64 = 0.75;
+/// and so much for it to be sure: a door of the floor's colour looks like an opening.
+const SURE: f64 = 0.92;
 /// and this part of them must be seen.
 const COVER: f64 = 0.35;
 /// The floor is looked at so far to either side of the hallway's direction, in bearings.
@@ -80,9 +82,9 @@ fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Opti
         square.middle[axis.split().0] = 0.0;
     }
     let agreement = Outline::hallway(axis, square, -reach, reach).agreement(boundary, &frame, 1);
-    let goes_on = goes_on(axis, 1.0, square, boundary, &frame)
-        && goes_on(axis, -1.0, square, boundary, &frame);
-    (agreement.trust() >= TRUST && agreement.cover() >= COVER && goes_on).then(|| Hallway {
+    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame)
+        && goes_on(axis, -1.0, square, walls, boundary, &frame);
+    (agreement.holds(LIKELY) && agreement.cover() >= COVER && goes_on).then(|| Hallway {
         frame,
         axis,
         square,
@@ -108,23 +110,46 @@ fn major(axis: Axis, side: f64, walls: &[Wall]) -> Option<&Wall> {
 }
 
 /// Whether the floor goes on, ahead or behind, so far that no turning point is near.
-fn goes_on(axis: Axis, sign: f64, square: Square, boundary: &Boundary, frame: &Frame) -> bool {
+fn goes_on(
+    axis: Axis,
+    sign: f64,
+    square: Square,
+    walls: &[Wall],
+    boundary: &Boundary,
+    frame: &Frame,
+) -> bool {
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
     let least = square.half + if sign == frame.ahead(axis) { AHEAD } else { BEHIND };
     let bearing = whither[1].atan2(whither[0]) / std::f64::consts::TAU * BEARINGS as f64;
     let first = (bearing.round() as i64 - SECTOR as i64).rem_euclid(BEARINGS as i64) as usize;
+    let ahead = sign == frame.ahead(axis);
     let (mut far, mut near) = (0, 0);
     for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];
         let forwards = sign * frame.framed(direction(bearing))[along];
-        match sight.wall {
+        match sight.sure() {
             Some(wall) if wall * forwards < least => near += 1,
             None if sight.floor * forwards < least => {}
             _ => far += 1,
         }
     }
-    far > 2 * near && far > SECTOR / 3
+    // What is behind the robot may be in the dark; it has come from there.
+    let enough = !ahead || far > SECTOR / 3;
+    let closed = near > SECTOR / 2 && near > far;
+    enough && !closed && !is_closed(axis, sign * least, square, walls)
+}
+
+/// Whether a wall stands across, nearer than this.
+fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+    let centre = square.middle[axis.split().1];
+    walls.iter().any(|wall| {
+        let between = wall.from.max(centre - square.half)..wall.to.min(centre + square.half);
+        wall.along != axis
+            && wall.offset * least > 0.0
+            && wall.offset.abs() < least.abs()
+            && between.end - between.start > square.half
+    })
 }
 
 /// Whether the hallway along an axis is clear, on the way ahead.
@@ -163,6 +188,12 @@ pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> 
 }
 
 impl Hallway {
+    /// Whether nothing of its walls looks open, so that no junction need be looked for.
+    #[must_use]
+    pub fn is_sure(&self) -> bool {
+        self.agreement.holds(SURE)
+    }
+
     /// What the robot is told of it; `margin` is from the edges that were seen to the wall planes.
     // paper: sense.distances
     #[must_use]
@@ -238,7 +269,7 @@ mod tests {
                 axis: Axis::Y,
                 square: Square { middle: [0.2, 0.0], half: 0.8 },
                 status: Status::Clear,
-                agreement: Agreement { support: 1, silent: 0, against: 0 },
+                agreement: Agreement { support: 1, ..Agreement::default() },
             };
             let view = hallway.view(0.0);
             assert!((view.heading - heading).abs() < 1e-5, "{view:?}");

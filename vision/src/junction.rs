@@ -48,7 +48,7 @@ const COARSE: usize = 5;
 /// and so many of the best are looked at closely.
 const SHORT_LIST: usize = 6;
 /// What is seen must support a junction at least so much,
-const TRUST: f64 = 0.88;
+const TRUST: f64 = 0.75;
 /// and this part of its walls must be seen.
 const COVER: f64 = 0.40;
 /// A different junction must be supported by less, by this part of all bearings.
@@ -93,7 +93,7 @@ pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: 
     best_first(&mut found);
     let Some(&best) = found.first() else { return Finding::Nothing };
     let wide = HALF_WIDTH.contains(&best.square.half);
-    if !wide || best.agreement.trust() < TRUST || best.agreement.cover() < COVER {
+    if !wide || !best.agreement.holds(TRUST) || best.agreement.cover() < COVER {
         return Finding::Nothing;
     }
     let rival = found

@@ -77,7 +77,7 @@ fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<[f64; 2]> {
         let bearing = y.atan2(x) / std::f64::consts::TAU * BEARINGS as f64;
         let bearing = (bearing.round() as i64).rem_euclid(BEARINGS as i64) as usize;
         let sight = boundary.sights[bearing];
-        let reach = sight.wall.unwrap_or(sight.floor) + BEHIND;
+        let reach = sight.floor + BEHIND;
         (x.hypot(y) <= reach && is_within(view, index as usize)).then_some([x, y])
     });
     let points: Vec<_> = on_floor.collect();
@@ -107,7 +107,10 @@ mod tests {
     use toposlam_model::driving::scene::CentreLine;
 
     use super::*;
-    use crate::boundary::Bearings;
+    use crate::{
+        boundary::Bearings,
+        colour::{Stripe, StripeKind},
+    };
 
     /// Floor everywhere but under the body, and a marker on it.
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
@@ -130,9 +133,13 @@ mod tests {
         view
     }
 
+    fn bearings() -> Bearings {
+        Bearings::new(Stripe { kind: StripeKind::OnFloor, width: 0.05 }, 1.05)
+    }
+
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
         let view = floor_with_marker(position, axis);
-        marker(&view, &Bearings::default().look(&view), junction)
+        marker(&view, &bearings().look(&view), junction)
     }
 
     // paper: marker-sense.direction
@@ -160,7 +167,7 @@ mod tests {
                 view.classes[index] = Class::Other;
             }
         }
-        assert_eq!(marker(&view, &Bearings::default().look(&view), None), None);
+        assert_eq!(marker(&view, &bearings().look(&view), None), None);
     }
 
     #[test]

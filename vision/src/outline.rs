@@ -57,7 +57,9 @@ pub struct Agreement {
     pub support: u32,
     /// The outline has a wall, and nothing is seen there.
     pub silent: u32,
-    /// A wall is seen where the outline has floor, or floor behind a wall of the outline.
+    /// Floor is seen behind a wall of the outline: it may be a door of the floor's colour.
+    pub through: u32,
+    /// A wall is seen where the outline has floor.
     pub against: u32,
 }
 
@@ -65,6 +67,12 @@ pub struct Agreement {
 const NEAR: f64 = 0.05;
 /// and so much farther for each metre from the robot.
 const NEAR_BY_RANGE: f64 = 0.03;
+/// How many bearings in support one weighs on which floor is seen through a wall;
+const THROUGH: f64 = 1.5;
+/// and one on which a wall is seen before it.
+const AGAINST: f64 = 3.0;
+/// Walls are seen where there are none on this part of the bearings in support, at most.
+const STRAY: f64 = 0.12;
 /// How far the arms of a junction reach from its square, in its widths: there the next one may begin.
 const ARM: f64 = 1.0;
 
@@ -134,21 +142,20 @@ impl Outline {
             // How far in front of the side something is, perpendicular to it.
             let (_, across) = side.along.split();
             let before = |range: f64| (at - range) * ray[across].abs();
-            if let Some(wall) = sight.wall {
-                let near = near(wall);
-                if before(wall).abs() < near && side.kind != Kind::Open
-                    || self.distance(ray.map(|part| wall * part)) < near
-                {
-                    agreement.support += 1;
-                } else if side.kind != Kind::Open || at > wall {
-                    agreement.against += 1;
-                }
-            } else if side.kind != Kind::Open {
-                if before(sight.floor) < -near(at) {
-                    agreement.against += 1;
-                } else {
-                    agreement.silent += 1;
-                }
+            let is_wall = side.kind != Kind::Open;
+            let fits = |range: f64| {
+                let near = near(range);
+                is_wall && before(range).abs() < near
+                    || self.distance(ray.map(|part| range * part)) < near
+            };
+            if sight.edges().any(|edge| fits(edge.range)) {
+                agreement.support += 1;
+            } else if sight.sure().is_some_and(|wall| wall < at) {
+                agreement.against += 1;
+            } else if is_wall && before(sight.floor) < -near(at) {
+                agreement.through += 1;
+            } else if is_wall {
+                agreement.silent += 1;
             }
         }
         agreement
@@ -234,23 +241,32 @@ impl Side {
 }
 
 impl Agreement {
-    /// Bearings that support the outline, less those against it, which weigh more.
+    /// Bearings that support the outline, less those that do not, which weigh more.
     #[must_use]
     pub fn balance(&self) -> f64 {
-        f64::from(self.support) - 3.0 * f64::from(self.against)
+        f64::from(self.support)
+            - THROUGH * f64::from(self.through)
+            - AGAINST * f64::from(self.against)
     }
 
     /// The part of what is seen that supports the outline, from 0 to 1.
     #[must_use]
     pub fn trust(&self) -> f64 {
-        f64::from(self.support) / f64::from((self.support + self.against).max(1))
+        let seen = self.support + self.through + self.against;
+        f64::from(self.support) / f64::from(seen.max(1))
     }
 
     /// The part of the outline's walls that is seen, from 0 to 1.
     #[must_use]
     pub fn cover(&self) -> f64 {
-        let all = self.support + self.against + self.silent;
+        let all = self.support + self.through + self.against + self.silent;
         f64::from(self.support) / f64::from(all.max(1))
+    }
+
+    /// Whether so much of what is seen supports the outline, and little of it stands against it.
+    #[must_use]
+    pub fn holds(&self, trust: f64) -> bool {
+        self.trust() >= trust && f64::from(self.against) <= STRAY * f64::from(self.support)
     }
 }
 

@@ -13,6 +13,7 @@ use toposlam_model::{
     },
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
+    percept::Door,
 };
 
 use crate::simulator::Pose;
@@ -71,7 +72,7 @@ pub struct MarkerTruth {
     pub points: f64,
     /// The number of that door, clockwise from the door behind the robot; `None` where there is
     /// no door behind it.
-    pub door: Option<usize>,
+    pub door: Option<Door>,
     /// How far its turning point is along the centre line by which the robot comes, positive before
     /// it; `None` where there is no door behind the robot.
     pub distance: Option<f64>,
@@ -191,12 +192,13 @@ impl MarkerTruth {
     pub fn of(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
         let junction = JunctionTruth::of(plan, plan.graph().vertex(dart), pose);
         let points = wrapped(angle(plan.direction(dart)) - pose.heading);
-        let number = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
+        let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
+        let door = junction.doors.iter().position(is_it);
         Self {
             position: junction.turning_point,
             axis: undirected(points),
             points,
-            door: junction.form.and(junction.doors.iter().position(number)),
+            door: junction.form.and(door).map(|door| Door(door as u32)),
             distance: junction.distance(),
         }
     }
@@ -347,7 +349,7 @@ mod tests {
         for (dart, door, axis) in [(0, 0, 0.0), (1, 1, FRAC_PI_2)] {
             let dart = plan.graph().dart(corner, dart).unwrap();
             let marker = MarkerTruth::of(&plan, dart, pose);
-            assert_eq!(marker.door, Some(door));
+            assert_eq!(marker.door, Some(Door(door)));
             close(&[marker.axis.abs(), marker.distance.unwrap()], &[axis, 0.5]);
             close(&marker.position, &[0.5, 0.0]);
         }

@@ -8,6 +8,7 @@ use toposlam_model::{
     },
     floor_plan::JunctionKind,
 };
+use toposlam_vision::marker::{LENGTH, WIDTH};
 
 use super::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
@@ -68,8 +69,6 @@ pub enum MarkerVerdict {
 
 /// How far beyond its border the marker may be seen, in metres.
 const MARKER_OFF: f64 = 0.15;
-/// Half of the marker's longer and shorter sides, in metres.
-const MARKER_HALVES: [f64; 2] = [0.30, 0.09];
 
 /// How a scene's place compares with the truth.
 #[must_use]
@@ -157,9 +156,9 @@ pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<Jun
 pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> MarkerVerdict {
     match (truth, seen) {
         (_, None) => MarkerVerdict::NotSeen,
-        (Some(truth), Some(seen)) if is_on(truth, seen.position) => MarkerVerdict::Seen(
-            seen.door.zip(truth.door).map(|(seen, door)| seen.0 as usize == door),
-        ),
+        (Some(truth), Some(seen)) if is_on(truth, seen.position) => {
+            MarkerVerdict::Seen(seen.door.zip(truth.door).map(|(seen, door)| seen == door))
+        }
         (_, Some(_)) => MarkerVerdict::Phantom,
     }
 }
@@ -169,7 +168,7 @@ fn is_on(marker: &MarkerTruth, [x, y]: [f64; 2]) -> bool {
     let [u, v] = [x - marker.position[0], y - marker.position[1]];
     let (sine, cosine) = marker.axis.sin_cos();
     let [along, across] = [u * cosine + v * sine, v * cosine - u * sine].map(f64::abs);
-    along <= MARKER_HALVES[0] + MARKER_OFF && across <= MARKER_HALVES[1] + MARKER_OFF
+    along <= LENGTH / 2.0 + MARKER_OFF && across <= WIDTH / 2.0 + MARKER_OFF
 }
 
 impl fmt::Display for Verdict {
@@ -195,6 +194,7 @@ mod tests {
             visit::Form,
         },
         embedded_graph::Vertex,
+        percept::Door,
     };
 
     use super::*;
@@ -309,13 +309,13 @@ mod tests {
             position: [0.5, 0.0],
             axis: 0.0,
             points: PI,
-            door: Some(0),
+            door: Some(Door(0)),
             distance: Some(0.5),
         };
         let at = |x, y, door| MarkerView { position: [x, y], axis: 0.0, door };
         let judged = |x, y, door| judge_marker(Some(&truth), Some(&at(x, y, door)));
-        assert_eq!(judged(0.5, 0.0, Some(0)), MarkerVerdict::Seen(Some(true)));
-        assert_eq!(judged(0.9, 0.2, Some(1)), MarkerVerdict::Seen(Some(false)));
+        assert_eq!(judged(0.5, 0.0, Some(Door(0))), MarkerVerdict::Seen(Some(true)));
+        assert_eq!(judged(0.9, 0.2, Some(Door(1))), MarkerVerdict::Seen(Some(false)));
         assert_eq!(judged(0.9, 0.2, None), MarkerVerdict::Seen(None));
         assert_eq!(judged(1.0, 0.0, None), MarkerVerdict::Phantom);
         assert_eq!(judged(0.5, 0.3, None), MarkerVerdict::Phantom);
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(judge_marker(Some(&truth), None), MarkerVerdict::NotSeen);
         let truth = MarkerTruth { door: None, ..truth };
         assert_eq!(
-            judge_marker(Some(&truth), Some(&at(0.5, 0.0, Some(1)))),
+            judge_marker(Some(&truth), Some(&at(0.5, 0.0, Some(Door(1))))),
             MarkerVerdict::Seen(None)
         );
     }

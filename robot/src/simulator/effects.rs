@@ -171,6 +171,12 @@ impl Effects {
         }
     }
 
+    /// How far each knob is turned.
+    #[must_use]
+    pub fn settings(&self) -> Vec<(&'static Knob, f64)> {
+        KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob, *value)).collect()
+    }
+
     /// Turns a knob.
     ///
     /// # Errors

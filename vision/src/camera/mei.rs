@@ -7,9 +7,8 @@
 //! model's z is what the middle of the image shows: straight down.
 
 use super::{
-    Ray,
-    calibration::SIDES,
-    optics_file::{OpticsFileError, shown, within},
+    Ray, length,
+    optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place, yaml,
 };
@@ -69,9 +68,10 @@ impl Mei {
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
         let found = yaml::values(text, &KEYS)?;
+        let side = |key| side_of_image(key, found.number(key)?);
         let image = match ["image_width", "image_height"].map(|key| found.has(key)) {
             [false, false] => None,
-            _ => Some([side(&found, "image_width")?, side(&found, "image_height")?]),
+            _ => Some([side("image_width")?, side("image_height")?]),
         };
         let (xi, [k1, k2, p1, p2], [focal_u, skew, centre_u, focal_v, centre_v]) =
             if found.has("model_type") || found.has("mirror_parameters.xi") {
@@ -108,7 +108,7 @@ impl Mei {
         // The distortion's derivative is symmetric. Where both of its eigenvalues stay positive, in a
         // disc, no two points are distorted to the same one. Radially and across they are at least:
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
-        let tangential = -6.0 * p1.hypot(p2);
+        let tangential = -6.0 * length([p1, p2]);
         let across = [1.0 - Self::LEAST_SLOPE, tangential, k1, 0.0, k2];
         let along = [1.0 - Self::LEAST_SLOPE, tangential, 3.0 * k1, 0.0, 5.0 * k2];
         let first = |slope: &[f64]| first_change(slope, [0.0, end]).unwrap_or(end);
@@ -160,9 +160,10 @@ impl Mei {
     /// The pixel that shows a point of the floor, in the image's axes.
     pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
         let down = self.viewpoint_height;
-        let length = right.hypot(top).hypot(down);
-        let [x, y] = [right, -top].map(|across| across / (down + self.xi * length));
-        if x.hypot(y).is_nan() || x.hypot(y) > self.reach {
+        let far = length([length([right, top]), down]);
+        let [x, y] = [right, -top].map(|across| across / (down + self.xi * far));
+        let radius = length([x, y]);
+        if radius.is_nan() || radius > self.reach {
             return None;
         }
         let ([x, y], _) = self.distorted([x, y]);
@@ -193,50 +194,55 @@ impl Mei {
 
     /// The point of the plane that is distorted to this one.
     fn undistorted(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
+        let near = 1e-13 * (1.0 + length(distorted));
         let lack = |at: [f64; 2]| {
             let (found, slope) = self.distorted(at);
-            ([distorted[0] - found[0], distorted[1] - found[1]], slope)
+            let rest = [distorted[0] - found[0], distorted[1] - found[1]];
+            (at, rest, slope)
         };
-        let mut at = self.undistorted_radially(distorted);
-        let (mut rest, mut slope) = lack(at);
+        let (mut at, mut rest, mut slope) = lack(self.undistorted_radially(distorted)?);
         for _ in 0..50 {
+            if length(rest) <= near {
+                return Some(at);
+            }
             let determinant = slope[0] * slope[2] - slope[1] * slope[1];
             let step = [
                 (slope[2] * rest[0] - slope[1] * rest[1]) / determinant,
                 (slope[0] * rest[1] - slope[1] * rest[0]) / determinant,
             ];
             // Newton's step, shorter where it would lead astray.
-            let shorter = (0..30).map(|halves| 0.5_f64.powi(halves)).find_map(|share| {
-                let next = [at[0] + share * step[0], at[1] + share * step[1]];
-                let (next_rest, next_slope) = lack(next);
-                let inside = next[0].hypot(next[1]) <= self.reach;
-                let nearer = next_rest[0].hypot(next_rest[1]) < rest[0].hypot(rest[1]);
-                (inside && nearer).then_some((next, next_rest, next_slope))
-            });
-            match shorter {
-                Some(next) => (at, rest, slope) = next,
-                // As near as these numbers come, or there is no such point.
-                None => break,
-            }
+            (at, rest, slope) = (0..30).find_map(|halves| {
+                let share = 0.5_f64.powi(halves);
+                let next = lack([at[0] + share * step[0], at[1] + share * step[1]]);
+                let inside = length(next.0) <= self.reach;
+                (inside && length(next.1) < length(rest)).then_some(next)
+            })?;
         }
-        let near = 1e-13 * (1.0 + distorted[0].hypot(distorted[1]));
-        (rest[0].hypot(rest[1]) <= near).then_some(at)
+        None
     }
 
-    /// The same, as if there were no tangential distortion; inside the reach.
-    fn undistorted_radially(&self, distorted: [f64; 2]) -> [f64; 2] {
-        let [k1, k2] = self.radial;
-        let far = distorted[0].hypot(distorted[1]);
+    /// The same, as if there were no tangential distortion; inside the reach. `None` if what is beyond
+    /// it is distorted to here.
+    fn undistorted_radially(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
+        let far = length(distorted);
+        if far == 0.0 {
+            return Some([0.0; 2]);
+        }
+        let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
         let lack = |radius: f64| {
             let (value, slope) = polynomial(&[0.0, 1.0, 0.0, k1, 0.0, k2], radius);
             (value - far, slope)
         };
-        if far == 0.0 {
-            return [0.0; 2];
-        }
-        let end = 0.999 * self.reach;
-        let radius = if lack(end).0 > 0.0 { root(lack, [0.0, end], far) } else { end };
-        distorted.map(|across| across * radius / far)
+        let shifted = 3.0 * length([p1, p2]) * self.reach * self.reach;
+        let end = lack(self.reach).0;
+        let radius = if end > 0.0 {
+            root(lack, [0.0, self.reach], far)
+        } else if end >= -shifted {
+            self.reach
+        } else {
+            return None;
+        };
+        Some(distorted.map(|across| across * radius / far))
     }
 }
 
@@ -270,14 +276,4 @@ fn omnidir(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {
     let [xi] = found.numbers(either("xi", "xi.data"))?;
     let distortion = found.numbers(either("distortion_coefficients.data", "D.data"))?;
     Ok((xi, distortion, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
-}
-
-#[expect(clippy::cast_sign_loss, reason = "a side is positive")]
-fn side(found: &yaml::Values, key: &'static str) -> Result<u32, OpticsFileError> {
-    let side = found.number(key)?;
-    if side.fract() == 0.0 {
-        within(key, side, SIDES).map(|side| side as u32)
-    } else {
-        Err(OpticsFileError::NotWhole { what: key, value: side })
-    }
 }

@@ -43,6 +43,12 @@ pub enum Optics {
     Mei(Mei),
 }
 
+/// The length of a vector whose square is neither too large nor too small for a number.
+#[inline]
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 /// Where something at a place of an image is, once every pixel is larger by a factor: pixel centres
 /// are integers, so an image begins at -0.5.
 fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
@@ -157,6 +163,16 @@ impl Camera {
             Optics::SphericalMirror(mirror) => mirror.camera_height,
             Optics::OCamCalib(ocam) => ocam.viewpoint_height,
             Optics::Mei(mei) => mei.viewpoint_height,
+        }
+    }
+
+    /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
+    /// viewpoint.
+    #[must_use]
+    pub fn eye_height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
+            Optics::OCamCalib(_) | Optics::Mei(_) => self.height(),
         }
     }
 

@@ -12,9 +12,8 @@
 //! the file rows and columns count from 0 (in the toolbox itself, from 1).
 
 use super::{
-    Ray,
-    calibration::SIDES,
-    optics_file::{OpticsFileError, shown, within},
+    Ray, length,
+    optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place,
 };
@@ -50,20 +49,15 @@ impl OCam {
     /// The first thing that is wrong. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
-        let mut numbers = Numbers::of(text);
-        let direct = numbers.list("the polynomial")?;
-        let inverse = numbers.list("the inverse polynomial")?;
-        let row = numbers.next("the centre's row")?;
-        let column = numbers.next("the centre's column")?;
-        let mut affine = [0.0; 3];
-        for number in &mut affine {
-            *number = numbers.next("the affine c, d and e")?;
-        }
-        let height = numbers.side("the height of the image")?;
-        let width = numbers.side("the width of the image")?;
-        if let Some((line, _)) = numbers.words.next() {
-            return Err(OpticsFileError::GoesOn { line });
-        }
+        let mut lines = Lines::of(text);
+        let direct = lines.counted("the polynomial")?;
+        let inverse = lines.counted("the inverse polynomial")?;
+        let [row, column] = lines.numbers("the centre's row and column")?;
+        let affine = lines.numbers("the affine c, d and e")?;
+        let size = lines.numbers("the height and the width of the image")?;
+        lines.end()?;
+        let [height, width] = size.map(|side| side_of_image("the side of the image", side));
+        let (height, width) = (height?, width?);
         let row = within("the centre's row", row, [0.0, f64::from(height) - 1.0])?;
         let column = within("the centre's column", column, [0.0, f64::from(width) - 1.0])?;
         within("the affine c", affine[0], [0.5, 2.0])?;
@@ -95,7 +89,7 @@ impl OCam {
         let edge = corners
             .map(|corner| {
                 let [right, top] = self.plane(corner);
-                right.hypot(top)
+                length([right, top])
             })
             .into_iter()
             .fold(0.0, f64::max);
@@ -141,12 +135,12 @@ impl OCam {
     /// The ray of a pixel, in the image's axes.
     pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
         let [right, top] = self.plane(pixel);
-        let rho = right.hypot(top);
+        let rho = length([right, top]);
         if rho.is_nan() || rho > self.reach {
             return None;
         }
         let down = polynomial(&self.down, rho).0;
-        let length = rho.hypot(down);
+        let length = length([rho, down]);
         Some(Ray {
             origin: [0.0, 0.0, self.viewpoint_height],
             direction: [right / length, top / length, -down / length],
@@ -157,12 +151,13 @@ impl OCam {
     ///
     /// The file's own inverse is where the search begins, no more: it is an approximation.
     pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
-        let range = right.hypot(top);
+        let range = length([right, top]);
         let lack = |rho: f64| {
             let (down, slope) = polynomial(&self.down, rho);
             (rho * self.viewpoint_height - range * down, self.viewpoint_height - range * slope)
         };
-        if lack(self.horizon).0.is_nan() || lack(self.horizon).0 < 0.0 {
+        // Not for a floor without end, nor beyond what the polynomial tells.
+        if !range.is_finite() || lack(self.horizon).0 < 0.0 {
             return None;
         }
         let scale = if range > 0.0 {
@@ -181,41 +176,52 @@ fn growth((coefficient, power): (&f64, u32)) -> f64 {
     coefficient * (1.0 - f64::from(power))
 }
 
-/// The numbers of a file, outside of its comments, each with its line.
-struct Numbers<'a> {
-    words: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
+/// The lines of a file that are neither empty nor comments, each with its number.
+struct Lines<'a> {
+    lines: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> Lines<'a> {
     fn of(text: &'a str) -> Self {
-        let lines = text.lines().zip(1..).filter(|(line, _)| !line.trim_start().starts_with('#'));
-        let words = lines
-            .flat_map(|(line, number)| line.split_whitespace().map(move |word| (number, word)));
-        Self { words: Box::new(words) }
-    }
-
-    fn next(&mut self, expected: &'static str) -> Result<f64, OpticsFileError> {
-        let (line, word) = self.words.next().ok_or(OpticsFileError::EndsBefore(expected))?;
-        match word.parse() {
-            Ok(number) if f64::is_finite(number) => Ok(number),
-            _ => Err(OpticsFileError::NotANumber { line, expected, found: shown(word) }),
+        let lines = (1..).zip(text.lines().map(str::trim));
+        Self {
+            lines: Box::new(lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))),
         }
     }
 
-    fn whole(&mut self, expected: &'static str) -> Result<u32, OpticsFileError> {
-        let (line, word) = self.words.next().ok_or(OpticsFileError::EndsBefore(expected))?;
-        word.parse().map_err(|_| OpticsFileError::NotANumber { line, expected, found: shown(word) })
+    /// The numbers of the next line.
+    fn next(&mut self, what: &'static str) -> Result<(usize, Vec<f64>), OpticsFileError> {
+        let (line, text) = self.lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
+        let number = |word: &str| {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| OpticsFileError::NotANumber { line, found: shown(word) })
+        };
+        Ok((line, text.split_whitespace().map(number).collect::<Result<_, _>>()?))
     }
 
-    fn side(&mut self, expected: &'static str) -> Result<u32, OpticsFileError> {
-        let side = self.whole(expected)?;
-        within(expected, f64::from(side), SIDES).map(|_| side)
+    /// As many numbers as there should be in the next line.
+    fn numbers<const N: usize>(&mut self, what: &'static str) -> Result<[f64; N], OpticsFileError> {
+        let (line, numbers) = self.next(what)?;
+        numbers.try_into().map_err(|numbers: Vec<f64>| OpticsFileError::LineCount {
+            line,
+            what,
+            found: numbers.len(),
+            expected: N,
+        })
     }
 
-    /// How many, and then as many.
-    fn list(&mut self, what: &'static str) -> Result<Vec<f64>, OpticsFileError> {
-        let count = self.whole(what)?;
-        within("how many coefficients there are", f64::from(count), [1.0, 64.0])?;
-        (0..count).map(|_| self.next(what)).collect()
+    /// The numbers of the next line but its first, which tells how many there are.
+    fn counted(&mut self, what: &'static str) -> Result<Vec<f64>, OpticsFileError> {
+        let (line, mut numbers) = self.next(what)?;
+        let count = numbers.remove(0);
+        within("how many coefficients there are", count, [1.0, 64.0])?;
+        if (count - numbers.len() as f64).abs() > 0.0 {
+            return Err(OpticsFileError::FalseCount { line, what, found: numbers.len(), count });
+        }
+        Ok(numbers)
+    }
+
+    fn end(&mut self) -> Result<(), OpticsFileError> {
+        self.lines.next().map_or(Ok(()), |(line, _)| Err(OpticsFileError::GoesOn { line }))
     }
 }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::calibration::SIDES;
+
 /// Why a file tells no optics.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum OpticsFileError {
@@ -17,14 +19,36 @@ pub enum OpticsFileError {
         message: String,
     },
     /// Something else stands where a number should.
-    #[error("line {line}: here should be {expected}, not `{found}`")]
+    #[error("line {line}: here should be a number, not `{found}`")]
     NotANumber {
         /// Counted from 1.
         line: usize,
-        /// What should be here.
-        expected: &'static str,
         /// What is here.
         found: String,
+    },
+    /// There are more or fewer numbers in a line than there should be.
+    #[error("line {line}: here should be {expected} numbers, {what}, not {found}")]
+    LineCount {
+        /// Counted from 1.
+        line: usize,
+        /// What they say.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// There are more or fewer numbers in a line than its first says.
+    #[error("line {line}: here should be {count} coefficients of {what}, not {found}")]
+    FalseCount {
+        /// Counted from 1.
+        line: usize,
+        /// What they are of.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        count: f64,
     },
     /// The file ends too early.
     #[error("the file ends before {0}")]
@@ -94,6 +118,16 @@ pub(super) fn within(
         Ok(value)
     } else {
         Err(OpticsFileError::OutOfRange { what, value, low, high })
+    }
+}
+
+/// A whole number of pixels.
+#[expect(clippy::cast_sign_loss, reason = "a side is positive")]
+pub(super) fn side_of_image(what: &'static str, side: f64) -> Result<u32, OpticsFileError> {
+    if side.fract() == 0.0 {
+        within(what, side, SIDES).map(|side| side as u32)
+    } else {
+        Err(OpticsFileError::NotWhole { what, value: side })
     }
 }
 

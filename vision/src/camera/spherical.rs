@@ -5,11 +5,12 @@
 //! It goes on at psi = alpha + 2 theta from straight down. With R the sphere's radius, d the distance
 //! from the pinhole up to its centre and H the height of its centre above the floor:
 //!
-//! * sin(alpha + theta) = (d / R) sin(alpha), the law of sines;
+//! * sin(alpha + theta) = (d / R) sin(alpha), the law of sines; here, the same without angles: where the
+//!   ray meets a circle;
 //! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
 //! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
 
-use super::{Ray, root::root, scaled_place};
+use super::{Ray, length, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +37,7 @@ impl SphericalMirror {
     /// How far from the centre the horizon is in the image, in pixels: always inside of the rim.
     #[must_use]
     pub fn horizon(&self) -> f64 {
-        self.radius_at(self.horizon_angle())
+        self.radius_at(self.horizon_sine())
     }
 
     /// How far from the axis the floor is that is seen so many pixels from the centre, in metres;
@@ -50,7 +51,7 @@ impl SphericalMirror {
     /// How many pixels from the centre the floor is seen that is so far from the axis.
     #[must_use]
     pub fn radius(&self, range: f64) -> Option<f64> {
-        range.is_finite().then(|| self.radius_at(self.angle_of(range.abs())))
+        range.is_finite().then(|| self.radius_at(self.sine_of(range.abs())))
     }
 
     /// The same, with every pixel larger.
@@ -61,28 +62,35 @@ impl SphericalMirror {
     /// The ray of a pixel, in the image's axes.
     pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
         let [right, top] = [pixel[0] - self.centre[0], self.centre[1] - pixel[1]];
-        let radius = right.hypot(top);
-        let alpha = radius.atan2(self.focal);
-        let sine = self.mirror_distance / self.mirror_radius * alpha.sin();
-        if sine.is_nan() || sine > 1.0 {
+        let (radius, distance) = (self.mirror_radius, self.mirror_distance);
+        // From the pinhole, as (from the axis, up): the ray, and where it meets the sphere.
+        let from_centre = length([right, top]);
+        let focal_ray = length([from_centre, self.focal]);
+        let along = distance * self.focal / focal_ray;
+        let half_chord = along * along - (distance * distance - radius * radius);
+        if half_chord.is_nan() || half_chord < 0.0 {
             return None;
         }
-        let theta = sine.asin() - alpha;
-        let (across, below) = theta.sin_cos();
-        let (out, down) = (alpha + 2.0 * theta).sin_cos();
+        let share = (along - half_chord.sqrt()) / focal_ray;
+        let [at, up] = [share * from_centre, share * self.focal];
+        // What is mirrored goes on at alpha + 2 theta.
+        let (sine, cosine) = (at / radius, (distance - up) / radius);
+        let (twice_sine, twice_cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
+        let scale = 1.0 / (share * focal_ray);
+        let out = scale * (at * twice_cosine + up * twice_sine);
+        let down = scale * (up * twice_cosine - at * twice_sine);
         // The middle of the image looks along the axis, in no direction.
-        let [right, top] = if radius > 0.0 { [right / radius, top / radius] } else { [0.0; 2] };
-        let at = self.mirror_radius * across;
-        let height = self.height() - self.mirror_radius * below;
+        let level = if from_centre > 0.0 { 1.0 / from_centre } else { 0.0 };
+        let [right, top] = [level * right, level * top];
         Some(Ray {
-            origin: [at * right, at * top, height],
+            origin: [at * right, at * top, self.camera_height + up],
             direction: [out * right, out * top, -down],
         })
     }
 
     /// The pixel that shows a point of the floor, in the image's axes.
     pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
-        let range = right.hypot(top);
+        let range = length([right, top]);
         if range == 0.0 {
             return Some(self.centre);
         }
@@ -95,42 +103,44 @@ impl SphericalMirror {
         self.camera_height + self.mirror_distance
     }
 
-    /// The pixels from the centre at an angle theta.
-    fn radius_at(&self, theta: f64) -> f64 {
-        let (sine, cosine) = theta.sin_cos();
-        let up = self.mirror_distance - self.mirror_radius * cosine;
+    /// The pixels from the centre at an angle theta, by its sine.
+    fn radius_at(&self, sine: f64) -> f64 {
+        let up = self.mirror_distance - self.mirror_radius * (1.0 - sine * sine).sqrt();
         self.focal * self.mirror_radius * sine / up
     }
 
-    /// The angle theta at which psi is a right angle: d cos(2 theta) = R cos(theta).
-    fn horizon_angle(&self) -> f64 {
+    /// The sine of the angle theta at which psi is a right angle: d cos(2 theta) = R cos(theta).
+    fn horizon_sine(&self) -> f64 {
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
         let root = (radius * radius + 8.0 * distance * distance).sqrt();
-        ((radius + root) / (4.0 * distance)).acos()
+        let cosine = (radius + root) / (4.0 * distance);
+        (1.0 - cosine * cosine).sqrt()
     }
 
-    /// The angle theta at which the floor is seen that is so far from the axis.
+    /// The sine of the angle theta at which the floor is seen that is so far from the axis.
     ///
     /// The range grows with theta, without end at the horizon. So theta is the one root of what the
     /// range lacks, times cos(psi), between straight down and the horizon.
-    fn angle_of(&self, range: f64) -> f64 {
+    fn sine_of(&self, range: f64) -> f64 {
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
-        let lack = |theta: f64| {
-            let (sine, cosine) = theta.sin_cos();
+        let lack = |sine: f64| {
+            let cosine = (1.0 - sine * sine).sqrt();
             let (twice_sine, twice_cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
             let at = radius * sine - range;
             let height = self.height() - radius * cosine;
             let out = distance * twice_sine - radius * sine;
             let down = distance * twice_cosine - radius * cosine;
-            let slope = radius * cosine * down
+            let by_angle = radius * cosine * down
                 + at * (radius * sine - 2.0 * distance * twice_sine)
                 + radius * sine * out
                 + height * (2.0 * distance * twice_cosine - radius * cosine);
-            (at * down + height * out, slope)
+            (at * down + height * out, by_angle / cosine)
         };
-        let horizon = self.horizon_angle();
-        // As if the mirror were small, and its slope everywhere that of its lowest point.
-        let guess = (range / self.height()).atan() / (2.0 + radius / (distance - radius));
-        root(lack, [0.0, horizon], guess)
+        // As if the view were from one point, and the mirror everywhere as at its lowest point.
+        let viewpoint = self.height() - 0.5 * radius;
+        let half_tangent = range / (viewpoint + length([viewpoint, range]));
+        let half_sine = half_tangent / length([1.0, half_tangent]);
+        let guess = 2.0 * half_sine / (2.0 + radius / (distance - radius));
+        root(lack, [0.0, self.horizon_sine()], guess)
     }
 }

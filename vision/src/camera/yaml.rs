@@ -150,11 +150,7 @@ impl Values {
         for (number, word) in numbers.iter_mut().zip(&value.words) {
             *number =
                 word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                    OpticsFileError::NotANumber {
-                        line: value.line,
-                        expected: "a number",
-                        found: shown(word),
-                    }
+                    OpticsFileError::NotANumber { line: value.line, found: shown(word) }
                 })?;
         }
         Ok(numbers)

@@ -36,6 +36,3 @@ pub use error::{CalibrationError, Cause, Place};
 pub(super) use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;
-
-#[cfg(test)]
-mod tests;
