@@ -18,12 +18,12 @@ const VERBS: [(&str, &[&str]); 11] = [
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
+    ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
+    ("evaluate", &["vision"]),
     (
         "render",
         &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
     ),
-    ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision"]),
     ("completions", &[]),
 ];
 

@@ -36,6 +36,8 @@ pub struct Edge {
     pub range: f64,
     /// Whether no floor is seen behind the stripe.
     pub sure: bool,
+    /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
+    pub width: f64,
 }
 
 /// No more edges than these are told of on a bearing.
@@ -49,7 +51,11 @@ pub const REACH: f64 = 2.6;
 /// Steps along a bearing, a pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 /// A stripe is seen at least at this part of its width: a pixel may cover as much.
-const SEEN_WIDTH: f64 = 0.55;
+const SEEN_WIDTH: f64 = 0.40;
+/// and at most at so many times its width;
+const WIDEST: f64 = 2.0;
+/// and so many steps more, for pixels and blur.
+const BLURRED: f64 = 10.0;
 /// Between floor and stripe colours mix, over so many steps.
 const MIXED: usize = 10;
 /// Fewer steps of something else do not end a stripe.
@@ -66,8 +72,8 @@ const LOST: usize = 60;
 pub struct Bearings {
     /// [`STEPS`] for each bearing.
     pixels: Vec<u32>,
-    /// How wide a stripe is at least that begins at a step, along a bearing, in steps.
-    least: Vec<usize>,
+    /// How wide a stripe is that begins at a step and is met at a right angle, in steps.
+    width: Vec<f64>,
 }
 
 impl Bearings {
@@ -84,7 +90,7 @@ impl Bearings {
                 })
             })
             .collect();
-        let least = (0..STEPS).map(|step| {
+        let width = (0..STEPS).map(|step| {
             let width = match stripe.kind {
                 StripeKind::OnFloor => stripe.width,
                 // What is above the floor is seen as if it lay behind.
@@ -92,9 +98,9 @@ impl Bearings {
                     range(step as f64) * stripe.width / (height - stripe.width).max(stripe.width)
                 }
             };
-            ((SEEN_WIDTH * width / GroundView::SCALE) as usize).max(1)
+            width / GroundView::SCALE
         });
-        Self { pixels, least: least.collect() }
+        Self { pixels, width: width.collect() }
     }
 
     /// What is seen on each bearing of a ground view.
@@ -133,15 +139,18 @@ impl Bearings {
                     {
                         step += 1;
                     }
+                    let width = (step + 1 - from) as f64;
                     if let Some(floor) = floor
-                        && step + 1 - from >= self.least[from]
+                        && width >= (SEEN_WIDTH * self.width[from]).floor()
                     {
                         // The edge is where the floor's last pixel ends; floor that was taken for
                         // something else has none.
                         let (last, seen) =
                             if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
                         let sure = seen && !floor_follows(&classes[step + 1..]);
-                        let edge = Edge { range: range(last as f64 + 0.5), sure };
+                        let most = WIDEST * self.width[from] + BLURRED;
+                        let range = range(last as f64 + 0.5);
+                        let edge = Edge { range, sure, width: width / most };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
@@ -165,7 +174,7 @@ impl Sight {
     /// A bearing on which there are only these edges.
     #[cfg(test)]
     pub(crate) fn at(range: Option<f64>) -> Self {
-        let edge = range.map(|range| Edge { range, sure: true });
+        let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
         Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
     }
 

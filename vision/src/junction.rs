@@ -93,7 +93,8 @@ pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: 
     best_first(&mut found);
     let Some(&best) = found.first() else { return Finding::Nothing };
     let wide = HALF_WIDTH.contains(&best.square.half);
-    if !wide || !best.agreement.holds(TRUST) || best.agreement.cover() < COVER {
+    let seen = best.agreement.cover() >= COVER && best.agreement.blank == 0;
+    if !wide || !seen || !best.agreement.holds(TRUST) {
         return Finding::Nothing;
     }
     let rival = found
