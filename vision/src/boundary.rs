@@ -211,6 +211,12 @@ pub fn direction(bearing: usize) -> [f64; 2] {
     [cosine, sine]
 }
 
+/// The bearing nearest to a direction, in radians counter-clockwise from ahead.
+#[must_use]
+pub fn bearing(direction: f64) -> usize {
+    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
+}
+
 impl Boundary {
     /// The boundary points, counter-clockwise from ahead: their bearing and their position.
     pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {

@@ -4,7 +4,7 @@
 use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
 
 use crate::{
-    boundary::{BEARINGS, Boundary, direction},
+    boundary::{BEARINGS, Boundary, bearing, direction},
     outline::{Agreement, Outline, Square},
     wall::{Axis, Frame, Wall},
 };
@@ -146,9 +146,8 @@ fn goes_on(
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
     let least = square.half + SEEN_AHEAD;
-    let bearing = whither[1].atan2(whither[0]) / std::f64::consts::TAU * BEARINGS as f64;
-    let first = (bearing.round() as i64 - SECTOR as i64).rem_euclid(BEARINGS as i64) as usize;
-    let ahead = sign == frame.ahead(axis);
+    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - SECTOR;
+    let ahead = sign * frame.ahead(axis) > 0.0;
     let (mut far, mut near) = (0, 0);
     for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];

@@ -166,7 +166,7 @@ impl Junction {
                 Outline::junction(self.doors, square).fitted(square, boundary, &frame);
         }
         let agreement = Outline::junction(self.doors, square).agreement(boundary, &frame, 1);
-        Self { square, frame, agreement, ..self }
+        Self { frame, square, agreement, ..self }
     }
 
     /// Whether the robot is there: the turning point is neither far ahead nor left behind.

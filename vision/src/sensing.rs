@@ -295,11 +295,3 @@ mod tests {
         assert_eq!(reason(Class::Floor), Place::Unknown(Reason::FewWalls));
     }
 }
-/*TRIAL*/
-impl Sensor {
-    #[allow(missing_docs)]
-    pub fn perfect(&mut self, labels: &[crate::colour::Class], stripe: Stripe) -> (Scene, Trace) {
-        self.unwrapping.perfect(labels, &mut self.view);
-        interpreted(&self.view, &self.bearings, stripe)
-    }
-}

@@ -114,7 +114,7 @@ impl Frame {
         if (off - quarters * FRAC_PI_2).abs() > ASKEW {
             return None;
         }
-        let along = if quarters as u32 % 2 == 0 { Axis::X } else { Axis::Y };
+        let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
         let [middle, from, to] = [line.middle, line.from, line.to].map(|point| self.framed(point));
         let (on, off) = along.split();
         Some(Wall {
