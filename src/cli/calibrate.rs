@@ -105,7 +105,7 @@ impl Arguments {
             }
             None => None,
         };
-        let camera = self.camera(known, images[0].dimensions().into(), &rim)?;
+        let camera = Self::camera(known, images[0].dimensions().into(), &rim)?;
         let camera = Camera { mask: mask.as_ref().map(|(_, mask)| mask.clone()), ..camera };
         let text = calibration::to_toml(&camera);
         if let Some(path) = &self.picture {
@@ -203,7 +203,6 @@ impl Arguments {
 
     /// The camera with this rim.
     fn camera(
-        &self,
         (known, mirror): (Camera, SphericalMirror),
         image: [u32; 2],
         rim: &Rim,

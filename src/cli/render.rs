@@ -190,7 +190,7 @@ fn read_setting(text: &str) -> Result<(String, f64), String> {
 fn after_help() -> String {
     let mut text = "Effects, the range that each is drawn from, and what it is:\n".to_owned();
     for (of, title) in [(Of::Building, "Of the building:"), (Of::Picture, "Of the picture:")] {
-        text += &format!("  {title}\n");
+        text.extend(["  ", title, "\n"]);
         for knob in KNOBS.iter().filter(|knob| knob.of == of) {
             let range = format!("{}..{}", knob.default.start(), knob.default.end());
             let head = format!("    {:<14} {range:<12} ", knob.name);
