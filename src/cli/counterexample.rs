@@ -13,7 +13,7 @@ use toposlam_model::{
     marker::{MARKERS, Marker},
 };
 
-use super::{Failure, Outcome, marker_kinds, progress::Progress, use_threads, walk_page};
+use super::{Failure, Outcome, marker_kinds, output, progress::Progress, use_threads, walk_page};
 use found::Found;
 use report::Report;
 
@@ -118,7 +118,7 @@ impl Arguments {
             }
         }
         if let Some(folder) = &self.out {
-            found::make_folder(folder)?;
+            output::make_folder(folder)?;
         }
         let mut report = Report::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;

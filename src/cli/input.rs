@@ -1,4 +1,4 @@
-//! Worlds from files, whatever their format.
+//! What files hold: worlds, whatever their format; cameras; colours.
 
 use std::{
     fs,
@@ -8,7 +8,12 @@ use std::{
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
+    floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
+};
+use toposlam_vision::{
+    camera::{Camera, calibration},
+    colour::ColourModel,
 };
 
 use super::Failure;
@@ -33,6 +38,24 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
         world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
     }
     Ok(world)
+}
+
+/// The colours of a building.
+pub(crate) fn read_colours(path: &Path) -> Result<ColourModel, Failure> {
+    ColourModel::read(&read(path)?).map_err(|error| Failure::in_file(path, error))
+}
+
+/// The floor plan that a world is.
+pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, Failure> {
+    let cause = "this world is no floor plan: there is no [floor] in it";
+    world.plan.as_ref().ok_or_else(|| Failure::in_file(path, cause))
+}
+
+/// The camera of a calibration file. The files that it names are those beside it.
+pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))
+        .map_err(|error| Failure::in_file(path, error))
 }
 
 /// The start that the command line names, or else the world's own, or else its first dart.
@@ -83,7 +106,7 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::Code> {
 }
 
 /// The bytes of a file; `-` is standard input.
-fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)

@@ -1,11 +1,13 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod calibrate;
 mod check;
 mod columns;
 mod compare;
 mod completions;
 mod counterexample;
 mod draw;
+mod evaluate;
 mod explore;
 mod input;
 mod json;
@@ -13,9 +15,12 @@ mod movable;
 mod outcome;
 mod output;
 mod paper;
+mod picture_file;
 mod progress;
 mod proofs;
 mod render;
+mod scene;
+mod sense;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -58,6 +63,9 @@ enum Verb {
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
     Render(render::Arguments),
+    Calibrate(calibrate::Arguments),
+    Sense(sense::Arguments),
+    Evaluate(evaluate::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -123,6 +131,9 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
+        Some(Verb::Calibrate(verb)) => verb.run(&mut out),
+        Some(Verb::Sense(verb)) => verb.run(&mut out),
+        Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

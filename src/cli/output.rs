@@ -31,6 +31,12 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
+/// Makes the folder, if it is not there.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
+}
+
 /// Refuses a path that cannot become a file, before long work begins: a folder, or in a folder that
 /// does not exist, or with an ending that is none of these.
 pub(crate) fn check_place(path: &Path, endings: &[&str]) -> Result<(), Failure> {

@@ -52,9 +52,10 @@ impl Watch for Progress {
         let cases = self.cases.fetch_add(cases, Ordering::Relaxed) + cases;
         self.bar.inc(1);
         if !self.bar.is_hidden() {
-            let rate = cases as f64 / self.bar.elapsed().as_secs_f64().max(1e-3) / 1e6;
+            let rate = cases as f64 / self.bar.elapsed().as_secs_f64().max(1e-3);
+            let (rate, times) = if rate < 1e4 { (rate, "") } else { (rate / 1e6, " million") };
             let unit = self.unit;
-            self.bar.set_message(format!("{cases} {unit}, {rate:.2} million a second"));
+            self.bar.set_message(format!("{cases} {unit}, {rate:.2}{times} a second"));
         }
     }
 

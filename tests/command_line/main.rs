@@ -7,9 +7,12 @@ mod check;
 mod compare;
 mod counterexample;
 mod draw;
+mod evaluate;
 mod explore;
 mod help;
 mod proofs;
+mod render;
+mod sense;
 
 use std::{
     ffi::OsStr,

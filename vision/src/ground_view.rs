@@ -1,13 +1,24 @@
 //! The floor from straight above. Section 3, Figure 6(c).
+//!
+//! Which pixel of the image shows a point of the floor never changes: one table of pixels, made once
+//! from the calibration, unwraps and classifies an image in one go, and only where there is floor.
 
-use crate::colour::Class;
+use image::RgbImage;
+
+use crate::{
+    camera::Camera,
+    colour::{Class, LitTable},
+};
 
 /// What the floor around the robot shows, seen from straight above: the robot in the middle, ahead up,
 /// left to the left.
+// paper: sense.orthographic
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroundView {
     /// Rows from ahead to behind, in each from left to right.
     pub classes: Vec<Class>,
+    /// Where the marker is, as indices in `classes`, ascending.
+    pub marker: Vec<u32>,
 }
 
 impl GroundView {
@@ -15,4 +26,99 @@ impl GroundView {
     pub const SIDE: usize = 800;
     /// Metres a pixel.
     pub const SCALE: f64 = 0.0075;
+    /// Metres from the robot to the middle of each side.
+    pub const REACH: f64 = Self::SCALE * Self::SIDE as f64 / 2.0;
+    /// The pixels from the robot to the middle of the first row's pixels, and of the first column's.
+    const MIDDLE: f64 = (Self::SIDE as f64 - 1.0) / 2.0;
+
+    /// A view of nothing.
+    #[must_use]
+    pub fn unseen() -> Self {
+        Self { classes: vec![Class::Unseen; Self::SIDE * Self::SIDE], marker: Vec::new() }
+    }
+
+    /// The point of the floor that is in the middle of a pixel.
+    #[must_use]
+    pub fn ground(index: usize) -> [f64; 2] {
+        let (row, column) = (index / Self::SIDE, index % Self::SIDE);
+        [row, column].map(|at| (Self::MIDDLE - at as f64) * Self::SCALE)
+    }
+
+    /// The pixel in which a point of the floor lies; `None` outside of the view.
+    #[must_use]
+    pub fn index([x, y]: [f64; 2]) -> Option<usize> {
+        let [row, column] = [x, y].map(|at| (Self::MIDDLE - at / Self::SCALE).round());
+        let inside = 0.0..Self::SIDE as f64;
+        (inside.contains(&row) && inside.contains(&column))
+            .then(|| row as usize * Self::SIDE + column as usize)
+    }
+}
+
+/// Which pixel of a camera's images shows each pixel of the ground view.
+#[derive(Clone, Debug)]
+pub struct Unwrapping {
+    /// For each pixel of the ground view, the index of the image's pixel, or [`Self::UNSEEN`].
+    pixels: Vec<u32>,
+}
+
+impl Unwrapping {
+    /// In place of a pixel, where none shows the floor.
+    const UNSEEN: u32 = u32::MAX;
+
+    /// The table for a camera.
+    #[must_use]
+    pub fn new(camera: &Camera) -> Self {
+        let pixels: Vec<u32> = (0..GroundView::SIDE * GroundView::SIDE)
+            .map(|index| pixel_of(camera, GroundView::ground(index)).unwrap_or(Self::UNSEEN))
+            .collect();
+        Self { pixels }
+    }
+
+    /// What the floor shows in an image of the camera's size.
+    pub fn view(&self, image: &RgbImage, colours: &LitTable<'_>, view: &mut GroundView) {
+        let raw = image.as_raw();
+        view.marker.clear();
+        for (index, (class, &pixel)) in view.classes.iter_mut().zip(&self.pixels).enumerate() {
+            *class = if pixel == Self::UNSEEN {
+                Class::Unseen
+            } else {
+                colours.class(colour(raw, pixel as usize))
+            };
+            if *class == Class::Marker {
+                view.marker.push(index as u32);
+            }
+        }
+    }
+}
+
+/// The index of the image's pixel that shows a point of the floor.
+fn pixel_of(camera: &Camera, ground: [f64; 2]) -> Option<u32> {
+    let [u, v] = camera.ground_to_pixel(ground)?.map(f64::round);
+    let [width, height] = camera.image;
+    let inside = (0.0..f64::from(width)).contains(&u) && (0.0..f64::from(height)).contains(&v);
+    let pixel = [u as u32, v as u32];
+    (inside && camera.sees(pixel)).then(|| pixel[1] * width + pixel[0])
+}
+
+/// A pixel's colour; black outside of the image.
+fn colour(raw: &[u8], pixel: usize) -> [u8; 3] {
+    match raw.get(3 * pixel..3 * pixel + 3) {
+        Some(&[red, green, blue]) => [red, green, blue],
+        _ => [0; 3],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_is_where_its_middle_is() {
+        for index in [0, 1, 799, 800, 320_400, 639_999] {
+            assert_eq!(GroundView::index(GroundView::ground(index)), Some(index));
+        }
+        let [x, y] = GroundView::ground(0);
+        assert!(x > 2.99 && y > 2.99, "the first pixel is far ahead to the left: {x}, {y}");
+        assert_eq!(GroundView::index([GroundView::REACH + 0.01, 0.0]), None);
+    }
 }

@@ -4,8 +4,29 @@
 //!
 //! * [`colour`]: floor, stripe, marker or something else, by a Bayes classifier on HSV colours;
 //! * [`camera`]: which point of the floor a pixel shows;
-//! * [`ground_view`]: the floor from straight above.
+//! * [`ground_view`]: the floor from straight above;
+//! * [`boundary`]: where the floor ends at a wall, on every bearing;
+//! * [`cluster`], [`line`](mod@line), [`wall`]: pieces of wall, straight, and at right angles to each other;
+//! * [`outline`]: a place of a given form, held against what is seen;
+//! * [`hallway`], [`corner`], [`junction`]: what place it is;
+//! * [`marker`]: whether the marker is there, and along which hallway it lies;
+//! * [`sensing`]: all of it;
+//! * [`annotate`]: a picture of each step.
 
+pub mod annotate;
+pub mod boundary;
 pub mod camera;
+pub mod cluster;
 pub mod colour;
+pub mod corner;
 pub mod ground_view;
+pub mod hallway;
+pub mod junction;
+pub mod line;
+pub mod marker;
+pub mod outline;
+pub mod sensing;
+pub mod wall;
+
+#[cfg(test)]
+mod drawn;

@@ -1,3 +1,4 @@
 //! Driving: what sensing tells of a place, and what is decided on it. Sections 3 and 4.
 
 pub mod scene;
+pub mod visit;

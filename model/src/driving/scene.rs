@@ -6,6 +6,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
 
+use crate::percept::Door;
+
 /// All that one image tells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -16,7 +18,7 @@ pub struct Scene {
 }
 
 /// Where the robot is, as far as one image tells.
-// paper: sense.edge-or-vertex
+// paper: sense.place
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// On an edge.
@@ -104,7 +106,7 @@ pub struct MarkerView {
     /// The direction of its longer side, in (-pi/2, pi/2].
     pub axis: f64,
     /// At an L, the door that it points along; clockwise from the entry door.
-    pub door: Option<usize>,
+    pub door: Option<Door>,
 }
 
 /// Why an image tells of no place.

@@ -1,1 +1,17 @@
 //! Sensing, judged against the truth of the floor plan.
+
+pub mod bound;
+pub mod causes;
+pub mod class;
+pub mod judging;
+mod learning;
+mod plans;
+pub mod quantile;
+pub mod random_plan;
+pub mod report;
+pub mod truth;
+pub mod verdict;
+pub mod view;
+
+pub use learning::{LearningError, learned};
+pub use plans::plans;

@@ -58,7 +58,7 @@ impl Body {
     pub(super) fn met(&self, ray: &PixelRay) -> Option<Part> {
         if self.strut_half > 0 {
             // Opposite struts: half a turn more or less is the same.
-            let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1) as i16) / 2;
+            let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1).cast_signed()) / 2;
             if away.abs() <= self.strut_half && self.strut_reaches(ray) {
                 return Some(Part::Strut);
             }
@@ -85,7 +85,7 @@ impl Body {
             return Some(if inside < 0.012 { Part::LaptopEdge } else { Part::Laptop });
         }
         let [x, y] = at_height(ray, TOP);
-        let from_middle = x.hypot(y);
+        let from_middle = (x * x + y * y).sqrt();
         (from_middle < RADIUS).then_some(if from_middle > RADIUS - 0.012 {
             Part::BodyEdge
         } else {

@@ -10,6 +10,7 @@ use super::effects::Effects;
 use super::light_map::LightMap;
 use super::lights::{CEILING, Lamp, Lights};
 use super::looks::{Look, linear};
+use super::squares::Squares;
 use super::walls::{Wall, walls};
 
 /// The marker, along its hallway and across it, in metres.
@@ -20,6 +21,9 @@ const DOOR_WIDTH: f64 = 0.90;
 const DOOR_HEIGHT: f32 = 2.05;
 const FRAME: f32 = 0.07;
 
+/// How long things on a wall are at most, in metres.
+const LONGEST: f32 = 1.01;
+
 /// A building that can be looked at.
 #[derive(Clone, Debug)]
 pub struct Building {
@@ -29,10 +33,11 @@ pub struct Building {
     walls: Vec<Wall>,
     pub(super) faces: Vec<Face>,
     things: Vec<Thing>,
-    /// Where on the floor there may be tape.
-    taped: Taped,
+    /// Along which walls there may be tape.
+    taped: Squares,
     pub(super) light: LightMap,
-    pub(super) lamps: Vec<Lamp>,
+    lamps: Vec<Lamp>,
+    lit: Squares,
     pub(super) marker: Option<Rectangle>,
     pub(super) texture: f32,
     pub(super) gloss: f32,
@@ -131,10 +136,12 @@ impl Building {
                 }
             })
             .collect();
-        let width = match look.stripe.kind {
-            StripeKind::OnFloor => look.stripe.width,
-            StripeKind::OnWall => 0.0,
+        let tapes: Vec<_> = match look.stripe.kind {
+            StripeKind::OnFloor => faces.iter().map(|face| face.tape(look.stripe.width)).collect(),
+            StripeKind::OnWall => Vec::new(),
         };
+        // As far as the edges of lamps may be seen blurred.
+        let lit: Vec<_> = lights.lamps.iter().map(|lamp| lamp.rectangle().widened(0.5)).collect();
         Self {
             look: *look,
             colours: Colours {
@@ -146,8 +153,9 @@ impl Building {
                 ceiling: linear(look.ceiling_colour),
                 marker: linear(look.marker_colour),
             },
-            taped: Taped::new(&floors, &faces, width as f32),
+            taped: Squares::new(&floors, 0.25, &tapes),
             light: LightMap::new(&floors, &walls, &lights),
+            lit: Squares::new(&floors, 0.5, &lit),
             lamps: lights.lamps,
             marker: marker.map(|dart| marker_at(plan, dart)),
             texture: effects.texture as f32,
@@ -184,8 +192,13 @@ impl Building {
         self.floors.iter().any(|floor| floor.holds(position))
     }
 
-    fn things(&self, face: &Face) -> &[Thing] {
-        &self.things[face.things[0]..face.things[1]]
+    /// The things that a wall has at a place along it, and perhaps others near there.
+    #[inline]
+    fn things(&self, face: &Face, along: f32) -> impl Iterator<Item = (usize, &Thing)> {
+        let things = &self.things[face.things[0]..face.things[1]];
+        let first = things.partition_point(|thing| thing.from < along - LONGEST);
+        let things = things[first..].iter().take_while(move |thing| thing.from <= along);
+        (face.things[0] + first..).zip(things)
     }
 
     /// What part of a wall is so far along it and so high up.
@@ -193,8 +206,8 @@ impl Building {
         let stripe = self.look.stripe;
         let low = stripe.kind == StripeKind::OnWall && height < stripe.width as f32;
         let mut part = if low { WallPart::Baseboard } else { WallPart::Bare };
-        for (number, thing) in self.things(face).iter().enumerate() {
-            if along < thing.from || thing.to < along {
+        for (number, thing) in self.things(face, along) {
+            if thing.to < along {
                 continue;
             }
             match thing.kind {
@@ -204,7 +217,7 @@ impl Building {
                     return if edge < FRAME { WallPart::Frame } else { WallPart::Leaf };
                 }
                 Kind::Poster { low, high, .. } if low < height && height < high => {
-                    return WallPart::Poster((face.things[0] + number) as u32);
+                    return WallPart::Poster(number as u32);
                 }
                 _ => {}
             }
@@ -231,18 +244,24 @@ impl Building {
     /// Whether there is tape at a place of the floor.
     #[inline]
     pub(super) fn tape_at(&self, place: [f32; 2]) -> bool {
-        self.taped.faces(place).iter().any(|&number| {
+        self.taped.at(place).iter().any(|&number| {
             let face = &self.faces[number as usize];
             let (along, out) = (place[face.along], place[1 - face.along]);
             let out = (out - face.plane) * face.floor_side;
             let width = self.look.stripe.width as f32;
             (0.0..=width).contains(&out)
                 && (face.taped[0]..=face.taped[1]).contains(&along)
-                && !self.things(face).iter().any(|thing| {
+                && !self.things(face, along).any(|(_, thing)| {
                     matches!(thing.kind, Kind::Gap | Kind::Door { taped: false })
-                        && (thing.from..=thing.to).contains(&along)
+                        && along <= thing.to
                 })
         })
+    }
+
+    /// The lamps above a place or near there.
+    #[inline]
+    pub(super) fn lamps(&self, place: [f32; 2]) -> impl Iterator<Item = &Lamp> {
+        self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
     /// How much light the stripe throws back.
@@ -265,7 +284,18 @@ impl Building {
     }
 }
 
-/// Doors, posters and gaps of one wall.
+impl Face {
+    /// Where there may be tape of this width along it.
+    fn tape(&self, width: f64) -> Rectangle {
+        let plane = f64::from(self.plane);
+        let inner = plane + f64::from(self.floor_side) * width;
+        let (mut least, mut greatest) = ([plane.min(inner); 2], [plane.max(inner); 2]);
+        [least[self.along], greatest[self.along]] = self.taped.map(f64::from);
+        Rectangle { least, greatest }
+    }
+}
+
+/// Doors, posters and gaps of one wall, in the order in which they begin.
 fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
     let length = wall.length();
     let mut things: Vec<Thing> = Vec::new();
@@ -289,6 +319,7 @@ fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Th
         let to = from + missing;
         things.push(Thing { kind: Kind::Gap, from: from as f32, to: to as f32 });
     }
+    things.sort_by(|one, other| one.from.total_cmp(&other.from));
     things
 }
 
@@ -326,65 +357,6 @@ fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
     Rectangle {
         least: [0, 1].map(|axis| position[axis] - half[axis]),
         greatest: [0, 1].map(|axis| position[axis] + half[axis]),
-    }
-}
-
-/// Which walls may have tape at a place of the floor: squares of the floor, and the walls of each.
-#[derive(Clone, Debug)]
-struct Taped {
-    least: [f32; 2],
-    per_metre: f32,
-    columns: usize,
-    /// Where the walls of each square begin in `faces`.
-    begin: Vec<u32>,
-    faces: Vec<u32>,
-}
-
-impl Taped {
-    fn new(floors: &[Rectangle], faces: &[Face], width: f32) -> Self {
-        let (least, size) = super::light_map::extent(floors);
-        let side = super::light_map::cell(0.25, size);
-        let [columns, rows] = size.map(|length| (length / side) as usize + 1);
-        let (least, per_metre) = (least.map(|at| at as f32), (1.0 / side) as f32);
-        let mut squares = vec![Vec::new(); if width > 0.0 { columns * rows } else { 0 }];
-        if width > 0.0 {
-            for (number, face) in faces.iter().enumerate() {
-                let mut corners = [[0.0; 2]; 2];
-                let inner = face.plane + face.floor_side * width;
-                for (corner, (along, across)) in
-                    corners.iter_mut().zip(face.taped.into_iter().zip([face.plane, inner]))
-                {
-                    corner[face.along] = along;
-                    corner[1 - face.along] = across;
-                }
-                let squares_of = |axis: usize, count: usize| {
-                    let ends = corners.map(|corner| (corner[axis] - least[axis]) * per_metre);
-                    let first = ends[0].min(ends[1]).floor().max(0.0) as usize;
-                    first..=(ends[0].max(ends[1]).max(0.0) as usize).min(count - 1)
-                };
-                for row in squares_of(1, rows) {
-                    for column in squares_of(0, columns) {
-                        squares[row * columns + column].push(number as u32);
-                    }
-                }
-            }
-        }
-        let mut begin = vec![0];
-        begin.extend(squares.iter().scan(0, |sum, faces| {
-            *sum += faces.len() as u32;
-            Some(*sum)
-        }));
-        Self { least, per_metre, columns, begin, faces: squares.concat() }
-    }
-
-    #[inline]
-    fn faces(&self, place: [f32; 2]) -> &[u32] {
-        let [column, row] =
-            [0, 1].map(|axis| ((place[axis] - self.least[axis]) * self.per_metre) as usize);
-        match self.begin.get(row * self.columns + column..) {
-            Some([begin, end, ..]) => &self.faces[*begin as usize..*end as usize],
-            _ => &[],
-        }
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn stream(seed: u64, purpose: For, number: usize) -> Xoshiro256PlusPl
 
 /// How many there are where so many are to be expected: that number, rounded up or down by chance.
 pub(super) fn about(expected: f64, rng: &mut Xoshiro256PlusPlus) -> usize {
-    (expected.min(1e4) + rng.random::<f64>()) as usize
+    (expected.min(500.0) + rng.random::<f64>()) as usize
 }
 
 /// Murmur's finalizer.
@@ -47,13 +47,20 @@ pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
     bits as f32 * (2.0 / u32::MAX as f32) - 1.0
 }
 
+/// The greatest integer that is no greater.
+#[inline]
+pub(super) fn floor(value: f32) -> i32 {
+    let whole = value as i32;
+    whole.wrapping_sub(i32::from(value < whole as f32))
+}
+
 /// The same, smooth: cells of side one flow into each other.
 #[inline]
 pub(super) fn clouds(x: f32, y: f32, salt: u32) -> f32 {
-    let (left, low) = (x.floor(), y.floor());
+    let (left, low) = (floor(x), floor(y));
     let ease = |share: f32| share * share * (3.0 - 2.0 * share);
-    let (across, up) = (ease(x - left), ease(y - low));
-    let corner = |right, top| speckle(left as i32 + right, low as i32 + top, salt);
+    let (across, up) = (ease(x - left as f32), ease(y - low as f32));
+    let corner = |right, top| speckle(left.wrapping_add(right), low.wrapping_add(top), salt);
     let mix = |one: f32, other: f32, share: f32| one + (other - one) * share;
     mix(mix(corner(0, 0), corner(1, 0), across), mix(corner(0, 1), corner(1, 1), across), up)
 }

@@ -98,7 +98,7 @@ knobs! {
         "How much less light there is away from the lamps: 0 is even light, 1 lamps alone.";
     lamps_out "lamps-out" Building 0.0 0.0..=1.0, 0.0..=0.15,
         "Share of the lamps that are out.";
-    hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.8,
+    hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.5,
         "How much more light there is in hot spots on the floor, as a share.";
     shadows "shadows" Building 0.0 0.0..=1.0, 0.0..=0.45,
         "Which share of the light is gone in shadows.";
@@ -126,7 +126,7 @@ knobs! {
         "Angle that each of the mirror's two struts hides, in degrees.";
     strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
         "Where one of the struts is, the other being opposite, in degrees from ahead to the left.";
-    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.6,
+    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.3,
         "How much the picture is overexposed, in stops.";
     cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
         "How yellow the light is: which share of the blue is gone, and a fifth of it of the green.";
@@ -171,6 +171,12 @@ impl Effects {
         }
     }
 
+    /// How far each knob is turned.
+    #[must_use]
+    pub fn settings(&self) -> Vec<(&'static Knob, f64)> {
+        KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob, *value)).collect()
+    }
+
     /// Turns a knob.
     ///
     /// # Errors
@@ -186,5 +192,62 @@ impl Effects {
         }
         *place = value;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    use super::*;
+
+    #[test]
+    fn knobs_have_names_of_their_own_and_ranges_that_are_allowed() {
+        for (number, knob) in KNOBS.iter().enumerate() {
+            assert!(KNOBS[..number].iter().all(|other| other.name != knob.name));
+            for value in [knob.default.start(), knob.default.end(), &knob.plain] {
+                assert!(knob.allowed.contains(value), "{}", knob.name);
+            }
+        }
+    }
+
+    #[test]
+    fn effects_are_drawn_from_their_ranges() {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+        let mut earlier = Effects::plain();
+        for _ in 0..100 {
+            let mut effects = Effects::drawn(&mut rng);
+            for (knob, value) in KNOBS.iter().zip(effects.values()) {
+                assert!(knob.default.contains(value), "{}", knob.name);
+            }
+            assert_ne!(effects, earlier);
+            earlier = effects;
+        }
+    }
+
+    #[test]
+    fn another_picture_is_of_the_same_building() {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+        let mut effects = Effects::drawn(&mut rng);
+        let mut other = effects.of_another_picture(&mut rng);
+        let values = effects.values().into_iter().zip(other.values());
+        for (knob, (value, other)) in KNOBS.iter().zip(values) {
+            let same = value.total_cmp(other).is_eq();
+            // Whether the robot sees itself is not left to chance.
+            assert_eq!(same, knob.of == Of::Building || knob.name == "body", "{}", knob.name);
+        }
+    }
+
+    #[test]
+    fn a_knob_turns_as_far_as_it_may() {
+        let mut effects = Effects::plain();
+        assert_eq!(effects.set("lamp-spread", 0.25), Ok(()));
+        assert_eq!(effects, Effects { lamp_spread: 0.25, ..Effects::plain() });
+        let refused = effects.set("blur", 7.0).unwrap_err().to_string();
+        assert_eq!(refused, "`blur` is 7; it may be from 0 to 4");
+        assert!(effects.set("blur", f64::NAN).is_err());
+        let refused = effects.set("fog", 1.0).unwrap_err().to_string();
+        assert!(refused.starts_with("there is no effect `fog`; there are lamp-spread, "));
     }
 }

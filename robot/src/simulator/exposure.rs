@@ -12,33 +12,35 @@ use super::effects::Effects;
 use super::rig::Rig;
 
 /// The light that comes to every pixel, as red, green and blue; at 1 the sensor is full.
-pub(super) struct Light {
-    pub(super) width: usize,
-    pub(super) pixels: Vec<[f32; 3]>,
+pub(super) trait Scan {
+    /// A row of it; rows are asked for in order.
+    fn row(&mut self, v: usize, out: &mut [f32]);
+
+    /// What it is on average.
+    fn mean(&self) -> [f32; 3];
 }
 
 /// The photograph of this light.
-pub(super) fn expose(light: Light, rig: &Rig, effects: &Effects, seed: u64) -> RgbImage {
-    let width = light.width;
-    let height = light.pixels.len() / width.max(1);
-    let light = light.pixels.into_flattened();
+pub(super) fn expose(light: &mut impl Scan, rig: &Rig, effects: &Effects, seed: u64) -> RgbImage {
+    let [width, height] = rig.image().map(|length| length as usize);
     let gain = gain(effects);
-    let veil = veil(&light, effects.glare as f32);
-    let mut rows = Blur::new(&light, width, effects.blur * width as f64 / 1280.0);
+    let glare = effects.glare as f32;
+    let veil = if glare > 0.0 { light.mean().map(|mean| glare * mean) } else { [0.0; 3] };
+    let mut blur = Blur::new([width, height], effects.blur * width as f64 / 1280.0);
     let mut noise = Noise::new(effects.noise as f32, stream(seed, For::Sensor, 0));
     let [middle_u, middle_v] = rig.optics.centre.map(|at| at as f32);
-    let darker = effects.vignetting as f32 / (rig.optics.rim() * rig.optics.rim()) as f32;
-    let keep = 1.0 - effects.glare as f32;
+    let rim = rig.optics.rim() as f32;
+    let darker = effects.vignetting as f32 / (rim * rim);
     let mut bytes = vec![0; width * height * 3];
     let mut row = vec![0.0; width * 3];
     for (v, out) in bytes.chunks_exact_mut((width * 3).max(1)).enumerate() {
-        rows.row(v, &mut row);
+        blur.row(light, v, &mut row);
         let down = v as f32 - middle_v;
         for (u, pixel) in row.as_chunks_mut::<3>().0.iter_mut().enumerate() {
             let across = u as f32 - middle_u;
             let left = (1.0 - darker * (across * across + down * down)).max(0.05);
             for (channel, value) in pixel.iter_mut().enumerate() {
-                *value = (*value * keep + veil[channel]) * left * gain[channel];
+                *value = (*value * (1.0 - glare) + veil[channel]) * left * gain[channel];
             }
         }
         noise.add(&mut row);
@@ -57,113 +59,81 @@ fn gain(effects: &Effects) -> [f32; 3] {
     [exposure, exposure * green, exposure * (1.0 - effects.cast)].map(|gain| gain as f32)
 }
 
-/// The light that glare spreads over the picture.
-fn veil(light: &[f32], share: f32) -> [f32; 3] {
-    if share == 0.0 {
-        return [0.0; 3];
-    }
-    let mut sum = [0.0_f64; 3];
-    // Every so many pixels tell the mean well enough.
-    let pixels = light.as_chunks::<3>().0.iter().step_by(31);
-    let count = pixels.len().max(1) as f64;
-    for pixel in pixels {
-        for (sum, &channel) in sum.iter_mut().zip(pixel) {
-            *sum += f64::from(channel);
-        }
-    }
-    sum.map(|sum| share * (sum / count) as f32)
-}
-
 /// Rows of a picture, blurred.
-struct Blur<'a> {
-    light: &'a [f32],
+struct Blur {
     width: usize,
+    height: usize,
     /// The weights from the middle outwards.
     weights: Vec<f32>,
     /// The latest rows, blurred along themselves, and the number of the next.
     across: Vec<Vec<f32>>,
     next: usize,
+    /// A row as it comes, with its ends repeated.
+    source: Vec<f32>,
 }
 
-impl<'a> Blur<'a> {
-    fn new(light: &'a [f32], width: usize, deviation: f64) -> Self {
+impl Blur {
+    fn new([width, height]: [usize; 2], deviation: f64) -> Self {
         let reach = (2.5 * deviation).ceil().min(width as f64) as usize;
-        let mut weights: Vec<f64> = (0..=reach)
-            .map(|away| {
-                if deviation == 0.0 {
-                    1.0
-                } else {
-                    (-0.5 * (away as f64 / deviation).powi(2)).exp()
-                }
-            })
-            .collect();
+        let weight = |away: usize| (-0.5 * (away as f64 / deviation.max(1e-9)).powi(2)).exp();
+        let weights: Vec<f64> = (0..=reach).map(weight).collect();
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
-        let across = vec![vec![0.0; width * 3]; 2 * reach + 1];
-        let weights = weights.into_iter().map(|weight| weight as f32).collect();
-        Self { light, width, weights, across, next: 0 }
+        Self {
+            width,
+            height,
+            weights: weights.into_iter().map(|weight| (weight / sum) as f32).collect(),
+            across: vec![vec![0.0; width * 3]; 2 * reach + 1],
+            next: 0,
+            source: vec![0.0; (width + 2 * reach) * 3],
+        }
     }
 
-    /// A row; rows are asked for in order.
-    fn row(&mut self, v: usize, out: &mut [f32]) {
+    /// A row of this light; rows are asked for in order.
+    fn row(&mut self, light: &mut impl Scan, v: usize, out: &mut [f32]) {
         let reach = self.weights.len() - 1;
-        let height = self.light.len() / (self.width * 3);
         if reach == 0 {
-            out.copy_from_slice(self.source(v));
+            light.row(v, out);
             return;
         }
-        while self.next < height.min(v + reach + 1) {
-            let slot = self.next % self.across.len();
-            let mut row = std::mem::take(&mut self.across[slot]);
-            self.along(self.next, &mut row);
-            self.across[slot] = row;
-            self.next += 1;
+        while self.next < self.height.min(v + reach + 1) {
+            self.along(light);
         }
         let row = |v: usize| &self.across[v % self.across.len()];
         for (out, &value) in out.iter_mut().zip(row(v)) {
             *out = self.weights[0] * value;
         }
         for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-            let (above, below) = (row(v.saturating_sub(away)), row((v + away).min(height - 1)));
+            let (above, below) =
+                (row(v.saturating_sub(away)), row((v + away).min(self.height - 1)));
             for ((out, &one), &other) in out.iter_mut().zip(above).zip(below) {
                 *out += weight * (one + other);
             }
         }
     }
 
-    fn source(&self, v: usize) -> &'a [f32] {
-        &self.light[v * self.width * 3..(v + 1) * self.width * 3]
-    }
-
-    /// A row blurred along itself.
-    fn along(&self, v: usize, out: &mut [f32]) {
-        let source = self.source(v);
-        let reach = (self.weights.len() - 1) * 3;
-        let inner = source.len().saturating_sub(reach);
-        for (at, out) in out.iter_mut().enumerate() {
-            if at < reach || at >= inner {
-                let (pixel, channel) = (at / 3, at % 3);
-                *out = self.weights[0] * source[at];
-                for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-                    let left = pixel.saturating_sub(away);
-                    let right = (pixel + away).min(self.width - 1);
-                    *out += weight * (source[left * 3 + channel] + source[right * 3 + channel]);
-                }
-            }
+    /// Takes the next row, and blurs it along itself.
+    fn along(&mut self, light: &mut impl Scan) {
+        let (reach, width) = (3 * (self.weights.len() - 1), 3 * self.width);
+        light.row(self.next, &mut self.source[reach..reach + width]);
+        for at in (0..reach).rev() {
+            self.source[at] = self.source[at + 3];
         }
-        if inner <= reach {
-            return;
+        for at in reach + width..self.source.len() {
+            self.source[at] = self.source[at - 3];
         }
-        let inside = &mut out[reach..inner];
-        for (out, &value) in inside.iter_mut().zip(&source[reach..inner]) {
+        let slot = self.next % self.across.len();
+        let out = &mut self.across[slot];
+        for (out, &value) in out.iter_mut().zip(&self.source[reach..]) {
             *out = self.weights[0] * value;
         }
         for (away, &weight) in self.weights.iter().enumerate().skip(1) {
-            let (left, right) = (&source[reach - 3 * away..], &source[reach + 3 * away..]);
-            for ((out, &one), &other) in inside.iter_mut().zip(left).zip(right) {
+            let (left, right) =
+                (&self.source[reach - 3 * away..], &self.source[reach + 3 * away..]);
+            for ((out, &one), &other) in out.iter_mut().zip(left).zip(right) {
                 *out += weight * (one + other);
             }
         }
+        self.next += 1;
     }
 }
 
@@ -228,7 +198,7 @@ static RESPONSE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 /// What the camera makes of this light: sRGB's curve.
 #[inline]
 fn response(light: f32) -> u8 {
-    RESPONSE[(light.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as usize]
+    RESPONSE[(light.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as i32 as usize]
 }
 
 /// What JPEG leaves of a picture.
@@ -240,4 +210,141 @@ fn compressed(image: RgbImage, loss: f64) -> RgbImage {
         written.and_then(|()| image::load_from_memory_with_format(&bytes, ImageFormat::Jpeg));
     // Only an image without pixels cannot be written; there is nothing to lose in it.
     read.map_or(image, image::DynamicImage::into_rgb8)
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::camera::Camera;
+
+    use super::*;
+
+    const WIDTH: usize = 40;
+    const HEIGHT: usize = 30;
+
+    /// Light from a table.
+    struct Table(Vec<[f32; 3]>);
+
+    impl Scan for Table {
+        fn row(&mut self, v: usize, out: &mut [f32]) {
+            out.copy_from_slice(self.0[v * WIDTH..][..WIDTH].as_flattened());
+        }
+
+        fn mean(&self) -> [f32; 3] {
+            [0, 1, 2]
+                .map(|c| self.0.iter().map(|light| light[c]).sum::<f32>() / self.0.len() as f32)
+        }
+    }
+
+    fn even(light: [f32; 3]) -> Table {
+        Table(vec![light; WIDTH * HEIGHT])
+    }
+
+    fn spotted() -> Table {
+        let mut table = even([0.1, 0.2, 0.3]);
+        for (at, light) in [(0, 0.9), (15 * WIDTH + 20, 0.8), (15 * WIDTH + 21, 0.1)] {
+            table.0[at] = [light, light / 2.0, light / 3.0];
+        }
+        table
+    }
+
+    fn photograph(mut light: Table, effects: &Effects) -> RgbImage {
+        let rig = Rig::new(&Camera::superscout().sized([WIDTH as u32, HEIGHT as u32]));
+        expose(&mut light, &rig, effects, 5)
+    }
+
+    fn with(settings: &[(&str, f64)]) -> Effects {
+        let mut effects = Effects::plain();
+        for (name, value) in settings {
+            effects.set(name, *value).unwrap();
+        }
+        effects
+    }
+
+    #[test]
+    fn without_effects_every_pixel_is_its_light() {
+        let table = spotted();
+        let expected: Vec<u8> = table.0.iter().flatten().map(|&light| response(light)).collect();
+        assert_eq!(photograph(table, &Effects::plain()).into_raw(), expected);
+    }
+
+    #[test]
+    fn the_response_is_that_of_srgb() {
+        let known = [(0.0, 0), (0.002, 7), (0.2140, 127), (0.5, 188), (1.0, 255), (7.0, 255)];
+        for (light, value) in known {
+            assert!(response(light).abs_diff(value) <= 1, "{light}");
+        }
+        assert_eq!(response(-1.0), 0);
+        for value in 0..=255_u8 {
+            let [light, ..] = super::super::looks::linear([value; 3]);
+            assert!(response(light).abs_diff(value) <= 1, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_stop_doubles_the_light_and_a_cast_takes_blue_away() {
+        let pixel = |settings: &[(&str, f64)]| {
+            photograph(even([0.2, 0.2, 0.2]), &with(settings)).get_pixel(9, 9).0
+        };
+        assert_eq!(pixel(&[("exposure", 1.0)]), [response(0.4); 3]);
+        assert_eq!(pixel(&[("exposure", -2.0)]), [response(0.05); 3]);
+        let yellow = [0.2, 0.2 * 0.9, 0.2 * 0.5].map(response);
+        assert_eq!(pixel(&[("cast", 0.5)]), yellow);
+        assert_eq!(pixel(&[("glare", 0.1)]), [response(0.2); 3]);
+    }
+
+    #[test]
+    fn blur_is_a_weighted_mean_of_the_neighbours() {
+        for deviation in [0.4, 1.0, 2.5] {
+            let mut table = spotted();
+            let clear = table.0.clone();
+            let mut blur = Blur::new([WIDTH, HEIGHT], deviation);
+            let reach = (2.5 * deviation).ceil() as isize;
+            let weight = |away: isize| (-0.5 * (away as f64 / deviation).powi(2)).exp();
+            let sum: f64 = (-reach..=reach).map(weight).sum();
+            let mut row = vec![0.0; WIDTH * 3];
+            for v in 0..HEIGHT {
+                blur.row(&mut table, v, &mut row);
+                for (u, found) in row.as_chunks::<3>().0.iter().enumerate() {
+                    for (channel, &found) in found.iter().enumerate() {
+                        let mut expected = 0.0;
+                        for (down, right) in
+                            (-reach..=reach).flat_map(|d| (-reach..=reach).map(move |r| (d, r)))
+                        {
+                            let v = v.saturating_add_signed(down).min(HEIGHT - 1);
+                            let u = u.saturating_add_signed(right).min(WIDTH - 1);
+                            let share = weight(down) * weight(right) / (sum * sum);
+                            expected += share * f64::from(clear[v * WIDTH + u][channel]);
+                        }
+                        assert!((f64::from(found) - expected).abs() < 1e-5, "{u} {v}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn noise_has_the_deviation_that_its_knob_says() {
+        let mut noise = Noise::new(0.02, stream(1, For::Sensor, 0));
+        for light in [0.1_f32, 0.5, 1.0] {
+            let mut row = vec![light; 60_000];
+            noise.add(&mut row);
+            let count = row.len() as f64;
+            let mean = row.iter().map(|&value| f64::from(value)).sum::<f64>() / count;
+            let square = |&value: &f32| (f64::from(value) - mean).powi(2);
+            let deviation = (row.iter().map(square).sum::<f64>() / count).sqrt();
+            let expected = 0.02 * (0.9 * f64::from(light) + 0.1).sqrt();
+            assert!((mean - f64::from(light)).abs() < 5e-4, "{mean}");
+            assert!((deviation / expected - 1.0).abs() < 0.03, "{deviation} {expected}");
+        }
+    }
+
+    #[test]
+    fn jpeg_loses_more_the_more_it_may() {
+        let off = |loss: f64| -> u64 {
+            let clear = photograph(spotted(), &Effects::plain());
+            let lossy = photograph(spotted(), &with(&[("jpeg-loss", loss)]));
+            clear.iter().zip(lossy.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum()
+        };
+        assert!(off(5.0) > 0 && off(5.0) < off(50.0) && off(50.0) < off(95.0));
+    }
 }

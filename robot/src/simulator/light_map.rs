@@ -3,6 +3,7 @@
 use toposlam_model::floor_plan::Rectangle;
 
 use super::lights::{CEILING, Lights};
+use super::squares::{extent, side};
 use super::walls::Wall;
 
 /// From corner to corner of the mesh, in metres.
@@ -35,7 +36,7 @@ impl Mesh {
         let [x, y] = [0, 1].map(|axis| (place[axis] - self.least[axis]) * self.per_metre[axis]);
         let x = x.clamp(0.0, (self.columns - 1) as f32 - 0.001);
         let y = y.clamp(0.0, (self.rows - 1) as f32 - 0.001);
-        let (column, row) = (x as usize, y as usize);
+        let (column, row) = (x as i32 as usize, y as i32 as usize);
         let (right, up) = (x - column as f32, y - row as f32);
         let corner = row * self.columns + column;
         let [low, high] = [corner, corner + self.columns].map(|corner| {
@@ -44,19 +45,6 @@ impl Mesh {
         });
         low + (high - low) * up
     }
-}
-
-/// The least corner of all floors, and the size of their surroundings.
-pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
-    let least = |axis: usize| floors.iter().map(|floor| floor.least[axis]).fold(f64::MAX, f64::min);
-    let greatest =
-        |axis: usize| floors.iter().map(|floor| floor.greatest[axis]).fold(f64::MIN, f64::max);
-    ([least(0), least(1)], [greatest(0) - least(0), greatest(1) - least(1)])
-}
-
-/// The side of a mesh's cells: that wished for, unless there would be millions of them.
-pub(super) fn cell(wished: f64, size: [f64; 2]) -> f64 {
-    wished.max((size[0] * size[1] / 4e6).sqrt()).max(size[0].max(size[1]) / 2e6)
 }
 
 impl LightMap {
@@ -72,7 +60,7 @@ impl LightMap {
             return Self { floor: none(), walls: Vec::new(), even: true };
         }
         let (least, size) = extent(floors);
-        let side = cell(MESH, size);
+        let side = side(MESH, size);
         let [columns, rows] = size.map(|length| (length / side) as usize + 2);
         // Corners that no floor is near stay dark; nobody looks there.
         let mut lamplight = vec![f64::NAN; columns * rows];

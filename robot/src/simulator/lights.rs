@@ -5,6 +5,7 @@ use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
 use super::chance::{For, about, stream};
 use super::effects::Effects;
+use super::squares::Squares;
 use super::walls::Wall;
 
 /// From floor to ceiling, in metres.
@@ -34,13 +35,28 @@ struct Spot {
     change: f64,
 }
 
+/// So many times its half extent from a spot's middle there is nothing of it left.
+const FADED: f64 = 2.5;
+
+impl Spot {
+    fn reach(&self) -> Rectangle {
+        let edge =
+            |side: f64| [0, 1].map(|axis| self.middle[axis] + side * FADED * self.half[axis]);
+        Rectangle { least: edge(-1.0), greatest: edge(1.0) }
+    }
+}
+
 /// Lamps and other lights, before it is known what they shine on.
 pub(super) struct Lights {
     pub(super) lamps: Vec<Lamp>,
     spots: Vec<Spot>,
+    /// How far each spot reaches.
+    spotted: Squares,
     falloff: f64,
     /// For each lamp, the walls that its light may meet.
     walls_near: Vec<Vec<Wall>>,
+    /// How far each lamp reaches.
+    reaches: Squares,
 }
 
 /// The middle line of a hallway: where it begins, its length and its axis.
@@ -89,13 +105,10 @@ impl Lights {
             }
         }
         spots.retain(|spot| spot.change != 0.0);
-        let walls_near = lamps
+        let reaches: Vec<_> = lamps.iter().map(|lamp| lamp.rectangle().widened(REACH)).collect();
+        let walls_near = reaches
             .iter()
-            .map(|lamp| {
-                let reach = Rectangle {
-                    least: lamp.middle.map(|at| f64::from(at) - REACH),
-                    greatest: lamp.middle.map(|at| f64::from(at) + REACH),
-                };
+            .map(|reach| {
                 let near = |wall: &&Wall| {
                     let [one, other] = wall.span.map(|at| wall.foot(at));
                     reach.meets(&Rectangle { least: one, greatest: other })
@@ -103,7 +116,11 @@ impl Lights {
                 walls.iter().filter(near).copied().collect()
             })
             .collect();
-        Self { lamps, spots, falloff: effects.lamp_falloff, walls_near }
+        let floors: Vec<_> = plan.floor().collect();
+        let reaches = Squares::new(&floors, 1.0, &reaches);
+        let spotted: Vec<_> = spots.iter().map(Spot::reach).collect();
+        let spotted = Squares::new(&floors, 1.0, &spotted);
+        Self { lamps, spots, spotted, falloff: effects.lamp_falloff, walls_near, reaches }
     }
 
     /// Whether the light is the same everywhere.
@@ -114,7 +131,9 @@ impl Lights {
     /// The light that lamps throw on a surface at this place, up to a factor.
     pub(super) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
         let mut sum = 0.0;
-        for (lamp, walls) in self.lamps.iter().zip(&self.walls_near) {
+        for &number in self.reaches.at([place[0] as f32, place[1] as f32]) {
+            let lamp = &self.lamps[number as usize];
+            let walls = &self.walls_near[number as usize];
             let middle = lamp.middle.map(f64::from);
             let [x, y] = [middle[0] - place[0], middle[1] - place[1]];
             let height = CEILING - place[2];
@@ -138,14 +157,23 @@ impl Lights {
     pub(super) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
         let lamps = if average > 0.0 { lamplight / average } else { 0.0 };
         let mut light = 1.0 - self.falloff + self.falloff * lamps;
-        for spot in &self.spots {
+        for &number in self.spotted.at(ground.map(|at| at as f32)) {
+            let spot = &self.spots[number as usize];
             let [x, y] = [0, 1].map(|axis| (ground[axis] - spot.middle[axis]) / spot.half[axis]);
             let square = x * x + y * y;
-            if square < 6.0 {
+            if square < FADED * FADED {
                 light *= 1.0 + spot.change * (-square * square / 2.0).exp();
             }
         }
         light as f32
+    }
+}
+
+impl Lamp {
+    pub(super) fn rectangle(&self) -> Rectangle {
+        let edge =
+            |side: f32| [0, 1].map(|axis| f64::from(self.middle[axis] + side * self.half[axis]));
+        Rectangle { least: edge(-1.0), greatest: edge(1.0) }
     }
 }
 

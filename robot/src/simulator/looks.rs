@@ -13,10 +13,10 @@ pub type Colour = [u8; 3];
 pub enum Floor {
     /// One colour throughout.
     Plain,
-    /// Square tiles with joints between them.
+    /// Tiles or boards with joints between them.
     Tiled {
-        /// From joint to joint, in metres.
-        side: f64,
+        /// From joint to joint, along x and along y, in metres.
+        sides: [f64; 2],
         /// How wide a joint is, in metres.
         joint: f64,
         /// How bright a joint is, as a share of the tiles.
@@ -73,6 +73,7 @@ const ORANGE: Colour = [235, 110, 20];
 const CYAN: Colour = [15, 150, 190];
 
 /// All looks; the first is the default.
+// paper: env.boundary
 pub const LOOKS: [Look; 9] = [
     Look {
         name: "laboratory",
@@ -91,7 +92,7 @@ pub const LOOKS: [Look; 9] = [
     Look {
         name: "tiles",
         about: "black tape on light tiles, white walls",
-        floor: Floor::Tiled { side: 0.30, joint: 0.005, joint_shade: 0.62 },
+        floor: Floor::Tiled { sides: [0.30, 0.30], joint: 0.005, joint_shade: 0.62 },
         floor_colour: [186, 180, 166],
         gloss: 0.25,
         wall_colour: [212, 212, 206],
@@ -161,7 +162,7 @@ pub const LOOKS: [Look; 9] = [
     Look {
         name: "school",
         about: "black tape on red tiles, yellow walls",
-        floor: Floor::Tiled { side: 0.20, joint: 0.006, joint_shade: 1.35 },
+        floor: Floor::Tiled { sides: [0.20, 0.20], joint: 0.006, joint_shade: 1.35 },
         floor_colour: [158, 98, 76],
         gloss: 0.3,
         wall_colour: [210, 186, 118],
@@ -189,7 +190,7 @@ pub const LOOKS: [Look; 9] = [
     Look {
         name: "gallery",
         about: "black baseboard on pale wooden boards, grey walls",
-        floor: Floor::Tiled { side: 0.12, joint: 0.003, joint_shade: 0.7 },
+        floor: Floor::Tiled { sides: [1.20, 0.12], joint: 0.003, joint_shade: 0.7 },
         floor_colour: [196, 166, 122],
         gloss: 0.4,
         wall_colour: [162, 162, 160],

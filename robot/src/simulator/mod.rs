@@ -4,6 +4,8 @@
 //! camera. [`render`] is the picture that the rig takes from a [`Pose`], and [`labels`] what each pixel
 //! of it shows. [`Effects`] make pictures harder to read.
 
+#![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
+
 mod body;
 mod building;
 mod chance;
@@ -18,6 +20,7 @@ mod pose;
 mod renderer;
 mod rig;
 mod sight_lines;
+mod squares;
 mod surfaces;
 mod walls;
 

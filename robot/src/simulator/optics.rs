@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use toposlam_vision::camera::{Camera, SeenFrom};
+use toposlam_vision::camera::{self, Camera, SeenFrom, SphericalMirror};
 
 type Vector = [f64; 3];
 
@@ -41,25 +41,106 @@ pub enum By {
     Itself,
 }
 
-/// A pinhole camera that looks up, and a mirrored sphere above it.
+/// A camera, and how it leans.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Optics {
     pub(super) image: [u32; 2],
+    /// The pixel that looks straight down.
     pub(super) centre: [f64; 2],
+    /// The pinhole's height, or the viewpoint's.
+    pub(super) height: f64,
+    kind: Kind,
+    errors: RigErrors,
+}
+
+/// Which camera it is.
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    UnderSphere(UnderSphere),
+    /// One with a single viewpoint.
+    Single(Camera),
+}
+
+/// A pinhole camera that looks up, and a mirrored sphere above it.
+// paper: hardware.camera
+#[derive(Clone, Debug, PartialEq)]
+struct UnderSphere {
     focal: f64,
     radius: f64,
     distance: f64,
-    pub(super) height: f64,
     /// The image's axes, right and up, as directions in the plane of the floor.
     right: [f64; 2],
     up: [f64; 2],
-    tilt: f64,
-    towards: f64,
 }
 
 impl Optics {
     pub(super) fn new(camera: &Camera, errors: &RigErrors) -> Self {
-        let mirror = &camera.optics;
+        let centre = camera.middle();
+        Self {
+            image: camera.image,
+            centre: [0, 1].map(|axis| centre[axis] + errors.centre[axis]),
+            height: camera.height() + errors.height,
+            kind: match &camera.optics {
+                camera::Optics::SphericalMirror(mirror) => {
+                    Kind::UnderSphere(UnderSphere::new(camera, mirror))
+                }
+                _ => Kind::Single(camera.clone()),
+            },
+            errors: *errors,
+        }
+    }
+
+    /// The ray that a pixel looks along.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
+        let mut ray = match &self.kind {
+            Kind::UnderSphere(rig) => {
+                rig.ray([pixel[0] - self.centre[0], self.centre[1] - pixel[1]])
+            }
+            Kind::Single(camera) => {
+                let intended = [0, 1].map(|axis| pixel[axis] - self.errors.centre[axis]);
+                match camera.ray(intended) {
+                    Some(ray) => Ray { origin: [0.0; 3], direction: ray.direction, by: By::Mirror },
+                    None => Ray { origin: [0.0; 3], direction: [0.0, 0.0, 1.0], by: By::Itself },
+                }
+            }
+        };
+        ray.origin = self.leaning(ray.origin);
+        ray.origin[2] += self.height;
+        ray.direction = self.leaning(ray.direction);
+        ray
+    }
+
+    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
+    fn leaning(&self, vector: Vector) -> Vector {
+        let RigErrors { tilt, towards, .. } = self.errors;
+        if tilt == 0.0 {
+            return vector;
+        }
+        let ((sine, cosine), (left, ahead)) = (tilt.sin_cos(), towards.sin_cos());
+        let along = vector[0] * ahead + vector[1] * left;
+        let across = vector[1] * ahead - vector[0] * left;
+        let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
+        [along * ahead - across * left, along * left + across * ahead, up]
+    }
+
+    /// How far from its middle the view ends in the image, in pixels: the mirror's rim, or the image's
+    /// corner.
+    pub(super) fn rim(&self) -> f64 {
+        match &self.kind {
+            Kind::UnderSphere(rig) => {
+                let sine = (rig.radius / rig.distance).min(0.999);
+                rig.focal * sine / (1.0 - sine * sine).sqrt()
+            }
+            Kind::Single(_) => {
+                let [width, height] = self.image.map(f64::from);
+                width.hypot(height) / 2.0
+            }
+        }
+    }
+}
+
+impl UnderSphere {
+    fn new(camera: &Camera, mirror: &SphericalMirror) -> Self {
         let (sine, cosine) = camera.ahead.sin_cos();
         // Ahead in the image is (cosine, sine). Seen from below, left is a quarter turn clockwise.
         let (right, up) = match camera.seen_from {
@@ -67,58 +148,31 @@ impl Optics {
             SeenFrom::Above => ([cosine, -sine], [sine, cosine]),
         };
         Self {
-            image: camera.image,
-            centre: [0, 1].map(|axis| mirror.centre[axis] + errors.centre[axis]),
             focal: mirror.focal,
             radius: mirror.mirror_radius,
             distance: mirror.mirror_distance,
-            height: mirror.camera_height + errors.height,
             right,
             up,
-            tilt: errors.tilt,
-            towards: errors.towards,
         }
     }
 
-    /// The ray that a pixel looks along.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
-        let across = (pixel[0] - self.centre[0]) / self.focal;
-        let upwards = (self.centre[1] - pixel[1]) / self.focal;
+    /// The ray of a pixel, given from the middle to the right and to the top, in the upright rig.
+    fn ray(&self, [right, top]: [f64; 2]) -> Ray {
+        let (across, upwards) = (right / self.focal, top / self.focal);
         let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
         let out = unit([x, y, 1.0]);
         // The sphere's centre is straight above the pinhole, which is the origin for now.
         let middle = [0.0, 0.0, self.distance];
         let along = dot(out, middle);
         let beyond = along * along - (self.distance * self.distance - self.radius * self.radius);
-        let (origin, direction, by) = if beyond > 0.0 {
+        if beyond > 0.0 {
             let met = scaled(out, along - beyond.sqrt());
             let normal = scaled(minus(met, middle), 1.0 / self.radius);
             let back = minus(out, scaled(normal, 2.0 * dot(out, normal)));
-            (met, unit(back), By::Mirror)
+            Ray { origin: met, direction: unit(back), by: By::Mirror }
         } else {
-            ([0.0; 3], out, By::Itself)
-        };
-        let mut origin = self.leaning(origin);
-        origin[2] += self.height;
-        Ray { origin, direction: self.leaning(direction), by }
-    }
-
-    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
-    fn leaning(&self, vector: Vector) -> Vector {
-        if self.tilt == 0.0 {
-            return vector;
+            Ray { origin: [0.0; 3], direction: out, by: By::Itself }
         }
-        let ((sine, cosine), (left, ahead)) = (self.tilt.sin_cos(), self.towards.sin_cos());
-        let along = vector[0] * ahead + vector[1] * left;
-        let across = vector[1] * ahead - vector[0] * left;
-        let (along, up) = (along * cosine + vector[2] * sine, vector[2] * cosine - along * sine);
-        [along * ahead - across * left, along * left + across * ahead, up]
-    }
-
-    /// How far from its middle the mirror ends in the image, in pixels.
-    pub(super) fn rim(&self) -> f64 {
-        let sine = (self.radius / self.distance).min(0.999);
-        self.focal * sine / (1.0 - sine * sine).sqrt()
     }
 }
 
@@ -158,4 +212,95 @@ fn minus(one: Vector, other: Vector) -> Vector {
 
 fn unit(vector: Vector) -> Vector {
     scaled(vector, 1.0 / dot(vector, vector).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    fn mirror(camera: &Camera) -> SphericalMirror {
+        match &camera.optics {
+            camera::Optics::SphericalMirror(mirror) => *mirror,
+            other => panic!("{other:?} is no mirror"),
+        }
+    }
+
+    fn cameras() -> [Camera; 3] {
+        let below = Camera::superscout();
+        let above = Camera { seen_from: SeenFrom::Above, ahead: 0.3, ..below.clone() };
+        let off_middle = SphericalMirror { centre: [611.5, 502.25], ..mirror(&below) };
+        let optics = camera::Optics::SphericalMirror(off_middle);
+        let turned = Camera { ahead: -2.0, optics, ..below.clone() };
+        [below, above, turned]
+    }
+
+    // paper: hardware.camera
+    #[test]
+    fn the_mirror_ray_by_ray_agrees_with_its_closed_form() {
+        for camera in cameras() {
+            let optics = Optics::new(&camera, &RigErrors::default());
+            let mut seen = 0;
+            for (u, v) in (0..64).flat_map(|u| (0..48).map(move |v| (u, v))) {
+                let pixel = [f64::from(u) * 20.3, f64::from(v) * 20.1];
+                let ray = optics.ray(pixel);
+                let ground = ray.floor().filter(|_| ray.by == By::Mirror);
+                let expected = camera.pixel_to_ground(pixel);
+                assert_eq!(ground.is_some(), expected.is_some(), "{pixel:?}");
+                if let (Some([x, y]), Some(expected)) = (ground, expected) {
+                    let away = (x - expected[0]).hypot(y - expected[1]);
+                    // Towards the horizon the least rounding becomes a way.
+                    assert!(away < 1e-9 * x.hypot(y).max(1.0).powi(2), "{pixel:?}: {away}");
+                    seen += 1;
+                }
+            }
+            assert!(seen > 800, "{seen}");
+        }
+    }
+
+    #[test]
+    fn rays_come_from_the_sphere_and_have_length_one() {
+        let camera = Camera::superscout();
+        let optics = Optics::new(&camera, &RigErrors { tilt: 0.02, ..RigErrors::default() });
+        let middle = optics.leaning([0.0, 0.0, 0.15]);
+        for at in 0..200 {
+            let ray = optics.ray([640.0 + f64::from(at) * 2.2, 480.0 - f64::from(at)]);
+            assert!((dot(ray.direction, ray.direction) - 1.0).abs() < 1e-12);
+            if ray.by == By::Mirror {
+                let [x, y, z] = ray.origin;
+                let out = minus([x, y, z - 0.90], middle);
+                assert!((dot(out, out).sqrt() - 0.05).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rig_that_leans_sees_along_its_leaning_axis() {
+        let camera = Camera::superscout();
+        let tilt = 0.05_f64;
+        for towards in [0.0, FRAC_PI_2, 2.5] {
+            let errors = RigErrors { tilt, towards, ..RigErrors::default() };
+            let ray = Optics::new(&camera, &errors).ray([640.0, 480.0]);
+            // The axis goes through the pinhole, 0.9 m up: below it, the floor is this far back.
+            let back = 0.90 * tilt.tan();
+            let [x, y] = ray.floor().unwrap();
+            assert!((x + back * towards.cos()).abs() < 1e-12, "{x}");
+            assert!((y + back * towards.sin()).abs() < 1e-12, "{y}");
+        }
+    }
+
+    #[test]
+    fn errors_of_centre_and_height_move_what_a_pixel_shows() {
+        let camera = Camera::superscout();
+        let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
+        let optics = Optics::new(&camera, &errors);
+        let mirror =
+            SphericalMirror { centre: [644.0, 477.0], camera_height: 0.92, ..mirror(&camera) };
+        let as_it_is = Camera { optics: camera::Optics::SphericalMirror(mirror), ..camera.clone() };
+        let (found, expected) =
+            (optics.ray([700.0, 300.0]).floor(), as_it_is.pixel_to_ground([700.0, 300.0]));
+        let ([x, y], [expected_x, expected_y]) = (found.unwrap(), expected.unwrap());
+        assert!((x - expected_x).hypot(y - expected_y) < 1e-9);
+    }
 }

@@ -5,7 +5,7 @@ use image::RgbImage;
 use super::body::Body;
 use super::building::Building;
 use super::effects::Effects;
-use super::exposure::{Light, expose};
+use super::exposure::{Scan, expose};
 use super::optics::By;
 use super::pose::Pose;
 use super::rig::{PixelRay, Rig};
@@ -13,27 +13,13 @@ use super::sight_lines::SightLines;
 use super::surfaces::{Surface, View, WorldRay};
 
 /// How many rays along and across a pixel there are where different things meet in it.
-const FINE: u32 = 4;
+const FINE: usize = 3;
 
 /// How much of the light that passes the mirror by reaches the camera.
 const BESIDE_MIRROR: f32 = 0.35;
 
 /// How much wider than the mirror its holder is.
-const HOLDER: f64 = 1.03;
-
-/// A rig in a building, at a pose.
-pub(super) struct Shot<'a> {
-    rig: &'a Rig,
-    view: View<'a>,
-    body: Body,
-    /// Where the robot is, and its heading as cosine and sine and in 65,536 to a full turn.
-    position: [f32; 2],
-    heading: [f32; 2],
-    turn: u16,
-    /// The light on the robot's body.
-    light: f32,
-    rim: f32,
-}
+const HOLDER: f32 = 1.03;
 
 /// The picture that a rig takes of a building from a pose.
 ///
@@ -49,7 +35,21 @@ pub fn render(
 ) -> RgbImage {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
-    expose(shot.light(), rig, effects, seed)
+    expose(&mut Rows::new(&shot), rig, effects, seed)
+}
+
+/// A rig in a building, at a pose.
+pub(super) struct Shot<'a> {
+    rig: &'a Rig,
+    view: View<'a>,
+    body: Body,
+    /// Where the robot is, and its heading as cosine and sine and in 65,536 to a full turn.
+    position: [f32; 2],
+    heading: [f32; 2],
+    turn: u16,
+    /// The light on the robot's body.
+    light: f32,
+    holder: f32,
 }
 
 impl<'a> Shot<'a> {
@@ -71,84 +71,8 @@ impl<'a> Shot<'a> {
             heading: [cosine as f32, sine as f32],
             turn: (turns * 65_536.0) as u32 as u16,
             light: building.light.on_floor(position),
-            rim: rig.optics.rim() as f32,
+            holder: rig.optics.rim() as f32 * HOLDER,
         }
-    }
-
-    /// The light that comes to every pixel.
-    fn light(&self) -> Light {
-        let [width, height] = self.rig.image();
-        let mut surfaces = Vec::with_capacity(self.rig.rays.len());
-        let mut light = Vec::with_capacity(self.rig.rays.len());
-        let mut rays = self.rig.rays.iter();
-        for v in 0..height {
-            for (u, ray) in (0..width).zip(&mut rays) {
-                let (surface, colour) = self.seen(ray, [u as f32, v as f32], 1.0);
-                surfaces.push(surface);
-                light.push(colour);
-            }
-        }
-        self.refine(&surfaces, &mut light);
-        Light { width: width as usize, pixels: light }
-    }
-
-    /// Looks more closely where neighbouring pixels show different things.
-    fn refine(&self, surfaces: &[Surface], light: &mut [[f32; 3]]) {
-        let [width, height] = self.rig.image().map(|length| length as usize);
-        for v in 0..height {
-            for u in 0..width {
-                let at = v * width + u;
-                let here = surfaces[at];
-                let edge = (u > 0 && surfaces[at - 1] != here)
-                    || (u + 1 < width && surfaces[at + 1] != here)
-                    || (v > 0 && surfaces[at - width] != here)
-                    || (v + 1 < height && surfaces[at + width] != here);
-                if edge {
-                    light[at] = self.finely([u as f64, v as f64]);
-                }
-            }
-        }
-    }
-
-    /// The light that comes to a pixel, as the mean of many rays.
-    fn finely(&self, pixel: [f64; 2]) -> [f32; 3] {
-        let mut sum = [0.0; 3];
-        let step = |number: u32| (f64::from(number) + 0.5) / f64::from(FINE) - 0.5;
-        for row in 0..FINE {
-            for column in 0..FINE {
-                let place = [pixel[0] + step(column), pixel[1] + step(row)];
-                let ray = self.rig.optics.ray(place).into();
-                let place = place.map(|at| at as f32);
-                let (_, colour) = self.seen(&ray, place, 1.0 / FINE as f32);
-                for (sum, channel) in sum.iter_mut().zip(colour) {
-                    *sum += channel;
-                }
-            }
-        }
-        sum.map(|channel| channel / (FINE * FINE) as f32)
-    }
-
-    /// What the ray of a place in the image meets, and the light that comes back; of a pixel so large.
-    #[inline]
-    fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
-        if let Some(part) = self.body.met(ray) {
-            let light = self.light;
-            return (Surface::Robot(part), part.colour().map(|channel| channel * light));
-        }
-        if ray.by == By::Itself {
-            if self.from_middle(place) < self.rim * HOLDER as f32 {
-                return (Surface::Holder, [0.01; 3]);
-            }
-            let (surface, colour) = self.view.seen(&self.world(ray), || [0.0; 2]);
-            return (surface, colour.map(|channel| channel * BESIDE_MIRROR));
-        }
-        let world = self.world(ray);
-        self.view.seen(&world, || {
-            let from_middle = self.from_middle(place);
-            let drop = -ray.origin[2] / ray.direction[2];
-            let range = drop * ray.direction[0].hypot(ray.direction[1]);
-            [self.rig.stride(from_middle) * size, range / from_middle.max(1.0) * size]
-        })
     }
 
     /// What a pixel shows in its middle.
@@ -163,9 +87,53 @@ impl<'a> Shot<'a> {
         }
     }
 
-    fn from_middle(&self, place: [f32; 2]) -> f32 {
+    /// What a ray through a place in the image meets, and the light that comes back; of a pixel so
+    /// large.
+    #[inline]
+    fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
+        if let Some(part) = self.body.met(ray) {
+            let light = self.light;
+            return (Surface::Robot(part), part.colour().map(|channel| channel * light));
+        }
+        if ray.by == By::Itself {
+            if self.off_middle(place) < self.holder {
+                return (Surface::Holder, [0.01; 3]);
+            }
+            let (surface, colour) = self.view.seen(&self.world(ray), || [0.0; 2]);
+            return (surface, colour.map(|channel| channel * BESIDE_MIRROR));
+        }
+        self.view.seen(&self.world(ray), || {
+            let from_middle = self.off_middle(place);
+            let [x, y, down] = ray.direction;
+            let range = -ray.origin[2] / down * (x * x + y * y).sqrt();
+            [self.rig.stride(from_middle) * size, range / from_middle.max(1.0) * size]
+        })
+    }
+
+    /// The light that comes to a pixel, as the mean of many rays.
+    #[cold]
+    fn finely(&self, u: usize, v: usize) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        let bundle = Bundle::new(self.rig, u, v);
+        let step = |number: usize| (number as f32 + 0.5) / FINE as f32 - 0.5;
+        for row in 0..FINE {
+            for column in 0..FINE {
+                let [right, down] = [step(column), step(row)];
+                let ray = bundle.ray(right, down);
+                let place = [u as f32 + right, v as f32 + down];
+                let (_, colour) = self.seen(&ray, place, 1.0 / FINE as f32);
+                for (sum, channel) in sum.iter_mut().zip(colour) {
+                    *sum += channel;
+                }
+            }
+        }
+        sum.map(|channel| channel / (FINE * FINE) as f32)
+    }
+
+    fn off_middle(&self, place: [f32; 2]) -> f32 {
         let [u, v] = self.rig.optics.centre;
-        (place[0] - u as f32).hypot(place[1] - v as f32)
+        let [u, v] = [place[0] - u as f32, place[1] - v as f32];
+        (u * u + v * v).sqrt()
     }
 
     /// A ray in the building's coordinates.
@@ -178,6 +146,185 @@ impl<'a> Shot<'a> {
             origin: [x + self.position[0], y + self.position[1], z],
             direction: turned(ray.direction),
             turn: ray.turn.wrapping_add(self.turn),
+        }
+    }
+}
+
+/// The rays within a pixel.
+enum Bundle<'a> {
+    /// As they change from the pixel's neighbours to it, which within a pixel is as good as straight.
+    Straight { middle: PixelRay, rightwards: [f32; 7], downwards: [f32; 7] },
+    /// At the mirror's rim and the image's border: each by itself.
+    Each { rig: &'a Rig, pixel: [f64; 2] },
+}
+
+impl<'a> Bundle<'a> {
+    fn new(rig: &'a Rig, u: usize, v: usize) -> Self {
+        let [width, height] = rig.image().map(|length| length as usize);
+        let each = Self::Each { rig, pixel: [u as f64, v as f64] };
+        if u == 0 || v == 0 || u + 1 >= width || v + 1 >= height {
+            return each;
+        }
+        let at = v * width + u;
+        let around = [at - 1, at + 1, at - width, at + width].map(|at| rig.rays[at]);
+        let middle = rig.rays[at];
+        // In the middle of the mirror, too, rays go apart in no straight manner.
+        if around.iter().any(|ray| ray.by != middle.by) || middle.direction[2] < -0.98 {
+            return each;
+        }
+        let [left, right, above, below] = around;
+        Self::Straight {
+            middle,
+            rightwards: change(&left, &right),
+            downwards: change(&above, &below),
+        }
+    }
+
+    fn ray(&self, right: f32, down: f32) -> PixelRay {
+        match self {
+            Self::Each { rig, pixel: [u, v] } => {
+                rig.optics.ray([u + f64::from(right), v + f64::from(down)]).into()
+            }
+            Self::Straight { middle, rightwards, downwards } => {
+                let by = |number: usize| right * rightwards[number] + down * downwards[number];
+                PixelRay {
+                    origin: [0, 1, 2].map(|axis| middle.origin[axis] + by(axis)),
+                    direction: [0, 1, 2].map(|axis| middle.direction[axis] + by(3 + axis)),
+                    turn: middle.turn.wrapping_add_signed(by(6) as i16),
+                    by: middle.by,
+                }
+            }
+        }
+    }
+}
+
+/// Half of how two rays differ: origin, direction and turn.
+fn change(one: &PixelRay, other: &PixelRay) -> [f32; 7] {
+    let half = |one: f32, other: f32| (other - one) / 2.0;
+    let [x, y, z] = [0, 1, 2].map(|axis| half(one.origin[axis], other.origin[axis]));
+    let [along, left, up] = [0, 1, 2].map(|axis| half(one.direction[axis], other.direction[axis]));
+    let turn = f32::from(other.turn.wrapping_sub(one.turn).cast_signed()) / 2.0;
+    [x, y, z, along, left, up, turn]
+}
+
+/// The rows of a picture, from the first to the last.
+struct Rows<'a> {
+    shot: &'a Shot<'a>,
+    width: usize,
+    height: usize,
+    /// The latest rows looked at: what their pixels show, and the light that comes from there.
+    looked: [Row; 3],
+}
+
+#[derive(Default)]
+struct Row {
+    surfaces: Vec<u32>,
+    light: Vec<[f32; 3]>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(shot: &'a Shot<'a>) -> Self {
+        let [width, height] = shot.rig.image().map(|length| length as usize);
+        let mut rows = Self { shot, width, height, looked: Default::default() };
+        rows.look(0);
+        rows
+    }
+
+    /// One ray a pixel.
+    fn look(&mut self, v: usize) {
+        if v >= self.height {
+            return;
+        }
+        let row = &mut self.looked[v % 3];
+        row.surfaces.clear();
+        row.light.clear();
+        let rays = &self.shot.rig.rays[v * self.width..][..self.width];
+        for (u, ray) in rays.iter().enumerate() {
+            let (surface, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
+            row.surfaces.push(surface.number());
+            row.light.push(light);
+        }
+    }
+}
+
+impl Scan for Rows<'_> {
+    /// Rows are asked for in order. Looks more closely where neighbouring pixels show different things.
+    fn row(&mut self, v: usize, out: &mut [f32]) {
+        self.look(v + 1);
+        let here = &self.looked[v % 3];
+        let above = &self.looked[v.saturating_sub(1) % 3].surfaces;
+        let below = &self.looked[(v + 1).min(self.height - 1) % 3].surfaces;
+        let last = self.width - 1;
+        for (u, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            let surface = here.surfaces[u];
+            let other = (surface ^ above[u])
+                | (surface ^ below[u])
+                | (surface ^ here.surfaces[u.saturating_sub(1)])
+                | (surface ^ here.surfaces[(u + 1).min(last)]);
+            *out = if other == 0 { here.light[u] } else { self.shot.finely(u, v) };
+        }
+    }
+
+    /// The mean of the light, by a pixel here and there.
+    fn mean(&self) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        let mut count = 0;
+        for v in (0..self.height).step_by(16) {
+            for u in (0..self.width).step_by(16) {
+                let ray = &self.shot.rig.rays[v * self.width + u];
+                let (_, light) = self.shot.seen(ray, [u as f32, v as f32], 1.0);
+                for (sum, channel) in sum.iter_mut().zip(light) {
+                    *sum += channel;
+                }
+                count += 1;
+            }
+        }
+        sum.map(|sum| sum / count.max(1) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::camera::Camera;
+
+    use super::*;
+    use crate::simulator::{RigErrors, sight_lines::TURN_ERROR};
+
+    fn apart(one: &PixelRay, other: &PixelRay) -> f32 {
+        let square = |axis: usize| (one.direction[axis] - other.direction[axis]).powi(2);
+        (0..3).map(square).sum::<f32>().sqrt()
+    }
+
+    #[test]
+    fn rays_within_a_pixel_are_as_good_as_straight() {
+        for width in [640, 1280] {
+            let camera = Camera::superscout().sized([width, width * 3 / 4]);
+            let errors = RigErrors { tilt: 0.03, towards: 1.0, ..RigErrors::default() };
+            let rig = Rig::with_errors(&camera, &errors);
+            let [width, height] = rig.image();
+            let mut straight = 0;
+            let pixels =
+                (0..width).step_by(7).flat_map(|u| (0..height).step_by(5).map(move |v| [u, v]));
+            for [u, v] in pixels {
+                let bundle = Bundle::new(&rig, u as usize, v as usize);
+                straight += u32::from(matches!(bundle, Bundle::Straight { .. }));
+                let [u, v] = [u, v].map(f64::from);
+                let exact = |right, down| PixelRay::from(rig.ray([u + right, v + down]));
+                let here = exact(0.0, 0.0);
+                let pixel = apart(&here, &exact(1.0, 0.0)).max(apart(&here, &exact(0.0, 1.0)));
+                // At the rim the mirror turns away faster and faster.
+                let [middle_u, middle_v] = rig.optics.centre;
+                let within = (u - middle_u).hypot(v - middle_v) < 0.97 * rig.optics.rim();
+                let allowed = if within { 0.03 } else { 0.5 };
+                for [right, down] in [[-0.375, 0.25], [0.5, 0.5], [0.0, -0.5]] {
+                    let ray = bundle.ray(right as f32, down as f32);
+                    let exact = exact(right, down);
+                    assert!(apart(&ray, &exact) < allowed * pixel, "{u} {v}");
+                    let turned = ray.turn.wrapping_sub(exact.turn).cast_signed();
+                    assert!(i64::from(turned.abs()) < TURN_ERROR, "{u} {v}: {turned}");
+                }
+            }
+            assert!(straight > width * height / 70, "{straight}");
         }
     }
 }

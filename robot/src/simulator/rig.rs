@@ -40,13 +40,7 @@ impl From<Ray> for PixelRay {
 /// The same camera with another size of image: every pixel larger or smaller.
 #[must_use]
 pub fn sized(camera: &Camera, image: [u32; 2]) -> Camera {
-    let factor = f64::from(image[0]) / f64::from(camera.image[0]);
-    let mut sized = camera.clone();
-    sized.image = image;
-    // Pixel centres are integers, so the image begins at -0.5.
-    sized.optics.centre = camera.optics.centre.map(|at| (at + 0.5) * factor - 0.5);
-    sized.optics.focal *= factor;
-    sized
+    camera.sized(image)
 }
 
 impl Rig {

@@ -5,8 +5,11 @@ use std::f64::consts::TAU;
 use super::walls::Wall;
 
 /// Directions that are told apart, of 65,536 to a full turn each so many.
-const SECTORS: usize = 512;
-const PER_SECTOR: usize = 65_536 / SECTORS;
+const SECTORS: u16 = 512;
+const PER_SECTOR: u16 = (65_536 / SECTORS as u32) as u16;
+
+/// The direction that a ray is said to have may be wrong by so much, of 65,536 to a full turn.
+pub(super) const TURN_ERROR: i64 = 64;
 
 /// For each sector of directions, counter-clockwise from east, the walls that a ray may meet first,
 /// nearest first.
@@ -50,7 +53,7 @@ impl SightLines {
     /// The walls that a ray in this direction may meet first; of 65,536 to a full turn from east.
     #[inline]
     pub(super) fn walls(&self, turn: u16) -> &[u32] {
-        let sector = usize::from(turn) / PER_SECTOR;
+        let sector = usize::from(turn / PER_SECTOR);
         &self.walls[self.begin[sector] as usize..self.begin[sector + 1] as usize]
     }
 }
@@ -66,17 +69,18 @@ fn enter(number: usize, wall: &Wall, place: [f64; 2], off_axis: f64, sectors: &m
     let beside = along[0].max(-along[1]).max(0.0);
     let near = across.hypot(beside);
     // Rays that pass beside the place see the wall turned by this at most.
-    let slack = if near > 2.0 * off_axis { (off_axis / near).asin() + 1e-6 } else { TAU };
+    let rounded = TURN_ERROR as f64 / 65_536.0 * TAU;
+    let slack = if near > 2.0 * off_axis { (off_axis / near).asin() + rounded } else { TAU };
     let angles = ends.map(|[x, y]| y.atan2(x));
     let from = if wrapped(angles[1] - angles[0]) > 0.0 { angles[0] } else { angles[1] };
     let extent = wrapped(angles[1] - angles[0]).abs();
-    let per_turn = SECTORS as f64 / TAU;
+    let per_turn = f64::from(SECTORS) / TAU;
     let sector = |angle: f64| (angle * per_turn).floor() as i64;
     let first = sector(from - slack);
     let count = if slack >= TAU {
-        SECTORS as i64
+        i64::from(SECTORS)
     } else {
-        (sector(from + extent + slack) - first + 1).min(SECTORS as i64)
+        (sector(from + extent + slack) - first + 1).min(i64::from(SECTORS))
     };
     for sector in first..first + count {
         let (low, high) = (sector as f64 / per_turn, (sector + 1) as f64 / per_turn);
@@ -90,7 +94,7 @@ fn enter(number: usize, wall: &Wall, place: [f64; 2], off_axis: f64, sectors: &m
         } else {
             f64::INFINITY
         };
-        let index = sector.rem_euclid(SECTORS as i64) as usize;
+        let index = sector.rem_euclid(i64::from(SECTORS)) as usize;
         // As near as a sector's edge sees it, or as its nearest point.
         sectors[index].push(Seen {
             wall: number as u32,
@@ -113,4 +117,66 @@ fn near_in(low: f64, high: f64, wall: &Wall, place: [f64; 2], near: f64) -> f64 
 /// An angle brought into [-pi, pi).
 fn wrapped(angle: f64) -> f64 {
     (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use toposlam_model::format::world_file;
+
+    use super::super::walls::walls;
+    use super::*;
+
+    /// The first wall that a ray meets, among these.
+    fn first<'a>(
+        walls: impl Iterator<Item = (usize, &'a Wall)>,
+        origin: [f64; 2],
+        angle: f64,
+    ) -> Option<usize> {
+        let direction = [angle.cos(), angle.sin()];
+        let mut nearest = (f64::INFINITY, None);
+        for (number, wall) in walls {
+            let across = 1 - wall.along;
+            let length = (wall.plane - origin[across]) / direction[across];
+            let at = origin[wall.along] + length * direction[wall.along];
+            if length > 0.0 && length < nearest.0 && wall.span[0] <= at && at <= wall.span[1] {
+                nearest = (length, Some(number));
+            }
+        }
+        nearest.1
+    }
+
+    #[test]
+    fn no_wall_that_a_ray_meets_first_is_left_out() {
+        let bytes = include_bytes!("../../../worlds/building-25.toml");
+        let plan = world_file::read(bytes).unwrap().plan.unwrap();
+        let walls = walls(&plan);
+        let floors: Vec<_> = plan.floor().collect();
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+        let (mut rays, mut looked_at) = (0, 0);
+        for number in 0..400 {
+            let floor = floors[number % floors.len()];
+            let place =
+                [0, 1].map(|axis| rng.random_range(floor.least[axis]..=floor.greatest[axis]));
+            for off_axis in [0.0, 0.01, 0.05] {
+                let lines = SightLines::from(place, off_axis, &walls);
+                for _ in 0..50 {
+                    let turn: u16 = rng.random();
+                    let angle = (f64::from(turn) + 0.5) / 65_536.0 * TAU;
+                    let aside = rng.random_range(-off_axis..=off_axis);
+                    let origin = [place[0] - aside * angle.sin(), place[1] + aside * angle.cos()];
+                    if !floors.iter().any(|floor| floor.holds(origin)) {
+                        continue;
+                    }
+                    let found = lines.walls(turn).iter().map(|&wall| wall as usize);
+                    let found = found.inspect(|_| looked_at += 1).map(|wall| (wall, &walls[wall]));
+                    let expected = first(walls.iter().enumerate(), origin, angle);
+                    assert_eq!(first(found, origin, angle), expected, "{place:?} {angle}");
+                    rays += 1;
+                }
+            }
+        }
+        assert!(rays > 50_000 && looked_at < 3 * rays, "{looked_at} of {rays}");
+    }
 }

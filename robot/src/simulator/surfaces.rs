@@ -1,14 +1,17 @@
 //! What a ray meets in a building, and how it looks there.
 
 use super::building::{Building, HEIGHT, WallPart};
-use super::chance::{clouds, speckle};
+use super::chance::{clouds, floor, speckle};
 use super::looks::Floor;
 use super::sight_lines::SightLines;
 
 /// How a ceiling is lit, as a share of the floor.
 const CEILING_LIGHT: f32 = 0.6;
 
-/// What is seen; different things have different ones.
+/// How wide the edge of a lamp is, in metres.
+const LAMP_EDGE: f32 = 0.02;
+
+/// What is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     Floor,
@@ -22,6 +25,34 @@ pub(super) enum Surface {
     Holder,
     /// Nothing: there is no building in this direction.
     Nothing,
+}
+
+impl Surface {
+    /// A number that different surfaces do not share.
+    #[inline]
+    pub(super) fn number(self) -> u32 {
+        match self {
+            Self::Floor => 0,
+            Self::Tape => 1,
+            Self::Marker => 2,
+            Self::Ceiling => 3,
+            Self::Lamp => 4,
+            Self::Holder => 5,
+            Self::Nothing => 6,
+            Self::Robot(part) => 8 + part as u32,
+            Self::Wall(wall, part) => {
+                let part = match part {
+                    WallPart::Bare => 0,
+                    WallPart::Baseboard => 1,
+                    WallPart::Leaf => 2,
+                    WallPart::Frame => 3,
+                    // Of posters that are seen beside each other, each differs from the next.
+                    WallPart::Poster(number) => 4 + number % 4,
+                };
+                16 + 8 * wall + part
+            }
+        }
+    }
 }
 
 /// A ray in the building's coordinates.
@@ -99,7 +130,7 @@ impl View<'_> {
                 let face = &self.building.faces[wall as usize];
                 Surface::Wall(wall, self.building.wall_part(face, along, height))
             }
-            End::Ceiling { place } => self.on_ceiling(place),
+            End::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE).0,
             End::Nothing => Surface::Nothing,
         }
     }
@@ -128,17 +159,15 @@ impl View<'_> {
                 (surface, colour)
             }
             End::Wall { wall, along, height } => self.on_wall(wall, along, height),
-            End::Ceiling { place } => (self.on_ceiling(place), self.ceiling_colour(place, 0.02)),
+            End::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE),
             End::Nothing => (Surface::Nothing, [0.2; 3]),
         }
     }
 
     #[inline]
     fn on_floor(&self, place: [f32; 2]) -> Surface {
-        if let Some(marker) = self.building.marker {
-            if marker.holds(place.map(f64::from)) {
-                return Surface::Marker;
-            }
+        if self.building.marker.is_some_and(|marker| marker.holds(place.map(f64::from))) {
+            return Surface::Marker;
         }
         if self.building.tape_at(place) { Surface::Tape } else { Surface::Floor }
     }
@@ -156,19 +185,19 @@ impl View<'_> {
         }
         let shade = match building.look.floor {
             Floor::Plain => 1.0,
-            Floor::Tiled { side, joint, joint_shade } => {
+            Floor::Tiled { sides, joint, joint_shade } => {
                 let [radial, across] = footprint();
                 let [x, y] = [ray.direction[0].abs(), ray.direction[1].abs()];
-                let level = x.hypot(y).max(1e-6);
+                let level = (x * x + y * y).sqrt().max(1e-6);
                 let (cosine, sine) = (x / level, y / level);
                 let size = [radial * cosine + across * sine, radial * sine + across * cosine];
-                let (side, joint) = (side as f32, joint as f32);
-                let open = [0, 1]
-                    .map(|axis| 1.0 - joint_share(place[axis], size[axis].max(1e-4), side, joint));
-                let tile =
-                    speckle((place[0] / side).floor() as i32, (place[1] / side).floor() as i32, 5);
+                let (sides, joint) = (sides.map(|side| side as f32), joint as f32);
+                let open = [0, 1].map(|axis| {
+                    1.0 - joint_share(place[axis], size[axis].max(1e-4), sides[axis], joint)
+                });
+                let tile = speckle(floor(place[0] / sides[0]), floor(place[1] / sides[1]), 5);
                 let joints = 1.0 - open[0] * open[1];
-                let faint = (side / size[0].max(size[1])).min(1.0);
+                let faint = (sides[0].min(sides[1]) / size[0].max(size[1])).min(1.0);
                 (1.0 + 0.03 * strength * tile * faint)
                     * (1.0 + joints * strength * (joint_shade as f32 - 1.0))
             }
@@ -177,7 +206,7 @@ impl View<'_> {
                 let (tuft, spread) = (tuft as f32, spread as f32 * strength);
                 // Where a pixel holds many tufts, it shows what they are on average.
                 let faint = (tuft / radial.max(tuft)) * (tuft / across.max(tuft)).sqrt();
-                let [x, y] = place.map(|at| (at / tuft).floor() as i32);
+                let [x, y] = place.map(|at| floor(at / tuft));
                 1.0 + spread * faint * speckle(x, y, 9)
             }
         };
@@ -193,28 +222,22 @@ impl View<'_> {
         (Surface::Wall(wall, part), colour.map(|channel| channel * light))
     }
 
+    /// What there is at a place of the ceiling, and its light; lamps are seen with edges so wide, in
+    /// metres.
     #[inline]
-    fn on_ceiling(&self, place: [f32; 2]) -> Surface {
-        let above = self.building.lamps.iter().any(|lamp| {
-            (0..2).all(|axis| (place[axis] - lamp.middle[axis]).abs() <= lamp.half[axis])
-        });
-        if above { Surface::Lamp } else { Surface::Ceiling }
-    }
-
-    /// The light of the ceiling and its lamps, whose edges are seen blurred over so many metres.
-    fn ceiling_colour(&self, place: [f32; 2], blurred: f32) -> [f32; 3] {
+    fn on_ceiling(&self, place: [f32; 2], blurred: f32) -> (Surface, [f32; 3]) {
         let ceiling = self.building.colours.ceiling.map(|channel| channel * CEILING_LIGHT);
-        for lamp in &self.building.lamps {
+        for lamp in self.building.lamps(place) {
             let [x, y] = [0, 1].map(|axis| {
                 let inside = lamp.half[axis] - (place[axis] - lamp.middle[axis]).abs();
                 (0.5 + inside / blurred).clamp(0.0, 1.0)
             });
-            let share = x * y;
-            if share > 0.0 {
-                return ceiling.map(|channel| channel + share * (lamp.brightness - channel));
+            if x * y > 0.0 {
+                let light = ceiling.map(|channel| channel + x * y * (lamp.brightness - channel));
+                return (if x.min(y) >= 0.5 { Surface::Lamp } else { Surface::Ceiling }, light);
             }
         }
-        ceiling
+        (Surface::Ceiling, ceiling)
     }
 
     /// What the floor mirrors: the ray goes on below it as if the building stood on its head there.
@@ -233,7 +256,7 @@ impl View<'_> {
             }
             _ => {
                 let place = [0, 1].map(|axis| ray.origin[axis] + up * ray.direction[axis]);
-                self.ceiling_colour(place, 0.1 + 0.6 * (1.0 - gloss).max(0.0))
+                self.on_ceiling(place, 0.1 + 0.6 * (1.0 - gloss).max(0.0)).1
             }
         };
         for (channel, mirrored) in colour.iter_mut().zip(mirrored) {
@@ -246,7 +269,7 @@ impl View<'_> {
 fn joint_share(at: f32, size: f32, side: f32, joint: f32) -> f32 {
     // How much joint there is from 0 as far as a place.
     let before = |at: f32| {
-        let tiles = (at / side).floor();
+        let tiles = floor(at / side) as f32;
         tiles * joint + (at - tiles * side).min(joint)
     };
     (before(at + size / 2.0) - before(at - size / 2.0)) / size

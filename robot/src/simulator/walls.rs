@@ -110,3 +110,69 @@ fn distinct(mut coordinates: Vec<f64>) -> Vec<f64> {
     coordinates.dedup_by(|one, other| (*one - *other).abs() <= TOLERANCE);
     coordinates
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::format::world_file;
+
+    use super::*;
+
+    fn plan(name: &str) -> FloorPlan {
+        let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
+    }
+
+    const PLANS: [&str; 4] = ["shape-6", "shape-8", "building-12", "building-25"];
+
+    /// The area of a plan's floor: its rectangles, of which those at a junction share a square.
+    fn area(plan: &FloorPlan) -> f64 {
+        let size = |floor: Rectangle| {
+            (floor.greatest[0] - floor.least[0]) * (floor.greatest[1] - floor.least[1])
+        };
+        let shared = 2 * plan.hallways().len() - plan.junctions().len();
+        plan.floor().map(size).sum::<f64>() - shared as f64 * plan.hallway_width().powi(2)
+    }
+
+    #[test]
+    fn walls_enclose_the_area_of_the_floor() {
+        for plan in PLANS.map(plan) {
+            for along in 0..2 {
+                // Gauss: the area is the sum of plane times length, counted by the side of the floor.
+                let enclosed: f64 = walls(&plan)
+                    .iter()
+                    .filter(|wall| wall.along == along)
+                    .map(|wall| -wall.floor_side * wall.plane * wall.length())
+                    .sum();
+                assert!((enclosed - area(&plan)).abs() < 1e-9, "{enclosed}");
+            }
+        }
+    }
+
+    #[test]
+    fn there_is_floor_on_one_side_of_a_wall_only() {
+        for plan in PLANS.map(plan) {
+            let floors: Vec<_> = plan.floor().collect();
+            for wall in walls(&plan) {
+                for share in [0.001, 0.3, 0.5, 0.999] {
+                    let foot = wall.foot(wall.span[0] + share * wall.length());
+                    for side in [1.0, -1.0] {
+                        let mut place = foot;
+                        place[1 - wall.along] += side * wall.floor_side * 1e-4;
+                        let floor = floors.iter().any(|floor| floor.holds(place));
+                        assert_eq!(floor, side > 0.0, "{wall:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_digit_8_has_four_walls_around_it_and_four_in_each_loop() {
+        let walls = walls(&plan("shape-8"));
+        assert_eq!(walls.len(), 12);
+        // Around it all corners are in corners of the floor; within a loop the floor goes round them.
+        let juts = walls.iter().filter(|wall| wall.juts == [true; 2]).count();
+        let fits = walls.iter().filter(|wall| wall.juts == [false; 2]).count();
+        assert_eq!((juts, fits), (8, 4));
+    }
+}

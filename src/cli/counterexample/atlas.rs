@@ -36,7 +36,7 @@ struct Row {
 pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Failure> {
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows = Vec::new();
-    found::make_folder(folder)?;
+    output::make_folder(folder)?;
     for marker in MARKERS {
         let mut found_of = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {

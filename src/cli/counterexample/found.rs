@@ -1,6 +1,6 @@
 //! What a search found, with names: the worlds that are told, and which of them are pairs.
 
-use std::{collections::BTreeMap, fs, path::Path, ptr};
+use std::{collections::BTreeMap, path::Path, ptr};
 
 use toposlam_model::{
     ambiguity::{Comparison, Findings, PlacedWorld, Unfinished},
@@ -84,12 +84,6 @@ impl Found {
         }
         Ok(())
     }
-}
-
-/// Makes the folder, if it is not there.
-pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
 }
 
 /// How the verb ends where a search does not.

@@ -1,10 +1,30 @@
 //! Which point of the floor a pixel shows. Section 3.
 //!
 //! Pixels are (u, v), u to the right and v down; pixel centres are integers. Floor coordinates have
-//! the robot's centre as origin, x ahead and y to the left, in metres.
+//! the robot's centre as origin, x ahead and y to the left, in metres; z is up.
+//!
+//! Whatever the kind of camera, its axis is vertical above the robot's centre, and the middle of the
+//! image shows what is straight below: the lens of a camera that looks up into a mirror, the floor
+//! under one that looks down. Which way the camera looks only tells whether the image is mirrored
+//! ([`SeenFrom`]).
 
+pub mod calibration;
+mod fit_picture;
+mod mask;
+mod mei;
+mod ocam;
+mod optics_file;
+pub mod rim;
+mod root;
 mod spherical;
+pub mod unchanging;
+mod yaml;
 
+pub use fit_picture::fit_picture;
+pub use mask::{Mask, MaskError};
+pub use mei::Mei;
+pub use ocam::OCam;
+pub use optics_file::OpticsFileError;
 pub use spherical::SphericalMirror;
 
 /// From where the camera sees what it sees.
@@ -12,8 +32,31 @@ pub use spherical::SphericalMirror;
 pub enum SeenFrom {
     /// It looks up into the mirror: with ahead up, the image's right is the robot's left.
     Below,
-    /// It looks down.
+    /// It looks down: with ahead up, the image's right is the robot's right.
     Above,
+}
+
+/// How a camera sees.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Optics {
+    /// A pinhole under a spherical mirror.
+    SphericalMirror(SphericalMirror),
+    /// A single viewpoint, in OCamCalib's polynomial model.
+    OCamCalib(OCam),
+    /// A single viewpoint, in the unified model of OpenCV's omnidir and camodocal.
+    Mei(Mei),
+}
+
+/// The length of a vector whose square is neither too large nor too small for a number.
+#[inline]
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+/// Where something at a place of an image is, once every pixel is larger by a factor: pixel centres
+/// are integers, so an image begins at -0.5.
+fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
+    place.map(|at| (at + 0.5) * factor - 0.5)
 }
 
 /// A calibrated camera on the robot.
@@ -26,10 +69,55 @@ pub struct Camera {
     /// Whether the image is mirrored.
     pub seen_from: SeenFrom,
     /// How it sees.
-    pub optics: SphericalMirror,
+    pub optics: Optics,
+    /// Where in the image the floor can be seen, if that is known.
+    pub mask: Option<Mask>,
+}
+
+/// What a pixel looks along, in floor coordinates and metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it leaves the mirror; for a camera with a single viewpoint, that.
+    pub origin: [f64; 3],
+    /// Whither; of length one.
+    pub direction: [f64; 3],
+}
+
+impl Ray {
+    /// Where it meets the floor; `None` if it does not go down.
+    #[must_use]
+    pub fn floor(&self) -> Option<[f64; 2]> {
+        let length = -self.origin[2] / self.direction[2];
+        (self.direction[2] < 0.0)
+            .then(|| [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis]))
+    }
+}
+
+impl Optics {
+    /// The ray of a pixel, in the image's axes: x to its right, y to its top, z up from the floor.
+    fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+        match self {
+            Self::SphericalMirror(mirror) => mirror.ray(pixel),
+            Self::OCamCalib(ocam) => ocam.ray(pixel),
+            Self::Mei(mei) => mei.ray(pixel),
+        }
+    }
+
+    /// The pixel that shows a point of the floor, in the image's axes.
+    fn pixel(&self, ground: [f64; 2]) -> Option<[f64; 2]> {
+        match self {
+            Self::SphericalMirror(mirror) => mirror.pixel(ground),
+            Self::OCamCalib(ocam) => ocam.pixel(ground),
+            Self::Mei(mei) => mei.pixel(ground),
+        }
+    }
 }
 
 impl Camera {
+    /// Without a mask, floor nearer than this to the robot's centre is taken as unseen, for the body
+    /// hides it; in metres.
+    pub const HIDDEN: f64 = 0.32;
+
     /// The camera of the design page: a spherical mirror seen from below, 1280 by 960 pixels.
     #[must_use]
     pub fn superscout() -> Self {
@@ -37,45 +125,113 @@ impl Camera {
             image: [1280, 960],
             ahead: std::f64::consts::FRAC_PI_2,
             seen_from: SeenFrom::Below,
-            optics: SphericalMirror {
+            optics: Optics::SphericalMirror(SphericalMirror {
                 centre: [640.0, 480.0],
                 focal: 1272.8,
                 mirror_radius: 0.05,
                 mirror_distance: 0.15,
                 camera_height: 0.90,
-            },
+            }),
+            mask: None,
         }
+    }
+
+    /// The same camera with another size of image: every pixel larger or smaller. The larger image
+    /// shows what the smaller shows, and its proportions should be the same.
+    #[must_use]
+    pub fn sized(&self, image: [u32; 2]) -> Self {
+        let factor = f64::from(image[0]) / f64::from(self.image[0]);
+        let optics = match &self.optics {
+            Optics::SphericalMirror(mirror) => Optics::SphericalMirror(mirror.scaled(factor)),
+            Optics::OCamCalib(ocam) => Optics::OCamCalib(ocam.scaled(factor, image)),
+            Optics::Mei(mei) => Optics::Mei(mei.scaled(factor, image)),
+        };
+        let mask = self.mask.as_ref().map(|mask| mask.sized(image));
+        Self { image, optics, mask, ..*self }
+    }
+
+    /// The pixel that looks straight down.
+    #[must_use]
+    pub fn middle(&self) -> [f64; 2] {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.centre,
+            Optics::OCamCalib(ocam) => ocam.centre(),
+            Optics::Mei(mei) => mei.centre(),
+        }
+    }
+
+    /// How high above the floor the pinhole or the single viewpoint is, in metres.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height,
+            Optics::OCamCalib(ocam) => ocam.viewpoint_height,
+            Optics::Mei(mei) => mei.viewpoint_height,
+        }
+    }
+
+    /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
+    /// viewpoint.
+    #[must_use]
+    pub fn eye_height(&self) -> f64 {
+        match &self.optics {
+            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
+            Optics::OCamCalib(_) | Optics::Mei(_) => self.height(),
+        }
+    }
+
+    /// What a pixel looks along; `None` off the mirror, and where the calibration says nothing.
+    #[must_use]
+    pub fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+        let Ray { origin, direction } = self.optics.ray(pixel)?;
+        let turned = |[right, top, up]: [f64; 3]| {
+            let [x, y] = self.to_robot([right, top]);
+            [x, y, up]
+        };
+        Some(Ray { origin: turned(origin), direction: turned(direction) })
     }
 
     /// The point of the floor that a pixel shows; `None` above the horizon and off the mirror.
     #[must_use]
     pub fn pixel_to_ground(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
-        let [u, v] = [pixel[0] - self.optics.centre[0], pixel[1] - self.optics.centre[1]];
-        let range = self.optics.range(u.hypot(v))?;
-        let azimuth = self.turned((-v).atan2(u) - self.ahead);
-        Some([range * azimuth.cos(), range * azimuth.sin()])
+        self.optics.ray(pixel)?.floor().map(|ground| self.to_robot(ground))
     }
 
-    /// The pixel that shows a point of the floor.
+    /// The pixel that shows a point of the floor, which may lie outside of the image; `None` if none
+    /// does.
     #[must_use]
     pub fn ground_to_pixel(&self, ground: [f64; 2]) -> Option<[f64; 2]> {
-        let radius = self.optics.radius(ground[0].hypot(ground[1]))?;
-        let angle = self.turned(ground[1].atan2(ground[0])) + self.ahead;
-        let [u, v] = self.optics.centre;
-        Some([u + radius * angle.cos(), v - radius * angle.sin()])
+        self.optics.pixel(self.to_image(ground))
     }
 
     /// Whether the floor can be seen in a pixel: neither body, strut nor rim is in the way.
     #[must_use]
     pub fn sees(&self, pixel: [u32; 2]) -> bool {
-        self.pixel_to_ground(pixel.map(f64::from)).is_some_and(|[x, y]| x.hypot(y) >= 0.32)
+        let inside = pixel[0] < self.image[0] && pixel[1] < self.image[1];
+        inside
+            && self.mask.as_ref().is_none_or(|mask| mask.sees(pixel))
+            && self
+                .pixel_to_ground(pixel.map(f64::from))
+                .is_some_and(|[x, y]| self.mask.is_some() || x.hypot(y) >= Self::HIDDEN)
     }
 
-    /// Image angles to floor angles, and back.
-    fn turned(&self, angle: f64) -> f64 {
+    /// The image's axes, right and top, to the robot's, ahead and left.
+    fn to_robot(&self, [right, top]: [f64; 2]) -> [f64; 2] {
+        let (sine, cosine) = self.ahead.sin_cos();
+        [right * cosine + top * sine, self.mirrored() * (right * sine - top * cosine)]
+    }
+
+    /// The robot's axes to the image's.
+    fn to_image(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (sine, cosine) = self.ahead.sin_cos();
+        let y = self.mirrored() * y;
+        [x * cosine + y * sine, x * sine - y * cosine]
+    }
+
+    fn mirrored(&self) -> f64 {
         match self.seen_from {
-            SeenFrom::Below => -angle,
-            SeenFrom::Above => angle,
+            SeenFrom::Below => 1.0,
+            SeenFrom::Above => -1.0,
         }
     }
 }

@@ -1,4 +1,16 @@
 //! The spherical mirror above a camera that looks up, in closed form.
+//!
+//! All of it happens in a plane through the axis. A ray leaves the pinhole at an angle alpha from the
+//! axis and meets the sphere at an angle theta, seen from the sphere's centre, from its lowest point.
+//! It goes on at psi = alpha + 2 theta from straight down. With R the sphere's radius, d the distance
+//! from the pinhole up to its centre and H the height of its centre above the floor:
+//!
+//! * sin(alpha + theta) = (d / R) sin(alpha), the law of sines; here, the same without angles: where the
+//!   ray meets a circle;
+//! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
+//! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
+
+use super::{Ray, length, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,46 +21,132 @@ pub struct SphericalMirror {
     pub focal: f64,
     /// Radius of the sphere, in metres.
     pub mirror_radius: f64,
-    /// From the pinhole up to the sphere's centre, in metres.
+    /// From the pinhole up to the sphere's centre, in metres; more than the radius.
     pub mirror_distance: f64,
     /// From the floor up to the pinhole, in metres.
     pub camera_height: f64,
 }
 
 impl SphericalMirror {
-    /// How far from the axis the floor is that is seen so many pixels from the centre, in metres.
+    /// How far from the centre the mirror ends in the image, in pixels.
     #[must_use]
-    pub fn range(&self, radius: f64) -> Option<f64> {
-        let alpha = (radius / self.focal).atan();
-        let sine = self.mirror_distance / self.mirror_radius * alpha.sin();
-        if sine > 1.0 {
-            return None;
-        }
-        self.range_at(sine.asin() - alpha, alpha)
+    pub fn rim(&self) -> f64 {
+        self.focal * (self.mirror_radius / self.mirror_distance).asin().tan()
     }
 
-    /// The same, by the angle at the sphere's centre and that at the pinhole.
-    fn range_at(&self, theta: f64, alpha: f64) -> Option<f64> {
-        let psi = alpha + 2.0 * theta;
-        let height = self.camera_height + self.mirror_distance;
-        let reflected = height - self.mirror_radius * theta.cos();
-        (psi < std::f64::consts::FRAC_PI_2)
-            .then(|| self.mirror_radius * theta.sin() + reflected * psi.tan())
+    /// The focal length with which the mirror ends so many pixels from the centre.
+    #[must_use]
+    pub fn focal_of_rim(rim: f64, mirror_radius: f64, mirror_distance: f64) -> f64 {
+        rim / (mirror_radius / mirror_distance).asin().tan()
+    }
+
+    /// How far from the centre the horizon is in the image, in pixels: always inside of the rim.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.radius_at(self.horizon_sine())
+    }
+
+    /// How far from the axis the floor is that is seen so many pixels from the centre, in metres;
+    /// `None` from the horizon on.
+    #[must_use]
+    pub fn range(&self, radius: f64) -> Option<f64> {
+        let [u, v] = self.centre;
+        self.ray([u + radius, v])?.floor().map(|[range, _]| range)
     }
 
     /// How many pixels from the centre the floor is seen that is so far from the axis.
     #[must_use]
     pub fn radius(&self, range: f64) -> Option<f64> {
-        let rim = self.focal * (self.mirror_radius / self.mirror_distance).asin().tan();
-        let (mut near, mut far) = (0.0, rim);
-        for _ in 0..60 {
-            let middle = f64::midpoint(near, far);
-            if self.range(middle).is_some_and(|found| found < range) {
-                near = middle;
-            } else {
-                far = middle;
-            }
+        range.is_finite().then(|| self.radius_at(self.sine_of(range.abs())))
+    }
+
+    /// The same, with every pixel larger.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self { centre: scaled_place(self.centre, factor), focal: factor * self.focal, ..*self }
+    }
+
+    /// The ray of a pixel, in the image's axes.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+        let [right, top] = [pixel[0] - self.centre[0], self.centre[1] - pixel[1]];
+        let (radius, distance) = (self.mirror_radius, self.mirror_distance);
+        // From the pinhole, as (from the axis, up): the ray, and where it meets the sphere.
+        let from_centre = length([right, top]);
+        let focal_ray = length([from_centre, self.focal]);
+        let along = distance * self.focal / focal_ray;
+        let half_chord = along * along - (distance * distance - radius * radius);
+        if half_chord.is_nan() || half_chord < 0.0 {
+            return None;
         }
-        (range >= 0.0).then_some(near)
+        let share = (along - half_chord.sqrt()) / focal_ray;
+        let [at, up] = [share * from_centre, share * self.focal];
+        // What is mirrored goes on at alpha + 2 theta.
+        let (sine, cosine) = (at / radius, (distance - up) / radius);
+        let (twice_sine, twice_cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
+        let scale = 1.0 / (share * focal_ray);
+        let out = scale * (at * twice_cosine + up * twice_sine);
+        let down = scale * (up * twice_cosine - at * twice_sine);
+        // The middle of the image looks along the axis, in no direction.
+        let level = if from_centre > 0.0 { 1.0 / from_centre } else { 0.0 };
+        let [right, top] = [level * right, level * top];
+        Some(Ray {
+            origin: [at * right, at * top, self.camera_height + up],
+            direction: [out * right, out * top, -down],
+        })
+    }
+
+    /// The pixel that shows a point of the floor, in the image's axes.
+    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
+        let range = length([right, top]);
+        if range == 0.0 {
+            return Some(self.centre);
+        }
+        let scale = self.radius(range)? / range;
+        Some([self.centre[0] + scale * right, self.centre[1] - scale * top])
+    }
+
+    /// How high above the floor the sphere's centre is.
+    fn height(&self) -> f64 {
+        self.camera_height + self.mirror_distance
+    }
+
+    /// The pixels from the centre at an angle theta, by its sine.
+    fn radius_at(&self, sine: f64) -> f64 {
+        let up = self.mirror_distance - self.mirror_radius * (1.0 - sine * sine).sqrt();
+        self.focal * self.mirror_radius * sine / up
+    }
+
+    /// The sine of the angle theta at which psi is a right angle: d cos(2 theta) = R cos(theta).
+    fn horizon_sine(&self) -> f64 {
+        let (radius, distance) = (self.mirror_radius, self.mirror_distance);
+        let root = (radius * radius + 8.0 * distance * distance).sqrt();
+        let cosine = (radius + root) / (4.0 * distance);
+        (1.0 - cosine * cosine).sqrt()
+    }
+
+    /// The sine of the angle theta at which the floor is seen that is so far from the axis.
+    ///
+    /// The range grows with theta, without end at the horizon. So theta is the one root of what the
+    /// range lacks, times cos(psi), between straight down and the horizon.
+    fn sine_of(&self, range: f64) -> f64 {
+        let (radius, distance) = (self.mirror_radius, self.mirror_distance);
+        let lack = |sine: f64| {
+            let cosine = (1.0 - sine * sine).sqrt();
+            let (twice_sine, twice_cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
+            let at = radius * sine - range;
+            let height = self.height() - radius * cosine;
+            let out = distance * twice_sine - radius * sine;
+            let down = distance * twice_cosine - radius * cosine;
+            let by_angle = radius * cosine * down
+                + at * (radius * sine - 2.0 * distance * twice_sine)
+                + radius * sine * out
+                + height * (2.0 * distance * twice_cosine - radius * cosine);
+            (at * down + height * out, by_angle / cosine)
+        };
+        // As if the view were from one point, and the mirror everywhere as at its lowest point.
+        let viewpoint = self.height() - 0.5 * radius;
+        let half_tangent = range / (viewpoint + length([viewpoint, range]));
+        let half_sine = half_tangent / length([1.0, half_tangent]);
+        let guess = 2.0 * half_sine / (2.0 + radius / (distance - radius));
+        root(lack, [0.0, self.horizon_sine()], guess)
     }
 }

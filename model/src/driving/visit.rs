@@ -1,0 +1,216 @@
+//! A visit to a junction: what the pictures of one approach tell together. Sections 3 and 5.1.
+//!
+//! One picture can err. A visit is decided when two agree on the junction's form; the marker is taken
+//! from the best view of the approach, for beside the turning point the robot's body hides it.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::ops::RangeInclusive;
+
+use super::scene::{JunctionView, MarkerView, Place, Scene, undirected, wrapped};
+use crate::percept::{Door, Percept, Sighting};
+
+/// What a junction looks like from its entry: which of the four directions, clockwise from the entry
+/// door, are doors. The first always is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Form(pub [bool; 4]);
+
+/// What the pictures of one approach told so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Visit {
+    /// How many pictures told of each form, in the order in which they came up.
+    forms: Vec<(Form, u32)>,
+    /// The best view of the marker.
+    marker: Option<Glimpse>,
+}
+
+/// The marker, seen on the approach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Glimpse {
+    /// By how much its distance was off the best, in metres.
+    off: f64,
+    /// Whether it lay along the hallway by which the robot came.
+    along_entry: bool,
+}
+
+/// So many pictures must agree.
+const AGREEING: u32 = 2;
+/// From where before its middle the marker is seen well, in metres.
+const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
+/// From where it is seen best.
+const BEST: f64 = 0.5;
+
+impl Form {
+    /// The form of a junction as one picture shows it; `None` where its doors are not at right angles
+    /// to each other.
+    #[must_use]
+    pub fn of(junction: &JunctionView) -> Option<Self> {
+        let entry = junction.doors.first()?.direction;
+        let mut doors = [false; 4];
+        for door in &junction.doors {
+            let quarters = wrapped(entry - door.direction).rem_euclid(4.0 * FRAC_PI_2) / FRAC_PI_2;
+            let known = &mut doors[quarters.round() as usize % 4];
+            if *known {
+                return None;
+            }
+            *known = true;
+        }
+        Some(Self(doors))
+    }
+
+    /// The number of doors.
+    #[must_use]
+    pub fn degree(self) -> u32 {
+        self.0.iter().map(|&door| u32::from(door)).sum()
+    }
+
+    /// Whether there are two doors, at a right angle.
+    #[must_use]
+    pub fn is_l(self) -> bool {
+        self.degree() == 2 && !self.0[2]
+    }
+}
+
+impl Visit {
+    /// Takes in what the next picture tells.
+    pub fn see(&mut self, scene: &Scene) {
+        let entry = match &scene.place {
+            Place::Hallway(hallway) => Some(hallway.heading),
+            Place::Junction(junction) => {
+                if let Some(form) = Form::of(junction) {
+                    self.count(form);
+                }
+                junction.doors.first().map(|entry| entry.direction)
+            }
+            Place::Unknown(_) => None,
+        };
+        if let (Some(entry), Some(marker)) = (entry, &scene.marker) {
+            self.glimpse(entry, marker);
+        }
+    }
+
+    fn count(&mut self, form: Form) {
+        match self.forms.iter_mut().find(|(known, _)| *known == form) {
+            Some((_, pictures)) => *pictures += 1,
+            None => self.forms.push((form, 1)),
+        }
+    }
+
+    fn glimpse(&mut self, entry: f64, marker: &MarkerView) {
+        let ahead = marker.position[0].hypot(marker.position[1]);
+        let off = (ahead - BEST).abs();
+        let better = self.marker.is_none_or(|best| off < best.off);
+        if APPROACH.contains(&ahead) && marker.position[0] > 0.0 && better {
+            let along_entry = undirected(marker.axis - entry).abs() < FRAC_PI_4;
+            self.marker = Some(Glimpse { off, along_entry });
+        }
+    }
+
+    /// The form of the junction, once two pictures agree on it and fewer on any other.
+    #[must_use]
+    pub fn form(&self) -> Option<Form> {
+        let most = self.forms.iter().map(|&(_, pictures)| pictures).max()?;
+        let mut leading = self.forms.iter().filter(|(_, pictures)| *pictures == most);
+        let &(form, _) = leading.next()?;
+        (most >= AGREEING && leading.next().is_none()).then_some(form)
+    }
+
+    /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
+    /// junctions that are Ls.
+    // paper: percept.degree
+    #[must_use]
+    pub fn percept(&self) -> Option<Percept> {
+        let form = self.form()?;
+        let sighting = match self.marker.filter(|_| form.is_l()) {
+            Some(Glimpse { along_entry: true, .. }) => Sighting::Pointing(Door::BACK),
+            Some(_) => Sighting::Pointing(Door(1)),
+            None => Sighting::Nothing,
+        };
+        Some(Percept { degree: form.degree(), sighting })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::driving::scene::{CentreLine, HallwayView, Reason, Status};
+
+    fn junction(doors: &[f64], distance: f64) -> Place {
+        let through = [distance, 0.0];
+        let doors = doors.iter().map(|&direction| CentreLine { through, direction }).collect();
+        Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
+    }
+
+    fn seen(places: &[Place], marker: Option<MarkerView>) -> Visit {
+        let mut visit = Visit::default();
+        for place in places {
+            visit.see(&Scene { place: place.clone(), marker });
+        }
+        visit
+    }
+
+    #[test]
+    fn each_kind_and_entry_has_a_form_of_its_own() {
+        let left = FRAC_PI_2;
+        let forms = [
+            (vec![PI], [true, false, false, false]),
+            (vec![PI, left], [true, true, false, false]),
+            (vec![PI, -left], [true, false, false, true]),
+            (vec![PI, left, -left], [true, true, false, true]),
+            (vec![PI, left, 0.0], [true, true, true, false]),
+            (vec![PI, 0.0, -left], [true, false, true, true]),
+        ];
+        for (doors, expected) in forms {
+            for turned in [0.0, 0.4, -0.4] {
+                let doors: Vec<f64> = doors.iter().map(|door| wrapped(door + turned)).collect();
+                let Place::Junction(view) = junction(&doors, 0.3) else { unreachable!() };
+                assert_eq!(Form::of(&view), Some(Form(expected)), "{doors:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_pictures_must_agree() {
+        let (l, t) = (junction(&[PI, FRAC_PI_2], 0.3), junction(&[PI, FRAC_PI_2, 0.0], 0.3));
+        let unknown = Place::Unknown(Reason::NothingFits);
+        assert_eq!(seen(&[unknown.clone()], None).percept(), None);
+        assert_eq!(seen(&[l.clone(), unknown.clone()], None).percept(), None);
+        assert_eq!(seen(&[l.clone(), t.clone()], None).percept(), None);
+        assert_eq!(seen(&[l.clone(), t.clone(), t.clone(), l.clone()], None).percept(), None);
+        let decided = seen(&[l.clone(), t, unknown, l], None).percept();
+        assert_eq!(decided, Some(Percept { degree: 2, sighting: Sighting::Nothing }));
+    }
+
+    #[test]
+    fn the_marker_lies_along_the_entry_or_along_the_other_door_of_an_l() {
+        let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];
+        let marker = |axis| Some(MarkerView { position: [0.5, 0.0], axis, door: None });
+        let sighting = |axis| seen(&l, marker(axis)).percept().unwrap().sighting;
+        assert_eq!(sighting(0.1), Sighting::Pointing(Door::BACK));
+        assert_eq!(sighting(-1.5), Sighting::Pointing(Door(1)));
+        let dead_end = [junction(&[PI], 0.5), junction(&[PI], 0.5)];
+        assert_eq!(seen(&dead_end, marker(0.1)).percept().unwrap().sighting, Sighting::Nothing);
+    }
+
+    #[test]
+    fn the_best_view_of_the_marker_counts() {
+        let hallway = Place::Hallway(HallwayView {
+            heading: 0.0,
+            left: 0.8,
+            right: 0.8,
+            status: Status::Clear,
+            confidence: 1.0,
+        });
+        let mut visit = Visit::default();
+        let mut see = |place: &Place, distance, axis| {
+            let marker = MarkerView { position: [distance, 0.0], axis, door: None };
+            visit.see(&Scene { place: place.clone(), marker: Some(marker) });
+        };
+        see(&hallway, 0.75, 1.5);
+        see(&junction(&[PI, -FRAC_PI_2], 0.5), 0.5, 0.0);
+        see(&junction(&[PI, -FRAC_PI_2], 0.1), 0.1, 1.5);
+        let percept = visit.percept().unwrap();
+        assert_eq!(percept.sighting, Sighting::Pointing(Door::BACK));
+    }
+}

@@ -1,0 +1,100 @@
+//! How often something may really happen that was seen so often.
+
+/// The confidence of a bound.
+const CONFIDENCE: f64 = 0.95;
+
+/// The greatest rate of something that was seen in `seen` of `of` independent cases, with a confidence
+/// of 95 %: with any greater rate, so few would be seen in less than one of twenty trials. The bound is
+/// exact (Clopper and Pearson 1934, one-sided); for none seen it is the rule of three, about `3 / of`.
+#[must_use]
+pub fn upper_bound(seen: usize, of: usize) -> f64 {
+    if seen >= of {
+        return 1.0;
+    }
+    // At the rate that was seen, as few or fewer are no surprise.
+    let (mut low, mut high) = (seen as f64 / of as f64, 1.0);
+    for _ in 0..64 {
+        let rate = f64::midpoint(low, high);
+        if at_most(seen, of, rate) > 1.0 - CONFIDENCE {
+            low = rate;
+        } else {
+            high = rate;
+        }
+    }
+    high
+}
+
+/// How likely it is that something with a rate not below `seen / of` happens at most so often.
+fn at_most(seen: usize, of: usize, rate: f64) -> f64 {
+    let binomial: f64 = (0..seen).map(|nth| ((of - nth) as f64 / (nth + 1) as f64).ln()).sum();
+    let exactly = binomial + seen as f64 * rate.ln() + (of - seen) as f64 * (-rate).ln_1p();
+    // From the largest term down: each is a part of the one before.
+    let mut part = 1.0;
+    let mut sum = 0.0;
+    for nth in (0..=seen).rev() {
+        sum += part;
+        part *= nth as f64 * (1.0 - rate) / ((of - nth + 1) as f64 * rate);
+        if part < sum * f64::EPSILON {
+            break;
+        }
+    }
+    (exactly + sum.ln()).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn close(found: f64, expected: f64, relative: f64) {
+        assert!((found / expected - 1.0).abs() < relative, "{found} {expected}");
+    }
+
+    #[test]
+    fn of_none_seen_the_bound_is_the_rule_of_three() {
+        for of in [1, 10, 100, 3000, 20_000] {
+            // 1 - 0.05^(1/n), by another way.
+            let exact = -(0.05_f64.ln() / of as f64).exp_m1();
+            close(upper_bound(0, of), exact, 1e-12);
+        }
+        close(upper_bound(0, 30_000), 3.0 / 30_000.0, 2e-3);
+    }
+
+    #[test]
+    fn bounds_are_the_published_ones() {
+        // By the incomplete beta function of mpmath, with 40 digits.
+        for (seen, of, bound) in [
+            (1, 10, 0.394_163_302_436_505),
+            (1, 100, 0.046_559_811_453_538_9),
+            (2, 60, 0.101_235_894_924_162),
+            (5, 20, 0.455_582_404_001_749),
+            (19, 20, 0.997_438_621_223_47),
+            (10, 1000, 0.016_903_175_120_562_5),
+            (3, 20_000, 0.000_387_636_755_786_371),
+            (40, 20_000, 0.002_602_682_686_899_36),
+        ] {
+            close(upper_bound(seen, of), bound, 1e-9);
+        }
+        // For large numbers of cases, half of the chi-square quantile with 2 (seen + 1) degrees of
+        // freedom: 4.7439, 6.2958, 7.7537, 16.962 (Poisson tables).
+        for (seen, expected) in [(1, 4.7439), (2, 6.2958), (3, 7.7537), (10, 16.962)] {
+            close(upper_bound(seen, 10_000_000) * 1e7, expected, 1e-4);
+        }
+    }
+
+    #[test]
+    fn what_always_happens_has_no_bound() {
+        assert_eq!((upper_bound(5, 5), upper_bound(0, 0)), (1.0, 1.0));
+    }
+
+    #[test]
+    fn more_seen_is_a_higher_bound_and_more_cases_a_lower_one() {
+        let mut before = 0.0;
+        for seen in 0..1000 {
+            let bound = upper_bound(seen, 1000);
+            assert!(bound > before && bound > seen as f64 / 1000.0, "{seen}");
+            assert!(upper_bound(seen, 1001) < bound, "{seen}");
+            before = bound;
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What the views have in common in which sensing fails.
+
+use super::{
+    class::Class,
+    judging::{Judged, Zone},
+    quantile::Sample,
+    truth::Truth,
+    verdict::Verdict,
+};
+
+/// A group of views with something in common, and how many of them failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// By what the views are grouped.
+    pub by: &'static str,
+    /// What those of this group have in common.
+    pub what: String,
+    /// How many failed: they were not right.
+    pub failed: usize,
+    /// Of how many.
+    pub of: usize,
+    /// Whether it is one of the two groups on either side of a median; the one not above it comes
+    /// first.
+    pub is_half: bool,
+}
+
+impl Group {
+    /// How many failed, as a share; 0 of none.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.failed as f64 / self.of.max(1) as f64
+    }
+}
+
+/// Groups of the views in hallways and at junctions (up to their turning points): by look, size, what
+/// is to be seen, distance, heading, offset, and by each effect that is above its median or below.
+#[must_use]
+pub fn groups(views: &[Judged]) -> Vec<Group> {
+    let asked = |judged: &&Judged| matches!(judged.zone(), Zone::Hallway | Zone::Before);
+    let views: Vec<_> = views.iter().filter(asked).collect();
+    let mut groups = Vec::new();
+    groups.extend(labelled(&views, "look", |judged| judged.view.look.name.to_owned()));
+    groups.extend(labelled(&views, "size", |judged| {
+        let [width, height] = judged.view.image;
+        format!("{width}x{height}")
+    }));
+    let class = |judged: &Judged| judged.class().unwrap_or(Class::Other).to_string();
+    groups.extend(labelled(&views, "place", class));
+    groups.extend(labelled(&views, "distance", |judged| distance(&judged.truth).to_owned()));
+    let place = |judged: &Judged| -> Vec<(&'static str, f64)> {
+        let mut numbers = vec![("width of the hallway", judged.view.plan.hallway_width())];
+        if let Some((heading, aside)) = lie(&judged.truth) {
+            numbers.extend([("turned by", heading), ("aside by", aside)]);
+        }
+        numbers
+    };
+    groups.extend(halved(&views, place));
+    let effects = |judged: &Judged| -> Vec<(&'static str, f64)> {
+        let settings = judged.view.effects.settings();
+        settings.into_iter().map(|(knob, value)| (knob.name, value)).collect()
+    };
+    groups.extend(halved(&views, effects));
+    groups
+}
+
+/// How the robot lies in its hallway or before its junction: how far it is turned away from the
+/// hallway's direction, and how far aside of its middle.
+fn lie(truth: &Truth) -> Option<(f64, f64)> {
+    match truth {
+        Truth::Hallway(hallway) | Truth::Between(hallway, _) => {
+            Some((hallway.heading.abs(), (hallway.left - hallway.right).abs() / 2.0))
+        }
+        Truth::Junction(junction) => {
+            let entry = junction.doors.first().filter(|_| junction.form.is_some())?;
+            let [x, y] = junction.turning_point;
+            let aside = (y * entry.cos() - x * entry.sin()).abs();
+            Some((std::f64::consts::PI - entry.abs(), aside))
+        }
+    }
+}
+
+/// How far from the turning point, in a few words.
+fn distance(truth: &Truth) -> &'static str {
+    let Truth::Junction(junction) = truth else { return "1.5 m or more" };
+    match junction.distance() {
+        None => "turned away",
+        Some(distance) if distance > 0.3 => "0.3 to 0.5 m before",
+        Some(distance) if distance > 0.1 => "0.1 to 0.3 m before",
+        Some(distance) if distance >= -0.1 => "within 0.1 m",
+        Some(_) => "farther past",
+    }
+}
+
+/// A group for each label, in the order of the labels.
+fn labelled(views: &[&Judged], by: &'static str, label: impl Fn(&Judged) -> String) -> Vec<Group> {
+    let mut groups = std::collections::BTreeMap::new();
+    for judged in views {
+        let (failed, of) = groups.entry(label(judged)).or_insert((0, 0));
+        *failed += usize::from(failed_at(judged));
+        *of += 1;
+    }
+    let group = |(what, (failed, of))| Group { by, what, failed, of, is_half: false };
+    groups.into_iter().map(group).collect()
+}
+
+/// Two groups for each number that differs between views: those above its median, and the others.
+fn halved(views: &[&Judged], numbers: impl Fn(&Judged) -> Vec<(&'static str, f64)>) -> Vec<Group> {
+    let numbers: Vec<Vec<_>> = views.iter().map(|judged| numbers(judged)).collect();
+    let names = numbers.iter().max_by_key(|numbers| numbers.len());
+    let names: Vec<_> = names.into_iter().flatten().map(|&(name, _)| name).collect();
+    let mut groups = Vec::new();
+    for name in names {
+        let with = views.iter().zip(&numbers).filter_map(|(judged, numbers)| {
+            let &(_, value) = numbers.iter().find(|(other, _)| *other == name)?;
+            Some((failed_at(judged), value))
+        });
+        let with: Vec<_> = with.collect();
+        let Some(median) = with.iter().map(|&(_, value)| value).collect::<Sample>().quantile(0.5)
+        else {
+            continue;
+        };
+        let half = |above: bool| {
+            let half = with.iter().filter(|&&(_, value)| (value > median) == above);
+            let failed = half.clone().filter(|(failed, _)| *failed).count();
+            (failed, half.count())
+        };
+        let (above, below) = (half(true), half(false));
+        if above.1 > 0 {
+            let group = |side, (failed, of)| Group {
+                by: name,
+                what: format!("{side} {}", rounded(median)),
+                failed,
+                of,
+                is_half: true,
+            };
+            groups.extend([group("up to", below), group("above", above)]);
+        }
+    }
+    groups
+}
+
+/// To three digits.
+fn rounded(value: f64) -> String {
+    let places = if value.abs() < 0.1 { 4 } else { 2 };
+    format!("{value:.places$}")
+}
+
+fn failed_at(judged: &Judged) -> bool {
+    judged.verdict != Verdict::Right
+}

@@ -1,0 +1,63 @@
+//! What an image shows, in a word: the rows and columns of a confusion matrix.
+
+use std::fmt;
+
+use toposlam_model::driving::{
+    scene::{Place, Scene},
+    visit::Form,
+};
+
+/// What an image shows, or what a scene says that it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Class {
+    /// A hallway.
+    Hallway,
+    /// A junction, as seen from its entry.
+    Junction(Form),
+    /// A junction whose doors are none of the [`FORMS`]'.
+    Other,
+    /// The image does not tell.
+    Unknown,
+}
+
+/// What junctions there are, as seen from their entry, and their names.
+pub const FORMS: [(Form, &str); 6] = [
+    (Form([true, false, false, false]), "dead-end"),
+    (Form([true, true, false, false]), "l-left"),
+    (Form([true, false, false, true]), "l-right"),
+    (Form([true, true, false, true]), "t-by-stem"),
+    (Form([true, true, true, false]), "t-stem-left"),
+    (Form([true, false, true, true]), "t-stem-right"),
+];
+
+impl Class {
+    /// The classes that a truth can be, and then those that only a scene can say.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let junctions = FORMS.into_iter().map(|(form, _)| Self::Junction(form));
+        [Self::Hallway].into_iter().chain(junctions).chain([Self::Other, Self::Unknown])
+    }
+
+    /// What a scene says.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        match &scene.place {
+            Place::Hallway(_) => Self::Hallway,
+            Place::Unknown(_) => Self::Unknown,
+            Place::Junction(junction) => Form::of(junction)
+                .filter(|form| FORMS.iter().any(|(known, _)| known == form))
+                .map_or(Self::Other, Self::Junction),
+        }
+    }
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let form = |form| FORMS.iter().find(|(known, _)| *known == form).map(|(_, name)| *name);
+        out.pad(match *self {
+            Self::Hallway => "hallway",
+            Self::Junction(junction) => form(junction).unwrap_or("other"),
+            Self::Other => "other",
+            Self::Unknown => "unknown",
+        })
+    }
+}

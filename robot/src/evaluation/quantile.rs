@@ -1,0 +1,88 @@
+//! How large errors are: quantiles of a sample.
+
+/// A quantile that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantile {
+    /// Half of the values are below it.
+    Median,
+    /// 95 of 100 are.
+    P95,
+    /// 99 of 100 are.
+    P99,
+    /// The greatest value.
+    Most,
+}
+
+impl Quantile {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Median, Self::P95, Self::P99, Self::Most];
+
+    /// Which part of the values is below it.
+    #[must_use]
+    pub fn part(self) -> f64 {
+        match self {
+            Self::Median => 0.5,
+            Self::P95 => 0.95,
+            Self::P99 => 0.99,
+            Self::Most => 1.0,
+        }
+    }
+}
+
+/// Measured values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Ascending.
+    values: Vec<f64>,
+}
+
+impl FromIterator<f64> for Sample {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        let mut values: Vec<_> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        Self { values }
+    }
+}
+
+impl Sample {
+    /// How many values there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The value below which this part of the values lies, from 0 to 1; `None` where there are no
+    /// values. Between two values it is interpolated (Hyndman and Fan 1996, definition 7, as in R
+    /// and NumPy).
+    #[must_use]
+    #[expect(clippy::cast_sign_loss, reason = "a place in a list is not negative")]
+    pub fn quantile(&self, part: f64) -> Option<f64> {
+        let at = part.clamp(0.0, 1.0) * (self.values.len().checked_sub(1)? as f64);
+        let (below, above) = (at.floor(), at.ceil());
+        let [low, high] = [below, above].map(|at| self.values[at as usize]);
+        Some(low + (high - low) * (at - below))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_definition_7() {
+        // quantile(c(15, 20, 35, 40, 50), c(0, 0.05, 0.4, 0.5, 0.95, 1)) in R.
+        let sample: Sample = [40.0, 15.0, 50.0, 35.0, 20.0].into_iter().collect();
+        let expected =
+            [(0.0, 15.0), (0.05, 16.0), (0.4, 29.0), (0.5, 35.0), (0.95, 48.0), (1.0, 50.0)];
+        for (part, value) in expected {
+            let found = sample.quantile(part).unwrap();
+            assert!((found - value).abs() < 1e-12, "{part}: {found}");
+        }
+    }
+
+    #[test]
+    fn nothing_has_no_quantile() {
+        assert_eq!(Sample::default().quantile(0.5), None);
+        assert_eq!([7.0].into_iter().collect::<Sample>().quantile(0.99), Some(7.0));
+    }
+}

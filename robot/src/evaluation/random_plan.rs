@@ -1,0 +1,257 @@
+//! Floor plans that nobody drew.
+//!
+//! Hallways grow along the lines of a grid whose distances are random, one after the other, never a
+//! fourth one at a junction. Then each straight run of hallways is moved aside a little. Lines of the
+//! grid are so far apart that all that follows stays two hallway widths apart; so every plan is valid.
+
+use rand::{RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::floor_plan::{Direction, FloorPlan, FloorPlanError};
+
+/// Between these widths hallways are, in metres.
+const WIDTHS: [f64; 2] = [1.4, 2.0];
+/// Between these numbers of lines a grid has in each direction.
+const LINES: [usize; 2] = [2, 5];
+/// Between these distances lines are more apart than they must be, in metres.
+const SPARE: [f64; 2] = [0.0, 4.0];
+/// So far may a straight run of hallways be moved aside, in metres.
+const ASIDE: f64 = 0.6;
+/// Up to so many pieces of hallway, each from one line of the grid to the next.
+const PIECES: [usize; 2] = [2, 16];
+
+/// A node of the grid: the numbers of its lines.
+type Node = [usize; 2];
+
+/// The floor plan of a seed: hallways 1.4 to 2 m wide, dead ends, Ls, Ts and often loops, on a grid or
+/// off it.
+///
+/// # Errors
+/// Never, as far as its tests show; a plan that is refused would be a defect here.
+pub fn random_plan(seed: u64) -> Result<FloorPlan, FloorPlanError> {
+    let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let width = chance.random_range(WIDTHS[0]..WIDTHS[1]);
+    let aside = if chance.random() { ASIDE } else { 0.0 };
+    let pieces = Pieces::grown(&mut chance);
+    let lines = pieces.size.map(|count| {
+        let mut at = 0.0;
+        let lines: Vec<f64> = (0..count)
+            .map(|_| {
+                at += 2.0 * width + 2.0 * aside + chance.random_range(SPARE[0]..SPARE[1]);
+                at
+            })
+            .collect();
+        lines
+    });
+    let nodes = pieces.junctions();
+    // For each axis a grid of how far what runs across it is moved along it: all of a straight run
+    // alike.
+    let mut moved = [vec![None; pieces.nodes()], vec![None; pieces.nodes()]];
+    let mut positions = Vec::new();
+    for &node in &nodes {
+        let position = [0, 1].map(|axis| {
+            let run = pieces.run(node, 1 - axis);
+            let by = &mut moved[axis][pieces.number(run)];
+            lines[axis][node[axis]]
+                + *by.get_or_insert_with(|| aside * chance.random_range(-1.0..=1.0))
+        });
+        positions.push(position);
+    }
+    let name =
+        |node: Node| format!("j{}", nodes.iter().position(|&other| other == node).unwrap_or(0));
+    let junctions: Vec<_> = nodes.iter().map(|&node| name(node)).zip(positions).collect();
+    let hallways: Vec<_> =
+        pieces.hallways().into_iter().map(|[from, to]| (name(from), name(to))).collect();
+    FloorPlan::new(width, &junctions, &hallways)
+}
+
+/// Pieces of hallway on a grid, each between neighbouring nodes.
+struct Pieces {
+    /// Lines that x counts, and that y counts.
+    size: [usize; 2],
+    /// For each node, whether a piece leads to the next node along x, and along y.
+    onwards: Vec<[bool; 2]>,
+}
+
+impl Pieces {
+    /// Connected pieces, with at most three at a node, and one at least.
+    fn grown(chance: &mut Xoshiro256PlusPlus) -> Self {
+        let size = [0; 2].map(|_| chance.random_range(LINES[0]..=LINES[1]));
+        let mut pieces = Self { size, onwards: vec![[false; 2]; size[0] * size[1]] };
+        let wanted = chance.random_range(PIECES[0]..=PIECES[1]);
+        let mut reached = vec![size.map(|count| chance.random_range(0..count))];
+        // Some tries lead nowhere; on a small grid there is no room for more.
+        for _ in 0..20 * wanted {
+            let Some(&from) = reached.choose(chance) else { break };
+            let Some(direction) = Direction::ALL.choose(chance) else { break };
+            let Some(to) = pieces.neighbour(from, *direction) else { continue };
+            if pieces.has(from, *direction) || pieces.degree(from) == 3 || pieces.degree(to) == 3 {
+                continue;
+            }
+            pieces.set(from, *direction);
+            if !reached.contains(&to) {
+                reached.push(to);
+            }
+            if pieces.count() == wanted {
+                break;
+            }
+        }
+        pieces
+    }
+
+    fn nodes(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    fn number(&self, [x, y]: Node) -> usize {
+        y * self.size[0] + x
+    }
+
+    fn count(&self) -> usize {
+        self.onwards.iter().flatten().filter(|&&there| there).count()
+    }
+
+    fn neighbour(&self, [x, y]: Node, direction: Direction) -> Option<Node> {
+        let node = match direction {
+            Direction::North => [x, y + 1],
+            Direction::East => [x + 1, y],
+            Direction::South => [x, y.checked_sub(1)?],
+            Direction::West => [x.checked_sub(1)?, y],
+        };
+        (node[0] < self.size[0] && node[1] < self.size[1]).then_some(node)
+    }
+
+    /// The node before a piece, and its axis.
+    fn piece(&self, node: Node, direction: Direction) -> Option<(usize, usize)> {
+        let neighbour = self.neighbour(node, direction)?;
+        let axis = usize::from(matches!(direction, Direction::North | Direction::South));
+        let before = matches!(direction, Direction::North | Direction::East);
+        Some((self.number(if before { node } else { neighbour }), axis))
+    }
+
+    fn has(&self, node: Node, direction: Direction) -> bool {
+        self.piece(node, direction).is_some_and(|(before, axis)| self.onwards[before][axis])
+    }
+
+    fn set(&mut self, node: Node, direction: Direction) {
+        if let Some((before, axis)) = self.piece(node, direction) {
+            self.onwards[before][axis] = true;
+        }
+    }
+
+    fn degree(&self, node: Node) -> usize {
+        Direction::ALL.iter().filter(|&&direction| self.has(node, direction)).count()
+    }
+
+    /// Whether hallways end at a node: there are some, and they do not just pass.
+    fn is_junction(&self, node: Node) -> bool {
+        let straight = Direction::ALL
+            .iter()
+            .any(|&direction| self.has(node, direction) && self.has(node, direction.reversed()));
+        match self.degree(node) {
+            0 => false,
+            2 => !straight,
+            _ => true,
+        }
+    }
+
+    fn junctions(&self) -> Vec<Node> {
+        let nodes = (0..self.nodes()).map(|number| [number % self.size[0], number / self.size[0]]);
+        nodes.filter(|&node| self.is_junction(node)).collect()
+    }
+
+    /// The first node of the straight run of pieces along an axis in which a node lies: the node
+    /// itself, where none leads to it.
+    fn run(&self, mut node: Node, axis: usize) -> Node {
+        let back = [Direction::West, Direction::South][axis];
+        while self.has(node, back)
+            && let Some(before) = self.neighbour(node, back)
+        {
+            node = before;
+        }
+        node
+    }
+
+    /// The junctions at the ends of each hallway.
+    fn hallways(&self) -> Vec<[Node; 2]> {
+        let mut hallways = Vec::new();
+        for from in self.junctions() {
+            for direction in [Direction::East, Direction::North] {
+                let mut to = from;
+                while self.has(to, direction)
+                    && let Some(next) = self.neighbour(to, direction)
+                {
+                    to = next;
+                    if self.is_junction(to) {
+                        break;
+                    }
+                }
+                if to != from {
+                    hallways.push([from, to]);
+                }
+            }
+        }
+        hallways
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::{prelude::*, test_runner::Config};
+    use toposlam_model::floor_plan::JunctionKind;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(Config { cases: 4000, failure_persistence: None, ..Config::default() })]
+
+        #[test]
+        fn every_random_plan_is_valid(seed: u64) {
+            let plan = random_plan(seed);
+            prop_assert!(plan.is_ok(), "{:?}", plan);
+            let width = plan.unwrap().hallway_width();
+            prop_assert!((WIDTHS[0]..WIDTHS[1]).contains(&width));
+        }
+    }
+
+    #[test]
+    fn a_seed_is_a_plan() {
+        assert_eq!(random_plan(7), random_plan(7));
+        assert_ne!(random_plan(7), random_plan(8));
+    }
+
+    #[test]
+    fn there_is_something_of_everything() {
+        let plans: Vec<_> = (0..200).map(|seed| random_plan(seed).unwrap()).collect();
+        let with = |kind| {
+            let has = |plan: &&FloorPlan| plan.junctions().iter().any(|found| found.kind == kind);
+            plans.iter().filter(has).count()
+        };
+        assert!(with(JunctionKind::DeadEnd) > 100);
+        assert!(with(JunctionKind::L) > 100);
+        assert!(with(JunctionKind::T) > 100);
+        let loops = |plan: &&FloorPlan| plan.graph().edge_count() >= plan.graph().vertex_count();
+        assert!(plans.iter().filter(loops).count() > 50);
+        let lengths = || {
+            plans.iter().flat_map(|plan| {
+                plan.hallways().iter().map(|hallway| {
+                    let [one, other] =
+                        [hallway.from, hallway.to].map(|end| plan.junction(end).position);
+                    (one[0] - other[0]).hypot(one[1] - other[1]) / plan.hallway_width()
+                })
+            })
+        };
+        assert!(lengths().any(|length| length < 2.1), "a shortest hallway");
+        assert!(lengths().any(|length| length > 8.0), "a long one");
+        // Off the grid: positions that differ by less than a line.
+        let close = |plan: &&FloorPlan| {
+            let junctions = plan.junctions();
+            junctions.iter().any(|one| {
+                junctions.iter().any(|other| {
+                    let apart = (one.position[0] - other.position[0]).abs();
+                    apart > 0.01 && apart < 1.2
+                })
+            })
+        };
+        assert!(plans.iter().filter(close).count() > 20);
+    }
+}

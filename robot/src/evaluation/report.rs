@@ -1,0 +1,388 @@
+//! What was measured on many views and visits, and what is asked of it.
+
+use std::collections::BTreeMap;
+
+use toposlam_model::{
+    driving::scene::{HallwayView, JunctionView, Place},
+    percept::Sighting,
+};
+
+use super::{
+    bound::upper_bound,
+    class::Class,
+    judging::{Calibration, Judged, JudgedVisit, Zone},
+    quantile::{Quantile, Sample},
+    truth::{HallwayTruth, JunctionTruth, Truth},
+    verdict::{MarkerVerdict, Verdict, hallway_errors, junction_errors},
+};
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Whether the camera was as its calibration says.
+    pub calibration: Calibration,
+    /// How often something went wrong.
+    pub rates: Vec<Rate>,
+    /// How large errors were.
+    pub errors: Vec<Errors>,
+    /// For each class that was true, how often each class was said; of hallways, and of junctions up
+    /// to their turning points.
+    pub confusion: BTreeMap<Class, BTreeMap<Class, usize>>,
+}
+
+/// What a figure is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Subject {
+    /// Views in hallways.
+    Hallway,
+    /// Views between hallways and junctions.
+    Between,
+    /// Views of junctions up to their turning points.
+    Junction,
+    /// Views of junctions from beyond.
+    Past,
+    /// Views of junctions by a robot that has turned.
+    Turned,
+    /// The marker, in single views.
+    Marker,
+    /// Visits.
+    Visit,
+}
+
+/// How often something that should not happen happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// What it is about.
+    pub subject: Subject,
+    /// What happened, in a few words.
+    pub what: &'static str,
+    /// How often it did.
+    pub seen: usize,
+    /// In how many cases.
+    pub cases: usize,
+    /// As a share of the cases, how often it may.
+    pub limit: Option<f64>,
+}
+
+/// How large the errors of something were.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// What it is about.
+    pub subject: Subject,
+    /// Of what.
+    pub what: &'static str,
+    /// In which unit.
+    pub unit: Unit,
+    /// The errors, in metres or radians.
+    pub sample: Sample,
+    /// Quantiles that may not be larger than so much of the unit.
+    pub limits: Vec<(Quantile, f64)>,
+}
+
+/// A unit for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Of radians.
+    Degrees,
+    /// Of metres.
+    Centimetres,
+}
+
+/// Whether what is asked is so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Standing {
+    /// It is, or nothing is asked.
+    Met,
+    /// There was nothing to measure.
+    Empty,
+    /// It is not.
+    Missed,
+}
+
+/// With a wrong calibration, so many times as much may go wrong.
+const LENIENCE: f64 = 3.0;
+
+impl Report {
+    /// What was measured on these views and visits.
+    #[must_use]
+    pub fn of(views: &[Judged], visits: &[JudgedVisit], calibration: Calibration) -> Self {
+        let mut rates = [places(views), markers(views), of_visits(visits)].concat();
+        let mut errors = Vec::new();
+        match calibration {
+            Calibration::Right => errors = all_errors(views),
+            Calibration::Wrong => {
+                // Kind and entry only.
+                rates.retain(|rate| rate.subject != Subject::Marker);
+                for rate in &mut rates {
+                    let placed = rate.what == NOT_DECIDED || rate.what == DECIDED_WRONGLY;
+                    let asked = rate.subject != Subject::Visit || placed;
+                    rate.limit = rate.limit.filter(|_| asked).map(|limit| LENIENCE * limit);
+                }
+            }
+        }
+        let mut confusion: BTreeMap<_, BTreeMap<_, _>> = BTreeMap::new();
+        for judged in views {
+            if let (Zone::Hallway | Zone::Before, Some(class)) = (judged.zone(), judged.class()) {
+                let said = confusion.entry(class).or_default();
+                *said.entry(Class::of(&judged.scene)).or_insert(0) += 1;
+            }
+        }
+        Self { calibration, rates, errors, confusion }
+    }
+
+    /// Whether all is as is asked.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        let rates = self.rates.iter().map(Rate::standing);
+        let errors = self.errors.iter().map(Errors::standing);
+        rates.chain(errors).max().unwrap_or(Standing::Empty)
+    }
+}
+
+/// What is counted of views in some zone: its name, what counts, and how often it may happen.
+type Counted = (&'static str, fn(&Judged) -> bool, Option<f64>);
+
+const NOT_DECIDED: &str = "not decided";
+const DECIDED_WRONGLY: &str = "kind or entry wrong";
+
+fn places(views: &[Judged]) -> Vec<Rate> {
+    let not_right: fn(&Judged) -> bool = |judged| judged.verdict != Verdict::Right;
+    let wrong: fn(&Judged) -> bool = |judged| judged.verdict.is_wrong();
+    let zones: [(Zone, Subject, Vec<Counted>); 5] = [
+        (
+            Zone::Hallway,
+            Subject::Hallway,
+            vec![
+                ("not called hallway", not_right, Some(0.005)),
+                ("called junction", wrong, Some(0.0005)),
+            ],
+        ),
+        (
+            Zone::Before,
+            Subject::Junction,
+            vec![
+                ("kind and entry not right", not_right, Some(0.01)),
+                ("kind or entry wrong", wrong, Some(0.001)),
+            ],
+        ),
+        (
+            Zone::Between,
+            Subject::Between,
+            vec![
+                ("unknown", |judged| judged.verdict == Verdict::Unknown, None),
+                ("kind or entry wrong", wrong, None),
+            ],
+        ),
+        (
+            Zone::Past,
+            Subject::Past,
+            vec![
+                ("kind and entry not right", not_right, None),
+                ("kind or entry wrong", wrong, None),
+            ],
+        ),
+        (
+            Zone::Turned,
+            Subject::Turned,
+            vec![("kind not right", not_right, None), ("kind wrong", wrong, None)],
+        ),
+    ];
+    let rates = zones.into_iter().flat_map(|(zone, subject, counted)| {
+        let there: Vec<_> = views.iter().filter(|judged| judged.zone() == zone).collect();
+        let rate = move |(what, counts, limit): Counted| Rate {
+            subject,
+            what,
+            seen: there.iter().filter(|judged| counts(judged)).count(),
+            cases: there.len(),
+            limit,
+        };
+        counted.into_iter().map(rate).collect::<Vec<_>>()
+    });
+    rates.collect()
+}
+
+fn markers(views: &[Judged]) -> Vec<Rate> {
+    let rate = |what, limit, counted: &dyn Fn(&Judged) -> Option<bool>| {
+        let cases: Vec<_> = views.iter().filter_map(counted).collect();
+        let seen = cases.iter().filter(|&&seen| seen).count();
+        Rate { subject: Subject::Marker, what, seen, cases: cases.len(), limit }
+    };
+    vec![
+        rate("missed, 0.2 to 0.8 m before it", None, &|judged| {
+            judged.marker_ahead().map(|_| judged.marker == MarkerVerdict::NotSeen)
+        }),
+        rate("seen where it is not", Some(0.0), &|judged| {
+            Some(judged.marker == MarkerVerdict::Phantom)
+        }),
+        rate("door wrong, 0.2 to 0.8 m before it", None, &|judged| {
+            let MarkerVerdict::Seen(Some(right)) = judged.marker else { return None };
+            judged.marker_ahead().map(|_| !right)
+        }),
+    ]
+}
+
+fn of_visits(visits: &[JudgedVisit]) -> Vec<Rate> {
+    let rate = |what, limit, counted: &dyn Fn(&JudgedVisit) -> Option<bool>| {
+        let cases: Vec<_> = visits.iter().filter_map(counted).collect();
+        let seen = cases.iter().filter(|&&seen| seen).count();
+        Rate { subject: Subject::Visit, what, seen, cases: cases.len(), limit }
+    };
+    // Of the marker a visit tells once it is decided.
+    let sightings = |visit: &JudgedVisit| {
+        let (_, percept) = visit.decided.filter(|_| !visit.is_wrong())?;
+        Some((visit.percept.sighting, percept.sighting))
+    };
+    vec![
+        rate(NOT_DECIDED, None, &|visit| Some(visit.decided.is_none())),
+        rate(DECIDED_WRONGLY, Some(0.0001), &|visit| Some(visit.is_wrong())),
+        rate("marker missed", Some(0.0), &|visit| {
+            let (there, seen) = sightings(visit)?;
+            (there != Sighting::Nothing).then_some(seen == Sighting::Nothing)
+        }),
+        rate("marker seen where it is not", Some(0.0), &|visit| {
+            let (there, seen) = sightings(visit)?;
+            (there == Sighting::Nothing).then_some(seen != Sighting::Nothing)
+        }),
+        rate("marker's door wrong", Some(0.0), &|visit| {
+            let (there, seen) = sightings(visit)?;
+            let both = there != Sighting::Nothing && seen != Sighting::Nothing;
+            both.then_some(there != seen)
+        }),
+    ]
+}
+
+fn all_errors(views: &[Judged]) -> Vec<Errors> {
+    let hallways: Vec<_> =
+        views.iter().filter_map(hallway).map(|(truth, view)| hallway_errors(truth, view)).collect();
+    let junctions: Vec<_> = views
+        .iter()
+        .filter(|judged| judged.zone() == Zone::Before)
+        .filter_map(junction)
+        .filter_map(|(truth, view)| junction_errors(truth, view))
+        .collect();
+    let lines = || junctions.iter().flat_map(|errors| &errors.lines);
+    let of = |subject, what, unit, sample, limits: &[(Quantile, f64)]| Errors {
+        subject,
+        what,
+        unit,
+        sample,
+        limits: limits.to_vec(),
+    };
+    vec![
+        of(
+            Subject::Hallway,
+            "direction",
+            Unit::Degrees,
+            hallways.iter().map(|errors| errors.heading).collect(),
+            &[(Quantile::Median, 0.5), (Quantile::P99, 4.0)],
+        ),
+        of(
+            Subject::Hallway,
+            "distance to a side",
+            Unit::Centimetres,
+            hallways.iter().flat_map(|errors| errors.sides).collect(),
+            &[(Quantile::Median, 2.0)],
+        ),
+        of(
+            Subject::Junction,
+            "place of a centre line",
+            Unit::Centimetres,
+            lines().map(|&(off, _)| off).collect(),
+            &[(Quantile::P95, 5.0)],
+        ),
+        of(
+            Subject::Junction,
+            "direction of a centre line",
+            Unit::Degrees,
+            lines().map(|&(_, turned)| turned).collect(),
+            &[(Quantile::P95, 3.0)],
+        ),
+        of(
+            Subject::Junction,
+            "turning point",
+            Unit::Centimetres,
+            junctions.iter().map(|errors| errors.turning_point).collect(),
+            &[],
+        ),
+    ]
+}
+
+/// The truth and the view of a hallway that was called one.
+fn hallway(judged: &Judged) -> Option<(&HallwayTruth, &HallwayView)> {
+    match (&judged.truth, &judged.scene.place) {
+        (Truth::Hallway(truth), Place::Hallway(view)) => Some((truth, view)),
+        _ => None,
+    }
+}
+
+/// The truth and the view of a junction that was called one.
+fn junction(judged: &Judged) -> Option<(&JunctionTruth, &JunctionView)> {
+    match (&judged.truth, &judged.scene.place) {
+        (Truth::Junction(truth), Place::Junction(view)) => Some((truth, view)),
+        _ => None,
+    }
+}
+
+impl Rate {
+    /// How often it happened, as a share of the cases; `None` without any.
+    #[must_use]
+    pub fn rate(&self) -> Option<f64> {
+        (self.cases > 0).then(|| self.seen as f64 / self.cases as f64)
+    }
+
+    /// How often it happens at most, with a confidence of 95 %.
+    #[must_use]
+    pub fn upper_bound(&self) -> f64 {
+        upper_bound(self.seen, self.cases)
+    }
+
+    /// Whether it happened as seldom as is asked.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        match (self.limit, self.rate()) {
+            (None, _) => Standing::Met,
+            (Some(_), None) => Standing::Empty,
+            (Some(limit), Some(rate)) if rate <= limit => Standing::Met,
+            (Some(_), Some(_)) => Standing::Missed,
+        }
+    }
+}
+
+impl Errors {
+    /// A quantile of the errors, in the unit.
+    #[must_use]
+    pub fn quantile(&self, quantile: Quantile) -> Option<f64> {
+        let factor = match self.unit {
+            Unit::Degrees => 1.0_f64.to_degrees(),
+            Unit::Centimetres => 100.0,
+        };
+        self.sample.quantile(quantile.part()).map(|value| value * factor)
+    }
+
+    /// Whether the errors are as small as is asked.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        let standing = self.limits.iter().map(|&(quantile, limit)| match self.quantile(quantile) {
+            None => Standing::Empty,
+            Some(error) if error <= limit => Standing::Met,
+            Some(_) => Standing::Missed,
+        });
+        standing.max().unwrap_or(Standing::Met)
+    }
+}
+
+impl Subject {
+    /// In a word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hallway => "hallway",
+            Self::Between => "between",
+            Self::Junction => "junction",
+            Self::Past => "past",
+            Self::Turned => "turned",
+            Self::Marker => "marker",
+            Self::Visit => "visit",
+        }
+    }
+}

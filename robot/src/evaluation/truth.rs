@@ -1,0 +1,357 @@
+//! What one image should tell at a pose: the truth of the floor plan.
+//!
+//! Within [`JUNCTION_WITHIN`] of a turning point the robot is at the junction, from [`HALLWAY_FROM`] on
+//! it is in the hallway; between them either answer is right, if it is the right junction. Distances
+//! are along the hallway. Relative positions and angles are a scene's.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use toposlam_model::{
+    driving::{
+        scene::{undirected, wrapped},
+        visit::Form,
+    },
+    embedded_graph::{Dart, Vertex},
+    floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
+    percept::Door,
+};
+
+use crate::simulator::Pose;
+
+/// So near a turning point the robot is at the junction, in metres.
+pub const JUNCTION_WITHIN: f64 = 0.5;
+/// So far from any turning point the robot is in the hallway, in metres.
+pub const HALLWAY_FROM: f64 = 1.5;
+
+/// What is true at a pose.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Truth {
+    /// In a hallway, far from any junction.
+    Hallway(HallwayTruth),
+    /// In a hallway, not far from these junctions.
+    Between(HallwayTruth, Vec<JunctionTruth>),
+    /// At a junction.
+    Junction(JunctionTruth),
+}
+
+/// How the robot lies in a hallway.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HallwayTruth {
+    /// The hallway's direction, in (-pi/2, pi/2].
+    pub heading: f64,
+    /// From the robot's centre to the wall plane on its left, in metres.
+    pub left: f64,
+    /// The same on its right.
+    pub right: f64,
+}
+
+/// How a junction lies before the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JunctionTruth {
+    /// Which one it is.
+    pub vertex: Vertex,
+    /// Dead end, L or T.
+    pub kind: JunctionKind,
+    /// What it looks like from the door behind the robot; `None` where there is none.
+    pub form: Option<Form>,
+    /// The directions of the doors, clockwise from the one behind the robot, or, where there is
+    /// none, from any.
+    pub doors: Vec<f64>,
+    /// The turning point, through which all centre lines go.
+    pub turning_point: [f64; 2],
+}
+
+/// Where the marker lies before the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerTruth {
+    /// Its middle.
+    pub position: [f64; 2],
+    /// The direction of its longer side, in (-pi/2, pi/2].
+    pub axis: f64,
+    /// The direction of the door that it points along.
+    pub points: f64,
+    /// The number of that door, clockwise from the door behind the robot; `None` where there is
+    /// no door behind it.
+    pub door: Option<Door>,
+    /// How far its turning point is along the centre line by which the robot comes, positive before
+    /// it; `None` where there is no door behind the robot.
+    pub distance: Option<f64>,
+}
+
+impl Truth {
+    /// What is true at a pose; `None` off the floor.
+    #[must_use]
+    pub fn at(plan: &FloorPlan, pose: Pose) -> Option<Self> {
+        let on_floor = plan.hallways().iter().zip(plan.floor());
+        let stretches = on_floor.filter(|(_, floor)| floor.holds(pose.position));
+        let stretches = stretches.map(|(&hallway, _)| Stretch::new(plan, hallway, pose.position));
+        let stretch = stretches.min_by(|one, other| one.off().total_cmp(&other.off()))?;
+        let near = |within: f64| {
+            let ends = stretch.ends().into_iter().filter(move |&(_, distance)| distance <= within);
+            ends.map(|(vertex, _)| JunctionTruth::of(plan, vertex, pose))
+        };
+        if let Some(junction) = near(JUNCTION_WITHIN).next() {
+            return Some(Self::Junction(junction));
+        }
+        let hallway = stretch.truth(plan, pose);
+        let junctions: Vec<_> = near(HALLWAY_FROM.next_down()).collect();
+        Some(if junctions.is_empty() {
+            Self::Hallway(hallway)
+        } else {
+            Self::Between(hallway, junctions)
+        })
+    }
+}
+
+/// A hallway, and a position in it.
+struct Stretch {
+    hallway: Hallway,
+    direction: Direction,
+    /// Along the hallway from its first junction, in metres.
+    along: f64,
+    /// To the left of its middle, looking along its direction.
+    aside: f64,
+    length: f64,
+}
+
+impl Stretch {
+    fn new(plan: &FloorPlan, hallway: Hallway, position: [f64; 2]) -> Self {
+        let [from, to] = [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position);
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let leads = |dart: &Dart| plan.graph().vertex(plan.graph().opposite(*dart)) == hallway.to;
+        // Two junctions have at most one hallway between them.
+        let dart = plan.graph().darts_of(hallway.from).find(leads);
+        let direction = dart.map_or(Direction::North, |dart| plan.direction(dart));
+        let [x, y] = direction.vector();
+        let [east, north] = [position[0] - from[0], position[1] - from[1]];
+        Self {
+            hallway,
+            direction,
+            along: east * x + north * y,
+            aside: north * x - east * y,
+            length,
+        }
+    }
+
+    /// How far the position is from the middle line between the turning points, along an axis.
+    fn off(&self) -> f64 {
+        let beyond = (-self.along).max(self.along - self.length);
+        self.aside.abs().max(beyond)
+    }
+
+    /// The junctions at its ends, and how far their turning points are, along an axis.
+    fn ends(&self) -> [(Vertex, f64); 2] {
+        let Hallway { from, to } = self.hallway;
+        [(from, self.along), (to, self.length - self.along)]
+            .map(|(vertex, distance)| (vertex, distance.abs().max(self.aside.abs())))
+    }
+
+    fn truth(&self, plan: &FloorPlan, pose: Pose) -> HallwayTruth {
+        let onwards = wrapped(angle(self.direction) - pose.heading);
+        let heading = undirected(onwards);
+        let half = plan.hallway_width() / 2.0;
+        let along = (onwards - heading).cos().signum();
+        HallwayTruth { heading, left: half - along * self.aside, right: half + along * self.aside }
+    }
+}
+
+impl JunctionTruth {
+    /// How a junction lies before a robot.
+    #[must_use]
+    pub fn of(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
+        let junction = plan.junction(vertex);
+        let mut directions: Vec<_> =
+            plan.graph().darts_of(vertex).map(|dart| plan.direction(dart)).collect();
+        let relative_angle = |&direction: &Direction| wrapped(angle(direction) - pose.heading);
+        let is_behind = |door: &Direction| wrapped(relative_angle(door) - PI).abs() <= FRAC_PI_4;
+        let behind = directions.iter().position(is_behind);
+        directions.rotate_left(behind.unwrap_or(0));
+        Self {
+            vertex,
+            kind: junction.kind,
+            form: behind.map(|_| form(&directions)),
+            doors: directions.iter().map(relative_angle).collect(),
+            turning_point: relative(junction.position, pose),
+        }
+    }
+
+    /// How far the turning point is along the entry centre line, positive before it; `None` where
+    /// there is no door behind the robot.
+    #[must_use]
+    pub fn distance(&self) -> Option<f64> {
+        let [x, y] = self.turning_point;
+        let inwards = self.doors.first()? + PI;
+        self.form.map(|_| x * inwards.cos() + y * inwards.sin())
+    }
+}
+
+impl MarkerTruth {
+    /// Where a marker lies before a robot that is centred on the turning point of the dart's vertex
+    /// and lies along the dart.
+    #[must_use]
+    pub fn of(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
+        let junction = JunctionTruth::of(plan, plan.graph().vertex(dart), pose);
+        let points = wrapped(angle(plan.direction(dart)) - pose.heading);
+        let is_it = |&door: &f64| wrapped(door - points).abs() < FRAC_PI_4;
+        let door = junction.doors.iter().position(is_it);
+        Self {
+            position: junction.turning_point,
+            axis: undirected(points),
+            points,
+            door: junction.form.and(door).map(|door| Door(door as u32)),
+            distance: junction.distance(),
+        }
+    }
+}
+
+/// What a junction looks like from the first of its doors, which stand clockwise.
+fn form(doors: &[Direction]) -> Form {
+    let mut form = [false; 4];
+    for &door in doors {
+        form[(door as usize + 4 - doors[0] as usize) % 4] = true;
+    }
+    Form(form)
+}
+
+/// A direction, in radians counter-clockwise from east.
+#[must_use]
+pub fn angle(direction: Direction) -> f64 {
+    match direction {
+        Direction::North => FRAC_PI_2,
+        Direction::East => 0.0,
+        Direction::South => -FRAC_PI_2,
+        Direction::West => PI,
+    }
+}
+
+/// A position of the plan as the robot has it: x ahead, y to the left.
+fn relative(position: [f64; 2], pose: Pose) -> [f64; 2] {
+    let [east, north] = [position[0] - pose.position[0], position[1] - pose.position[1]];
+    let (sine, cosine) = pose.heading.sin_cos();
+    [east * cosine + north * sine, north * cosine - east * sine]
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::format::world_file;
+
+    use super::*;
+    use crate::evaluation::class::Class;
+
+    /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
+    fn shape_6() -> FloorPlan {
+        let text = include_bytes!("../../../worlds/shape-6.toml");
+        world_file::read(text).unwrap().plan.unwrap()
+    }
+
+    fn at(x: f64, y: f64, degrees: f64) -> Truth {
+        Truth::at(&shape_6(), Pose { position: [x, y], heading: degrees.to_radians() }).unwrap()
+    }
+
+    fn junction(truth: Truth) -> JunctionTruth {
+        match truth {
+            Truth::Junction(junction) => junction,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[track_caller]
+    fn close(found: &[f64], expected: &[f64]) {
+        assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+        for (one, other) in found.iter().zip(expected) {
+            assert!((one - other).abs() < 1e-9, "{found:?} {expected:?}");
+        }
+    }
+
+    #[test]
+    fn off_the_floor_nothing_is_true() {
+        let pose = Pose { position: [2.0, 2.0], heading: 0.0 };
+        assert_eq!(Truth::at(&shape_6(), pose), None);
+    }
+
+    #[test]
+    fn in_a_hallway_the_walls_are_told() {
+        // To the west in the hallway from the tee to the ne corner, 0.1 m north of its middle.
+        let Truth::Hallway(truth) = at(2.0, 4.1, 190.0) else { panic!("in the middle") };
+        close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), 0.9, 0.7]);
+        let Truth::Hallway(truth) = at(2.0, 4.1, 10.0) else { panic!("in the middle") };
+        close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), 0.7, 0.9]);
+    }
+
+    #[test]
+    fn half_a_metre_and_a_metre_and_a_half_decide() {
+        assert!(matches!(at(0.5, 4.0, 0.0), Truth::Junction(_)));
+        let Truth::Between(_, junctions) = at(0.501, 4.0, 0.0) else { panic!() };
+        assert_eq!(junctions.len(), 1);
+        assert!(matches!(at(1.499, 4.0, 0.0), Truth::Between(..)));
+        assert!(matches!(at(1.5, 4.0, 0.0), Truth::Hallway(_)));
+        assert!(matches!(at(2.5, 4.3, 0.0), Truth::Hallway(_)));
+        assert!(matches!(at(2.501, 4.3, 0.0), Truth::Between(..)));
+    }
+
+    #[test]
+    fn a_short_hallway_is_between_two_junctions() {
+        let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [2.8, 0.0])];
+        let plan = FloorPlan::new(1.4, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
+        let truth = Truth::at(&plan, Pose { position: [1.4, 0.0], heading: 0.0 }).unwrap();
+        let Truth::Between(_, junctions) = truth else { panic!("{truth:?}") };
+        let distances: Vec<_> = junctions.iter().map(JunctionTruth::distance).collect();
+        // The robot comes from a, whose only door is ahead.
+        assert_eq!(distances, [None, Some(1.4)]);
+    }
+
+    #[test]
+    fn doors_are_told_clockwise_from_the_one_behind() {
+        let (left, ahead, right, behind) = (FRAC_PI_2, 0.0, -FRAC_PI_2, PI);
+        let cases = [
+            (3.6, 8.0, 0.0, vec![behind], "dead-end"),
+            (0.4, 8.0, 180.0, vec![behind, left], "l-left"),
+            (0.0, 7.6, 90.0, vec![behind, right], "l-right"),
+            (0.4, 4.0, 180.0, vec![behind, left, right], "t-by-stem"),
+            (0.0, 3.6, 90.0, vec![behind, ahead, right], "t-stem-right"),
+            (0.0, 4.4, 270.0, vec![behind, left, ahead], "t-stem-left"),
+        ];
+        for (x, y, heading, doors, name) in cases {
+            let junction = junction(at(x, y, heading));
+            let found: Vec<_> = junction.doors.iter().map(|door| wrapped(door + 1e-12)).collect();
+            let expected: Vec<_> = doors.iter().map(|door| wrapped(door + 1e-12)).collect();
+            close(&found, &expected);
+            assert_eq!(Class::Junction(junction.form.unwrap()).to_string(), name);
+            close(&[junction.distance().unwrap()], &[0.4]);
+            close(&junction.turning_point, &[0.4, 0.0]);
+        }
+    }
+
+    #[test]
+    fn the_turning_point_is_behind_once_it_is_passed() {
+        let junction = junction(at(-0.3, 4.1, 170.0));
+        close(&[junction.distance().unwrap()], &[-0.3]);
+        let turned = 10_f64.to_radians();
+        // It is a little to the left, and the robot looks a little to the right.
+        let (sine, cosine) = turned.sin_cos();
+        let expected = [-0.3 * cosine - 0.1 * sine, -0.3 * sine + 0.1 * cosine];
+        close(&junction.turning_point, &expected);
+    }
+
+    #[test]
+    fn a_robot_that_has_turned_has_no_door_behind_it() {
+        let junction = junction(at(0.3, 8.0, 0.0));
+        assert_eq!((junction.form, junction.distance()), (None, None));
+        assert_eq!(junction.kind, JunctionKind::L);
+    }
+
+    #[test]
+    fn a_marker_points_along_a_door() {
+        let plan = shape_6();
+        let corner = Vertex(1);
+        // Doors of the corner, clockwise from north: east, south. The robot comes from the east.
+        let pose = Pose { position: [0.5, 8.0], heading: PI };
+        for (dart, door, axis) in [(0, 0, 0.0), (1, 1, FRAC_PI_2)] {
+            let dart = plan.graph().dart(corner, dart).unwrap();
+            let marker = MarkerTruth::of(&plan, dart, pose);
+            assert_eq!(marker.door, Some(Door(door)));
+            close(&[marker.axis.abs(), marker.distance.unwrap()], &[axis, 0.5]);
+            close(&marker.position, &[0.5, 0.0]);
+        }
+    }
+}

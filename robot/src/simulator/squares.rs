@@ -1,0 +1,107 @@
+//! Squares of the floor, and what lies in each: so that nobody has to look at everything.
+
+use toposlam_model::floor_plan::Rectangle;
+
+/// For each square of a mesh, the numbers of the rectangles that reach into it.
+#[derive(Clone, Debug)]
+pub(super) struct Squares {
+    least: [f32; 2],
+    per_metre: f32,
+    columns: usize,
+    rows: usize,
+    /// Where the numbers of each square begin in `numbers`.
+    begin: Vec<u32>,
+    numbers: Vec<u32>,
+}
+
+/// The least corner of all floors, and the size of their surroundings.
+pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
+    let least = |axis: usize| floors.iter().map(|floor| floor.least[axis]).fold(f64::MAX, f64::min);
+    let greatest =
+        |axis: usize| floors.iter().map(|floor| floor.greatest[axis]).fold(f64::MIN, f64::max);
+    ([least(0), least(1)], [greatest(0) - least(0), greatest(1) - least(1)])
+}
+
+/// The side of a mesh's squares: that wished for, unless there would be millions of them.
+pub(super) fn side(wished: f64, size: [f64; 2]) -> f64 {
+    wished.max((size[0] * size[1] / 2.5e5).sqrt()).max(size[0].max(size[1]) / 1e5)
+}
+
+impl Squares {
+    /// The rectangles on these floors.
+    pub(super) fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
+        let (least, size) = extent(floors);
+        let side = side(wished, size);
+        let [columns, rows] = size.map(|length| (length / side) as usize + 1);
+        let mut squares = vec![Vec::new(); columns * rows];
+        for (number, rectangle) in rectangles.iter().enumerate() {
+            let reach = |axis: usize, count: usize| {
+                // Wider by what rounding may do to a place.
+                let at = |at: f64| ((at - least[axis]) / side).clamp(0.0, (count - 1) as f64);
+                at(rectangle.least[axis] - 1e-3) as usize
+                    ..=at(rectangle.greatest[axis] + 1e-3) as usize
+            };
+            for row in reach(1, rows) {
+                for column in reach(0, columns) {
+                    squares[row * columns + column].push(number as u32);
+                }
+            }
+        }
+        let mut begin = vec![0];
+        begin.extend(squares.iter().scan(0, |sum, numbers| {
+            *sum += numbers.len() as u32;
+            Some(*sum)
+        }));
+        Self {
+            least: least.map(|at| at as f32),
+            per_metre: (1.0 / side) as f32,
+            columns,
+            rows,
+            begin,
+            numbers: squares.concat(),
+        }
+    }
+
+    /// The numbers of all rectangles that hold a place, and perhaps of others.
+    #[inline]
+    pub(super) fn at(&self, place: [f32; 2]) -> &[u32] {
+        let [column, row] = [0, 1].map(|axis| {
+            ((place[axis] - self.least[axis]) * self.per_metre).max(0.0) as i32 as usize
+        });
+        if column >= self.columns || row >= self.rows {
+            return &[];
+        }
+        let square = row * self.columns + column;
+        &self.numbers[self.begin[square] as usize..self.begin[square + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_holds_a_place_is_in_its_square() {
+        let rectangle = |x: f64, y: f64, width: f64, height: f64| Rectangle {
+            least: [x, y],
+            greatest: [x + width, y + height],
+        };
+        let floors = [rectangle(-3.0, -2.0, 9.0, 2.0), rectangle(2.0, -2.0, 2.0, 11.0)];
+        let rectangles: Vec<_> = (0..40)
+            .map(|number| {
+                let number = f64::from(number);
+                rectangle(-4.0 + 0.29 * number, -3.0 + 0.31 * number, 0.1 + 0.05 * number, 0.2)
+            })
+            .collect();
+        let squares = Squares::new(&floors, 0.25, &rectangles);
+        for (x, y) in (0..90).flat_map(|x| (0..110).map(move |y| (x, y))) {
+            let place = [-3.0 + 0.1 * x as f32, -2.0 + 0.1 * y as f32];
+            let found = squares.at(place);
+            for (number, rectangle) in (0..).zip(&rectangles) {
+                assert!(!rectangle.holds(place.map(f64::from)) || found.contains(&number));
+            }
+            assert!(found.len() < rectangles.len());
+        }
+        assert!(squares.at([1e9, 0.0]).is_empty() && squares.at([0.0, 1e9]).is_empty());
+    }
+}

@@ -1,0 +1,476 @@
+//! What rendered pictures show, held against the floor plan: the camera's closed form says which pixel
+//! shows a place, and the plan says what is there.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::cast_sign_loss, reason = "pixels are not negative")]
+
+use std::thread;
+
+use image::RgbImage;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    embedded_graph::Dart,
+    floor_plan::{FloorPlan, JunctionKind, Rectangle},
+    format::world_file,
+};
+use toposlam_robot::simulator::{
+    Building, Effects, KNOBS, LOOKS, Look, Pose, Rig, RigErrors, label_mask, labels, render,
+};
+use toposlam_vision::{
+    camera::Camera,
+    colour::{Class, StripeKind},
+};
+
+fn plan(name: &str) -> FloorPlan {
+    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
+}
+
+fn look(name: &str) -> &'static Look {
+    Look::named(name).unwrap()
+}
+
+fn small_camera() -> Camera {
+    Camera::superscout().sized([640, 480])
+}
+
+/// A dart of the plan's first L.
+fn at_an_l(plan: &FloorPlan) -> Dart {
+    let graph = plan.graph();
+    graph.darts().find(|&dart| plan.junction(graph.vertex(dart)).kind == JunctionKind::L).unwrap()
+}
+
+/// Poses on the floor, at least so far from all walls.
+fn poses(plan: &FloorPlan, clear: f64, count: usize, seed: u64) -> Vec<Pose> {
+    let floors: Vec<_> = plan.floor().collect();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+    (0..count)
+        .map(|number| {
+            let floor = floors[number % floors.len()].widened(-clear);
+            let position =
+                [0, 1].map(|axis| rng.random_range(floor.least[axis]..=floor.greatest[axis]));
+            Pose { position, heading: rng.random_range(-7.0..7.0) }
+        })
+        .collect()
+}
+
+/// From the building's coordinates to the robot's.
+fn seen_from(pose: Pose, place: [f64; 2]) -> [f64; 2] {
+    let (sine, cosine) = pose.heading.sin_cos();
+    let [x, y] = [0, 1].map(|axis| place[axis] - pose.position[axis]);
+    [x * cosine + y * sine, y * cosine - x * sine]
+}
+
+/// And back.
+fn in_building(pose: Pose, [x, y]: [f64; 2]) -> [f64; 2] {
+    let (sine, cosine) = pose.heading.sin_cos();
+    let [along, across] = pose.position;
+    [along + x * cosine - y * sine, across + x * sine + y * cosine]
+}
+
+fn is_floor(floors: &[Rectangle], place: [f64; 2]) -> bool {
+    floors.iter().any(|floor| floor.holds(place))
+}
+
+/// Whether all of the straight way is floor.
+fn sees(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
+    (0..=400).all(|step| {
+        let share = f64::from(step) / 400.0;
+        is_floor(floors, [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+    })
+}
+
+/// Whether a place is nearer than this to what is no floor, along either axis.
+fn near_walls(floors: &[Rectangle], [x, y]: [f64; 2], distance: f64) -> bool {
+    let steps = [-distance, 0.0, distance];
+    steps
+        .iter()
+        .flat_map(|right| steps.iter().map(move |up| [x + right, y + up]))
+        .any(|place| !is_floor(floors, place))
+}
+
+/// Which place of the floor a pixel shows, if nothing is in the way, and from above which place it is
+/// seen; both in the robot's coordinates.
+type Grounds<'a> = &'a dyn Fn([f64; 2]) -> Option<[[f64; 2]; 2]>;
+
+/// Holds labels against the plan, pixel by pixel; answers how many showed floor, stripe and marker.
+fn hold_against_plan(plan: &FloorPlan, look: &Look, rig: &Rig, grounds: Grounds) -> [usize; 3] {
+    let effects = Effects::plain();
+    let floors: Vec<_> = plan.floor().collect();
+    let marker = at_an_l(plan);
+    let building = Building::new(plan, look, Some(marker), &effects, 1);
+    let marked = building.marker().unwrap();
+    let corner = plan.junction(plan.graph().vertex(marker)).position;
+    let near_corner = Pose { position: [corner[0] + 0.2, corner[1] - 0.1], heading: 1.0 };
+    let mut counts = [0; 3];
+    for pose in poses(plan, 0.3, 12, 5).into_iter().chain([near_corner]) {
+        let classes = labels(rig, &building, pose, &effects);
+        for (at, &class) in classes.iter().enumerate().step_by(3) {
+            let pixel = [at % 640, at / 640].map(|at| at as f64);
+            let Some([origin, ground]) = grounds(pixel) else { continue };
+            if ground[0].hypot(ground[1]) > 5.0 {
+                continue;
+            }
+            let [origin, place] = [origin, ground].map(|place| in_building(pose, place));
+            let expected = |slack: f64| {
+                if !sees(&floors, origin, place) {
+                    Class::Other
+                } else if marked.widened(slack).holds(place) {
+                    Class::Marker
+                } else if near_walls(&floors, place, look.stripe.width + slack) {
+                    Class::Stripe
+                } else {
+                    Class::Floor
+                }
+            };
+            // Borders, to a millimetre; and ways that graze a corner.
+            if expected(1e-3) != expected(-1e-3)
+                || near_walls(&floors, place, 2e-3)
+                || class == Class::Other && grazes(&floors, origin, place)
+            {
+                continue;
+            }
+            assert_eq!(class, expected(0.0), "{pose:?} {pixel:?} {place:?}");
+            match class {
+                Class::Floor => counts[0] += 1,
+                Class::Stripe => counts[1] += 1,
+                Class::Marker => counts[2] += 1,
+                _ => {}
+            }
+        }
+    }
+    counts
+}
+
+// paper: env.boundary
+#[test]
+fn each_pixel_shows_what_the_plan_has_at_its_place() {
+    let camera = small_camera();
+    let rig = Rig::new(&camera);
+    let grounds = |pixel| camera.pixel_to_ground(pixel).map(|ground| [[0.0; 2], ground]);
+    for (name, look) in [("shape-8", look("tiles")), ("building-25", look("school"))] {
+        let counts = hold_against_plan(&plan(name), look, &rig, &grounds);
+        assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
+    }
+}
+
+#[test]
+fn a_rig_that_leans_shows_what_lies_along_its_rays() {
+    let errors = RigErrors { tilt: 0.03, towards: 2.0, centre: [3.0, -2.0], height: 0.01 };
+    let rig = Rig::with_errors(&small_camera(), &errors);
+    let grounds = |pixel| {
+        let ray = rig.ray(pixel);
+        let origin = [ray.origin[0], ray.origin[1]];
+        ray.floor().map(|ground| [origin, ground])
+    };
+    let counts = hold_against_plan(&plan("shape-8"), look("tiles"), &rig, &grounds);
+    assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
+}
+
+/// Whether a way on the floor comes near a wall before its end.
+fn grazes(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
+    (0..400).any(|step| {
+        let share = f64::from(step) / 400.0;
+        let place = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        near_walls(floors, place, if step < 380 { 1e-2 } else { 1e-3 })
+    })
+}
+
+#[test]
+fn the_pixel_of_a_place_shows_it() {
+    let plan = plan("shape-8");
+    let floors: Vec<_> = plan.floor().collect();
+    let camera = Camera::superscout();
+    let (rig, effects) = (Rig::new(&camera), Effects::plain());
+    let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut shown = 0;
+    for pose in poses(&plan, 0.3, 4, 6) {
+        let classes = labels(&rig, &building, pose, &effects);
+        for _ in 0..500 {
+            let place = [rng.random_range(-0.8..4.8), rng.random_range(-0.8..8.8)];
+            let ground = seen_from(pose, place);
+            // A pixel's width and more away from the wall's foot.
+            let range = ground[0].hypot(ground[1]);
+            if range > 4.0
+                || near_walls(&floors, place, 0.1)
+                || !sees(&floors, pose.position, place)
+                || grazes(&floors, pose.position, place)
+            {
+                continue;
+            }
+            let [u, v] = camera.ground_to_pixel(ground).unwrap().map(|at| at.round() as usize);
+            assert_eq!(classes[v * 1280 + u], Class::Floor, "{pose:?} {place:?}");
+            shown += 1;
+        }
+    }
+    assert!(shown > 100, "{shown}");
+}
+
+#[test]
+fn a_baseboard_is_as_high_as_its_look_says() {
+    // A long straight hallway along x, its left wall at y = 0.8.
+    let junctions = [("a", [0.0, 0.0]), ("b", [40.0, 0.0])].map(|(n, at)| (n.to_owned(), at));
+    let plan = FloorPlan::new(1.6, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
+    let camera = Camera::superscout();
+    let (rig, effects) = (Rig::new(&camera), Effects::plain());
+    for look in LOOKS.iter().filter(|look| look.stripe.kind == StripeKind::OnWall) {
+        let building = Building::new(&plan, look, None, &effects, 1);
+        let pose = Pose { position: [20.0, 0.1], heading: 0.0 };
+        let classes = labels(&rig, &building, pose, &effects);
+        let mut counts = [0; 3];
+        for (at, &class) in classes.iter().enumerate() {
+            let ray = rig.ray([at % 1280, at / 1280].map(|at| at as f64));
+            let [_, left, up] = ray.direction;
+            // To the left, and not far ahead or behind.
+            if left < ray.direction[0].abs() || class == Class::Unseen {
+                continue;
+            }
+            let height = ray.origin[2] + (0.7 - ray.origin[1]) / left * up;
+            let expected = match height {
+                height if height < 0.0 => Class::Floor,
+                height if height < look.stripe.width => Class::Stripe,
+                _ => Class::Other,
+            };
+            if height.abs() > 1e-5 && (height - look.stripe.width).abs() > 1e-5 {
+                assert_eq!(class, expected, "{}: {height}", look.name);
+                counts[match expected {
+                    Class::Floor => 0,
+                    Class::Stripe => 1,
+                    _ => 2,
+                }] += 1;
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 1000), "{counts:?}");
+    }
+}
+
+#[test]
+fn without_effects_colours_are_those_of_the_look() {
+    let plan = plan("shape-6");
+    let rig = Rig::new(&small_camera());
+    let effects = Effects::plain();
+    for look in &LOOKS {
+        let building = Building::new(&plan, look, Some(at_an_l(&plan)), &effects, 4);
+        let pose = Pose { position: [0.2, 7.9], heading: 0.4 };
+        let picture = render(&rig, &building, pose, &effects, 4);
+        let classes = labels(&rig, &building, pose, &effects);
+        let colours = [
+            (Class::Floor, look.floor_colour),
+            (Class::Stripe, look.stripe_colour),
+            (Class::Marker, look.marker_colour),
+        ];
+        for (class, colour) in colours {
+            let mut count = 0;
+            for v in 1..479 {
+                for u in 1..639 {
+                    let at = |right: usize, down: usize| (v + down - 1) * 640 + u + right - 1;
+                    let around = (0..3).flat_map(|right| (0..3).map(move |down| (right, down)));
+                    if around.into_iter().all(|(right, down)| classes[at(right, down)] == class) {
+                        let found = picture.get_pixel(u as u32, v as u32).0;
+                        let off = (0..3).map(|c| found[c].abs_diff(colour[c])).max();
+                        assert!(off <= Some(1), "{}: {found:?} {colour:?}", look.name);
+                        count += 1;
+                    }
+                }
+            }
+            assert!(count > 20, "{}: {count} of {class:?}", look.name);
+        }
+    }
+}
+
+/// Effects without a loss by JPEG or noise, in a building with some of everything.
+fn some_effects() -> Effects {
+    let mut effects = Effects::plain();
+    for (name, value) in [("doors", 3.0), ("gaps", 4.0), ("struts", 3.0), ("gap-length", 0.25)] {
+        effects.set(name, value).unwrap();
+    }
+    effects
+}
+
+#[test]
+fn every_knob_changes_the_picture_and_at_its_plain_value_nothing() {
+    let plan = plan("shape-8");
+    let rig = Rig::new(&small_camera());
+    let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
+    // Glossy tiles with tape: there every effect has something to act on.
+    let picture = |effects: &Effects| {
+        let building = Building::new(&plan, look("tiles"), None, effects, 6);
+        render(&rig, &building, pose, effects, 6)
+    };
+    let without = picture(&some_effects());
+    for knob in KNOBS {
+        let mut effects = some_effects();
+        let other = match knob.name {
+            "doors" | "gaps" | "struts" => knob.plain,
+            "gap-length" => 0.1,
+            "strut-bearing" => 20.0,
+            // By chance no lamp might be out.
+            "lamps-out" => 1.0,
+            _ => *knob.default.end(),
+        };
+        effects.set(knob.name, other).unwrap();
+        assert!(picture(&effects) != without, "{}", knob.name);
+        if !["doors", "gaps", "struts"].contains(&knob.name) {
+            effects.set(knob.name, knob.plain).unwrap();
+            assert!(picture(&effects) == without, "{}", knob.name);
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_is_the_same_picture_on_any_thread() {
+    let plan = plan("building-12");
+    let rig = Rig::new(&small_camera());
+    let picture = |seed: u64| -> RgbImage {
+        let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
+        let building =
+            Building::new(&plan, &LOOKS[seed as usize % LOOKS.len()], None, &effects, seed);
+        render(&rig, &building, poses(&plan, 0.3, 1, seed)[0], &effects, seed)
+    };
+    let one_by_one: Vec<_> = (0..6).map(&picture).collect();
+    let at_once: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..6)
+            .map(|seed| {
+                let picture = &picture;
+                scope.spawn(move || picture(seed))
+            })
+            .collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    assert!(one_by_one == at_once);
+}
+
+#[test]
+fn another_seed_is_another_building_and_another_picture() {
+    let plan = plan("shape-8");
+    let rig = Rig::new(&small_camera());
+    let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
+    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
+    let building = |seed| Building::new(&plan, look("tiles"), None, &effects, seed);
+    let picture = |building: &Building, seed| render(&rig, building, pose, &effects, seed);
+    let (one, other) = (building(1), building(2));
+    assert!(picture(&one, 1) != picture(&one, 2));
+    assert!(picture(&one, 1) != picture(&other, 1));
+}
+
+#[test]
+fn the_robot_hides_the_floor_around_it_and_none_beyond() {
+    let plan = plan("shape-8");
+    let camera = Camera::superscout();
+    let rig = Rig::new(&camera);
+    let mut effects = Effects::plain();
+    effects.set("body", 1.0).unwrap();
+    effects.set("lens", 0.016).unwrap();
+    let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
+    let pose = Pose { position: [2.0, 4.0], heading: 0.0 };
+    for (at, class) in labels(&rig, &building, pose, &effects).into_iter().enumerate() {
+        let pixel = [at % 1280, at / 1280].map(|at| at as f64);
+        if let Some([x, y]) = camera.pixel_to_ground(pixel) {
+            let range = x.hypot(y);
+            assert!(class == Class::Unseen || range > 0.30, "{pixel:?} {range}");
+            assert!(class != Class::Unseen || range < 0.32, "{pixel:?} {range}");
+        }
+    }
+}
+
+#[test]
+fn struts_hide_two_opposite_directions() {
+    let plan = plan("shape-8");
+    let camera = small_camera();
+    let rig = Rig::new(&camera);
+    let mut effects = Effects::plain();
+    effects.set("struts", 4.0).unwrap();
+    effects.set("strut-bearing", 30.0).unwrap();
+    let building = Building::new(&plan, look("vinyl"), None, &effects, 1);
+    let pose = Pose { position: [2.0, 4.0], heading: 2.0 };
+    let mut hidden = 0;
+    for (at, class) in labels(&rig, &building, pose, &effects).into_iter().enumerate() {
+        let pixel = [at % 640, at / 640].map(|at| at as f64);
+        let Some([x, y]) = camera.pixel_to_ground(pixel) else { continue };
+        if x.hypot(y) > 0.6 {
+            let bearing = y.atan2(x).to_degrees().rem_euclid(180.0);
+            let away = (bearing - 30.0).abs();
+            assert!(class == Class::Unseen || away > 1.99, "{bearing}");
+            assert!(class != Class::Unseen || away < 2.01, "{bearing}");
+            hidden += usize::from(class == Class::Unseen);
+        }
+    }
+    assert!(hidden > 1000, "{hidden}");
+}
+
+#[test]
+fn a_marker_lies_on_its_turning_point_along_its_hallway() {
+    let plan = plan("shape-8");
+    let building =
+        |dart| Building::new(&plan, &LOOKS[0], Some(dart), &Effects::plain(), 1).marker().unwrap();
+    for dart in plan.graph().darts() {
+        let marker = building(dart);
+        let [x, y] = plan.junction(plan.graph().vertex(dart)).position;
+        let along_x = plan.direction(dart).vector()[0] != 0.0;
+        let [half_x, half_y] = if along_x { [0.30, 0.09] } else { [0.09, 0.30] };
+        let edges = [x - half_x, y - half_y, x + half_x, y + half_y];
+        let found = [marker.least, marker.greatest].concat();
+        assert!(found.iter().zip(edges).all(|(one, other)| (one - other).abs() < 1e-12));
+    }
+}
+
+#[test]
+fn a_small_picture_shows_what_a_large_one_shows() {
+    let (large, small) = (Camera::superscout(), small_camera());
+    for pixel in [[100.0, 200.0], [319.5, 239.5], [500.0, 77.0]] {
+        // A pixel of the small picture is a square of four.
+        let middle = pixel.map(|at: f64| 2.0 * at + 0.5);
+        let (one, other) = (small.pixel_to_ground(pixel), large.pixel_to_ground(middle));
+        assert_eq!(one.is_some(), other.is_some());
+        for (one, other) in one.iter().flatten().zip(other.iter().flatten()) {
+            assert!((one - other).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn the_label_mask_has_the_colours_that_training_reads() {
+    let rig = Rig::new(&Camera::superscout().sized([4, 3]));
+    let mut classes = vec![Class::Floor; 12];
+    classes[1] = Class::Stripe;
+    classes[4] = Class::Marker;
+    classes[5] = Class::Other;
+    classes[11] = Class::Unseen;
+    let mask = label_mask(&rig, &classes);
+    let found = [(0, 0), (1, 0), (0, 1), (1, 1), (3, 2)].map(|(u, v)| mask.get_pixel(u, v).0);
+    assert_eq!(found, [[0, 255, 0], [255, 0, 0], [0, 0, 255], [0, 0, 0], [255, 255, 255]]);
+}
+
+#[test]
+fn odd_buildings_and_poses_are_no_panic() {
+    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(9));
+    let errors = RigErrors { tilt: 0.3, towards: -2.0, centre: [900.0, -40.0], height: 0.4 };
+    let rigs = [
+        Rig::new(&Camera::superscout().sized([64, 48])),
+        Rig::with_errors(&Camera::superscout().sized([80, 48]), &errors),
+        Rig::new(&Camera::superscout().sized([1, 1])),
+    ];
+    for (width, length) in [(1.6, 4.0), (1e-3, 2e-3), (0.4, 1e5), (3000.0, 1e6)] {
+        let junctions = [("a", [length, 0.0]), ("b", [length, length]), ("c", [0.0, length])]
+            .map(|(name, at)| (name.to_owned(), at));
+        let hallways = [("a", "b"), ("b", "c")].map(|(a, b)| (a.to_owned(), b.to_owned()));
+        let plan = FloorPlan::new(width, &junctions, &hallways).unwrap();
+        for look in &LOOKS[..3] {
+            let building = Building::new(&plan, look, Some(Dart(1)), &effects, 9);
+            for rig in &rigs {
+                for position in [[length; 2], [length, 0.3 * length], [0.0; 2], [f64::NAN, 1e300]] {
+                    for heading in [0.0, -1e9, f64::INFINITY] {
+                        let pose = Pose { position, heading };
+                        let picture = render(rig, &building, pose, &effects, 9);
+                        let [width, height] = rig.image();
+                        assert_eq!(picture.dimensions(), (width, height));
+                        let count = labels(rig, &building, pose, &effects).len();
+                        assert_eq!(count, (width * height) as usize);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Views on which sensing fails: their pictures, step by step, and what was asked and answered.
+
+use std::{collections::BTreeMap, io::Write, path::Path};
+
+use serde::Serialize;
+use toposlam_model::{
+    floor_plan::FloorPlan,
+    format::{named_world::NamedWorld, world_file},
+};
+use toposlam_robot::evaluation::{
+    class::Class,
+    judging::{Calibration, Judge, Judged, JudgedVisit, Zone},
+    truth::{JunctionTruth, Truth},
+    verdict::{MarkerVerdict, Verdict},
+    view::View,
+};
+
+use crate::cli::{
+    Failure, json::print_object, output, picture_file, scene::SceneLine, words::counted,
+};
+
+/// Pictures of no more views are written, nor of more visits: the first of those that are wrong, then
+/// the first of those that are unknown.
+const MOST: usize = 40;
+
+/// Writes what failed to a folder; answers how much, in words.
+pub(super) fn write(
+    folder: &Path,
+    judge: &Judge,
+    views: &[Judged],
+    visits: &[JudgedVisit],
+    calibration: Calibration,
+) -> Result<String, Failure> {
+    let mut failed: Vec<_> = views.iter().filter(|judged| fails(judged)).collect();
+    let mut lines = Vec::new();
+    for judged in &failed {
+        print_line(&mut lines, judged, calibration, None)?;
+    }
+    let failed_visits: Vec<_> =
+        visits.iter().filter(|visit| visit.decided != Some((visit.form, visit.percept))).collect();
+    for judged in failed_visits.iter().flat_map(|visit| &visit.pictures) {
+        print_line(&mut lines, judged, calibration, Some(judged.view.number))?;
+    }
+    let name = match calibration {
+        Calibration::Right => "failing.jsonl",
+        Calibration::Wrong => "failing-badly-calibrated.jsonl",
+    };
+    output::write_whole(&folder.join(name), &lines)?;
+    failed.sort_by_key(|judged| !judged.verdict.is_wrong());
+    for judged in failed.iter().take(MOST) {
+        write_view(folder, judge, judged, calibration)?;
+    }
+    for visit in failed_visits.iter().take(MOST) {
+        for (nth, judged) in visit.pictures.iter().enumerate() {
+            let name = format!("visit-{:05}{}-{nth}", judged.view.number, mark(calibration));
+            write_steps(&folder.join(name), judge, judged, calibration)?;
+        }
+    }
+    let views = counted(failed.len(), "view");
+    Ok(format!("{views} and {} that failed", counted(failed_visits.len(), "visit")))
+}
+
+/// Whether a view is one that should be looked at: not right where it should be, or wrong anywhere.
+fn fails(judged: &Judged) -> bool {
+    let asked = matches!(judged.zone(), Zone::Hallway | Zone::Before);
+    judged.verdict.is_wrong()
+        || asked && judged.verdict == Verdict::Unknown
+        || judged.marker == MarkerVerdict::Phantom
+}
+
+/// Writes the picture of a view, of each step, and what was asked and answered.
+pub(super) fn write_view(
+    folder: &Path,
+    judge: &Judge,
+    judged: &Judged,
+    calibration: Calibration,
+) -> Result<(), Failure> {
+    let name = format!("view-{:05}{}", judged.view.number, mark(calibration));
+    write_steps(&folder.join(name), judge, judged, calibration)
+}
+
+fn write_steps(
+    folder: &Path,
+    judge: &Judge,
+    judged: &Judged,
+    calibration: Calibration,
+) -> Result<(), Failure> {
+    output::make_folder(folder)?;
+    let (image, _, stages) =
+        judge.stages(&judged.view, calibration).map_err(|error| Failure::at("evaluate", error))?;
+    picture_file::write(&folder.join("0-picture.png"), &image)?;
+    for (name, picture) in &stages {
+        picture_file::write(&folder.join(format!("{name}.png")), picture)?;
+    }
+    let plan = world_file::to_toml(&plan_of(&judged.view));
+    output::write_whole(&folder.join("plan.toml"), plan.as_bytes())?;
+    let mut line = Vec::new();
+    print_line(&mut line, judged, calibration, None)?;
+    output::write_whole(&folder.join("view.json"), &line)
+}
+
+/// The floor plan of a view, as a world that starts at the marker.
+fn plan_of(view: &View) -> NamedWorld {
+    let plan = FloorPlan::clone(&view.plan);
+    let about = format!("The floor plan of view {}", view.number);
+    let names = plan.junctions().iter().map(|junction| junction.name.clone()).collect();
+    let world = NamedWorld::numbered(&view.plan_name, &about, plan.graph().clone(), view.marker);
+    NamedWorld { vertex_names: names, plan: Some(plan), ..world }
+}
+
+fn mark(calibration: Calibration) -> &'static str {
+    match calibration {
+        Calibration::Right => "",
+        Calibration::Wrong => "-badly-calibrated",
+    }
+}
+
+/// Prints one view for people: what it is, what was answered, and how that compares.
+pub(super) fn print(
+    out: &mut dyn Write,
+    judged: &Judged,
+    calibration: Calibration,
+) -> Result<(), Failure> {
+    print_line(out, judged, calibration, None)
+}
+
+fn print_line(
+    out: &mut dyn Write,
+    judged: &Judged,
+    calibration: Calibration,
+    visit: Option<u64>,
+) -> Result<(), Failure> {
+    print_object(out, &Line::new(judged, calibration, visit))
+}
+
+/// A view, and what was answered.
+#[derive(Serialize)]
+struct Line<'a> {
+    schema: u32,
+    view: u64,
+    /// Where it is a picture of a visit, the number of the visit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visit: Option<u64>,
+    calibration: &'static str,
+    plan: &'a str,
+    hallway_width: f64,
+    look: &'a str,
+    size: [u32; 2],
+    position: [f64; 2],
+    heading: f64,
+    marker: Option<MarkerLine>,
+    effects: BTreeMap<&'static str, f64>,
+    truth: String,
+    /// To the turning point of the junction.
+    distance: Option<f64>,
+    said: String,
+    verdict: String,
+    answer: SceneLine,
+}
+
+#[derive(Serialize)]
+struct MarkerLine {
+    position: [f64; 2],
+    axis: f64,
+    door: Option<u32>,
+}
+
+impl<'a> Line<'a> {
+    fn new(judged: &'a Judged, calibration: Calibration, visit: Option<u64>) -> Self {
+        let view = &judged.view;
+        let settings = view.effects.settings().into_iter();
+        let junction = match &judged.truth {
+            Truth::Hallway(_) => None,
+            Truth::Between(_, junctions) => junctions.first(),
+            Truth::Junction(junction) => Some(junction),
+        };
+        let truth = match (&judged.truth, judged.class()) {
+            (Truth::Between(..), _) => "between".to_owned(),
+            (_, Some(class)) => class.to_string(),
+            (_, None) => "turned".to_owned(),
+        };
+        Self {
+            schema: 1,
+            view: view.number,
+            visit,
+            calibration: match calibration {
+                Calibration::Right => "right",
+                Calibration::Wrong => "wrong",
+            },
+            plan: &view.plan_name,
+            hallway_width: view.plan.hallway_width(),
+            look: view.look.name,
+            size: view.image,
+            position: view.pose.position,
+            heading: view.pose.heading,
+            marker: view.marker().map(|marker| MarkerLine {
+                position: marker.position,
+                axis: marker.axis,
+                door: marker.door.map(|door| door.0),
+            }),
+            effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
+            truth,
+            distance: junction.and_then(JunctionTruth::distance),
+            said: Class::of(&judged.scene).to_string(),
+            verdict: judged.verdict.to_string(),
+            answer: SceneLine::from(&judged.scene),
+        }
+    }
+}

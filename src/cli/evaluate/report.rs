@@ -1,0 +1,357 @@
+//! What an evaluation prints: figures with their targets, confusions, and what failures have in common.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use toposlam_robot::evaluation::{
+    causes::Group,
+    class::Class,
+    judging::Calibration,
+    quantile::Quantile,
+    report::{Errors, Rate, Report, Standing, Unit},
+    view::{Views, WhichEffects},
+};
+
+use crate::cli::{
+    Failure, Outcome,
+    columns::{print_hanging, print_rows},
+    json::print_object,
+    words::grouped,
+};
+
+/// What is measured.
+pub(super) struct Header<'a> {
+    pub(super) views: u64,
+    pub(super) visits: u64,
+    pub(super) source: &'a Views,
+}
+
+/// Prints as it goes.
+pub(super) struct Printer<'o> {
+    out: &'o mut dyn Write,
+    json: bool,
+    missed: usize,
+    empty: usize,
+}
+
+/// So many of what halves the views are shown.
+const HALVES: usize = 10;
+
+impl<'o> Printer<'o> {
+    pub(super) fn new(out: &'o mut dyn Write, json: bool) -> Self {
+        Self { out, json, missed: 0, empty: 0 }
+    }
+
+    pub(super) fn header(&mut self, header: &Header) -> Result<(), Failure> {
+        let Header { views, visits, source } = header;
+        let sizes: Vec<_> =
+            source.sizes.iter().map(|[width, height]| format!("{width}x{height}")).collect();
+        let mut plans: Vec<_> = source.plans.iter().map(|(name, _)| name.as_str()).collect();
+        if source.random_plans {
+            plans.push("random ones");
+        }
+        let looks: Vec<_> = source.looks.iter().map(|look| look.name).collect();
+        let effects = match source.effects {
+            WhichEffects::Default => "default",
+            WhichEffects::None => "none",
+        };
+        let seed = source.seed;
+        if self.json {
+            return print_object(
+                self.out,
+                &json!({
+                    "schema": 1, "kind": "source", "views": views, "visits": visits, "seed": seed,
+                    "sizes": sizes, "plans": plans, "looks": looks, "effects": effects,
+                }),
+            );
+        }
+        let (views, visits) = (grouped((*views).into()), grouped((*visits).into()));
+        writeln!(self.out, "Sensing on {views} views and {visits} visits, seed {seed}")?;
+        print_hanging(self.out, "  floor plans  ", &plans.join(", "))?;
+        print_hanging(self.out, "  looks        ", &looks.join(", "))?;
+        writeln!(self.out, "  pictures     {}", sizes.join(", "))?;
+        writeln!(self.out, "  effects      {effects}")?;
+        Ok(())
+    }
+
+    pub(super) fn report(&mut self, report: &Report) -> Result<(), Failure> {
+        let standings = report.rates.iter().map(Rate::standing);
+        for standing in standings.chain(report.errors.iter().map(Errors::standing)) {
+            self.missed += usize::from(standing == Standing::Missed);
+            self.empty += usize::from(standing == Standing::Empty);
+        }
+        if self.json {
+            return self.report_lines(report);
+        }
+        let title = match report.calibration {
+            Calibration::Right => "With a right calibration",
+            Calibration::Wrong => "With a camera 5 pixels, 2 cm and 1 degree off its calibration",
+        };
+        writeln!(self.out, "\n{title}\n")?;
+        let rates: Vec<_> = report.rates.iter().map(rate_row).collect();
+        let heads = ["of", "what", "  seen", "     of", "     rate", "  at most", "   target", ""];
+        print_rows(self.out, heads, &rates)?;
+        if !report.errors.is_empty() {
+            writeln!(self.out)?;
+            let errors: Vec<_> = report.errors.iter().map(errors_row).collect();
+            let [median, p95, p99, most] =
+                Quantile::ALL.map(|quantile| format!("{:>9}", called(quantile)));
+            let heads = ["of", "error of", "  cases", &median, &p95, &p99, &most, "target", ""];
+            print_rows(self.out, heads, &errors)?;
+        }
+        writeln!(
+            self.out,
+            "\n  What was there (rows), and what sensing said, of hallways and of junctions"
+        )?;
+        writeln!(self.out, "  up to their turning points:\n")?;
+        confusion(self.out, report)?;
+        Ok(())
+    }
+
+    fn report_lines(&mut self, report: &Report) -> Result<(), Failure> {
+        let calibration = name(report.calibration);
+        for rate in &report.rates {
+            let line = RateLine {
+                schema: 1,
+                kind: "rate",
+                calibration,
+                of: rate.subject.name(),
+                what: rate.what,
+                seen: rate.seen,
+                cases: rate.cases,
+                rate: rate.rate(),
+                upper_bound: rate.upper_bound(),
+                limit: rate.limit,
+                met: rate.limit.map(|_| rate.standing() == Standing::Met),
+            };
+            print_object(self.out, &line)?;
+        }
+        for errors in &report.errors {
+            let (unit, _) = unit(errors.unit);
+            let [median, p95, p99, most] = Quantile::ALL.map(|quantile| errors.quantile(quantile));
+            let limits =
+                errors.limits.iter().map(|&(quantile, limit)| json!([quantile.part(), limit]));
+            let met = (!errors.limits.is_empty()).then(|| errors.standing() == Standing::Met);
+            let line = ErrorsLine {
+                schema: 1,
+                kind: "errors",
+                calibration,
+                of: errors.subject.name(),
+                what: errors.what,
+                unit,
+                cases: errors.sample.count(),
+                median,
+                p95,
+                p99,
+                most,
+                limits: limits.collect(),
+                met,
+            };
+            print_object(self.out, &line)?;
+        }
+        for (is, said) in &report.confusion {
+            let said: Map<String, Value> =
+                said.iter().map(|(class, &count)| (class.to_string(), json!(count))).collect();
+            let is = is.to_string();
+            let line = json!({
+                "schema": 1, "kind": "confusion", "calibration": calibration, "is": is, "said": said,
+            });
+            print_object(self.out, &line)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn groups(&mut self, groups: &[Group]) -> Result<(), Failure> {
+        if self.json {
+            for Group { by, what, failed, of, .. } in groups {
+                let line = json!({
+                    "schema": 1, "kind": "failures", "by": by, "what": what, "failed": failed, "of": of,
+                });
+                print_object(self.out, &line)?;
+            }
+            return Ok(());
+        }
+        if groups.iter().all(|group| group.failed == 0) {
+            return Ok(());
+        }
+        writeln!(
+            self.out,
+            "\n  How often such views are not right, by what they have in common:\n"
+        )?;
+        let rows: Vec<_> = groups.iter().filter(|group| !group.is_half).map(group_row).collect();
+        print_rows(self.out, ["by", "", "failed", "     of", "    rate"], &rows)?;
+        let halves: Vec<_> = groups.iter().filter(|group| group.is_half).collect();
+        let mut pairs: Vec<_> = halves.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        pairs.sort_by(|one, other| difference(other).total_cmp(&difference(one)));
+        pairs.truncate(HALVES);
+        writeln!(self.out)?;
+        let rows: Vec<_> = pairs.into_iter().map(pair_row).collect();
+        let heads = ["the most different by", "", " up to it", " above it"];
+        print_rows(self.out, heads, &rows)?;
+        Ok(())
+    }
+
+    pub(super) fn verdict(&mut self, outcome: Outcome, interrupted: bool) -> Result<(), Failure> {
+        let (missed, empty) = (self.missed, self.empty);
+        if self.json {
+            let holds = outcome == Outcome::Holds;
+            let line = json!({
+                "schema": 1, "kind": "verdict", "missed": missed, "unmeasured": empty,
+                "interrupted": interrupted, "holds": holds,
+            });
+            return print_object(self.out, &line);
+        }
+        let verdict = match outcome {
+            Outcome::Holds => "holds: all targets are met".to_owned(),
+            Outcome::Violated if missed == 1 => "violated: a target is missed".to_owned(),
+            Outcome::Violated => format!("violated: {missed} targets are missed"),
+            Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
+            Outcome::Incomplete => format!("incomplete: {empty} targets without any case"),
+        };
+        writeln!(self.out, "\n{verdict}")?;
+        Ok(())
+    }
+}
+
+#[derive(Serialize)]
+struct RateLine<'a> {
+    schema: u32,
+    kind: &'a str,
+    calibration: &'a str,
+    of: &'a str,
+    what: &'a str,
+    seen: usize,
+    cases: usize,
+    rate: Option<f64>,
+    upper_bound: f64,
+    limit: Option<f64>,
+    met: Option<bool>,
+}
+
+#[derive(Serialize)]
+struct ErrorsLine<'a> {
+    schema: u32,
+    kind: &'a str,
+    calibration: &'a str,
+    of: &'a str,
+    what: &'a str,
+    unit: &'a str,
+    cases: usize,
+    median: Option<f64>,
+    p95: Option<f64>,
+    p99: Option<f64>,
+    most: Option<f64>,
+    limits: Vec<Value>,
+    met: Option<bool>,
+}
+
+fn group_row(group: &Group) -> [String; 5] {
+    let Group { by, what, failed, of, .. } = group;
+    let name = (*by).to_owned();
+    [name, what.clone(), format!("{failed:>6}"), format!("{of:>7}"), percent(group.rate())]
+}
+
+/// By how much the rates of two groups differ.
+fn difference([below, above]: &[&Group; 2]) -> f64 {
+    (above.rate() - below.rate()).abs()
+}
+
+fn pair_row([below, above]: [&Group; 2]) -> [String; 4] {
+    let rates = [below, above].map(|group| percent(group.rate()));
+    let [below_rate, above_rate] = rates;
+    [below.by.to_owned(), below.what.clone(), below_rate, above_rate]
+}
+
+fn rate_row(rate: &Rate) -> [String; 8] {
+    let figure = |share: Option<f64>| share.map_or_else(|| format!("{:>9}", "-"), percent);
+    [
+        rate.subject.name().to_owned(),
+        rate.what.to_owned(),
+        format!("{:>6}", rate.seen),
+        format!("{:>7}", rate.cases),
+        figure(rate.rate()),
+        figure(Some(rate.upper_bound()).filter(|_| rate.cases > 0)),
+        rate.limit.map_or_else(String::new, percent),
+        standing(rate.limit.map(|_| rate.standing())),
+    ]
+}
+
+fn errors_row(errors: &Errors) -> [String; 9] {
+    let (_, short) = unit(errors.unit);
+    let [median, p95, p99, most] = Quantile::ALL.map(|quantile| match errors.quantile(quantile) {
+        None => format!("{:>9}", "-"),
+        Some(error) => format!("{:>9}", format!("{error:.2} {short}")),
+    });
+    let limits = errors.limits.iter();
+    let limits = limits.map(|&(quantile, limit)| format!("{} {limit} {short}", called(quantile)));
+    let target = limits.collect::<Vec<_>>().join(", ");
+    let asked = (!errors.limits.is_empty()).then(|| errors.standing());
+    let (subject, what) = (errors.subject.name().to_owned(), errors.what.to_owned());
+    let cases = format!("{:>7}", errors.sample.count());
+    [subject, what, cases, median, p95, p99, most, target, standing(asked)]
+}
+
+fn confusion(out: &mut dyn Write, report: &Report) -> io::Result<()> {
+    let classes: Vec<_> = Class::all().collect();
+    write!(out, "  {:<14}", "")?;
+    for class in &classes {
+        write!(out, "  {class:>8}", class = short(*class))?;
+    }
+    writeln!(out)?;
+    for (is, said) in &report.confusion {
+        write!(out, "  {is:<14}")?;
+        for class in &classes {
+            let count = said.get(class).copied().unwrap_or_default();
+            let count = if count == 0 { ".".to_owned() } else { count.to_string() };
+            write!(out, "  {count:>8}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// The name of a class, in eight letters.
+fn short(class: Class) -> String {
+    let name = class.to_string().replace("t-stem-", "t-st-").replace("t-by-stem", "t-stem");
+    name.chars().take(8).collect()
+}
+
+fn standing(standing: Option<Standing>) -> String {
+    match standing {
+        None => String::new(),
+        Some(Standing::Met) => "met".to_owned(),
+        Some(Standing::Empty) => "no case".to_owned(),
+        Some(Standing::Missed) => "missed".to_owned(),
+    }
+}
+
+/// A share in percent.
+fn percent(share: f64) -> String {
+    format!("{:>9}", format!("{:.3} %", 100.0 * share))
+}
+
+/// What a quantile is called.
+fn called(quantile: Quantile) -> &'static str {
+    match quantile {
+        Quantile::Median => "median",
+        Quantile::P95 => "95 %",
+        Quantile::P99 => "99 %",
+        Quantile::Most => "most",
+    }
+}
+
+/// A unit's name, and its sign.
+fn unit(unit: Unit) -> (&'static str, &'static str) {
+    match unit {
+        Unit::Degrees => ("degrees", "deg"),
+        Unit::Centimetres => ("centimetres", "cm"),
+    }
+}
+
+fn name(calibration: Calibration) -> &'static str {
+    match calibration {
+        Calibration::Right => "right",
+        Calibration::Wrong => "wrong",
+    }
+}

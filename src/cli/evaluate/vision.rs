@@ -1,0 +1,226 @@
+//! `toposlam evaluate vision`: scenes of rendered views, held against the floor plan.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Instant,
+};
+
+use toposlam_model::floor_plan::FloorPlan;
+use toposlam_robot::{
+    evaluation::{
+        causes::groups,
+        judging::{Calibration, Judge, Judged, JudgedVisit},
+        plans,
+        report::{Report, Standing},
+        view::{Views, WhichEffects},
+    },
+    simulator::{LOOKS, Look},
+};
+use toposlam_vision::camera::Camera;
+
+use super::{
+    failing,
+    report::{Header, Printer},
+};
+use crate::cli::{
+    Failure, Outcome, input, output,
+    progress::Progress,
+    render::{Size, Which, looks},
+    use_threads,
+};
+
+/// Measure what sensing makes of rendered views, against the truth of the floor plan
+///
+/// Views are drawn from floor plans, random ones too: at junctions, from 1.5 m before to 0.3 m past
+/// the turning point, and anywhere in hallways; up to 0.3 m aside and turned by up to 25 degrees; in
+/// buildings of every look. Within 0.5 m of a turning point the truth is the junction, from 1.5 m on
+/// it is the hallway; between them either answer is right, if it is the right junction. A visit is
+/// a run of pictures on one approach, decided when two agree.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  toposlam evaluate vision                                   a thousand views, in a minute or two
+  toposlam evaluate vision --views 20000 --calibration-errors --json
+  toposlam evaluate vision --plan worlds/shape-8.toml --size 640x480 --out failing
+  toposlam evaluate vision --view 17 --out seventeen         one view, step by step
+
+Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 not all was measured.")]
+pub(super) struct Arguments {
+    /// How many views
+    #[arg(long, default_value_t = 1000, value_name = "N")]
+    views: u64,
+    /// How many visits [default: a twentieth of the views]
+    #[arg(long, value_name = "N")]
+    visits: Option<u64>,
+    /// From which all views follow
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Width and height of the pictures [default: 1280x960 and 640x480 in turn]
+    #[arg(long, value_name = "SIZE")]
+    size: Option<Size>,
+    /// What the buildings look like; may be given more than once [default: every look]
+    #[arg(long, value_name = "NAME", value_parser = looks())]
+    look: Vec<&'static Look>,
+    /// Floor plans; may be given more than once [default: those of worlds/, and random ones]
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    plan: Vec<PathBuf>,
+    /// Which effects there are
+    #[arg(long, default_value = "default", value_name = "WHICH")]
+    effects: Which,
+    /// Measure all views and visits again with a camera that is not as its calibration says: 5 pixels,
+    /// 2 cm and 1 degree off
+    #[arg(long)]
+    calibration_errors: bool,
+    /// Measure just the view of this number
+    #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits", "json"])]
+    view: Option<u64>,
+    /// The folder for pictures of each step of the views that fail, or of the one view
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print one JSON object for each figure
+    #[arg(long)]
+    json: bool,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        use_threads(self.threads)?;
+        if let Some(folder) = &self.out {
+            output::make_folder(folder)?;
+        }
+        let views = self.source()?;
+        match self.view {
+            Some(number) => self.one(&views, number, out),
+            None => self.all(&views, out),
+        }
+    }
+
+    fn all(&self, views: &Views, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let begun = Instant::now();
+        let calibrations = self.calibrations();
+        let judge = judge(views, calibrations)?;
+        let visits = self.visits.unwrap_or(self.views / 20);
+        let mut printer = Printer::new(out, self.json);
+        printer.header(&Header { views: self.views, visits, source: views })?;
+        let mut standings = Vec::new();
+        let mut interrupted = false;
+        for &calibration in calibrations {
+            let (judged, judged_visits) = self.measure(&judge, views, visits, calibration)?;
+            let missing =
+                (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits;
+            interrupted |= missing;
+            let report = Report::of(&judged, &judged_visits, calibration);
+            printer.report(&report)?;
+            if calibration == Calibration::Right {
+                printer.groups(&groups(&judged))?;
+            }
+            standings.push(report.standing());
+            if let Some(folder) = &self.out {
+                let written = failing::write(folder, &judge, &judged, &judged_visits, calibration)?;
+                eprintln!("{written} in {}", folder.display());
+            }
+        }
+        let standing = standings.into_iter().max().unwrap_or(Standing::Empty);
+        let outcome = match standing {
+            Standing::Missed => Outcome::Violated,
+            Standing::Met if !interrupted => Outcome::Holds,
+            Standing::Met | Standing::Empty => Outcome::Incomplete,
+        };
+        printer.verdict(outcome, interrupted)?;
+        let threads = rayon::current_num_threads();
+        eprintln!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        Ok(outcome)
+    }
+
+    fn measure(
+        &self,
+        judge: &Judge,
+        views: &Views,
+        visits: u64,
+        calibration: Calibration,
+    ) -> Result<(Vec<Judged>, Vec<JudgedVisit>), Failure> {
+        let calibrated = match calibration {
+            Calibration::Right => "",
+            Calibration::Wrong => ", badly calibrated",
+        };
+        let progress = Progress::new(&format!("views{calibrated}"), "views")?;
+        let judged =
+            judge.views(views, 0..self.views, calibration, &progress).map_err(unmeasured)?;
+        progress.finish();
+        let progress = Progress::new(&format!("visits{calibrated}"), "visits")?;
+        let visits = judge.visits(views, 0..visits, calibration, &progress).map_err(unmeasured)?;
+        progress.finish();
+        Ok((judged, visits))
+    }
+
+    /// Just one view.
+    fn one(&self, views: &Views, number: u64, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        let view = views.view(number).map_err(unmeasured)?;
+        // Only what this view needs.
+        let views = Views { sizes: vec![view.image], looks: vec![view.look], ..views.clone() };
+        let calibrations = self.calibrations();
+        let judge = judge(&views, calibrations)?;
+        let mut outcome = Outcome::Holds;
+        for &calibration in calibrations {
+            let judged = judge.view(view.clone(), calibration).map_err(unmeasured)?;
+            failing::print(out, &judged, calibration)?;
+            if judged.verdict.is_wrong() {
+                outcome = Outcome::Violated;
+            }
+            if let Some(folder) = &self.out {
+                failing::write_view(folder, &judge, &judged, calibration)?;
+            }
+        }
+        Ok(outcome)
+    }
+
+    fn calibrations(&self) -> &'static [Calibration] {
+        if self.calibration_errors {
+            &[Calibration::Right, Calibration::Wrong]
+        } else {
+            &[Calibration::Right]
+        }
+    }
+
+    /// Where the views come from.
+    fn source(&self) -> Result<Views, Failure> {
+        let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Views {
+            seed: self.seed,
+            random_plans: given.is_empty(),
+            plans: if given.is_empty() { plans().map_err(unmeasured)? } else { given },
+            looks: if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() },
+            sizes: match self.size {
+                Some(size) => vec![size.pixels()],
+                None => vec![Size::Large.pixels(), Size::Small.pixels()],
+            },
+            effects: match self.effects {
+                Which::Default => WhichEffects::Default,
+                Which::None => WhichEffects::None,
+            },
+        })
+    }
+}
+
+fn judge(views: &Views, calibrations: &[Calibration]) -> Result<Judge, Failure> {
+    let progress = Progress::new("learning colours", "looks")?;
+    let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
+    progress.finish();
+    judge.map_err(unmeasured)
+}
+
+fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {
+    let world = input::read_world(path)?;
+    let plan = input::floor_plan(path, &world)?.clone();
+    Ok((world.name, Arc::new(plan)))
+}
+
+/// What nobody asked for wrongly.
+fn unmeasured(error: impl std::fmt::Display) -> Failure {
+    Failure::at("evaluate", error)
+}

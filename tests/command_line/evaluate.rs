@@ -1,0 +1,98 @@
+//! `toposlam evaluate vision`, on a few views.
+
+use std::fs;
+
+use crate::{folder, names_in, objects, read_world, run, stderr, stdout};
+
+/// The arguments that measure so few views that it is quick.
+const FEW: [&str; 10] = [
+    "evaluate", "vision", "--size", "640x480", "--look", "tiles", "--views", "24", "--visits", "2",
+];
+
+#[test]
+fn the_same_is_measured_on_any_number_of_threads() {
+    let measured = |threads| {
+        let output = run([&FEW[..], &["--json", "--threads", threads]].concat());
+        (output.status.code(), stdout(&output))
+    };
+    let (code, text) = measured("1");
+    assert_eq!((code, text.clone()), measured("3"));
+    let lines = objects(&text);
+    let verdict = lines.last().unwrap();
+    assert_eq!(verdict["kind"], "verdict");
+    assert_eq!(
+        code,
+        Some(if verdict["holds"] == true {
+            0
+        } else if verdict["missed"] == 0 {
+            3
+        } else {
+            1
+        })
+    );
+    for kind in ["source", "rate", "errors", "confusion", "failures"] {
+        assert!(lines.iter().any(|line| line["kind"] == kind), "{kind}");
+    }
+    let cases = |of: &str| {
+        let line = lines.iter().find(|line| line["kind"] == "rate" && line["of"] == of).unwrap();
+        line["cases"].as_u64().unwrap()
+    };
+    let views = ["hallway", "junction", "between", "past", "turned"].map(cases);
+    assert_eq!((views.iter().sum::<u64>(), cases("visit")), (24, 2));
+}
+
+#[test]
+fn people_get_a_table_with_the_targets() {
+    let output = run([&FEW[..], &["--calibration-errors"]].concat());
+    let text = stdout(&output);
+    for part in [
+        "Sensing on 24 views and 2 visits, seed 1",
+        "floor plans  building-12, building-25, shape-6, shape-8, random ones",
+        "With a right calibration",
+        "With a camera 5 pixels, 2 cm and 1 degree off its calibration",
+        "0.500 %",
+        "95 % 5 cm, ",
+        "What was there (rows)",
+    ] {
+        assert!(text.contains(part.trim_end_matches(", ")), "{part}\n{text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 130), "{text}");
+    assert!(stderr(&output).contains(" s on "), "{}", stderr(&output));
+}
+
+#[test]
+fn one_view_is_shown_step_by_step() {
+    let folder = folder("evaluate_view");
+    let output = run([
+        "evaluate",
+        "vision",
+        "--size",
+        "640x480",
+        "--look",
+        "tiles",
+        "--view",
+        "5",
+        "--out",
+        folder.to_str().unwrap(),
+    ]);
+    let line = &objects(&stdout(&output))[0];
+    assert_eq!(line["view"], 5);
+    assert!(line["truth"].is_string() && line["verdict"].is_string());
+    assert_eq!(names_in(&folder), ["view-00005"]);
+    let view = folder.join("view-00005");
+    let names = names_in(&view).join(" ");
+    let steps = "1-classes.png 2-boundary.png 3-clusters.png 4-lines.png 5-scene.png 6-image.png";
+    assert_eq!(names, format!("0-picture.png {steps} plan.toml view.json"));
+    assert!(read_world(&view.join("plan.toml")).plan.is_some());
+    assert_eq!(fs::read_to_string(view.join("view.json")).unwrap(), stdout(&output));
+}
+
+#[test]
+fn a_world_without_a_floor_is_refused() {
+    let output = run(["evaluate", "vision", "--plan", "worlds/petersen.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        stderr(&output),
+        "error: worlds/petersen.toml: this world is no floor plan: there is no [floor] in it\n"
+    );
+}

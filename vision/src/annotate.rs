@@ -1,0 +1,273 @@
+//! Pictures of each step of sensing. Section 3, Figures 6 to 9.
+
+use image::{Rgb, RgbImage};
+use imageproc::drawing::{
+    draw_filled_circle_mut, draw_hollow_circle_mut, draw_line_segment_mut, draw_polygon_mut,
+};
+use imageproc::point::Point;
+use toposlam_model::driving::scene::{CentreLine, MarkerView, Place, Scene};
+
+use crate::{
+    camera::Camera,
+    colour::Class,
+    corner::{Bend, Formed},
+    ground_view::GroundView,
+    marker::{LENGTH, WIDTH},
+    sensing::Trace,
+    wall::Wall,
+};
+
+/// The robot's body.
+const BODY: Rgb<u8> = Rgb([90, 90, 90]);
+/// The direction of the edge on which the robot is.
+const GREEN: Rgb<u8> = Rgb([0, 200, 60]);
+/// The directions of the other edges.
+const RED: Rgb<u8> = Rgb([235, 30, 30]);
+/// The marker.
+const BLUE: Rgb<u8> = Rgb([40, 90, 255]);
+/// Walls.
+const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
+/// Edges: corners that bend outwards.
+const ORANGE: Rgb<u8> = Rgb([255, 150, 0]);
+/// Corners of the room, which bend inwards.
+const CYAN: Rgb<u8> = Rgb([0, 220, 230]);
+/// Clusters, in turn.
+const CLUSTERS: [Rgb<u8>; 6] = [
+    Rgb([230, 80, 70]),
+    Rgb([80, 170, 255]),
+    Rgb([250, 200, 60]),
+    Rgb([110, 220, 110]),
+    Rgb([220, 120, 230]),
+    Rgb([90, 220, 210]),
+];
+/// The radius of the robot's body, in metres.
+const RADIUS: f64 = 0.205;
+/// How far a centre line is drawn, in metres.
+const CENTRE_LINE: f64 = 1.6;
+/// The colour of what was not made out.
+const DARK: Rgb<u8> = Rgb([24, 24, 28]);
+
+/// The colour in which a class is shown.
+#[must_use]
+pub fn shade(class: Class) -> Rgb<u8> {
+    match class {
+        Class::Unseen => Rgb([0, 0, 0]),
+        Class::Unknown => Rgb([110, 40, 110]),
+        Class::Floor => Rgb([70, 110, 70]),
+        Class::Stripe => Rgb([250, 240, 200]),
+        Class::Marker => BLUE,
+        Class::Other => Rgb([60, 50, 50]),
+    }
+}
+
+/// A ground view: each pixel in the shade of its class.
+#[must_use]
+pub fn classes(view: &GroundView) -> RgbImage {
+    let side = GroundView::SIDE as u32;
+    let mut picture = RgbImage::new(side, side);
+    for (pixel, &class) in picture.pixels_mut().zip(&view.classes) {
+        *pixel = shade(class);
+    }
+    body(&mut picture);
+    picture
+}
+
+/// The boundary points alone, and how far the floor is seen.
+#[must_use]
+pub fn boundary(trace: &Trace) -> RgbImage {
+    let mut picture = empty();
+    for (bearing, sight) in
+        trace.boundary.iter().flat_map(|boundary| boundary.sights.iter().enumerate())
+    {
+        let [x, y] = crate::boundary::direction(bearing);
+        let at = |range: f64| [range * x, range * y];
+        if sight.floor > 0.0 {
+            line(&mut picture, at(0.30), at(sight.floor), Rgb([40, 60, 40]));
+        }
+        for edge in sight.edges() {
+            dot(&mut picture, at(edge.range), 1, if edge.sure { WHITE } else { ORANGE });
+        }
+    }
+    body(&mut picture);
+    picture
+}
+
+/// The clusters, each in a colour of its own.
+#[must_use]
+pub fn clusters(trace: &Trace) -> RgbImage {
+    let mut picture = empty();
+    for (cluster, colour) in trace.clusters.iter().zip(CLUSTERS.into_iter().cycle()) {
+        for &point in &cluster.points {
+            dot(&mut picture, point, 2, colour);
+        }
+    }
+    body(&mut picture);
+    picture
+}
+
+/// Straight lines, in the colours of their clusters; those that are walls are bright, with a point at
+/// either end.
+#[must_use]
+pub fn lines(trace: &Trace) -> RgbImage {
+    let mut picture = empty();
+    for piece in &trace.lines {
+        line(&mut picture, piece.from, piece.to, CLUSTERS[piece.cluster % CLUSTERS.len()]);
+    }
+    for wall in &trace.walls {
+        let Some([from, to]) = ends(trace, wall) else { continue };
+        thick(&mut picture, from, to, CLUSTERS[wall.cluster % CLUSTERS.len()]);
+        dot(&mut picture, from, 4, WHITE);
+        dot(&mut picture, to, 4, WHITE);
+    }
+    body(&mut picture);
+    picture
+}
+
+/// What it all comes to: walls, corners, centre lines, the marker.
+#[must_use]
+pub fn scene(scene: &Scene, trace: &Trace) -> RgbImage {
+    let mut picture = empty();
+    for wall in &trace.walls {
+        let Some([from, to]) = ends(trace, wall) else { continue };
+        thick(&mut picture, from, to, Rgb([150, 150, 150]));
+    }
+    for corner in trace.corners.iter().filter(|corner| corner.formed != Formed::End) {
+        let Some(frame) = trace.frame else { continue };
+        let colour = match corner.bend {
+            Bend::Inwards => CYAN,
+            Bend::Outwards => ORANGE,
+        };
+        ring(&mut picture, frame.unframed(corner.position), 9, colour);
+    }
+    body(&mut picture);
+    for (from, to, colour) in centre_lines(scene) {
+        thick(&mut picture, from, to, colour);
+    }
+    if let Place::Junction(junction) = &scene.place {
+        dot(&mut picture, junction.turning_point, 6, WHITE);
+    }
+    if let Some(marker) = &scene.marker {
+        let corners = rectangle(marker).map(at).map(|[u, v]| Point::new(u, v));
+        draw_polygon_mut(&mut picture, &corners, BLUE);
+    }
+    picture
+}
+
+/// The image itself, with the centre lines and the marker drawn over it.
+#[must_use]
+pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
+    let mut picture = image.clone();
+    let mut path = |from: [f64; 2], to: [f64; 2], colour| {
+        // A straight line on the floor is a curve in the mirror.
+        let part = |step: u32| f64::from(step) / 40.0;
+        let point =
+            |step: u32| [0, 1].map(|axis| from[axis] + part(step) * (to[axis] - from[axis]));
+        for step in 0..40 {
+            let ends =
+                [camera.ground_to_pixel(point(step)), camera.ground_to_pixel(point(step + 1))];
+            if let [Some(from), Some(to)] = ends {
+                for offset in [-0.7, 0.0, 0.7] {
+                    let end = |[u, v]: [f64; 2]| ((u + offset) as f32, (v + offset) as f32);
+                    draw_line_segment_mut(&mut picture, end(from), end(to), colour);
+                }
+            }
+        }
+    };
+    for (from, to, colour) in centre_lines(scene) {
+        path(from, to, colour);
+    }
+    if let Some(marker) = &scene.marker {
+        let corners = rectangle(marker);
+        for side in 0..4 {
+            path(corners[side], corners[(side + 1) % 4], BLUE);
+        }
+    }
+    picture
+}
+
+/// The centre lines of a scene: that of the edge on which the robot is is green, others are red.
+// paper: sense.centre-lines
+fn centre_lines(scene: &Scene) -> Vec<([f64; 2], [f64; 2], Rgb<u8>)> {
+    let onwards = |[x, y]: [f64; 2], direction: f64, far: f64| {
+        [x + far * direction.cos(), y + far * direction.sin()]
+    };
+    match &scene.place {
+        Place::Hallway(hallway) => {
+            let aside = (hallway.left - hallway.right) / 2.0;
+            let beside = [-aside * hallway.heading.sin(), aside * hallway.heading.cos()];
+            let [from, to] = [-1.5, 2.0].map(|far| onwards(beside, hallway.heading, far));
+            vec![(from, to, GREEN)]
+        }
+        Place::Junction(junction) => {
+            let drawn = |(door, line): (usize, &CentreLine)| {
+                let colour = if door == 0 { GREEN } else { RED };
+                (line.through, onwards(line.through, line.direction, CENTRE_LINE), colour)
+            };
+            junction.doors.iter().enumerate().map(drawn).collect()
+        }
+        Place::Unknown(_) => Vec::new(),
+    }
+}
+
+/// The corners of the marker.
+fn rectangle(marker: &MarkerView) -> [[f64; 2]; 4] {
+    let (sine, cosine) = marker.axis.sin_cos();
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(ahead, left)| {
+        let [along, across] = [ahead * LENGTH / 2.0, left * WIDTH / 2.0];
+        [
+            marker.position[0] + along * cosine - across * sine,
+            marker.position[1] + along * sine + across * cosine,
+        ]
+    })
+}
+
+/// The two ends of a wall.
+fn ends(trace: &Trace, wall: &Wall) -> Option<[[f64; 2]; 2]> {
+    let frame = trace.frame?;
+    Some([wall.from, wall.to].map(|end| frame.unframed(wall.along.point(end, wall.offset))))
+}
+
+fn empty() -> RgbImage {
+    let side = GroundView::SIDE as u32;
+    RgbImage::from_pixel(side, side, DARK)
+}
+
+/// The robot: its outline, and a line ahead.
+// paper: sense.contour
+fn body(picture: &mut RgbImage) {
+    let [u, v] = at([0.0; 2]);
+    let radius = (RADIUS / GroundView::SCALE) as i32;
+    draw_filled_circle_mut(picture, (u, v), radius, BODY);
+    draw_hollow_circle_mut(picture, (u, v), radius, WHITE);
+    line(picture, [0.0; 2], [RADIUS, 0.0], WHITE);
+}
+
+/// The pixel of a ground view in which a point of the floor is.
+fn at([x, y]: [f64; 2]) -> [i32; 2] {
+    let middle = GroundView::SIDE as f64 / 2.0;
+    [middle - y / GroundView::SCALE, middle - x / GroundView::SCALE].map(|part| part as i32)
+}
+
+fn line(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+    let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
+    draw_line_segment_mut(picture, (from[0], from[1]), (to[0], to[1]), colour);
+}
+
+fn thick(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+    let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
+    for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
+        draw_line_segment_mut(picture, (from[0] + u, from[1] + v), (to[0] + u, to[1] + v), colour);
+    }
+}
+
+fn dot(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+    let [u, v] = at(point);
+    draw_filled_circle_mut(picture, (u, v), radius, colour);
+}
+
+fn ring(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+    let [u, v] = at(point);
+    for radius in [radius - 1, radius] {
+        draw_hollow_circle_mut(picture, (u, v), radius, colour);
+    }
+}

@@ -1,0 +1,309 @@
+//! Boundary points: where the floor ends at a stripe, as seen from the robot outwards. Section 3,
+//! Figure 6(d).
+//!
+//! Walls are higher than the camera, so that on each bearing one stripe behind the floor is that of the
+//! only wall that can be seen. Which one is not always plain: joints between tiles and reflections of
+//! lamps look like stripes, and walls may have the floor's colour. So on a bearing there may be several
+//! edges, the last of them sure or not; which of them are walls, their neighbours decide.
+
+use std::f64::consts::TAU;
+
+use crate::{
+    colour::{Class, Stripe, StripeKind},
+    ground_view::GroundView,
+    wall::{Frame, Wall},
+};
+
+/// What is seen on each bearing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boundary {
+    /// On bearing `TAU * index / BEARINGS`, counter-clockwise from ahead.
+    pub sights: Vec<Sight>,
+}
+
+/// What is seen on one bearing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// Where floor ends at a stripe, outwards; as many as there are come first.
+    edges: [Option<Edge>; EDGES],
+    /// How far away floor was seen, in metres; 0 if nowhere. Nothing is seen behind a sure edge.
+    pub floor: f64,
+}
+
+/// Where floor ends at a stripe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// How far away, in metres.
+    pub range: f64,
+    /// Whether no floor is seen behind the stripe, or it is part of a long straight wall.
+    pub sure: bool,
+    /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
+    pub width: f64,
+}
+
+/// A wall so long is none of the floor's patterns, in metres.
+const LONG: f64 = 0.60;
+/// No more edges than these are told of on a bearing.
+const EDGES: usize = 3;
+/// How many bearings are looked at.
+pub const BEARINGS: usize = 720;
+/// From where on floor is looked at, in metres.
+const NEAREST: f64 = 0.30;
+/// Up to where, in metres. Farther away a pixel covers more than a stripe.
+pub const REACH: f64 = 2.6;
+/// Steps along a bearing, a pixel of the ground view each.
+const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
+/// A stripe is seen at least at this part of its width: a pixel may cover as much.
+const SEEN_WIDTH: f64 = 0.40;
+/// and at most at so many times its width;
+const WIDEST: f64 = 2.0;
+/// and so many steps more, for pixels and blur.
+const BLURRED: f64 = 10.0;
+/// Between floor and stripe colours mix, over so many steps.
+const MIXED: usize = 10;
+/// Fewer steps of something else do not end a stripe.
+const SPECK: usize = 3;
+/// Behind a stripe so many steps are looked at;
+const BEHIND: usize = 30;
+/// if so many of them are floor, the edge is not sure.
+const FLOOR_BEHIND: usize = 10;
+/// Where something else was seen for so many steps, what comes behind is not believed.
+const LOST: usize = 60;
+
+/// The pixels of the ground view on each bearing, from the robot outwards.
+#[derive(Clone, Debug)]
+pub struct Bearings {
+    /// [`STEPS`] for each bearing.
+    pixels: Vec<u32>,
+    /// How wide a stripe is that begins at a step and is met at a right angle, in steps.
+    width: Vec<f64>,
+}
+
+impl Bearings {
+    /// The bearings of a camera that is so high above the floor, in metres, where walls have such a
+    /// stripe.
+    #[must_use]
+    pub fn new(stripe: Stripe, height: f64) -> Self {
+        let pixels = (0..BEARINGS)
+            .flat_map(|bearing| {
+                let [x, y] = direction(bearing);
+                (0..STEPS).map(move |step| {
+                    let range = range(step as f64);
+                    GroundView::index([range * x, range * y]).unwrap_or_default() as u32
+                })
+            })
+            .collect();
+        let width = (0..STEPS).map(|step| {
+            let width = match stripe.kind {
+                StripeKind::OnFloor => stripe.width,
+                // What is above the floor is seen as if it lay behind.
+                StripeKind::OnWall => {
+                    range(step as f64) * stripe.width / (height - stripe.width).max(stripe.width)
+                }
+            };
+            width / GroundView::SCALE
+        });
+        Self { pixels, width: width.collect() }
+    }
+
+    /// What is seen on each bearing of a ground view.
+    // paper: sense.boundary
+    // paper: sense.boundary-points
+    #[must_use]
+    pub fn look(&self, view: &GroundView) -> Boundary {
+        let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
+            let mut classes = [Class::Unseen; STEPS];
+            for (class, &pixel) in classes.iter_mut().zip(pixels) {
+                *class = view.classes[pixel as usize];
+            }
+            self.sight(&classes)
+        });
+        Boundary { sights: sights.collect() }
+    }
+
+    /// What is seen on one bearing, by the classes on it from the robot outwards.
+    fn sight(&self, classes: &[Class]) -> Sight {
+        let mut sight = Sight::default();
+        let mut edges = sight.edges.iter_mut();
+        let mut floor: Option<usize> = None;
+        let (mut step, mut lost) = (0, 0);
+        while let Some(&class) = classes.get(step) {
+            match class {
+                Class::Floor | Class::Marker => {
+                    floor = Some(step);
+                    lost = 0;
+                }
+                Class::Stripe => {
+                    let from = step;
+                    while classes[step + 1..]
+                        .iter()
+                        .take(SPECK)
+                        .any(|&class| class == Class::Stripe)
+                    {
+                        step += 1;
+                    }
+                    let width = (step + 1 - from) as f64;
+                    if let Some(floor) = floor
+                        && width >= (SEEN_WIDTH * self.width[from]).floor()
+                    {
+                        // The edge is where the floor's last pixel ends; floor that was taken for
+                        // something else has none.
+                        let (last, seen) =
+                            if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
+                        let sure = seen && !floor_follows(&classes[step + 1..]);
+                        let most = WIDEST * self.width[from] + BLURRED;
+                        let range = range(last as f64 + 0.5);
+                        let edge = Edge { range, sure, width: width / most };
+                        let Some(next) = edges.next() else { break };
+                        *next = Some(edge);
+                        if sure {
+                            break;
+                        }
+                    }
+                }
+                Class::Unseen | Class::Unknown | Class::Other => lost += 1,
+            }
+            if floor.is_some() && lost > LOST {
+                break;
+            }
+            step += 1;
+        }
+        sight.floor = floor.map_or(0.0, |floor| range(floor as f64 + 0.5));
+        sight
+    }
+}
+
+impl Sight {
+    /// A bearing on which there are only these edges.
+    #[cfg(test)]
+    pub(crate) fn at(range: Option<f64>) -> Self {
+        let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
+        Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
+    }
+
+    /// Where floor ends at a stripe, outwards.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        self.edges.iter().flatten().copied()
+    }
+
+    /// The edge behind which nothing is seen.
+    #[must_use]
+    pub fn sure(&self) -> Option<f64> {
+        self.edges().find(|edge| edge.sure).map(|edge| edge.range)
+    }
+}
+
+/// Whether floor goes on behind a stripe; more stripe tells nothing.
+fn floor_follows(behind: &[Class]) -> bool {
+    let behind = behind.iter().filter(|&&class| class != Class::Stripe).take(BEHIND);
+    behind.filter(|&&class| class == Class::Floor).count() >= FLOOR_BEHIND
+}
+
+/// How far away a step is.
+fn range(step: f64) -> f64 {
+    NEAREST + step * GroundView::SCALE
+}
+
+/// The unit vector on a bearing.
+#[must_use]
+pub fn direction(bearing: usize) -> [f64; 2] {
+    let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
+    [cosine, sine]
+}
+
+/// The bearing nearest to a direction, in radians counter-clockwise from ahead.
+#[must_use]
+pub fn bearing(direction: f64) -> usize {
+    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
+}
+
+impl Boundary {
+    /// The boundary points, counter-clockwise from ahead: their bearing and their position.
+    pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
+        self.sights.iter().enumerate().flat_map(|(bearing, sight)| {
+            let ray = direction(bearing);
+            sight.edges().map(move |edge| (bearing, ray.map(|part| edge.range * part)))
+        })
+    }
+
+    /// Makes sure of the edges that lie on a long straight wall: a wall may have the floor's colour.
+    pub fn make_sure(&mut self, walls: &[Wall], frame: &Frame) {
+        for (bearing, sight) in self.sights.iter_mut().enumerate() {
+            let ray = frame.framed(direction(bearing));
+            for edge in sight.edges.iter_mut().flatten().filter(|edge| !edge.sure) {
+                let point = ray.map(|part| edge.range * part);
+                edge.sure = walls.iter().any(|wall| wall.length() >= LONG && wall.holds(point));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Classes on a bearing, a letter each, eight steps a letter.
+    fn on(letters: &str) -> Vec<Class> {
+        let class = |letter| match letter {
+            'f' => Class::Floor,
+            's' => Class::Stripe,
+            'm' => Class::Marker,
+            'o' => Class::Other,
+            '?' => Class::Unknown,
+            _ => Class::Unseen,
+        };
+        letters.chars().flat_map(|letter| [class(letter); 8]).collect()
+    }
+
+    fn sight(letters: &str) -> Sight {
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
+        Bearings::new(stripe, 1.05).sight(&on(letters))
+    }
+
+    #[test]
+    fn a_wall_is_where_floor_ends_at_a_stripe() {
+        for classes in ["ffffsoooo", "ffff?soooo", "   fsoooo", "ffmmsoooo", "ffffsoo?oo   "] {
+            let sight = sight(classes);
+            assert!(sight.sure().is_some(), "{classes}");
+            assert_eq!(sight.sure(), Some(sight.floor), "{classes}");
+        }
+        assert_eq!(sight("ffffsoooo").sure(), Some(range(31.5)));
+    }
+
+    #[test]
+    fn an_edge_behind_which_floor_is_seen_is_not_sure() {
+        let ranges = |sight: Sight| sight.edges().map(|edge| edge.range).collect::<Vec<_>>();
+        let lamp = sight("fffsfffsoooo");
+        assert_eq!(lamp.sure(), Some(range(55.5)));
+        assert_eq!(ranges(lamp), [range(23.5), range(55.5)]);
+        let wall_like_floor = sight("fffsffffffff");
+        assert_eq!(wall_like_floor.sure(), None);
+        assert_eq!(ranges(wall_like_floor), [range(23.5)]);
+        assert_eq!(wall_like_floor.floor, range(95.5));
+        let floor_like_wall = sight("ffffooosoooo");
+        assert_eq!(floor_like_wall.sure(), None);
+        assert_eq!(ranges(floor_like_wall), [range(55.5)]);
+    }
+
+    #[test]
+    fn a_joint_between_tiles_is_narrower_than_the_stripe() {
+        let mut classes = on("ffffffffffff");
+        classes[40..42].fill(Class::Stripe);
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
+        assert_eq!(Bearings::new(stripe, 1.05).sight(&classes).edges().count(), 0);
+    }
+
+    #[test]
+    fn a_stripe_without_floor_before_it_is_no_edge() {
+        assert_eq!(sight("    soooo").edges().count(), 0);
+        assert_eq!(sight("foooooooosooo").edges().count(), 0);
+    }
+
+    #[test]
+    fn without_a_wall_the_floor_seen_is_told() {
+        assert_eq!(sight("fffffoooo").edges().count(), 0);
+        assert_eq!(sight("fffffoooo").floor, range(39.5));
+        assert_eq!(sight("         "), Sight::default());
+        assert_eq!(sight("ffoofffffff").floor, range(87.5));
+    }
+}

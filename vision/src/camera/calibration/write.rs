@@ -1,0 +1,77 @@
+//! Writing a calibration.
+
+use std::fmt::Write;
+
+use toml::Value;
+
+use crate::camera::{Camera, Mei, OCam, Optics, SeenFrom};
+
+/// The calibration file of a camera; the files that it names are those of the camera.
+#[must_use]
+pub fn to_toml(camera: &Camera) -> String {
+    let mut text = String::from("[camera]\n");
+    let mut line = |key: &str, value: String, comment: &str| {
+        let told = format!("{key} = {value}");
+        // Writing to a string cannot fail.
+        let _ = if comment.is_empty() {
+            writeln!(text, "{told}")
+        } else {
+            writeln!(text, "{told:<28} # {comment}")
+        };
+    };
+    let [width, height] = camera.image;
+    match &camera.optics {
+        Optics::SphericalMirror(mirror) => {
+            line("kind", quoted("spherical-mirror"), "");
+            line("image", format!("[{width}, {height}]"), "pixels");
+            let [u, v] = mirror.centre;
+            let centre = format!("[{u:?}, {v:?}]");
+            line("centre", centre, "of the mirror in the image, u to the right, v down");
+            line("focal", format!("{:?}", mirror.focal), "pixels");
+            line("mirror_radius", format!("{:?}", mirror.mirror_radius), "metres");
+            let distance = format!("{:?}", mirror.mirror_distance);
+            line("mirror_distance", distance, "sphere's centre above the pinhole");
+            let height = format!("{:?}", mirror.camera_height);
+            line("camera_height", height, "pinhole above the floor");
+            line("rim", format!("{:.1}", mirror.rim()), "pixels; follows from the others");
+        }
+        Optics::OCamCalib(OCam { file, viewpoint_height, .. }) => {
+            line("kind", quoted("ocamcalib"), "");
+            line("image", format!("[{width}, {height}]"), "pixels");
+            line("file", quoted(file), "");
+            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
+        }
+        Optics::Mei(Mei { file, viewpoint_height, .. }) => {
+            line("kind", quoted("mei"), "");
+            line("image", format!("[{width}, {height}]"), "pixels");
+            line("file", quoted(file), "");
+            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
+        }
+    }
+    let ahead = format!("{:?}", degrees(camera.ahead));
+    line("ahead", ahead, "degrees in the image, counter-clockwise from u, where \"ahead\" is");
+    let seen_from = match camera.seen_from {
+        SeenFrom::Below => "below",
+        SeenFrom::Above => "above",
+    };
+    line("seen_from", quoted(seen_from), "");
+    if let Some(mask) = &camera.mask {
+        line("mask", quoted(&mask.file), "white where the floor can be seen");
+    }
+    text
+}
+
+fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}
+
+/// An angle in degrees, as short as it can be told.
+fn degrees(radians: f64) -> f64 {
+    let exactly = radians.to_degrees();
+    let rounded = (0..12).map(|digits| {
+        let scale = 10.0_f64.powi(digits);
+        (exactly * scale).round() / scale
+    });
+    let mut same = rounded.filter(|degrees| degrees.to_radians().to_bits() == radians.to_bits());
+    same.next().unwrap_or(exactly)
+}

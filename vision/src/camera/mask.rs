@@ -1,0 +1,106 @@
+//! Where in the image the floor can be seen: not on the body, struts, the lens and beyond the rim.
+
+use std::io::Cursor;
+
+use image::{
+    DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, codecs::png::PngDecoder,
+};
+use thiserror::Error;
+
+/// The pixels in which the floor can be seen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    /// The file it is in, as the calibration file names it.
+    pub file: String,
+    size: [u32; 2],
+    /// Row by row.
+    seen: Vec<bool>,
+}
+
+/// Why bytes are no mask.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MaskError {
+    /// They are no PNG.
+    #[error("this is not a PNG image: {0}")]
+    NotPng(String),
+    /// It does not belong to the camera's images.
+    #[error(
+        "the mask is {} by {} pixels, the camera's images are {} by {}",
+        .found[0], .found[1], .expected[0], .expected[1]
+    )]
+    Size {
+        /// Width and height of the mask.
+        found: [u32; 2],
+        /// Width and height of the camera's images.
+        expected: [u32; 2],
+    },
+}
+
+impl Mask {
+    /// A mask from a PNG: white, or at least brighter than middle grey, where the floor can be seen.
+    ///
+    /// Takes at most sixteen bytes of memory for each pixel of an image of that size.
+    ///
+    /// # Errors
+    /// If it is no PNG of that size. No bytes make it panic.
+    pub fn from_png(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<Self, MaskError> {
+        let not_png = |error: ImageError| MaskError::NotPng(error.to_string().replace('\n', ", "));
+        let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(not_png)?;
+        let (width, height) = decoder.dimensions();
+        if [width, height] != size {
+            return Err(MaskError::Size { found: [width, height], expected: size });
+        }
+        let image = DynamicImage::from_decoder(decoder).map_err(not_png)?.into_luma8();
+        Ok(Self::new(file, size, image.pixels().map(|pixel| pixel.0[0] >= 128).collect()))
+    }
+
+    /// A mask of so many pixels, row by row.
+    ///
+    /// # Panics
+    /// If there are not as many as an image of that size has.
+    #[must_use]
+    pub fn new(file: &str, size: [u32; 2], seen: Vec<bool>) -> Self {
+        assert_eq!(seen.len(), size[0] as usize * size[1] as usize);
+        Self { file: file.to_owned(), size, seen }
+    }
+
+    /// The mask as an image: white where the floor can be seen, black elsewhere.
+    #[must_use]
+    pub fn to_image(&self) -> GrayImage {
+        let [width, height] = self.size;
+        GrayImage::from_fn(width, height, |u, v| [if self.sees([u, v]) { 255 } else { 0 }].into())
+    }
+
+    /// The mask as a PNG.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub fn to_png(&self) -> Result<Vec<u8>, ImageError> {
+        let mut bytes = Vec::new();
+        self.to_image().write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
+        Ok(bytes)
+    }
+
+    /// The same in another size: each pixel as the nearest is here.
+    pub(super) fn sized(&self, size: [u32; 2]) -> Self {
+        let nearest = |at: u32, axis: usize| {
+            (u64::from(at) * u64::from(self.size[axis]) / u64::from(size[axis])) as u32
+        };
+        let pixels = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| [u, v]));
+        let seen = pixels.map(|[u, v]| self.sees([nearest(u, 0), nearest(v, 1)])).collect();
+        Self::new(&self.file, size, seen)
+    }
+
+    /// Width and height, in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Whether the floor can be seen in a pixel; not outside of the image.
+    #[must_use]
+    pub fn sees(&self, [u, v]: [u32; 2]) -> bool {
+        let [width, height] = self.size;
+        u < width && v < height && self.seen[v as usize * width as usize + u as usize]
+    }
+}

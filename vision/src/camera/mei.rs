@@ -1,0 +1,279 @@
+//! The unified model with a unit sphere, as OpenCV's omnidir and camodocal calibrate it, and the YAML
+//! files that they write.
+//!
+//! C. Mei, P. Rives: Single view point omnidirectional camera calibration from planar grids. ICRA 2007.
+//! A point is moved onto the unit sphere around the viewpoint, seen from xi above the sphere's middle
+//! in a plane at distance one, there distorted (k1, k2, p1, p2), and mapped to pixels by a matrix. The
+//! model's z is what the middle of the image shows: straight down.
+
+use super::{
+    Ray, length,
+    optics_file::{OpticsFileError, shown, side_of_image, within},
+    root::{first_change, polynomial, root},
+    scaled_place, yaml,
+};
+
+/// A camera with a single viewpoint, in the unified model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mei {
+    /// The file that says so, as the calibration file names it.
+    pub file: String,
+    /// From the floor up to the viewpoint, in metres.
+    pub viewpoint_height: f64,
+    /// Width and height of the images in pixels, where the file says it.
+    image: Option<[u32; 2]>,
+    xi: f64,
+    /// k1 and k2.
+    radial: [f64; 2],
+    /// p1 and p2.
+    tangential: [f64; 2],
+    /// Pixels by the plane's two axes.
+    focal: [f64; 2],
+    skew: f64,
+    centre: [f64; 2],
+    /// How far from the middle of the plane the distortion can be undone.
+    reach: f64,
+}
+
+/// Where OpenCV's omnidir and where camodocal keep what we need.
+const KEYS: [&str; 18] = [
+    "image_width",
+    "image_height",
+    "model_type",
+    "mirror_parameters.xi",
+    "distortion_parameters.k1",
+    "distortion_parameters.k2",
+    "distortion_parameters.p1",
+    "distortion_parameters.p2",
+    "projection_parameters.gamma1",
+    "projection_parameters.gamma2",
+    "projection_parameters.u0",
+    "projection_parameters.v0",
+    "xi",
+    "xi.data",
+    "camera_matrix.data",
+    "K.data",
+    "distortion_coefficients.data",
+    "D.data",
+];
+
+impl Mei {
+    /// Reads the YAML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`)
+    /// or of camodocal (`model_type: MEI`).
+    ///
+    /// Takes at most 256 bytes of memory for each byte of the file, and 16384 besides.
+    ///
+    /// # Errors
+    /// The first thing that is wrong. No bytes make it panic.
+    pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
+        let found = yaml::values(text, &KEYS)?;
+        let side = |key| side_of_image(key, found.number(key)?);
+        let image = match ["image_width", "image_height"].map(|key| found.has(key)) {
+            [false, false] => None,
+            _ => Some([side("image_width")?, side("image_height")?]),
+        };
+        let (xi, [k1, k2, p1, p2], [focal_u, skew, centre_u, focal_v, centre_v]) =
+            if found.has("model_type") || found.has("mirror_parameters.xi") {
+                camodocal(&found)?
+            } else {
+                omnidir(&found)?
+            };
+        let focal_range = [1.0, 1e6];
+        Self {
+            file: file.to_owned(),
+            viewpoint_height,
+            image,
+            xi: within("xi", xi, [0.0, 100.0])?,
+            radial: [within("k1", k1, [-1e3, 1e3])?, within("k2", k2, [-1e3, 1e3])?],
+            tangential: [within("p1", p1, [-1.0, 1.0])?, within("p2", p2, [-1.0, 1.0])?],
+            focal: [
+                within("the focal length across", focal_u, focal_range)?,
+                within("the focal length down", focal_v, focal_range)?,
+            ],
+            skew: within("the skew", skew, [-100.0, 100.0])?,
+            centre: [
+                within("the centre's u", centre_u, [0.0, 16384.0])?,
+                within("the centre's v", centre_v, [0.0, 16384.0])?,
+            ],
+            reach: 0.0,
+        }
+        .reaching()
+    }
+
+    /// Finds how far the distortion can be undone.
+    fn reaching(mut self) -> Result<Self, OpticsFileError> {
+        // Beyond this the plane shows nothing; 100 is half a degree short of level with xi 0.
+        let end = if self.xi > 1.0 { 1.0 / (self.xi * self.xi - 1.0).sqrt() } else { 100.0_f64 };
+        // The distortion's derivative is symmetric. Where both of its eigenvalues stay positive, in a
+        // disc, no two points are distorted to the same one. Radially and across they are at least:
+        let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
+        let tangential = -6.0 * length([p1, p2]);
+        let across = [1.0 - Self::LEAST_SLOPE, tangential, k1, 0.0, k2];
+        let along = [1.0 - Self::LEAST_SLOPE, tangential, 3.0 * k1, 0.0, 5.0 * k2];
+        let first = |slope: &[f64]| first_change(slope, [0.0, end]).unwrap_or(end);
+        self.reach = first(&across).min(first(&along));
+        if self.reach < 1e-3 { Err(OpticsFileError::NoView) } else { Ok(self) }
+    }
+
+    /// How much the distortion may shrink a small piece of the plane, at most.
+    const LEAST_SLOPE: f64 = 0.02;
+
+    /// Width and height of the images in pixels, where the file says it.
+    #[must_use]
+    pub fn image(&self) -> Option<[u32; 2]> {
+        self.image
+    }
+
+    pub(super) fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// The same, with every pixel larger.
+    pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
+        Self {
+            image: Some(image),
+            focal: self.focal.map(|focal| factor * focal),
+            skew: factor * self.skew,
+            centre: scaled_place(self.centre, factor),
+            ..self.clone()
+        }
+    }
+
+    /// The ray of a pixel, in the image's axes.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+        let y = (pixel[1] - self.centre[1]) / self.focal[1];
+        let x = (pixel[0] - self.centre[0] - self.skew * y) / self.focal[0];
+        let [x, y] = self.undistorted([x, y])?;
+        let square = x * x + y * y;
+        let under_root = 1.0 + (1.0 - self.xi * self.xi) * square;
+        if under_root.is_nan() || under_root < 0.0 {
+            return None;
+        }
+        let scale = (self.xi + under_root.sqrt()) / (1.0 + square);
+        Some(Ray {
+            origin: [0.0, 0.0, self.viewpoint_height],
+            direction: [scale * x, -scale * y, self.xi - scale],
+        })
+    }
+
+    /// The pixel that shows a point of the floor, in the image's axes.
+    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
+        let down = self.viewpoint_height;
+        let far = length([length([right, top]), down]);
+        let [x, y] = [right, -top].map(|across| across / (down + self.xi * far));
+        let radius = length([x, y]);
+        if radius.is_nan() || radius > self.reach {
+            return None;
+        }
+        let ([x, y], _) = self.distorted([x, y]);
+        Some([
+            self.focal[0] * x + self.skew * y + self.centre[0],
+            self.focal[1] * y + self.centre[1],
+        ])
+    }
+
+    /// A point of the plane distorted, and the derivative: along x, across, along y.
+    fn distorted(&self, [x, y]: [f64; 2]) -> ([f64; 2], [f64; 3]) {
+        let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
+        let square = x * x + y * y;
+        let scale = 1.0 + square * (k1 + square * k2);
+        let slope = 2.0 * (k1 + 2.0 * k2 * square);
+        (
+            [
+                x * scale + 2.0 * p1 * x * y + p2 * (square + 2.0 * x * x),
+                y * scale + 2.0 * p2 * x * y + p1 * (square + 2.0 * y * y),
+            ],
+            [
+                scale + slope * x * x + 2.0 * p1 * y + 6.0 * p2 * x,
+                slope * x * y + 2.0 * p1 * x + 2.0 * p2 * y,
+                scale + slope * y * y + 2.0 * p2 * x + 6.0 * p1 * y,
+            ],
+        )
+    }
+
+    /// The point of the plane that is distorted to this one.
+    fn undistorted(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
+        let near = 1e-13 * (1.0 + length(distorted));
+        let lack = |at: [f64; 2]| {
+            let (found, slope) = self.distorted(at);
+            let rest = [distorted[0] - found[0], distorted[1] - found[1]];
+            (at, rest, slope)
+        };
+        let (mut at, mut rest, mut slope) = lack(self.undistorted_radially(distorted)?);
+        for _ in 0..50 {
+            if length(rest) <= near {
+                return Some(at);
+            }
+            let determinant = slope[0] * slope[2] - slope[1] * slope[1];
+            let step = [
+                (slope[2] * rest[0] - slope[1] * rest[1]) / determinant,
+                (slope[0] * rest[1] - slope[1] * rest[0]) / determinant,
+            ];
+            // Newton's step, shorter where it would lead astray.
+            (at, rest, slope) = (0..30).find_map(|halves| {
+                let share = 0.5_f64.powi(halves);
+                let next = lack([at[0] + share * step[0], at[1] + share * step[1]]);
+                let inside = length(next.0) <= self.reach;
+                (inside && length(next.1) < length(rest)).then_some(next)
+            })?;
+        }
+        None
+    }
+
+    /// The same, as if there were no tangential distortion; inside the reach. `None` if what is beyond
+    /// it is distorted to here.
+    fn undistorted_radially(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
+        let far = length(distorted);
+        if far == 0.0 {
+            return Some([0.0; 2]);
+        }
+        let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
+        let lack = |radius: f64| {
+            let (value, slope) = polynomial(&[0.0, 1.0, 0.0, k1, 0.0, k2], radius);
+            (value - far, slope)
+        };
+        let shifted = 3.0 * length([p1, p2]) * self.reach * self.reach;
+        let end = lack(self.reach).0;
+        let radius = if end > 0.0 {
+            root(lack, [0.0, self.reach], far)
+        } else if end >= -shifted {
+            self.reach
+        } else {
+            return None;
+        };
+        Some(distorted.map(|across| across * radius / far))
+    }
+}
+
+/// xi, the four of the distortion, and of the matrix what can differ.
+type Numbers = (f64, [f64; 4], [f64; 5]);
+
+fn camodocal(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {
+    if let Some(model) = found.text("model_type").filter(|&model| model != "MEI") {
+        return Err(OpticsFileError::OtherModel(shown(model)));
+    }
+    let xi = found.number("mirror_parameters.xi")?;
+    let distortion = [
+        found.number("distortion_parameters.k1")?,
+        found.number("distortion_parameters.k2")?,
+        found.number("distortion_parameters.p1")?,
+        found.number("distortion_parameters.p2")?,
+    ];
+    let matrix = [
+        found.number("projection_parameters.gamma1")?,
+        0.0,
+        found.number("projection_parameters.u0")?,
+        found.number("projection_parameters.gamma2")?,
+        found.number("projection_parameters.v0")?,
+    ];
+    Ok((xi, distortion, matrix))
+}
+
+fn omnidir(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {
+    let either = |one, other| if found.has(other) { other } else { one };
+    let matrix: [f64; 9] = found.numbers(either("camera_matrix.data", "K.data"))?;
+    let [xi] = found.numbers(either("xi", "xi.data"))?;
+    let distortion = found.numbers(either("distortion_coefficients.data", "D.data"))?;
+    Ok((xi, distortion, [matrix[0], matrix[1], matrix[2], matrix[4], matrix[5]]))
+}

@@ -1,0 +1,227 @@
+//! The polynomial model of OCamCalib, and its file `calib_results.txt`.
+//!
+//! D. Scaramuzza, A. Martinelli, R. Siegwart: A toolbox for easily calibrating omnidirectional cameras.
+//! IROS 2006. A pixel, less the centre and with the affine distortion undone, is a point (x, y) of a
+//! plane, x along the image's columns and y along its rows; it looks along (x, y, f(rho)), f being the
+//! polynomial and rho the length of (x, y). The middle looks straight down here, so f(0) is downward,
+//! whichever its sign: a plane pattern, from which such a camera is calibrated, cannot tell.
+//!
+//! The file, as OCamCalib writes it, has five lines of numbers between comments (`#`): the polynomial
+//! (how many coefficients, then they, from the constant one on), the polynomial that is roughly its
+//! inverse, the centre's row and column, the affine c, d and e, and the image's height and width. In
+//! the file rows and columns count from 0 (in the toolbox itself, from 1).
+
+use super::{
+    Ray, length,
+    optics_file::{OpticsFileError, shown, side_of_image, within},
+    root::{first_change, polynomial, root},
+    scaled_place,
+};
+
+/// A camera with a single viewpoint, as OCamCalib calibrates it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OCam {
+    /// The file that says so, as the calibration file names it.
+    pub file: String,
+    /// From the floor up to the viewpoint, in metres.
+    pub viewpoint_height: f64,
+    image: [u32; 2],
+    /// How far down a point of the plane looks, by its distance from the middle; positive in the
+    /// middle.
+    down: Vec<f64>,
+    /// The distance from the middle by the angle above the level, nearly.
+    inverse: Vec<f64>,
+    centre: [f64; 2],
+    /// c, d and e: rows and columns are `[[c, d], [e, 1]]` times (x, y).
+    affine: [f64; 3],
+    /// How far from the middle the plane's points look farther and farther out.
+    reach: f64,
+    /// How far from the middle they look at the floor.
+    horizon: f64,
+}
+
+impl OCam {
+    /// Reads `calib_results.txt`.
+    ///
+    /// Takes at most 32 bytes of memory for each byte of the file, and 4096 besides.
+    ///
+    /// # Errors
+    /// The first thing that is wrong. No bytes make it panic.
+    pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
+        let mut lines = Lines::of(text);
+        let direct = lines.counted("the polynomial")?;
+        let inverse = lines.counted("the inverse polynomial")?;
+        let [row, column] = lines.numbers("the centre's row and column")?;
+        let affine = lines.numbers("the affine c, d and e")?;
+        let size = lines.numbers("the height and the width of the image")?;
+        lines.end()?;
+        let [height, width] = size.map(|side| side_of_image("the side of the image", side));
+        let (height, width) = (height?, width?);
+        let row = within("the centre's row", row, [0.0, f64::from(height) - 1.0])?;
+        let column = within("the centre's column", column, [0.0, f64::from(width) - 1.0])?;
+        within("the affine c", affine[0], [0.5, 2.0])?;
+        within("the affine d", affine[1], [-0.5, 0.5])?;
+        within("the affine e", affine[2], [-0.5, 0.5])?;
+        Self {
+            file: file.to_owned(),
+            viewpoint_height,
+            image: [width, height],
+            down: direct,
+            inverse,
+            centre: [column, row],
+            affine,
+            reach: 0.0,
+            horizon: 0.0,
+        }
+        .reaching()
+    }
+
+    /// Finds how far the polynomial tells anything.
+    fn reaching(mut self) -> Result<Self, OpticsFileError> {
+        let constant = self.down.first().copied().unwrap_or_default();
+        within("the size of the first coefficient", constant.abs(), [1.0, 1e6])?;
+        if constant < 0.0 {
+            self.down.iter_mut().for_each(|coefficient| *coefficient = -*coefficient);
+        }
+        let [width, height] = self.image.map(f64::from);
+        let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
+        let edge = corners
+            .map(|corner| {
+                let [right, top] = self.plane(corner);
+                length([right, top])
+            })
+            .into_iter()
+            .fold(0.0, f64::max);
+        within("the polynomial at the edge", polynomial(&self.down, edge).0, [-1e9, 1e9])?;
+        // The angle from straight down grows with rho for as long as f - rho f' is positive.
+        let growing: Vec<f64> = self.down.iter().zip(0_u32..).map(growth).collect();
+        self.reach = first_change(&growing, [0.0, edge]).unwrap_or(edge);
+        self.horizon = first_change(&self.down, [0.0, self.reach]).unwrap_or(self.reach);
+        if self.horizon < 1.0 { Err(OpticsFileError::NoView) } else { Ok(self) }
+    }
+
+    /// Width and height of the images, in pixels.
+    #[must_use]
+    pub fn image(&self) -> [u32; 2] {
+        self.image
+    }
+
+    pub(super) fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// The same, with every pixel larger: both of the plane's coordinates, and f with them.
+    pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
+        let mut scaled = self.clone();
+        scaled.image = image;
+        scaled.centre = scaled_place(self.centre, factor);
+        for (coefficient, power) in scaled.down.iter_mut().zip(0..) {
+            *coefficient *= factor.powi(1 - power);
+        }
+        scaled.inverse.iter_mut().for_each(|coefficient| *coefficient *= factor);
+        scaled.reach *= factor;
+        scaled.horizon *= factor;
+        scaled
+    }
+
+    /// A pixel in the plane of the model: to the right, and to the top.
+    fn plane(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let ([c, d, e], [row, column]) = (self.affine, [v - self.centre[1], u - self.centre[0]]);
+        let scale = 1.0 / (c - d * e);
+        [scale * (c * column - e * row), -scale * (row - d * column)]
+    }
+
+    /// The ray of a pixel, in the image's axes.
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+        let [right, top] = self.plane(pixel);
+        let rho = length([right, top]);
+        if rho.is_nan() || rho > self.reach {
+            return None;
+        }
+        let down = polynomial(&self.down, rho).0;
+        let length = length([rho, down]);
+        Some(Ray {
+            origin: [0.0, 0.0, self.viewpoint_height],
+            direction: [right / length, top / length, -down / length],
+        })
+    }
+
+    /// The pixel that shows a point of the floor, in the image's axes.
+    ///
+    /// The file's own inverse is where the search begins, no more: it is an approximation.
+    pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
+        let range = length([right, top]);
+        let lack = |rho: f64| {
+            let (down, slope) = polynomial(&self.down, rho);
+            (rho * self.viewpoint_height - range * down, self.viewpoint_height - range * slope)
+        };
+        // Not for a floor without end, nor beyond what the polynomial tells.
+        if !range.is_finite() || lack(self.horizon).0 < 0.0 {
+            return None;
+        }
+        let scale = if range > 0.0 {
+            let guess = polynomial(&self.inverse, -self.viewpoint_height.atan2(range)).0;
+            root(lack, [0.0, self.horizon], guess) / range
+        } else {
+            0.0
+        };
+        let ([c, d, e], [x, y]) = (self.affine, [-scale * top, scale * right]);
+        Some([self.centre[0] + e * x + y, self.centre[1] + c * x + d * y])
+    }
+}
+
+/// The coefficient of f - rho f', from that of f.
+fn growth((coefficient, power): (&f64, u32)) -> f64 {
+    coefficient * (1.0 - f64::from(power))
+}
+
+/// The lines of a file that are neither empty nor comments, each with its number.
+struct Lines<'a> {
+    lines: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
+}
+
+impl<'a> Lines<'a> {
+    fn of(text: &'a str) -> Self {
+        let lines = (1..).zip(text.lines().map(str::trim));
+        Self {
+            lines: Box::new(lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))),
+        }
+    }
+
+    /// The numbers of the next line.
+    fn next(&mut self, what: &'static str) -> Result<(usize, Vec<f64>), OpticsFileError> {
+        let (line, text) = self.lines.next().ok_or(OpticsFileError::EndsBefore(what))?;
+        let number = |word: &str| {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| OpticsFileError::NotANumber { line, found: shown(word) })
+        };
+        Ok((line, text.split_whitespace().map(number).collect::<Result<_, _>>()?))
+    }
+
+    /// As many numbers as there should be in the next line.
+    fn numbers<const N: usize>(&mut self, what: &'static str) -> Result<[f64; N], OpticsFileError> {
+        let (line, numbers) = self.next(what)?;
+        numbers.try_into().map_err(|numbers: Vec<f64>| OpticsFileError::LineCount {
+            line,
+            what,
+            found: numbers.len(),
+            expected: N,
+        })
+    }
+
+    /// The numbers of the next line but its first, which tells how many there are.
+    fn counted(&mut self, what: &'static str) -> Result<Vec<f64>, OpticsFileError> {
+        let (line, mut numbers) = self.next(what)?;
+        let count = numbers.remove(0);
+        within("how many coefficients there are", count, [1.0, 64.0])?;
+        if (count - numbers.len() as f64).abs() > 0.0 {
+            return Err(OpticsFileError::FalseCount { line, what, found: numbers.len(), count });
+        }
+        Ok(numbers)
+    }
+
+    fn end(&mut self) -> Result<(), OpticsFileError> {
+        self.lines.next().map_or(Ok(()), |(line, _)| Err(OpticsFileError::GoesOn { line }))
+    }
+}

@@ -1,0 +1,162 @@
+//! The few values that we need of a YAML file.
+
+use saphyr_parser::{Event, Parser};
+
+use super::optics_file::{OpticsFileError, shown};
+
+/// Values by the keys that lead to them, joined by points.
+pub(super) struct Values {
+    found: Vec<Value>,
+}
+
+struct Value {
+    key: &'static str,
+    line: usize,
+    /// One, or those of a list.
+    words: Vec<String>,
+}
+
+/// What the parser is in: a mapping, under a key once that is read, or a list.
+enum Inside {
+    Mapping(Option<String>),
+    List,
+}
+
+/// How many keys lead to a value that we need, at most.
+const DEPTH: usize = 2;
+
+/// Reads the values, each a word or a list of words, that stand under known keys. Aliases are not
+/// followed, tags not heeded.
+pub(super) fn values(text: &str, known: &[&'static str]) -> Result<Values, OpticsFileError> {
+    // OpenCV begins its files with a directive that is none in YAML; older ones go on without `---`.
+    let first = text.lines().next().unwrap_or_default();
+    let rest = if first.starts_with("%YAML:") { &text[first.len()..] } else { text };
+    let mut reading = Reading { path: Vec::new(), found: Vec::new(), known };
+    for event in Parser::new_from_str(rest) {
+        let (event, span) = event.map_err(|error| OpticsFileError::Syntax {
+            line: error.marker().line(),
+            message: shown(error.info()),
+        })?;
+        let line = span.start.line();
+        match event {
+            Event::Scalar(word, ..) => reading.word(&word, line)?,
+            Event::MappingStart(..) => reading.begin(Inside::Mapping(None), line)?,
+            Event::SequenceStart(..) => reading.begin(Inside::List, line)?,
+            Event::MappingEnd | Event::SequenceEnd => reading.end(),
+            Event::Alias(_) => {
+                reading.begin(Inside::List, line)?;
+                reading.end();
+            }
+            // The first document only.
+            Event::DocumentEnd => break,
+            _ => {}
+        }
+    }
+    Ok(Values { found: reading.found })
+}
+
+struct Reading<'a> {
+    path: Vec<Inside>,
+    found: Vec<Value>,
+    known: &'a [&'static str],
+}
+
+impl Reading<'_> {
+    /// A word is a key, or a value, or one of a list.
+    fn word(&mut self, word: &str, line: usize) -> Result<(), OpticsFileError> {
+        if let Some(Inside::Mapping(key @ None)) = self.path.last_mut() {
+            *key = Some(word.to_owned());
+            return match self.known_key() {
+                Some(key) if self.found.iter().any(|value| value.key == key) => {
+                    Err(OpticsFileError::Twice { line, key: key.to_owned() })
+                }
+                Some(key) => {
+                    self.found.push(Value { key, line, words: Vec::new() });
+                    Ok(())
+                }
+                None => Ok(()),
+            };
+        }
+        if let Some(key) = self.known_key() {
+            for value in self.found.iter_mut().filter(|value| value.key == key) {
+                value.words.push(word.to_owned());
+            }
+        }
+        if let Some(Inside::Mapping(key)) = self.path.last_mut() {
+            *key = None;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, inside: Inside, line: usize) -> Result<(), OpticsFileError> {
+        if let Some(Inside::Mapping(None)) = self.path.last() {
+            let message = "a key should be a word".to_owned();
+            return Err(OpticsFileError::Syntax { line, message });
+        }
+        self.path.push(inside);
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        self.path.pop();
+        if let Some(Inside::Mapping(key)) = self.path.last_mut() {
+            *key = None;
+        }
+    }
+
+    /// The known key under which the parser is: in mappings, and perhaps in a list in them.
+    fn known_key(&self) -> Option<&'static str> {
+        let lists = usize::from(matches!(self.path.last(), Some(Inside::List)));
+        let mappings = &self.path[..self.path.len() - lists];
+        if mappings.len() > DEPTH {
+            return None;
+        }
+        let keys: Option<Vec<&str>> = mappings
+            .iter()
+            .map(|inside| match inside {
+                Inside::Mapping(key) => key.as_deref(),
+                Inside::List => None,
+            })
+            .collect();
+        let path = keys?.join(".");
+        self.known.iter().find(|known| **known == path).copied()
+    }
+}
+
+impl Values {
+    fn get(&self, key: &str) -> Option<&Value> {
+        self.found.iter().find(|value| value.key == key)
+    }
+
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// The word under a key, if there is one.
+    pub(super) fn text(&self, key: &str) -> Option<&str> {
+        self.get(key)?.words.first().map(String::as_str)
+    }
+
+    /// As many numbers as there should be under a key.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        key: &'static str,
+    ) -> Result<[f64; N], OpticsFileError> {
+        let value = self.get(key).ok_or(OpticsFileError::MissingKey(key))?;
+        if value.words.len() != N {
+            return Err(OpticsFileError::Count { key, found: value.words.len(), expected: N });
+        }
+        let mut numbers = [0.0; N];
+        for (number, word) in numbers.iter_mut().zip(&value.words) {
+            *number =
+                word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+                    OpticsFileError::NotANumber { line: value.line, found: shown(word) }
+                })?;
+        }
+        Ok(numbers)
+    }
+
+    pub(super) fn number(&self, key: &'static str) -> Result<f64, OpticsFileError> {
+        self.numbers(key).map(|[number]| number)
+    }
+}

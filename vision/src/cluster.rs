@@ -1,0 +1,157 @@
+//! Clusters of boundary points: pieces of wall. Section 3, Figure 6(d).
+
+use std::f64::consts::TAU;
+
+use crate::boundary::{BEARINGS, Boundary};
+
+/// Boundary points that follow each other, counter-clockwise as seen from the robot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cluster {
+    /// In metres, at least [`LEAST`] of them.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Two points that follow each other are so near, in metres, at least,
+const GAP: f64 = 0.10;
+/// and so much farther for each metre from the robot to the farther one.
+const GAP_BY_RANGE: f64 = 0.08;
+/// A strut hides no more bearings than these.
+const HIDDEN: usize = 16;
+/// Smaller clusters are noise: fewer points,
+const LEAST: usize = 6;
+/// or shorter, in metres.
+const SHORTEST: f64 = 0.12;
+
+/// The pieces of wall, without those that are noise.
+// paper: sense.cluster
+// paper: sense.small-clusters
+#[must_use]
+pub fn clusters(boundary: &Boundary) -> Vec<Cluster> {
+    let mut chains: Vec<Chain> = Vec::new();
+    // Those that may go on, by their index.
+    let mut open: Vec<usize> = Vec::new();
+    for point in boundary.points() {
+        open.retain(|&chain| point.0 <= chains[chain].last.0 + HIDDEN);
+        let nearest =
+            open.iter().copied().filter(|&chain| follows(chains[chain].last, point)).min_by(
+                |&one, &other| {
+                    let away = |chain: usize| distance(chains[chain].last.1, point.1);
+                    away(one).total_cmp(&away(other))
+                },
+            );
+        if let Some(chain) = nearest {
+            chains[chain].last = point;
+            chains[chain].cluster.points.push(point.1);
+        } else {
+            open.push(chains.len());
+            chains.push(Chain::new(point));
+        }
+    }
+    let mut clusters = joined_around(chains);
+    clusters.retain(|cluster| cluster.points.len() >= LEAST && cluster.extent() >= SHORTEST);
+    clusters
+}
+
+/// A cluster that grows: its first point and its last, with their bearings.
+struct Chain {
+    first: (usize, [f64; 2]),
+    last: (usize, [f64; 2]),
+    cluster: Cluster,
+}
+
+impl Chain {
+    fn new(point: (usize, [f64; 2])) -> Self {
+        Self { first: point, last: point, cluster: Cluster { points: vec![point.1] } }
+    }
+}
+
+/// The clusters, those that go on across straight ahead put together.
+fn joined_around(mut chains: Vec<Chain>) -> Vec<Cluster> {
+    let mut at = 0;
+    while at < chains.len() {
+        let goes_on = |other: &Chain| {
+            other.last.0 + HIDDEN >= BEARINGS && follows(other.last, chains[at].first)
+        };
+        let before = (at + 1..chains.len()).find(|&other| goes_on(&chains[other]));
+        if let Some(before) = before {
+            let mut front = chains.swap_remove(before).cluster;
+            front.points.append(&mut chains[at].cluster.points);
+            chains[at].cluster = front;
+        }
+        at += 1;
+    }
+    chains.into_iter().map(|chain| chain.cluster).collect()
+}
+
+/// Whether the second point goes on where the first was.
+fn follows((bearing, one): (usize, [f64; 2]), (next, other): (usize, [f64; 2])) -> bool {
+    let hidden = (next + BEARINGS - bearing) % BEARINGS;
+    let farther = range(one).max(range(other));
+    // Behind a strut the wall may go on for as far as the strut hides it.
+    let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
+    (1..=HIDDEN).contains(&hidden) && distance(one, other) <= GAP + GAP_BY_RANGE * farther + bridged
+}
+
+impl Cluster {
+    /// The longer side of the box around the points, in metres.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        let side = |axis: usize| {
+            let along = self.points.iter().map(|point| point[axis]);
+            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+        };
+        side(0).max(side(1))
+    }
+}
+
+/// How far a point is from the robot.
+#[must_use]
+pub(crate) fn range([x, y]: [f64; 2]) -> f64 {
+    x.hypot(y)
+}
+
+/// How far two points are from each other.
+#[must_use]
+pub(crate) fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
+    range([one[0] - other[0], one[1] - other[1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boundary::Sight;
+
+    /// A boundary from the range on each bearing.
+    fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {
+        let sights =
+            (0..BEARINGS).map(|bearing| Sight::at(range(TAU * bearing as f64 / BEARINGS as f64)));
+        Boundary { sights: sights.collect() }
+    }
+
+    #[test]
+    fn a_round_wall_is_one_cluster() {
+        let clusters = clusters(&boundary(|_| Some(1.0)));
+        assert_eq!(clusters.len(), 1);
+        assert_eq!(clusters[0].points.len(), BEARINGS);
+    }
+
+    #[test]
+    fn walls_at_both_sides_are_two_clusters() {
+        let sides =
+            boundary(|bearing| Some(0.8 / bearing.sin().abs()).filter(|&range| range < 2.5));
+        assert_eq!(clusters(&sides).len(), 2);
+    }
+
+    #[test]
+    fn a_strut_does_not_part_a_cluster() {
+        let strut = boundary(|bearing| Some(1.0).filter(|_| !(1.0..1.1).contains(&bearing)));
+        assert_eq!(clusters(&strut).len(), 1);
+    }
+
+    #[test]
+    fn a_speck_is_no_cluster() {
+        let speck = boundary(|bearing| Some(1.0).filter(|_| (1.0..1.03).contains(&bearing)));
+        assert_eq!(clusters(&speck), []);
+        assert_eq!(clusters(&boundary(|_| None)), []);
+    }
+}

@@ -1,0 +1,146 @@
+//! Corners: where two walls meet at a right angle, or where one ends. Section 3, Figures 8 and 9.
+
+use crate::wall::{Axis, Wall};
+
+/// Where a wall along x and a wall along y of a frame meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// In the frame, in metres.
+    pub position: [f64; 2],
+    /// Which way its two walls go from it, on x and on y: -1 or 1. This is its type: followed ahead,
+    /// the wall behind it turns to the left or to the right.
+    pub arms: [f64; 2],
+    /// Whether it is a corner of the room or an edge.
+    pub bend: Bend,
+    /// From what it was made out.
+    pub formed: Formed,
+}
+
+/// Which way a corner bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// A quarter of floor, three of wall.
+    Inwards,
+    /// A quarter of wall, three of floor.
+    Outwards,
+}
+
+/// From what a corner was made out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Formed {
+    /// The ends of two clusters.
+    Clusters,
+    /// Two pieces of one cluster.
+    Cluster,
+    /// The end of a wall whose continuation around the corner cannot be seen from the robot.
+    End,
+}
+
+/// Two ends touch where they are so near to where their walls would meet, in metres.
+const TOUCH: f64 = 0.22;
+
+/// All corners of some walls.
+// paper: sense.corner.pair
+// paper: sense.corner.direction
+#[must_use]
+pub fn corners(walls: &[Wall]) -> Vec<Corner> {
+    let along = |axis: Axis| walls.iter().filter(move |wall| wall.along == axis);
+    let mut corners: Vec<Corner> = Vec::new();
+    for x_wall in along(Axis::X) {
+        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall)));
+    }
+    for wall in walls {
+        let ends = [(wall.to, -1.0), (wall.from, 1.0)];
+        corners.extend(ends.map(|(end, back)| edge(wall, end, back)));
+    }
+    corners
+}
+
+/// The corner of two walls, if their ends touch.
+fn meeting(x_wall: &Wall, y_wall: &Wall) -> Option<Corner> {
+    let position = [y_wall.offset, x_wall.offset];
+    let touches = |wall: &Wall, at: f64| (wall.from - at).abs().min((wall.to - at).abs()) <= TOUCH;
+    if !touches(x_wall, position[0]) || !touches(y_wall, position[1]) {
+        return None;
+    }
+    let towards = |wall: &Wall, at: f64| f64::midpoint(wall.from, wall.to) - at;
+    let arms = [towards(x_wall, position[0]).signum(), towards(y_wall, position[1]).signum()];
+    // The robot sees the two walls from between them or from over the edge.
+    let between = [0, 1].map(|axis| -position[axis] * arms[axis] > 0.0);
+    let bend = match between {
+        [true, true] => Bend::Inwards,
+        [false, false] => Bend::Outwards,
+        _ => return None,
+    };
+    let formed = if x_wall.cluster == y_wall.cluster { Formed::Cluster } else { Formed::Clusters };
+    Some(Corner { position, arms, bend, formed })
+}
+
+/// The edge that a wall's end may be: the wall turns away from the robot there.
+fn edge(wall: &Wall, end: f64, back: f64) -> Corner {
+    let position = wall.along.point(end, wall.offset);
+    let arms = wall.along.point(back, wall.offset.signum());
+    Corner { position, arms, bend: Bend::Outwards, formed: Formed::End }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wall(along: Axis, offset: f64, from: f64, to: f64, cluster: usize) -> Wall {
+        Wall { along, offset, from, to, cluster }
+    }
+
+    fn met(walls: &[Wall]) -> Vec<Corner> {
+        corners(walls).into_iter().filter(|corner| corner.formed != Formed::End).collect()
+    }
+
+    /// Figure 8: an L to the left, half a metre before its turning point.
+    // paper: sense.corner.pair
+    // paper: sense.junction.two
+    #[test]
+    fn the_two_corners_of_an_l_are_of_the_same_type() {
+        let corners = met(&[
+            wall(Axis::X, -0.8, -1.0, 1.3, 0),
+            wall(Axis::Y, 1.3, -0.8, 2.0, 0),
+            wall(Axis::X, 0.8, -1.0, -0.3, 1),
+            wall(Axis::Y, -0.3, 0.85, 2.0, 2),
+        ]);
+        let [outer, inner] = corners[..] else { panic!("{corners:?}") };
+        assert_eq!((outer.bend, outer.formed), (Bend::Inwards, Formed::Cluster));
+        assert_eq!((inner.bend, inner.formed), (Bend::Outwards, Formed::Clusters));
+        assert_eq!(outer.arms, inner.arms);
+        assert_eq!(outer.position, [1.3, -0.8]);
+    }
+
+    /// Figure 9: a T entered by its stem.
+    // paper: sense.corner.direction
+    // paper: sense.junction.three
+    #[test]
+    fn the_two_corners_of_a_t_are_of_different_types() {
+        let corners = met(&[
+            wall(Axis::X, -0.8, -1.0, -0.1, 0),
+            wall(Axis::Y, -0.1, -2.0, -0.8, 0),
+            wall(Axis::X, 0.8, -1.0, -0.1, 1),
+            wall(Axis::Y, -0.1, 0.8, 2.0, 1),
+            wall(Axis::Y, 1.5, -2.0, 2.0, 2),
+        ]);
+        let [right, left] = corners[..] else { panic!("{corners:?}") };
+        assert_eq!([right.arms, left.arms], [[-1.0, -1.0], [-1.0, 1.0]]);
+        assert_eq!([right.bend, left.bend], [Bend::Outwards; 2]);
+    }
+
+    #[test]
+    fn walls_that_do_not_touch_are_no_corner() {
+        assert_eq!(met(&[wall(Axis::X, 0.8, -1.0, 0.5, 0), wall(Axis::Y, 1.5, -0.8, 0.7, 1)]), []);
+    }
+
+    #[test]
+    fn the_end_of_a_wall_may_be_an_edge() {
+        let [ahead, behind] = corners(&[wall(Axis::X, 0.8, -1.0, 0.4, 0)])[..] else {
+            panic!("two ends")
+        };
+        assert_eq!((ahead.position, ahead.arms), ([0.4, 0.8], [-1.0, 1.0]));
+        assert_eq!((behind.position, behind.arms), ([-1.0, 0.8], [1.0, 1.0]));
+    }
+}

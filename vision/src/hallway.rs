@@ -1,0 +1,316 @@
+//! Hallways: two parallel walls on opposite sides of the robot, and floor that goes on. Section 3,
+//! Figure 7.
+
+use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
+
+use crate::{
+    boundary::{BEARINGS, Boundary, bearing, direction},
+    outline::{Agreement, Outline, Square},
+    wall::{Axis, Frame, Wall},
+};
+
+/// A hallway that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hallway {
+    /// Turned so that the walls lie best on what is seen.
+    pub frame: Frame,
+    /// Along which axis of the frame it runs.
+    pub axis: Axis,
+    /// Its centre line and half its width, between the edges that were seen.
+    pub square: Square,
+    /// Whether it is clear.
+    pub status: Status,
+    /// How its walls agree with what is seen.
+    pub agreement: Agreement,
+}
+
+/// Half the width of a hallway, in metres.
+pub const HALF_WIDTH: std::ops::RangeInclusive<f64> = 0.45..=1.35;
+/// A turning point that is farther ahead than this is not yet there: the robot is in the hallway
+/// before it. In metres.
+pub const AHEAD: f64 = 1.0;
+/// A turning point that is farther behind than this has been left, in metres.
+pub const BEHIND: f64 = 0.75;
+/// Nearer than this to a turning point, the walls are open at a side; in metres. So much wall is
+/// looked at, to either end, less half the width.
+const CLOSED: f64 = 1.4;
+/// Pieces of wall with offsets that differ by less are of the same wall, in metres.
+const SAME: f64 = 0.10;
+/// So many walls on each side are considered.
+const NEAREST: usize = 3;
+/// The floor must be seen to go on as if the turning point were so far ahead, at least; in metres.
+const SEEN_AHEAD: f64 = 0.75;
+/// Or a wall at a side must be seen to go on as if it were so far ahead.
+const SIDES_AHEAD: f64 = 0.65;
+/// A major cluster is at least so long, in metres,
+const MAJOR: f64 = 0.25;
+/// and begins no farther from the robot, along the hallway.
+const BESIDE: f64 = 0.9;
+/// What is seen must support the walls at least so much for a hallway to be likely,
+const LIKELY: f64 = 0.68;
+/// and so much for it to be sure: a door of the floor's colour looks like an opening.
+const SURE: f64 = 0.85;
+/// and this part of them must be seen.
+const COVER: f64 = 0.20;
+/// The floor is looked at so far to either side of the hallway's direction, in bearings.
+const SECTOR: usize = BEARINGS / 30;
+/// Further clusters nearer than this beside the robot count neither as ahead nor as behind, in metres.
+const ABREAST: f64 = 0.3;
+/// A further cluster is off the walls by more than this, in metres.
+const OFF: f64 = 0.15;
+/// The major clusters are of very different sizes where one is less than this part of the other.
+const SIZES: f64 = 0.5;
+
+/// The hallway in which the robot is, if it is in one.
+// paper: sense.hallway.two-clusters
+// paper: sense.hallway.major
+#[must_use]
+pub fn hallway(walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hallway> {
+    [Axis::X, Axis::Y]
+        .into_iter()
+        .filter_map(|axis| along(axis, walls, boundary, frame))
+        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
+}
+
+/// The best hallway along an axis, of the pieces of wall nearest to the robot on either side.
+fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hallway> {
+    let lefts = majors(axis, 1.0, walls);
+    let rights = majors(axis, -1.0, walls);
+    let pairs = lefts.iter().flat_map(|&left| rights.iter().map(move |&right| (left, right)));
+    pairs
+        .filter_map(|(left, right)| between(axis, left, right, walls, boundary, frame))
+        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
+}
+
+/// The hallway along an axis between walls with these offsets.
+fn between(
+    axis: Axis,
+    left: f64,
+    right: f64,
+    walls: &[Wall],
+    boundary: &Boundary,
+    frame: &Frame,
+) -> Option<Hallway> {
+    let mut square =
+        Square { middle: axis.point(0.0, f64::midpoint(left, right)), half: (left - right) / 2.0 };
+    if !HALF_WIDTH.contains(&square.half) {
+        return None;
+    }
+    let reach = CLOSED - square.half;
+    let mut frame = *frame;
+    for _ in 0..2 {
+        let outline = Outline::hallway(axis, square, -reach - 0.3, reach + 0.3);
+        (square, frame) = outline.fitted(square, boundary, &frame);
+        square.middle[axis.split().0] = 0.0;
+    }
+    let agreement = Outline::hallway(axis, square, -reach, reach).agreement(boundary, &frame, 1);
+    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame)
+        && goes_on(axis, -1.0, square, walls, boundary, &frame);
+    (agreement.holds(LIKELY) && agreement.cover() >= COVER && goes_on).then(|| Hallway {
+        frame,
+        axis,
+        square,
+        status: status(axis, frame.ahead(axis), square, walls),
+        agreement,
+    })
+}
+
+/// The offsets of the pieces of wall that are nearest to the robot, on one side of an axis; the major
+/// cluster is the first, unless what looks like it is a lamp's reflection on the floor.
+// paper: sense.opposite
+// paper: sense.parallel
+fn majors(axis: Axis, side: f64, walls: &[Wall]) -> Vec<f64> {
+    let beside = walls.iter().filter(|wall| {
+        wall.along == axis
+            && side * wall.offset > 0.0
+            && wall.length() >= MAJOR
+            && wall.from < BESIDE
+            && wall.to > -BESIDE
+    });
+    let mut offsets: Vec<f64> = beside.map(|wall| wall.offset).collect();
+    offsets.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
+    offsets.dedup_by(|next, kept| (*next - *kept).abs() < SAME);
+    offsets.truncate(NEAREST);
+    offsets
+}
+
+/// Whether the floor goes on, ahead or behind, so far that no turning point is near.
+fn goes_on(
+    axis: Axis,
+    sign: f64,
+    square: Square,
+    walls: &[Wall],
+    boundary: &Boundary,
+    frame: &Frame,
+) -> bool {
+    let (along, _) = axis.split();
+    let whither = frame.unframed(axis.point(sign, 0.0));
+    let least = square.half + SEEN_AHEAD;
+    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - SECTOR;
+    let ahead = sign * frame.ahead(axis) > 0.0;
+    let (mut far, mut near) = (0, 0);
+    for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
+        let sight = boundary.sights[bearing];
+        let forwards = sign * frame.framed(direction(bearing))[along];
+        match sight.sure() {
+            Some(wall) if wall * forwards < least => near += 1,
+            None if sight.floor * forwards < least => {}
+            _ => far += 1,
+        }
+    }
+    // What is behind the robot may be in the dark; it has come from there.
+    let enough = !ahead
+        || far > SECTOR / 3
+        || reaches(axis, sign * (square.half + SIDES_AHEAD), square, walls);
+    let closed = near > SECTOR / 2 && near > far;
+    enough && !closed && !is_closed(axis, sign * least, square, walls)
+}
+
+/// Whether a wall at a side goes on as far as this.
+fn reaches(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+    let centre = square.middle[axis.split().1];
+    walls.iter().any(|wall| {
+        let off = ((wall.offset - centre).abs() - square.half).abs();
+        let far = if least > 0.0 { wall.to > least } else { wall.from < least };
+        wall.along == axis && off < OFF && far
+    })
+}
+
+/// Whether walls stand across half of the hallway or more, nearer than this.
+fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+    let centre = square.middle[axis.split().1];
+    let across = walls.iter().filter(|wall| {
+        wall.along != axis && wall.offset * least > 0.0 && wall.offset.abs() < least.abs()
+    });
+    let closed = across.map(|wall| {
+        let within = wall.to.min(centre + square.half) - wall.from.max(centre - square.half);
+        within.max(0.0)
+    });
+    closed.sum::<f64>() > square.half
+}
+
+/// Whether the hallway along an axis is clear, on the way ahead.
+// paper: sense.clear.two
+// paper: sense.clear.behind
+// paper: sense.unclear.ahead
+// paper: sense.unclear.sizes
+// paper: sense.unclear.behind
+pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> Status {
+    let (_, across) = axis.split();
+    let off = |wall: &Wall, side: f64| wall.offset - square.middle[across] - side * square.half;
+    let side = |side: f64| {
+        walls.iter().filter(move |wall| wall.along == axis && off(wall, side).abs() < OFF)
+    };
+    let (left, right) = (side(1.0), side(-1.0));
+    let forwards = |wall: &Wall| {
+        let parts = if wall.along == axis { [wall.from, wall.to] } else { [wall.offset; 2] };
+        ahead * f64::midpoint(parts[0], parts[1])
+    };
+    let is_major =
+        |wall: &Wall| wall.along == axis && off(wall, 1.0).abs().min(off(wall, -1.0).abs()) < OFF;
+    if walls.iter().any(|wall| !is_major(wall) && forwards(wall) > ABREAST) {
+        return Status::Unclear(Unclear::ClustersAhead);
+    }
+    let foremost = |wall: &Wall| (ahead * wall.from).max(ahead * wall.to);
+    let ends = [left.clone(), right.clone()]
+        .map(|side| side.map(foremost).fold(f64::NEG_INFINITY, f64::max));
+    if ends.iter().any(|&end| end < 0.0) {
+        return Status::Unclear(Unclear::ClusterBehind);
+    }
+    let sizes = [left, right].map(|side| side.map(Wall::length).sum::<f64>());
+    if sizes[0].min(sizes[1]) < SIZES * sizes[0].max(sizes[1]) {
+        return Status::Unclear(Unclear::SizesDiffer);
+    }
+    Status::Clear
+}
+
+impl Hallway {
+    /// Whether nothing of its walls looks open, so that no junction need be looked for.
+    #[must_use]
+    pub fn is_sure(&self) -> bool {
+        self.agreement.holds(SURE)
+    }
+
+    /// What the robot is told of it; `margin` is from the edges that were seen to the wall planes.
+    // paper: sense.distances
+    #[must_use]
+    pub fn view(&self, margin: f64) -> HallwayView {
+        let heading = undirected(self.frame.angle() + self.axis.direction());
+        let (_, across) = self.axis.split();
+        // Left of x is y, and left of y is the opposite of x.
+        let leftwards = match self.axis {
+            Axis::X => 1.0,
+            Axis::Y => -self.frame.ahead(Axis::Y),
+        };
+        let centre = leftwards * self.square.middle[across];
+        let half = self.square.half + margin;
+        HallwayView {
+            heading,
+            left: half + centre,
+            right: half - centre,
+            status: self.status,
+            confidence: self.agreement.trust() * self.agreement.cover().sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
+
+    fn wall(along: Axis, offset: f64, from: f64, to: f64) -> Wall {
+        Wall { along, offset, from, to, cluster: 0 }
+    }
+
+    fn clear_or_not(more: &[Wall], left: [f64; 2], right: [f64; 2]) -> Status {
+        let major = |offset, [from, to]: [f64; 2]| wall(Axis::X, offset, from, to);
+        let walls = [&[major(0.8, left), major(-0.8, right)], more].concat();
+        status(Axis::X, 1.0, SQUARE, &walls)
+    }
+
+    // paper: sense.clear.two
+    // paper: sense.hallway.major
+    #[test]
+    fn two_walls_and_no_more_are_clear_and_so_are_broken_ones() {
+        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-2.0, 2.0]), Status::Clear);
+        let broken = [wall(Axis::X, 0.82, 1.0, 2.0), wall(Axis::X, -0.78, 1.0, 2.0)];
+        assert_eq!(clear_or_not(&broken, [-2.0, 0.7], [-2.0, 0.8]), Status::Clear);
+    }
+
+    // paper: sense.clear.behind
+    // paper: sense.unclear.ahead
+    #[test]
+    fn a_further_cluster_counts_ahead_and_not_behind() {
+        let across = |at| clear_or_not(&[wall(Axis::Y, at, -0.8, 0.8)], [-2.0, 2.0], [-2.0, 2.0]);
+        assert_eq!(across(1.9), Status::Unclear(Unclear::ClustersAhead));
+        assert_eq!(across(-1.9), Status::Clear);
+    }
+
+    // paper: sense.unclear.sizes
+    // paper: sense.unclear.behind
+    #[test]
+    fn a_major_cluster_that_is_short_or_behind_is_unclear() {
+        let sizes = Status::Unclear(Unclear::SizesDiffer);
+        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-1.0, 0.9]), sizes);
+        let behind = Status::Unclear(Unclear::ClusterBehind);
+        assert_eq!(clear_or_not(&[], [-2.0, 0.5], [-2.0, -0.1]), behind);
+    }
+
+    #[test]
+    fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
+        for (turned, heading, left) in [(0.1, 0.1 - 1.570_796, 1.0), (-0.1, 1.470_796, 0.6)] {
+            let hallway = Hallway {
+                frame: Frame::along(turned),
+                axis: Axis::Y,
+                square: Square { middle: [0.2, 0.0], half: 0.8 },
+                status: Status::Clear,
+                agreement: Agreement { support: 1, ..Agreement::default() },
+            };
+            let view = hallway.view(0.0);
+            assert!((view.heading - heading).abs() < 1e-5, "{view:?}");
+            assert!((view.left - left).abs() < 1e-9, "{view:?}");
+        }
+    }
+}

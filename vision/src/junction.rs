@@ -1,0 +1,217 @@
+//! Junctions: which corners and walls make which junction, and where its doors are. Section 3,
+//! Figures 8 and 9.
+//!
+//! A corner and the width of the hallways say where the turning point would be, and a corner's type
+//! which junctions it can belong to: an edge belongs to an L between its two doors and to the Ts that
+//! have these doors; a corner of the room to an L opposite its two doors and to two dead ends. Each of
+//! these is held against all that is seen, and so the second corner and the straight wall of the paper
+//! must be there, too.
+
+use std::f64::consts::FRAC_PI_2;
+
+use toposlam_model::driving::scene::{CentreLine, JunctionView, wrapped};
+
+use crate::{
+    boundary::Boundary,
+    corner::{Bend, Corner},
+    hallway::{AHEAD, BEHIND, HALF_WIDTH, Hallway, status},
+    outline::{Agreement, DIRECTIONS, Outline, Square, bearings},
+    wall::{Axis, Frame, Wall},
+};
+
+/// A junction that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Junction {
+    /// Turned so that the walls lie best on what is seen.
+    pub frame: Frame,
+    /// In which of the four [`DIRECTIONS`] of the frame there are doors.
+    pub doors: [bool; 4],
+    /// The turning point, and half the width between the edges that were seen.
+    pub square: Square,
+    /// How its walls agree with what is seen.
+    pub agreement: Agreement,
+}
+
+/// What the corners and walls make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Finding {
+    /// This junction.
+    Junction(Junction),
+    /// Two different junctions, equally well.
+    Ambiguous,
+    /// None.
+    Nothing,
+}
+
+/// Guesses are first held against every so many bearings,
+const COARSE: usize = 5;
+/// and so many of the best are looked at closely.
+const SHORT_LIST: usize = 6;
+/// What is seen must support a junction at least so much,
+const TRUST: f64 = 0.75;
+/// and this part of its walls must be seen.
+const COVER: f64 = 0.40;
+/// A different junction must be supported by less, by this part of all bearings.
+const MARGIN: f64 = 0.04;
+/// Junctions whose turning points are nearer to each other are the same, in metres.
+const SAME: f64 = 0.25;
+/// Widths that differ by less are the same, in metres.
+const SAME_WIDTH: f64 = 0.05;
+/// A turning point is looked for so far away on each axis, in metres.
+const REACH: f64 = 1.9;
+
+/// The junction that the corners and walls make.
+// paper: sense.junction.type
+// paper: sense.junction.two
+// paper: sense.junction.three
+#[must_use]
+pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Finding {
+    let mut guesses: Vec<Junction> = Vec::new();
+    for half in half_widths(walls) {
+        for corner in corners {
+            let (square, kinds) = around(corner, half);
+            if square.middle.iter().any(|part| part.abs() > REACH) {
+                continue;
+            }
+            for doors in kinds {
+                let known = guesses.iter().any(|guess| {
+                    guess.doors == doors
+                        && apart(guess.square, square) < SAME_WIDTH
+                        && (guess.square.half - half).abs() < SAME_WIDTH
+                });
+                if !known {
+                    let outline = Outline::junction(doors, square);
+                    let agreement = outline.agreement(boundary, frame, COARSE);
+                    guesses.push(Junction { frame: *frame, doors, square, agreement });
+                }
+            }
+        }
+    }
+    best_first(&mut guesses);
+    guesses.truncate(SHORT_LIST);
+    let mut found: Vec<_> = guesses.into_iter().map(|guess| guess.fitted(boundary)).collect();
+    best_first(&mut found);
+    let Some(&best) = found.first() else { return Finding::Nothing };
+    let wide = HALF_WIDTH.contains(&best.square.half);
+    let seen = best.agreement.cover() >= COVER && best.agreement.blank == 0;
+    if !wide || !seen || !best.agreement.holds(TRUST) {
+        return Finding::Nothing;
+    }
+    // In a hallway it does not matter which junction is far ahead or behind.
+    let differs = |other: &Junction| {
+        (best.is_here() || other.is_here())
+            && (other.doors != best.doors || apart(other.square, best.square) > SAME)
+    };
+    let behind = |other: &Junction| best.agreement.balance() - other.agreement.balance();
+    if found.iter().any(|other| differs(other) && behind(other) < bearings(MARGIN, 1)) {
+        return Finding::Ambiguous;
+    }
+    Finding::Junction(best)
+}
+
+fn best_first(guesses: &mut [Junction]) {
+    guesses.sort_by(|one, other| other.agreement.balance().total_cmp(&one.agreement.balance()));
+}
+
+/// How far two turning points are from each other.
+fn apart(one: Square, other: Square) -> f64 {
+    (one.middle[0] - other.middle[0]).hypot(one.middle[1] - other.middle[1])
+}
+
+/// Half the distances between walls on opposite sides of the robot.
+fn half_widths(walls: &[Wall]) -> Vec<f64> {
+    let mut halves: Vec<f64> = Vec::new();
+    for (number, one) in walls.iter().enumerate() {
+        for other in &walls[..number] {
+            let half = (one.offset - other.offset).abs() / 2.0;
+            let opposite = one.along == other.along && one.offset * other.offset < 0.0;
+            let known = halves.iter().any(|&known: &f64| (known - half).abs() < SAME_WIDTH / 2.0);
+            if opposite && HALF_WIDTH.contains(&half) && !known {
+                halves.push(half);
+            }
+        }
+    }
+    halves
+}
+
+/// Where the turning point is if this is a corner of a junction, and which doors the junction can have.
+fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
+    let [x, y] = corner.arms;
+    // The two directions of the corner's walls, among the four.
+    let of_x = if x > 0.0 { 0 } else { 2 };
+    let of_y = if y > 0.0 { 1 } else { 3 };
+    let doors = |open: &[usize]| [0, 1, 2, 3].map(|direction| open.contains(&direction));
+    let opposite = |direction: usize| (direction + 2) % 4;
+    let (outwards, kinds) = match corner.bend {
+        Bend::Outwards => (
+            -half,
+            [
+                doors(&[of_x, of_y]),
+                doors(&[of_x, of_y, opposite(of_x)]),
+                doors(&[of_x, of_y, opposite(of_y)]),
+            ],
+        ),
+        Bend::Inwards => (half, [doors(&[of_x, of_y]), doors(&[of_x]), doors(&[of_y])]),
+    };
+    let middle = [corner.position[0] + outwards * x, corner.position[1] + outwards * y];
+    (Square { middle, half }, kinds)
+}
+
+impl Junction {
+    /// The same junction, moved to where its walls lie best on what is seen.
+    fn fitted(self, boundary: &Boundary) -> Self {
+        let (mut square, mut frame) = (self.square, self.frame);
+        for _ in 0..3 {
+            (square, frame) =
+                Outline::junction(self.doors, square).fitted(square, boundary, &frame);
+        }
+        let agreement = Outline::junction(self.doors, square).agreement(boundary, &frame, 1);
+        Self { frame, square, agreement, ..self }
+    }
+
+    /// Whether the robot is there: the turning point is neither far ahead nor left behind.
+    #[must_use]
+    pub fn is_here(&self) -> bool {
+        let away = -self.square.middle[0];
+        let aside = self.square.middle[1].abs();
+        (-AHEAD..=BEHIND).contains(&away) && aside <= AHEAD
+    }
+
+    /// The hallway before or behind it, in which the robot is.
+    #[must_use]
+    pub fn hallway(&self, walls: &[Wall]) -> Option<Hallway> {
+        let axis = self.arm()?;
+        let mut square = self.square;
+        square.middle[axis.split().0] = 0.0;
+        let status = status(axis, self.frame.ahead(axis), square, walls);
+        Some(Hallway { frame: self.frame, axis, square, status, agreement: self.agreement })
+    }
+
+    /// Along which axis the hallway runs in which the robot is.
+    fn arm(&self) -> Option<Axis> {
+        let from_middle = self.square.middle.map(|part| -part);
+        let far =
+            |direction: [f64; 2]| direction[0] * from_middle[0] + direction[1] * from_middle[1];
+        (0..4)
+            .filter(|&number| {
+                self.doors[number] && far(DIRECTIONS[number]) > self.square.half / 2.0
+            })
+            .map(|number| if number % 2 == 0 { Axis::X } else { Axis::Y })
+            .next()
+    }
+
+    /// What the robot is told of it: the doors clockwise from the one behind.
+    // paper: sense.junction.entry
+    // paper: sense.centre-lines
+    #[must_use]
+    pub fn view(&self) -> JunctionView {
+        let turning_point = self.frame.unframed(self.square.middle);
+        let doors = (0..4).rev().filter(|&number| self.doors[number]).map(|number| CentreLine {
+            through: turning_point,
+            direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
+        });
+        let confidence = self.agreement.trust() * self.agreement.cover().sqrt();
+        JunctionView { doors: doors.collect(), turning_point, confidence }
+            .entered_from(std::f64::consts::PI)
+    }
+}

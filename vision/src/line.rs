@@ -1,0 +1,165 @@
+//! Straight lines through boundary points, by principal components. Section 3.
+
+use nalgebra::{Matrix2, SymmetricEigen};
+
+use crate::cluster::{Cluster, distance, range};
+
+/// A straight piece of wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// The mean of its points.
+    pub middle: [f64; 2],
+    /// The unit vector along it, from the first point to the last.
+    pub along: [f64; 2],
+    /// Where it begins, counter-clockwise as seen from the robot, in metres.
+    pub from: [f64; 2],
+    /// Where it ends.
+    pub to: [f64; 2],
+    /// How far its points are from it: the root of the mean square, in metres.
+    pub spread: f64,
+    /// How many points it has.
+    pub points: usize,
+    /// The number of the cluster that it is a piece of.
+    pub cluster: usize,
+}
+
+/// A cluster is split where a point is so far from its line, in metres,
+const BEND: f64 = 0.035;
+/// and so much more for each metre from the robot: a pixel covers more there.
+const BEND_BY_RANGE: f64 = 0.02;
+/// A line has at least so many points,
+const LEAST: usize = 5;
+/// and is at least so long, in metres.
+const SHORTEST: f64 = 0.10;
+
+impl Line {
+    /// The line on which the points lie best: their first principal component. `None` for fewer
+    /// than two different points.
+    // paper: sense.pca
+    #[must_use]
+    pub fn through(points: &[[f64; 2]]) -> Option<Self> {
+        let (first, last) = (*points.first()?, *points.last()?);
+        let count = points.len() as f64;
+        let sum = points.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
+        let middle = sum.map(|part| part / count);
+        let mut scatter = Matrix2::zeros();
+        for point in points {
+            let [x, y] = [point[0] - middle[0], point[1] - middle[1]];
+            scatter += Matrix2::new(x * x, x * y, x * y, y * y);
+        }
+        let components = SymmetricEigen::new(scatter / count);
+        let major = components.eigenvalues.imax();
+        if components.eigenvalues[major] <= 0.0 {
+            return None;
+        }
+        let vector = components.eigenvectors.column(major);
+        let onwards = vector[0] * (last[0] - first[0]) + vector[1] * (last[1] - first[1]);
+        let along = if onwards < 0.0 { [-vector[0], -vector[1]] } else { [vector[0], vector[1]] };
+        let spread = components.eigenvalues[1 - major].max(0.0).sqrt();
+        let line =
+            Self { middle, along, from: first, to: last, spread, points: points.len(), cluster: 0 };
+        Some(Self { from: line.foot(first), to: line.foot(last), ..line })
+    }
+
+    /// The point of the line that is nearest to a point.
+    fn foot(&self, point: [f64; 2]) -> [f64; 2] {
+        let at = (point[0] - self.middle[0]) * self.along[0]
+            + (point[1] - self.middle[1]) * self.along[1];
+        [self.middle[0] + at * self.along[0], self.middle[1] + at * self.along[1]]
+    }
+
+    /// How long it is, in metres.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        distance(self.from, self.to)
+    }
+
+    /// Its direction, in radians counter-clockwise from ahead.
+    #[must_use]
+    pub fn direction(&self) -> f64 {
+        self.along[1].atan2(self.along[0])
+    }
+}
+
+/// The straight pieces of clusters: each is split at the point farthest from the line between its ends
+/// until none is far (Ramer 1972, Douglas and Peucker 1973).
+// paper: sense.corner.single
+#[must_use]
+pub fn lines(clusters: &[Cluster]) -> Vec<Line> {
+    let pieces = clusters.iter().enumerate().flat_map(|(number, cluster)| {
+        split(cluster).into_iter().map(move |line| Line { cluster: number, ..line })
+    });
+    pieces.collect()
+}
+
+fn split(cluster: &Cluster) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut open = vec![cluster.points.as_slice()];
+    while let Some(points) = open.pop() {
+        match bend(points) {
+            Some(at) => open.extend([&points[at..], &points[..=at]]),
+            None => lines.extend(
+                Line::through(points)
+                    .filter(|line| line.points >= LEAST && line.length() >= SHORTEST),
+            ),
+        }
+    }
+    lines
+}
+
+/// Where points that follow each other are farthest from the line between their ends, if that is far.
+fn bend(points: &[[f64; 2]]) -> Option<usize> {
+    let (&first, &last) = (points.first()?, points.last()?);
+    if points.len() < 2 * LEAST {
+        return None;
+    }
+    let chord = distance(first, last);
+    let off = |point: [f64; 2]| {
+        if chord < SHORTEST {
+            return distance(first, point);
+        }
+        let [x, y] = [last[0] - first[0], last[1] - first[1]];
+        ((point[0] - first[0]) * y - (point[1] - first[1]) * x).abs() / chord
+    };
+    let inner = 1..points.len() - 1;
+    let at = inner.max_by(|&one, &other| off(points[one]).total_cmp(&off(points[other])))?;
+    (off(points[at]) > BEND + BEND_BY_RANGE * range(points[at])).then_some(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cluster(points: impl IntoIterator<Item = [f64; 2]>) -> Cluster {
+        Cluster { points: points.into_iter().collect() }
+    }
+
+    #[test]
+    fn a_straight_cluster_is_one_line() {
+        let wall =
+            cluster((0..50).map(|step| [0.02 * f64::from(step), 1.0 + 0.01 * f64::from(step)]));
+        let [line] = split(&wall)[..] else { panic!("one line") };
+        assert!((line.direction() - 0.5_f64.atan()).abs() < 1e-9);
+        assert!(line.spread < 1e-6);
+        assert!((line.length() - 0.02 * 49.0 * 1.25_f64.sqrt()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_bent_cluster_is_two_lines_at_a_right_angle() {
+        let bent = cluster(
+            (0..50)
+                .map(|step| [1.0, 0.02 * f64::from(step) - 0.5])
+                .chain((1..50).map(|step| [1.0 - 0.02 * f64::from(step), 0.48])),
+        );
+        let [one, other] = split(&bent)[..] else { panic!("two lines") };
+        let dot = one.along[0] * other.along[0] + one.along[1] * other.along[1];
+        assert!(dot.abs() < 0.02, "{dot}");
+        assert!(distance(one.to, other.from) < 0.05);
+    }
+
+    #[test]
+    fn one_point_is_no_line() {
+        assert_eq!(Line::through(&[]), None);
+        assert_eq!(Line::through(&[[1.0, 1.0]; 9]), None);
+    }
+}

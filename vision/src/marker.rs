@@ -1,0 +1,187 @@
+//! The marker: a plain rectangle of a colour of its own on the floor. Section 5.1, Figure 10.
+
+use toposlam_model::{
+    driving::scene::{JunctionView, MarkerView, undirected},
+    percept::Door,
+};
+
+use crate::{
+    boundary::{Boundary, bearing},
+    colour::Class,
+    ground_view::GroundView,
+    line::Line,
+};
+
+// paper: marker-sense.shape
+/// The marker's length, in metres.
+pub const LENGTH: f64 = 0.60;
+/// Its width, in metres.
+pub const WIDTH: f64 = 0.18;
+
+/// Part of the marker's area that must be seen.
+const SEEN: f64 = 0.12;
+/// It lies on the floor before the wall; so far behind it a colour is something else, in metres.
+const BEHIND: f64 = 0.05;
+/// How far from the median point of its colour a point may be, in metres.
+const FAR: f64 = 0.40;
+/// At a junction it lies within this of the turning point, in metres.
+const CENTRED: f64 = 0.30;
+
+/// The marker, if enough of its colour is seen on the floor.
+// paper: marker-sense.present, marker-sense.direction
+#[must_use]
+pub fn marker(
+    view: &GroundView,
+    boundary: &Boundary,
+    junction: Option<&JunctionView>,
+) -> Option<MarkerView> {
+    let points = pixels(view, boundary);
+    let least = SEEN * LENGTH * WIDTH / (GroundView::SCALE * GroundView::SCALE);
+    if (points.len() as f64) < least {
+        return None;
+    }
+    let line = Line::through(&points)?;
+    let axis = undirected(line.direction());
+    let at_l = junction.filter(|junction| {
+        let [x, y] = junction.turning_point;
+        junction.doors.len() == 2 && (x - line.middle[0]).hypot(y - line.middle[1]) < CENTRED
+    });
+    let Some(junction) = at_l else {
+        return Some(MarkerView { position: line.middle, axis, door: None });
+    };
+    // The body may hide a part, and then the principal component misleads: which door's rectangle
+    // explains more of what is seen?
+    let explained = |direction: f64| {
+        let (sine, cosine) = direction.sin_cos();
+        let [u, v] = junction.turning_point;
+        let inside = points.iter().filter(|[x, y]| {
+            let [x, y] = [x - u, y - v];
+            (cosine * x + sine * y).abs() <= LENGTH / 2.0
+                && (cosine * y - sine * x).abs() <= WIDTH / 2.0
+        });
+        inside.count()
+    };
+    let by_door = [0, 1].map(|door| explained(junction.doors[door].direction));
+    let door = usize::from(by_door[1] > by_door[0]);
+    Some(MarkerView {
+        position: junction.turning_point,
+        axis: undirected(junction.doors[door].direction),
+        door: Some(Door(door as u32)),
+    })
+}
+
+/// The points of the floor that have the marker's colour, without those far from most of them.
+fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<[f64; 2]> {
+    let on_floor = view.marker.iter().filter_map(|&index| {
+        let [x, y] = GroundView::ground(index as usize);
+        let sight = boundary.sights[bearing(y.atan2(x))];
+        let reach = sight.floor + BEHIND;
+        (x.hypot(y) <= reach && is_within(view, index as usize)).then_some([x, y])
+    });
+    let points: Vec<_> = on_floor.collect();
+    if points.is_empty() {
+        return points;
+    }
+    let median = [0, 1].map(|axis| {
+        let mut parts: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+        let middle = parts.len() / 2;
+        *parts.select_nth_unstable_by(middle, f64::total_cmp).1
+    });
+    points.into_iter().filter(|[x, y]| (x - median[0]).hypot(y - median[1]) <= FAR).collect()
+}
+
+/// Whether a pixel's neighbours to the left and above have the colour, too: a speck has none.
+fn is_within(view: &GroundView, index: usize) -> bool {
+    let of_marker = |index: Option<usize>| {
+        index.and_then(|index| view.classes.get(index)).is_some_and(|&class| class == Class::Marker)
+    };
+    of_marker(index.checked_sub(1)) && of_marker(index.checked_sub(GroundView::SIDE))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use toposlam_model::driving::scene::CentreLine;
+
+    use super::*;
+    use crate::{
+        boundary::Bearings,
+        colour::{Stripe, StripeKind},
+    };
+
+    /// Floor everywhere but under the body, and a marker on it.
+    fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
+        let mut view = GroundView::unseen();
+        for index in 0..view.classes.len() {
+            let [x, y] = GroundView::ground(index);
+            let (sine, cosine) = axis.sin_cos();
+            let [dx, dy] = [x - position[0], y - position[1]];
+            let [along, across] = [cosine * dx + sine * dy, cosine * dy - sine * dx];
+            let on_it = along.abs() <= LENGTH / 2.0 && across.abs() <= WIDTH / 2.0;
+            view.classes[index] = match () {
+                () if x.hypot(y) < 0.32 => Class::Unseen,
+                () if on_it => Class::Marker,
+                () => Class::Floor,
+            };
+            if view.classes[index] == Class::Marker {
+                view.marker.push(index as u32);
+            }
+        }
+        view
+    }
+
+    fn bearings() -> Bearings {
+        Bearings::new(Stripe { kind: StripeKind::OnFloor, width: 0.05 }, 1.05)
+    }
+
+    fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
+        let view = floor_with_marker(position, axis);
+        marker(&view, &bearings().look(&view), junction)
+    }
+
+    // paper: marker-sense.direction
+    // paper: marker-sense.shape
+    #[test]
+    fn a_whole_marker_is_where_it_is_and_lies_as_it_lies() {
+        for axis in [0.0, 0.7, 1.5, -1.2] {
+            let view = found([1.0, 0.2], axis, None).unwrap();
+            assert!((view.position[0] - 1.0).abs() < 0.01 && (view.position[1] - 0.2).abs() < 0.01);
+            assert!(undirected(view.axis - axis).abs() < 0.02, "{} is not {axis}", view.axis);
+            assert_eq!(view.door, None);
+        }
+    }
+
+    // paper: marker-sense.present
+    #[test]
+    fn under_the_body_and_behind_a_wall_there_is_none() {
+        assert_eq!(found([0.0, 0.0], 0.0, None), None);
+        let mut view = floor_with_marker([1.5, 0.0], 0.3);
+        for index in 0..view.classes.len() {
+            let [x, _] = GroundView::ground(index);
+            if (1.0..1.05).contains(&x) {
+                view.classes[index] = Class::Stripe;
+            } else if x > 1.05 && view.classes[index] == Class::Floor {
+                view.classes[index] = Class::Other;
+            }
+        }
+        assert_eq!(marker(&view, &bearings().look(&view), None), None);
+    }
+
+    #[test]
+    fn a_marker_half_hidden_by_the_body_still_tells_its_door() {
+        let l = |distance: f64| JunctionView {
+            doors: [PI, FRAC_PI_2]
+                .map(|direction| CentreLine { through: [distance, 0.0], direction })
+                .to_vec(),
+            turning_point: [distance, 0.0],
+            confidence: 1.0,
+        };
+        for distance in [0.3, 0.5, 0.8] {
+            for (axis, door) in [(0.0, 0), (FRAC_PI_2, 1)] {
+                let view = found([distance, 0.0], axis, Some(&l(distance))).unwrap();
+                assert_eq!(view.door, Some(Door(door)), "{distance} before, lying at {axis}");
+            }
+        }
+    }
+}

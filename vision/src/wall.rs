@@ -1,0 +1,224 @@
+//! Walls: lines that stand at right angles to each other. Section 2.4.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use toposlam_model::driving::scene::wrapped;
+
+use crate::line::Line;
+
+/// The axes along which the walls of a place run: x is the one nearest to ahead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
+    angle: f64,
+    cosine: f64,
+    sine: f64,
+}
+
+/// Along which axis of the frame a wall runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Nearest to ahead.
+    X,
+    /// Across.
+    Y,
+}
+
+/// A piece of wall in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Along which axis it runs.
+    pub along: Axis,
+    /// Its coordinate on the other axis, in metres.
+    pub offset: f64,
+    /// Its lesser end.
+    pub from: f64,
+    /// Its greater end.
+    pub to: f64,
+    /// The number of the cluster that it is a piece of.
+    pub cluster: usize,
+}
+
+/// A line that is off the axes by more is no wall, in radians.
+const ASKEW: f64 = 0.20;
+
+/// A point is on a wall that is so near, in metres.
+const ON: f64 = 0.06;
+
+impl Frame {
+    /// The frame with x in this direction, or at right angles to it.
+    #[must_use]
+    pub fn along(direction: f64) -> Self {
+        let angle = wrapped(4.0 * direction) / 4.0;
+        let (sine, cosine) = angle.sin_cos();
+        Self { angle, cosine, sine }
+    }
+
+    /// The frame along which the greatest length of lines runs; `None` without lines.
+    // paper: env.right-angles
+    #[must_use]
+    pub fn of(lines: &[Line]) -> Option<Self> {
+        let angles: Vec<_> =
+            lines.iter().map(|line| (Self::along(line.direction()).angle, line.length())).collect();
+        let near = |angle: f64| {
+            angles
+                .iter()
+                .map(move |&(other, length)| (wrapped(4.0 * (other - angle)) / 4.0, length))
+                .filter(|(off, _)| off.abs() < ASKEW)
+        };
+        let supported = |angle: f64| near(angle).map(|(_, length)| length).sum::<f64>();
+        let (angle, _) = angles
+            .iter()
+            .map(|&(angle, _)| (angle, supported(angle)))
+            .max_by(|one, other| one.1.total_cmp(&other.1))?;
+        let weighted = near(angle).fold([0.0; 2], |[sum, weight], (off, length)| {
+            let square = length * length;
+            [sum + square * off, weight + square]
+        });
+        Some(Self::along(angle + weighted[0] / weighted[1]))
+    }
+
+    /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    /// Which way along an axis is rather ahead than behind: 1 or -1.
+    #[must_use]
+    pub fn ahead(&self, axis: Axis) -> f64 {
+        if axis == Axis::Y && self.angle > 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// A point or vector of the robot's floor coordinates, in the frame.
+    #[must_use]
+    pub fn framed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.cosine * x + self.sine * y, self.cosine * y - self.sine * x]
+    }
+
+    /// A point or vector of the frame, in the robot's floor coordinates.
+    #[must_use]
+    pub fn unframed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.cosine * x - self.sine * y, self.cosine * y + self.sine * x]
+    }
+
+    /// The walls among the lines: those that run along an axis.
+    #[must_use]
+    pub fn walls(&self, lines: &[Line]) -> Vec<Wall> {
+        lines.iter().filter_map(|line| self.wall(line)).collect()
+    }
+
+    fn wall(&self, line: &Line) -> Option<Wall> {
+        let off = wrapped(line.direction() - self.angle).rem_euclid(TAU);
+        let quarters = (off / FRAC_PI_2).round();
+        if (off - quarters * FRAC_PI_2).abs() > ASKEW {
+            return None;
+        }
+        let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
+        let [middle, from, to] = [line.middle, line.from, line.to].map(|point| self.framed(point));
+        let (on, off) = along.split();
+        Some(Wall {
+            along,
+            offset: middle[off],
+            from: from[on].min(to[on]),
+            to: from[on].max(to[on]),
+            cluster: line.cluster,
+        })
+    }
+}
+
+impl Axis {
+    /// The index of the coordinate along the axis, and of the one across it.
+    #[must_use]
+    pub fn split(self) -> (usize, usize) {
+        match self {
+            Self::X => (0, 1),
+            Self::Y => (1, 0),
+        }
+    }
+
+    /// The other axis.
+    #[must_use]
+    pub fn across(self) -> Self {
+        match self {
+            Self::X => Self::Y,
+            Self::Y => Self::X,
+        }
+    }
+
+    /// The point with this coordinate along the axis, and that across it.
+    #[must_use]
+    pub fn point(self, along: f64, across: f64) -> [f64; 2] {
+        match self {
+            Self::X => [along, across],
+            Self::Y => [across, along],
+        }
+    }
+
+    /// Its direction in a frame, in radians counter-clockwise from the frame's x.
+    #[must_use]
+    pub fn direction(self) -> f64 {
+        match self {
+            Self::X => 0.0,
+            Self::Y => FRAC_PI_2,
+        }
+    }
+}
+
+impl Wall {
+    /// Whether a point of the frame lies on it.
+    #[must_use]
+    pub fn holds(&self, point: [f64; 2]) -> bool {
+        let (along, across) = self.along.split();
+        (self.from - ON..=self.to + ON).contains(&point[along])
+            && (point[across] - self.offset).abs() <= ON
+    }
+
+    /// Its length in metres.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.to - self.from
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_4;
+
+    use super::*;
+
+    fn line(from: [f64; 2], to: [f64; 2]) -> Line {
+        let between = |part: f64| [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+        let points: Vec<_> = (0..=20).map(|step| between(f64::from(step) / 20.0)).collect();
+        Line::through(&points).unwrap()
+    }
+
+    #[test]
+    fn walls_at_right_angles_give_one_frame() {
+        for turned in [-0.7, -0.3, 0.0, 0.4, 0.78] {
+            let frame = Frame::along(turned);
+            let lines = [
+                line(frame.unframed([-1.0, 0.8]), frame.unframed([1.5, 0.8])),
+                line(frame.unframed([1.5, 0.8]), frame.unframed([1.5, -0.8])),
+                line(frame.unframed([0.3, 0.4]), frame.unframed([0.6, 0.7])),
+            ];
+            let found = Frame::of(&lines).unwrap();
+            assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
+            let walls = found.walls(&lines);
+            assert_eq!(walls.len(), 2, "the slanted line is no wall");
+            assert_eq!(walls[0].along, Axis::X);
+            assert!((walls[0].offset - 0.8).abs() < 1e-9);
+            assert!((walls[1].offset - 1.5).abs() < 1e-9);
+            assert!((walls[1].length() - 1.6).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn into_a_frame_and_out_again() {
+        let frame = Frame::along(0.3);
+        let [x, y] = frame.unframed(frame.framed([1.2, -0.7]));
+        assert!((x - 1.2).abs() < 1e-12 && (y + 0.7).abs() < 1e-12);
+        assert!((Frame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
+        assert_eq!(Frame::of(&[]), None);
+    }
+}

@@ -1,0 +1,360 @@
+//! Calibration files: what is wrong with one is told in one message, and no bytes break the reader.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::{fs, io, path::Path};
+
+use proptest::{collection::vec, prelude::*, sample::Index};
+use toposlam_vision::camera::{
+    Camera, Mask,
+    calibration::{self, CalibrationError},
+};
+
+fn file(name: &str) -> Vec<u8> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cameras");
+    fs::read(folder.join(name)).unwrap()
+}
+
+fn text(name: &str) -> String {
+    String::from_utf8(file(name)).unwrap()
+}
+
+/// Reads a calibration whose every named file is this.
+fn read(calibration: &[u8], named: &[u8]) -> Result<Camera, CalibrationError> {
+    calibration::read(calibration, &mut |_| Ok(named.to_vec()))
+}
+
+/// A text in which one thing is another.
+fn changed(text: &str, from: &str, to: &str) -> String {
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    text.replace(from, to)
+}
+
+#[test]
+fn the_design_pages_calibration_is_the_superscouts() {
+    assert_eq!(read(&file("superscout.toml"), b"").unwrap(), Camera::superscout());
+}
+
+#[test]
+fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
+    let toml = text("superscout.toml");
+    let cases = [
+        (
+            "\"below\"",
+            "\"beneath\"",
+            "camera.seen_from: here should be \"below\" or \"above\", not another text",
+        ),
+        (
+            "\"spherical-mirror\"",
+            "\"mirror\"",
+            "camera.kind: here should be \"spherical-mirror\" or \"ocamcalib\" or \"mei\", not another text",
+        ),
+        ("kind = \"spherical-mirror\"", "", "camera: the key `kind` is missing"),
+        (
+            "focal = 1272.8 ",
+            "focus = 1272.8",
+            "camera.focus: unknown key; here can stand: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim",
+        ),
+        ("focal = 1272.8 ", "", "camera: the key `focal` is missing"),
+        (
+            "focal = 1272.8 ",
+            "focal = \"long\"",
+            "camera.focal: here should be a number, not a text",
+        ),
+        (
+            "focal = 1272.8 ",
+            "focal = -3",
+            "camera.focal: -3 is out of range; a focal length in pixels lies between 1 and 1000000",
+        ),
+        (
+            "focal = 1272.8 ",
+            "focal = nan",
+            "camera.focal: NaN is out of range; a focal length in pixels lies between 1 and 1000000",
+        ),
+        ("focal = 1272.8 ", "focal = 1272.8 # much\nfocal = 2", "line 7, column 1: duplicate key"),
+        (
+            "[640.0, 480.0]",
+            "[640.0, 960.0]",
+            "camera.centre: 960 is out of range; the centre of the mirror, in the image, lies between 0 and 959",
+        ),
+        (
+            "[640.0, 480.0]",
+            "[640.0]",
+            "camera.centre: here should be a list of two numbers, not a list",
+        ),
+        (
+            "[1280, 960]",
+            "[1280, 960.5]",
+            "camera.image: here should be a list of two whole numbers, not fractions",
+        ),
+        (
+            "[1280, 960]",
+            "[1280, 99999]",
+            "camera.image: 99999 is out of range; the side of an image in pixels lies between 16 and 16384",
+        ),
+        (
+            "= 0.15 ",
+            "= 0.04",
+            "camera.mirror_distance: 0.04 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10",
+        ),
+        (
+            "= 0.90 ",
+            "= 90",
+            "camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10",
+        ),
+        (
+            "rim = 450.0",
+            "rim = 460.0",
+            "camera.rim: 460 pixels do not go with focal, mirror_radius and mirror_distance, by which the rim is at 450.0; they must agree within 2 %",
+        ),
+        (
+            "ahead = 90.0",
+            "ahead = 1e3",
+            "camera.ahead: 1000 is out of range; an angle in degrees lies between -360 and 360",
+        ),
+        ("[camera]", "[[camera]]", "camera: here should be a table, not a list"),
+        ("[camera]", "colour = 1\n[camera]", "colour: unknown key; here can stand: camera"),
+        ("[camera]", "[camera", "line 2, column 8: "),
+    ];
+    for (from, to, message) in cases {
+        let found = read(changed(&toml, from, to).as_bytes(), b"").unwrap_err().to_string();
+        assert!(found.starts_with(message) && !found.contains('\n'), "{to}: {found}");
+    }
+    assert!(read(changed(&toml, "rim = 450.0", "rim = 458.9").as_bytes(), b"").is_ok());
+    assert!(read(changed(&toml, "rim = 450.0", "").as_bytes(), b"").is_ok());
+    assert_eq!(read(b" \n", b"").unwrap_err().to_string(), "the file is empty");
+    assert_eq!(read(b"#", b"").unwrap_err().to_string(), "the key `camera` is missing");
+    let message = "line 2, column 3: this is not UTF-8 text";
+    assert_eq!(read(b"#\n##\xff", b"").unwrap_err().to_string(), message);
+}
+
+#[test]
+fn what_is_wrong_with_a_file_that_a_calibration_names_is_told_with_both_names() {
+    let toml = changed(&text("superscout.toml"), "[camera]", "[camera]\nmask = \"m.png\"");
+    let gone = calibration::read(toml.as_bytes(), &mut |_| Err(io::ErrorKind::NotFound.into()));
+    let message = "camera.mask: m.png: cannot be read: entity not found";
+    assert_eq!(gone.unwrap_err().to_string(), message);
+    let small = Mask::new("m.png", [640, 480], vec![true; 640 * 480]).to_png().unwrap();
+    let message =
+        "camera.mask: m.png: the mask is 640 by 480 pixels, the camera's images are 1280 by 960";
+    assert_eq!(read(toml.as_bytes(), &small).unwrap_err().to_string(), message);
+    let message = "camera.mask: m.png: this is not a PNG image: ";
+    assert!(read(toml.as_bytes(), b"GIF89a").unwrap_err().to_string().starts_with(message));
+    let half = Mask::new("m.png", [1280, 960], vec![true; 1280 * 960]).to_png().unwrap();
+    assert!(read(toml.as_bytes(), &half[..half.len() / 2]).is_err());
+}
+
+#[test]
+fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
+    let (toml, results) = (text("ocamcalib.toml"), text("calib_results.txt"));
+    let refusal = |from: &str, to: &str| {
+        let named = changed(&results, from, to);
+        let message = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
+        message.strip_prefix("camera.file: calib_results.txt: ").unwrap().to_owned()
+    };
+    let cases = [
+        ("-2.553753e+02", "?", "line 3: here should be a number, not `?`"),
+        ("-2.553753e+02", "inf", "line 3: here should be a number, not `inf`"),
+        (
+            "-2.553753e+02",
+            "0",
+            "the size of the first coefficient is 0; it should lie between 1 and 1000000",
+        ),
+        (
+            "-2.553753e+02",
+            "-2 -2e2",
+            "line 3: here should be 5 coefficients of the polynomial, not 6",
+        ),
+        (
+            "5 -2.553753e+02",
+            "99 -2.553753e+02",
+            "how many coefficients there are is 99; it should lie between 1 and 64",
+        ),
+        (
+            "480.000000 640.000000",
+            "480",
+            "line 11: here should be 2 numbers, the centre's row and column, not 1",
+        ),
+        (
+            "480.000000 640.000000",
+            "640 1480",
+            "the centre's column is 1480; it should lie between 0 and 1279",
+        ),
+        (
+            "1.000000 0.000000 0.000000",
+            "0.0 0.0 0.0",
+            "the affine c is 0; it should lie between 0.5 and 2",
+        ),
+        (
+            "960 1280",
+            "960",
+            "line 19: here should be 2 numbers, the height and the width of the image, not 1",
+        ),
+        ("960 1280", "960 1280\n5", "line 20: nothing should follow the size of the image"),
+        ("960 1280", "960.5 1280", "the side of the image is 960.5; it should be whole"),
+        (
+            "0.000000e+00 1.770647e-03 -2.520355e-06 9.359533e-09",
+            "0 300 0 0",
+            "by these numbers no floor is seen around the middle of the image",
+        ),
+    ];
+    for (from, to, message) in cases {
+        assert_eq!(refusal(from, to), message, "{to}");
+    }
+    let short = results.split_once("#image size").unwrap().0;
+    let message = "camera.file: calib_results.txt: the file ends before the height and the width of the image";
+    assert_eq!(read(toml.as_bytes(), short.as_bytes()).unwrap_err().to_string(), message);
+    let other = changed(&toml, "[camera]", "[camera]\nimage = [640, 480]");
+    let message = "camera.image: 640 by 480 pixels do not go with the file, which is for images of 1280 by 960";
+    assert_eq!(read(other.as_bytes(), results.as_bytes()).unwrap_err().to_string(), message);
+    let message = "camera.file: calib_results.txt: this is not UTF-8 text";
+    assert_eq!(read(toml.as_bytes(), b"\xff").unwrap_err().to_string(), message);
+    let other = changed(&toml, "[camera]", "[camera]\nrim = 450");
+    let message = "camera.rim: unknown key; here can stand: kind, image, ahead, seen_from, mask, file, viewpoint_height";
+    assert_eq!(read(other.as_bytes(), results.as_bytes()).unwrap_err().to_string(), message);
+}
+
+#[test]
+fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
+    let (toml, yaml) = (text("camodocal.toml"), text("camodocal.yaml"));
+    let refusal = |from: &str, to: &str| {
+        let named = changed(&yaml, from, to);
+        let message = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
+        message.strip_prefix("camera.file: camodocal.yaml: ").unwrap().to_owned()
+    };
+    let cases = [
+        ("MEI", "PINHOLE", "`model_type` is `PINHOLE`, not `MEI`"),
+        ("   xi: 1.6901164600000000e+00\n", "", "the key `mirror_parameters.xi` is missing"),
+        (
+            "   xi: 1.6901164600000000e+00",
+            "   xi: much",
+            "line 8: here should be a number, not `much`",
+        ),
+        ("   xi: 1.6901164600000000e+00", "   xi: -1", "xi is -1; it should lie between 0 and 100"),
+        (
+            "   xi: 1.6901164600000000e+00",
+            "   xi: 1\n   xi: 1",
+            "line 9: the key `mirror_parameters.xi` stands twice",
+        ),
+        (
+            "   xi: 1.6901164600000000e+00",
+            "   xi: *other",
+            "line 8: while parsing node, found unknown anchor",
+        ),
+        ("   xi: 1.6901164600000000e+00", "   xi: [", "line 9: "),
+        ("image_width: 1280", "image_width: 1280.5", "image_width is 1280.5; it should be whole"),
+        ("image_width: 1280\n", "", "the key `image_width` is missing"),
+        (
+            "k1: -4.8503199300000001e-01",
+            "k1: -1e9",
+            "k1 is -1000000000; it should lie between -1000 and 1000",
+        ),
+        (
+            "image_width: 1280\nimage_height: 960\n",
+            "",
+            "the file does not tell the size of the images; the key `image` must",
+        ),
+    ];
+    for (from, to, message) in cases {
+        if message.starts_with("the file does not") {
+            let named = changed(&yaml, from, to);
+            let found = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
+            assert_eq!(found, format!("camera.file: {message}"));
+        } else {
+            let found = refusal(from, to);
+            assert!(found.starts_with(message) && !found.contains('\n'), "{to}: {found}");
+        }
+    }
+    let (toml, yaml) = (text("omnidir.toml"), text("omnidir.yml"));
+    let named = changed(&yaml, "2.7131395400000002e-01,", "2.7131395400000002e-01, 0.,");
+    let message =
+        "camera.file: omnidir.yml: `distortion_coefficients.data` has 5 numbers; it should have 4";
+    assert_eq!(read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string(), message);
+}
+
+#[test]
+fn opencvs_header_may_be_yamls_or_its_own_with_or_without_a_line_after_it() {
+    let (toml, yaml) = (text("camodocal.toml"), text("camodocal.yaml"));
+    let camera = read(toml.as_bytes(), yaml.as_bytes()).unwrap();
+    for header in ["%YAML:1.0\n", "%YAML:1.0\n\n", "%YAML 1.0\n---\n", "---\n", "", "# camera\n"] {
+        let named = changed(&yaml, "%YAML:1.0\n---\n", header);
+        assert_eq!(read(toml.as_bytes(), named.as_bytes()).unwrap(), camera, "{header:?}");
+    }
+    let named = yaml.replace('\n', "\r\n");
+    assert_eq!(read(toml.as_bytes(), named.as_bytes()).unwrap(), camera);
+}
+
+#[test]
+fn nested_files_do_not_exhaust_the_stack() {
+    for unit in ["[", "{a: ", "- ", "? ", "a:\n ", "a: [b,\n", "&a [*a, "] {
+        let deep = unit.repeat(100_000);
+        let _ = read(&file("camodocal.toml"), deep.as_bytes());
+        let _ = read(deep.as_bytes(), b"");
+        let _ = read(format!("a = {deep}").as_bytes(), b"");
+    }
+}
+
+const SAMPLES: [(&str, &str); 4] = [
+    ("superscout.toml", "omnidir.yml"),
+    ("ocamcalib.toml", "calib_results.txt"),
+    ("camodocal.toml", "camodocal.yaml"),
+    ("omnidir.toml", "omnidir.yml"),
+];
+
+/// Asks a camera, if there is one, for what it says near and far, which must be numbers.
+fn asked(read: Result<Camera, CalibrationError>) -> Result<(), TestCaseError> {
+    let camera = match read {
+        Ok(camera) => camera,
+        Err(error) => {
+            prop_assert!(!error.to_string().contains('\n'), "{error}");
+            return Ok(());
+        }
+    };
+    for at in [-1e300, -1e3, 0.0, 0.5, 100.0, 640.0, 1e5, f64::NAN, f64::INFINITY] {
+        for other in [-10.0, 0.0, 480.0, 1e200] {
+            let shown = camera.pixel_to_ground([at, other]);
+            prop_assert!(shown.is_none_or(|[x, y]| !x.is_nan() && !y.is_nan()), "{at} {other}");
+            let found = camera.ground_to_pixel([other, at]);
+            prop_assert!(found.is_none_or(|[u, v]| u.is_finite() && v.is_finite()), "{at} {other}");
+        }
+    }
+    let _ = camera.sees([640, 300]);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
+
+    #[test]
+    fn no_bytes_break_the_reader(bytes in vec(any::<u8>(), 0..200), named in vec(any::<u8>(), 0..200)) {
+        asked(read(&bytes, &named))?;
+        for (toml, _) in SAMPLES {
+            asked(read(&file(toml), &named))?;
+        }
+    }
+
+    #[test]
+    fn no_change_to_a_calibration_breaks_the_reader(
+        sample in any::<Index>(), at in any::<Index>(), length in 0_usize..6,
+        inserted in prop_oneof![vec(any::<u8>(), 0..4), "[0-9.e+-]{0,5}".prop_map(String::into_bytes)],
+        in_named in any::<bool>(),
+    ) {
+        let (toml, named) = SAMPLES[sample.index(SAMPLES.len())];
+        let (mut toml, mut named) = (file(toml), file(named));
+        let bytes = if in_named { &mut named } else { &mut toml };
+        let start = at.index(bytes.len());
+        let end = (start + length).min(bytes.len());
+        bytes.splice(start..end, inserted);
+        asked(read(&toml, &named))?;
+    }
+
+    #[test]
+    fn no_bytes_break_the_reader_of_masks(at in any::<Index>(), byte in any::<u8>(), cut in any::<Index>()) {
+        let mut png = Mask::new("m", [16, 16], vec![true; 256]).to_png().unwrap();
+        let index = at.index(png.len());
+        png[index] = byte;
+        let _ = Mask::from_png("m", &png, [16, 16]);
+        png.truncate(cut.index(png.len()));
+        prop_assert!(Mask::from_png("m", &png, [16, 16]).is_err() || png.len() > 40);
+    }
+}
