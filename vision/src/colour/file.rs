@@ -5,7 +5,9 @@ use std::fmt::{self, Write as _};
 use thiserror::Error;
 use toml::{Table as Toml, Value};
 
-use super::{Class, ColourModel, Priors, Stripe, StripeKind, hsv::Bin, model::Histogram};
+use super::{
+    Class, ColourModel, Priors, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram,
+};
 
 /// The version of the files that are written and read.
 const VERSION: i64 = 1;
@@ -111,7 +113,7 @@ pub enum Cause {
         /// Its chroma.
         chroma: u8,
         /// Its hue.
-        hue: u8,
+        hue: u16,
     },
     /// A class that must have a colour has none.
     #[error("there is no colour; floor and stripe must have one")]
@@ -155,7 +157,7 @@ impl ColourModel {
     /// The model as a colour file.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        let Self { stripe, floor: [red, green, blue], priors, .. } = self;
+        let Self { stripe, floor: [red, green, blue], priors, smoothing, .. } = self;
         let mut text = format!(
             "\
 # The colours of a building, learned by `toposlam train`.
@@ -166,7 +168,7 @@ kind = \"{}\" # on the floor along the wall, or on the wall at its foot
 width = {:?} # metres
 
 [floor]
-colour = [{red:?}, {green:?}, {blue:?}] # to which each image's floor is brought
+colour = [{red:?}, {green:?}, {blue:?}] # red, green and blue to which each image's floor is brought
 
 [priors] # how likely each class is before its colour is seen; only their ratios matter
 floor = {:?}
@@ -175,12 +177,13 @@ marker = {:?}
 other = {:?}
 
 [smoothing]
-deviation = {:?} # how far pixels spread over the bins around theirs, in bins
-unknown_below = {:?} # colours are unknown that are a smaller share of each class
+colour = {:?} # by how much the same colour differs in the same light, in steps of chroma
+light = {:?} # by which share the light differs from place to place
+unknown_below = {:?} # a colour is unknown of which each class has a smaller share
 
-# What each class looks like, as [value, chroma, hue, pixels], with value and chroma (the greatest of
-# red, green and blue, and what it is above the least) in steps of 8 of 256. At chroma c hues count
-# from 0 to 6 c - 1: 0 is red, 2 c green, 4 c blue. At chroma 0 there is no hue: 0.
+# What each class looks like, as [value, chroma, hue, pixels]. The value is the greatest of red,
+# green and blue, in steps of 8 of 256; the chroma, in steps of 4, is what the greatest is above the
+# least. At chroma c hues count from 0 to 6 c - 1: 0 is red, 2 c green, 4 c blue.
 [histograms]
 ",
             stripe.kind.place(),
@@ -189,7 +192,8 @@ unknown_below = {:?} # colours are unknown that are a smaller share of each clas
             priors.stripe,
             priors.marker,
             priors.other,
-            self.smoothing,
+            smoothing.colour,
+            smoothing.light,
             self.unknown_below,
         );
         for (class, histogram) in Class::LEARNED.into_iter().zip(&self.histograms) {
@@ -243,8 +247,11 @@ fn read_file(parsed: Toml) -> Result<ColourModel, ColourFileError> {
         marker: prior("marker")?,
         other: prior("other")?,
     };
-    let mut table = file.table("smoothing", &["deviation", "unknown_below"])?;
-    let smoothing = table.number("deviation", "the deviation", 0.1, 4.0)?;
+    let mut table = file.table("smoothing", &["colour", "light", "unknown_below"])?;
+    let smoothing = Smoothing {
+        colour: table.number("colour", "the difference of colour", 0.1, 4.0)?,
+        light: table.number("light", "the difference of light", 0.0, 0.5)?,
+    };
     let unknown_below = table.number("unknown_below", "the share", 0.0, 0.1)?;
     let mut table = file.table("histograms", &CLASSES)?;
     let histograms = [
@@ -327,8 +334,8 @@ fn read_bin(row: &Value) -> Result<(Bin, u64), Cause> {
         other => Err(wrong(kind(other))),
     };
     let value = whole(value, "the value", 0, 31)? as u8;
-    let chroma = whole(chroma, "the chroma", 0, value.into())? as u8;
-    let hue = whole(hue, "the hue", 0, i64::from(Bin::hues(chroma)) - 1)? as u8;
+    let chroma = whole(chroma, "the chroma", 0, Bin::most_chroma(value).into())? as u8;
+    let hue = whole(hue, "the hue", 0, i64::from(Bin::hues(chroma)) - 1)? as u16;
     Ok((Bin { value, chroma, hue }, whole(pixels, "the number of pixels", 1, MOST_PIXELS)?))
 }
 
@@ -439,8 +446,9 @@ stripe = 0.25
 marker = 0.25
 other = 0.25
 [smoothing]
-deviation = 0.8
-unknown_below = 1e-5
+colour = 0.7
+light = 0.08
+unknown_below = 1e-6
 [histograms]
 floor = [[13, 0, 0, 100]]
 stripe = [[28, 1, 5, 7], [28, 0, 0, 9]]
@@ -458,9 +466,10 @@ other = []
     fn a_small_file_is_read() {
         let model = ColourModel::read(SMALL.as_bytes()).unwrap();
         assert_eq!(model.stripe, Stripe { kind: StripeKind::OnFloor, width: 0.05 });
-        assert_eq!(model.floor, [104.0, 106.5, 110.0]);
+        assert!(model.floor.into_iter().eq([104.0, 106.5, 110.0]));
         assert_eq!(model.priors, Priors::EQUAL);
-        assert_eq!([model.smoothing, model.unknown_below], [0.8, 1e-5]);
+        assert_eq!(model.smoothing, Smoothing { colour: 0.7, light: 0.08 });
+        assert!((model.unknown_below - 1e-6).abs() < 1e-12);
         let [floor, stripe, marker, other] = model.histograms;
         assert_eq!(floor, [(Bin { value: 13, chroma: 0, hue: 0 }, 100)]);
         assert_eq!(
@@ -471,6 +480,7 @@ other = []
     }
 
     #[test]
+    #[expect(clippy::too_many_lines, reason = "a list")]
     fn what_is_wrong_is_named_with_its_place_and_range() {
         let cases = [
             ("version = 1\n", "", "the key `version` is missing"),
@@ -529,8 +539,12 @@ other = []
                 "stripes = 1",
                 "priors.stripes: unknown key; here can stand: floor, stripe,",
             ),
-            ("0.8", "inf", "smoothing.deviation: the deviation is inf; it can be from 0.1 to 4"),
-            ("1e-5", "1", "smoothing.unknown_below: the share is 1; it can be from 0 to 0.1"),
+            (
+                "0.7",
+                "inf",
+                "smoothing.colour: the difference of colour is inf; it can be from 0.1 to 4",
+            ),
+            ("1e-6", "1", "smoothing.unknown_below: the share is 1; it can be from 0 to 0.1"),
             (
                 "[13, 0, 0, 100]",
                 "",
@@ -539,8 +553,8 @@ other = []
             ("[13, 0,", "[32, 0,", "histograms.floor[0]: the value is 32; it can be from 0 to 31"),
             (
                 "[13, 0,",
-                "[13, 14,",
-                "histograms.floor[0]: the chroma is 14; it can be from 0 to 13",
+                "[13, 28,",
+                "histograms.floor[0]: the chroma is 28; it can be from 0 to 27",
             ),
             (
                 "[28, 1, 5,",
@@ -592,8 +606,8 @@ other = []
     }
 
     fn histogram(least: usize) -> impl Strategy<Value = Histogram> {
-        let bin = (0..32_u8, 0..32_u8, 0..186_u8).prop_map(|(value, chroma, hue)| {
-            let chroma = chroma.min(value);
+        let bin = (0..32_u8, 0..64_u8, 0..378_u16).prop_map(|(value, chroma, hue)| {
+            let chroma = chroma.min(Bin::most_chroma(value));
             Bin { value, chroma, hue: hue % Bin::hues(chroma) }
         });
         btree_map(bin, 1..=MOST_PIXELS as u64, least..20)
@@ -606,7 +620,7 @@ other = []
             width in 0.005..=0.5_f64,
             floor in prop::array::uniform3(1.0..=255.0_f64),
             priors in prop::array::uniform4(1e-6..=1.0_f64),
-            smoothing in 0.1..=4.0_f64,
+            smoothing in (0.1..=4.0_f64, 0.0..=0.5_f64),
             unknown_below in 0.0..=0.1_f64,
             histograms in (histogram(1), histogram(1), histogram(0), histogram(0)),
         ) -> ColourModel {
@@ -615,7 +629,7 @@ other = []
                 stripe: Stripe { kind, width },
                 floor,
                 priors: Priors { floor: floor_prior, stripe, marker, other },
-                smoothing,
+                smoothing: Smoothing { colour: smoothing.0, light: smoothing.1 },
                 unknown_below,
                 histograms: histograms.into(),
             }

@@ -2,41 +2,47 @@
 //!
 //! Saturation is told as chroma, which is saturation times value: the noise of a camera makes the
 //! saturation, and with it the hue, of dark colours mean nothing, while chroma stays small there.
-//! Bins are eight levels of 256 wide in value and in chroma. The hues of one chroma lie on a ring
-//! around the greys; the ring at chroma `8 r` has `6 r` bins, so that each is again eight levels of
-//! the middle channel long. Greys, in the middle, have one bin and no hue.
+//! Bins are eight levels of 256 wide in value and four in chroma, for a floor and a wall are often of
+//! nearly the same chroma, and of any value. The hues of one chroma lie on a ring around the greys;
+//! the `r`-th ring has `6 r` bins, so that each is again four levels of the middle channel long. Greys,
+//! in the middle, have one bin and no hue. So the bins of one value are a lattice of hexagons.
 
 /// A bin of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Bin {
-    /// Eighths of the levels of the brightest channel, from 0 to 31.
+    /// Of the brightest channel, in steps of [`VALUE_STEP`].
     pub(super) value: u8,
-    /// Eighths of the levels from the darkest to the brightest channel, from 0 to `value`.
+    /// From the darkest to the brightest channel, in steps of [`CHROMA_STEP`].
     pub(super) chroma: u8,
     /// Where on the ring of this chroma, counted from red by way of green and blue.
-    pub(super) hue: u8,
+    pub(super) hue: u16,
 }
 
+/// Levels of a step of value.
+const VALUE_STEP: f64 = 8.0;
+/// Levels of a step of chroma.
+const CHROMA_STEP: f64 = 4.0;
 /// Bins along the value.
-pub(super) const VALUES: usize = 32;
+pub(super) const VALUES: u8 = 32;
+/// Rings, with the greys.
+const CHROMAS: u8 = 64;
 /// Bins of the same value.
-pub(super) const PLANE: usize = 1 + ring_start(32);
+pub(super) const PLANE: usize = ring_start(CHROMAS);
 /// All bins.
-pub(super) const BINS: usize = VALUES * PLANE;
+pub(super) const BINS: usize = VALUES as usize * PLANE;
 
-/// How many bins the rings before this one have, without the greys.
-const fn ring_start(chroma: usize) -> usize {
-    3 * chroma * (chroma - 1)
+/// How many bins the rings before this one have.
+const fn ring_start(chroma: u8) -> usize {
+    let chroma = chroma as usize;
+    if chroma == 0 { 0 } else { 1 + 3 * chroma * (chroma - 1) }
 }
-
-/// Levels a bin.
-const WIDTH: f64 = 8.0;
 
 impl Bin {
     /// The bin of a colour, red, green and blue from 0 to 255.
     pub(super) fn of([red, green, blue]: [f64; 3]) -> Self {
         let value = red.max(green).max(blue);
         let chroma = value - red.min(green).min(blue);
+        let ring = (chroma / CHROMA_STEP) as u8;
         // In sixths of the circle.
         let hue = if value <= red {
             ((green - blue) / chroma).rem_euclid(6.0)
@@ -45,21 +51,28 @@ impl Bin {
         } else {
             (red - green) / chroma + 4.0
         };
-        let ring = (chroma / WIDTH) as u8;
-        // Greys have no hue.
-        let hue = if ring == 0 { 0 } else { (hue * f64::from(ring)).round() as u8 % (6 * ring) };
-        Self { value: (value / WIDTH) as u8, chroma: ring, hue }
+        Self::on_ring((value / VALUE_STEP) as u8, ring, hue)
+    }
+
+    /// The nearest to a hue, in sixths of the circle.
+    fn on_ring(value: u8, chroma: u8, hue: f64) -> Self {
+        let hue = if chroma == 0 { 0 } else { (hue * f64::from(chroma)).round() as u16 };
+        Self { value, chroma, hue: hue % Self::hues(chroma) }
+    }
+
+    /// The greatest chroma at a value.
+    pub(super) fn most_chroma(value: u8) -> u8 {
+        2 * value + 1
     }
 
     /// How many hues there are at a chroma.
-    pub(super) fn hues(chroma: u8) -> u8 {
-        if chroma == 0 { 1 } else { 6 * chroma }
+    pub(super) fn hues(chroma: u8) -> u16 {
+        if chroma == 0 { 1 } else { 6 * u16::from(chroma) }
     }
 
     /// Its place among those of the same value.
     pub(super) fn in_plane(self) -> usize {
-        let hue = usize::from(self.hue);
-        if self.chroma == 0 { 0 } else { 1 + ring_start(self.chroma.into()) + hue }
+        ring_start(self.chroma) + usize::from(self.hue)
     }
 
     /// Its place among all.
@@ -67,34 +80,84 @@ impl Bin {
         usize::from(self.value) * PLANE + self.in_plane()
     }
 
-    /// Where it lies among those of the same value, in bins, the greys in the middle. Hues lie on a
-    /// hexagon, along which one channel changes after the other.
-    fn place(self) -> [f64; 2] {
+    /// What it becomes under so many times the light: hue and saturation are kept.
+    pub(super) fn under(self, light: f64) -> Self {
+        let lit = |steps: u8, most: u8| {
+            let middle = (f64::from(steps) + 0.5) * light;
+            (middle as u8).min(most)
+        };
+        let value = lit(self.value, VALUES - 1);
         if self.chroma == 0 {
-            return [0.0, 0.0];
+            return Self { value, ..self };
         }
-        let along = f64::from(self.hue) / f64::from(self.chroma);
-        let corner = |sixth: f64| (sixth * std::f64::consts::FRAC_PI_3).sin_cos();
-        let ((from_y, from_x), (to_y, to_x)) = (corner(along.floor()), corner(along.floor() + 1.0));
-        let part = along.fract();
-        [from_x + (to_x - from_x) * part, from_y + (to_y - from_y) * part]
-            .map(|coordinate| coordinate * f64::from(self.chroma))
+        let hue = f64::from(self.hue) / f64::from(self.chroma);
+        let chroma = lit(self.chroma, CHROMAS - 1).min(Self::most_chroma(value));
+        Self::on_ring(value, chroma, hue)
     }
 
-    /// All that have the same value and lie no more than `reach` bins away, each with its distance.
-    pub(super) fn around(self, reach: f64) -> impl Iterator<Item = (Self, f64)> {
-        let rings = reach as u8 + 1;
-        let chromas = self.chroma.saturating_sub(rings)..=(self.chroma + rings).min(31);
-        let [x, y] = self.place();
-        chromas
-            .flat_map(|chroma| (0..Self::hues(chroma)).map(move |hue| (chroma, hue)))
-            .map(move |(chroma, hue)| {
-                let bin = Self { value: self.value, chroma, hue };
-                let [other_x, other_y] = bin.place();
-                (bin, (other_x - x).hypot(other_y - y))
-            })
-            .filter(move |&(_, distance)| distance <= reach)
+    /// Its place in the lattice of hexagons, along two axes a sixth of the circle apart.
+    fn hexagon(self) -> [i32; 2] {
+        const CORNERS: [[i32; 2]; 6] = [[1, 0], [0, 1], [-1, 1], [-1, 0], [0, -1], [1, -1]];
+        if self.chroma == 0 {
+            return [0, 0];
+        }
+        let (ring, hue) = (i32::from(self.chroma), i32::from(self.hue));
+        let side = (hue / ring) as usize;
+        // A side leads on in the direction of the corner after its end.
+        let (corner, along) = (CORNERS[side % 6], CORNERS[(side + 2) % 6]);
+        [0, 1].map(|axis| corner[axis] * ring + along[axis] * (hue % ring))
     }
+}
+
+/// The lattice of the bins of one value.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice {
+    /// Where each bin lies.
+    hexagons: Vec<[i32; 2]>,
+    /// Which bin lies where.
+    bins: Vec<Option<usize>>,
+}
+
+/// Hexagons along either axis.
+const ACROSS: usize = 2 * CHROMAS as usize - 1;
+
+impl Lattice {
+    /// The lattice.
+    pub(super) fn new() -> Self {
+        let chromas =
+            (0..CHROMAS).flat_map(|chroma| (0..Bin::hues(chroma)).map(move |hue| (chroma, hue)));
+        let hexagons: Vec<_> =
+            chromas.map(|(chroma, hue)| Bin { value: 0, chroma, hue }.hexagon()).collect();
+        let mut bins = vec![None; ACROSS * ACROSS];
+        for (bin, &hexagon) in hexagons.iter().enumerate() {
+            if let Some(place) = place(hexagon) {
+                bins[place] = Some(bin);
+            }
+        }
+        Self { hexagons, bins }
+    }
+
+    /// The bin that lies by so much beside another one.
+    pub(super) fn beside(&self, bin: usize, [along, across]: [i32; 2]) -> Option<usize> {
+        let [x, y] = self.hexagons[bin];
+        self.bins[place([x + along, y + across])?]
+    }
+
+    /// Everywhere that is no more than so many bins away, each with its distance.
+    pub(super) fn offsets(reach: i32) -> impl Iterator<Item = ([i32; 2], f64)> {
+        let range = -reach..=reach;
+        let pairs = range.clone().flat_map(move |x| range.clone().map(move |y| [x, y]));
+        pairs
+            .map(|[x, y]| ([x, y], f64::from(x * x + x * y + y * y).sqrt()))
+            .filter(move |&(_, distance)| distance <= f64::from(reach))
+    }
+}
+
+fn place([x, y]: [i32; 2]) -> Option<usize> {
+    let middle = i32::from(CHROMAS) - 1;
+    let [x, y] = [x + middle, y + middle].map(|axis| usize::try_from(axis).ok());
+    let (x, y) = (x.filter(|&x| x < ACROSS)?, y.filter(|&y| y < ACROSS)?);
+    Some(y * ACROSS + x)
 }
 
 #[cfg(test)]
@@ -106,19 +169,19 @@ mod tests {
     use super::*;
 
     fn all() -> impl Iterator<Item = Bin> {
-        (0..32).flat_map(|value| {
-            (0..32).flat_map(move |chroma| {
+        (0..VALUES).flat_map(|value| {
+            (0..CHROMAS).flat_map(move |chroma| {
                 (0..Bin::hues(chroma)).map(move |hue| Bin { value, chroma, hue })
             })
         })
     }
 
     #[test]
-    fn every_bin_has_a_place_of_its_own() {
-        let places: HashSet<_> = all().map(Bin::index).collect();
-        assert_eq!(places.len(), BINS);
-        assert_eq!(places.into_iter().max(), Some(BINS - 1));
-        assert_eq!(BINS, 95_264);
+    fn every_bin_has_a_place_of_its_own_in_their_order() {
+        let places: Vec<_> = all().map(Bin::index).collect();
+        assert!(places.iter().copied().eq(0..BINS));
+        assert_eq!(PLANE, 12_097);
+        assert!(all().zip(all().skip(1)).all(|(one, next)| one < next));
     }
 
     #[test]
@@ -127,7 +190,7 @@ mod tests {
             [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
         for (sixth, colour) in colours.into_iter().enumerate() {
             let bin = Bin::of(colour.map(f64::from));
-            assert_eq!(bin, Bin { value: 31, chroma: 31, hue: 31 * sixth as u8 });
+            assert_eq!(bin, Bin { value: 31, chroma: 63, hue: 63 * sixth as u16 });
         }
     }
 
@@ -136,7 +199,7 @@ mod tests {
         for grey in 0..=255 {
             let grey = f64::from(grey);
             let bin = Bin { value: (grey / 8.0) as u8, chroma: 0, hue: 0 };
-            for noise in [[0.0; 3], [-7.0, 0.0, 0.0], [0.0, -7.0, -3.0], [-2.0, 0.0, -7.0]] {
+            for noise in [[0.0; 3], [-3.0, 0.0, 0.0], [0.0, -3.0, -1.0], [-2.0, 0.0, -3.0]] {
                 assert_eq!(Bin::of(noise.map(|noise| (grey + noise).max(0.0))), bin);
             }
         }
@@ -145,21 +208,51 @@ mod tests {
     #[test]
     fn the_circle_of_hues_is_closed() {
         // A red on either side of where the circle begins, and their common neighbour.
-        let (purple, orange) = (Bin::of([200.0, 40.0, 48.0]), Bin::of([200.0, 48.0, 40.0]));
-        assert_eq!([purple.hue, orange.hue], [119, 1]);
-        let near: Vec<_> = purple.around(2.01).map(|(bin, _)| bin).collect();
-        assert!(near.contains(&orange) && near.contains(&Bin { hue: 0, ..purple }));
+        let (purple, orange) = (Bin::of([200.0, 40.0, 44.0]), Bin::of([200.0, 44.0, 40.0]));
+        assert_eq!([purple.hue, orange.hue], [239, 1]);
+        let red = Bin { hue: 0, ..purple };
+        let lattice = Lattice::new();
+        let beside = |bin: Bin| -> HashSet<_> {
+            Lattice::offsets(1)
+                .filter_map(|(offset, _)| lattice.beside(bin.in_plane(), offset))
+                .collect()
+        };
+        assert!(beside(red).contains(&purple.in_plane()));
+        assert!(beside(red).contains(&orange.in_plane()));
+        assert!(beside(purple).contains(&red.in_plane()));
     }
 
     #[test]
-    fn six_neighbours_touch_a_bin() {
-        for bin in [Bin { value: 9, chroma: 0, hue: 0 }, Bin { value: 9, chroma: 5, hue: 29 }] {
-            let near: Vec<_> = bin.around(1.01).collect();
-            assert_eq!(near.len(), 7, "{near:?}");
-            let distance = |&(other, distance): &(Bin, f64)| {
-                assert!((distance - f64::from(u8::from(other != bin))).abs() < 1e-9);
-            };
-            near.iter().for_each(distance);
+    fn six_hexagons_touch_each() {
+        assert_eq!(Lattice::offsets(1).count(), 7);
+        assert_eq!(Lattice::offsets(2).count(), 19);
+        let lattice = Lattice::new();
+        for bin in 0..PLANE {
+            let beside = Lattice::offsets(1).filter_map(|(offset, _)| lattice.beside(bin, offset));
+            let beside: HashSet<_> = beside.collect();
+            assert!(beside.contains(&bin));
+            // The outermost ring has nothing beyond it.
+            let inside = bin < ring_start(CHROMAS - 1);
+            assert!(if inside { beside.len() == 7 } else { beside.len() < 6 }, "{bin}");
+        }
+    }
+
+    #[test]
+    fn a_step_of_one_channel_leads_to_a_hexagon_that_touches() {
+        let lattice = Lattice::new();
+        for colour in
+            [[200, 40, 40], [40, 200, 120], [120, 116, 110], [100, 100, 100], [60, 90, 200]]
+        {
+            for channel in 0..3 {
+                let mut other = colour;
+                other[channel] += 4;
+                let [bin, other] = [colour, other].map(|colour| {
+                    Bin::of(colour.map(|level: i32| f64::from(level) + 1.5)).in_plane()
+                });
+                let near = Lattice::offsets(1)
+                    .any(|(offset, _)| lattice.beside(bin, offset) == Some(other));
+                assert!(near, "{colour:?}, {channel}");
+            }
         }
     }
 
@@ -168,19 +261,26 @@ mod tests {
         fn colours_of_a_bin_are_alike(a in any::<[u8; 3]>(), b in any::<[u8; 3]>()) {
             let bins = [a, b].map(|colour| Bin::of(colour.map(f64::from)));
             for bin in bins {
-                prop_assert!(bin.value < 32 && bin.chroma <= bin.value);
+                prop_assert!(bin.value < VALUES && bin.chroma <= Bin::most_chroma(bin.value));
                 prop_assert!(bin.hue < Bin::hues(bin.chroma));
             }
             let apart = a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0);
-            prop_assert!(bins[0] != bins[1] || apart < 24, "{bins:?}");
+            prop_assert!(bins[0] != bins[1] || apart < 16, "{bins:?}");
         }
 
         #[test]
-        fn being_near_is_mutual(colour in any::<[u8; 3]>(), reach in 0.5..3.0) {
+        fn more_light_keeps_the_hue(colour in any::<[u8; 3]>(), light in 0.6..1.6_f64) {
             let bin = Bin::of(colour.map(f64::from));
-            for (other, distance) in bin.around(reach) {
-                let back = other.around(reach).find(|&(back, _)| back == bin);
-                prop_assert!(back.is_some_and(|(_, back)| (back - distance).abs() < 1e-9));
+            prop_assert_eq!(bin.under(1.0), bin);
+            let lit = bin.under(light);
+            prop_assert!(lit.value < VALUES && lit.hue < Bin::hues(lit.chroma));
+            prop_assert!(lit.chroma <= Bin::most_chroma(lit.value));
+            let value = (f64::from(bin.value) + 0.5) * light;
+            prop_assert!((f64::from(lit.value) + 0.5 - value.min(32.0)).abs() <= 0.51);
+            if lit.chroma > 0 {
+                let hue = |bin: Bin| f64::from(bin.hue) / f64::from(bin.chroma);
+                let apart = (hue(bin) - hue(lit)).abs();
+                prop_assert!(apart.min(6.0 - apart) <= 0.51 / f64::from(lit.chroma));
             }
         }
     }

@@ -147,7 +147,86 @@ fn median(colours: &[[u8; 3]]) -> [f64; 3] {
     })
 }
 
-/// By what an image is multiplied in which the floor has one colour and should have another.
+/// What brings the floor of an image from one colour to another.
 pub(super) fn gain(from: [f64; 3], to: [f64; 3]) -> Gain {
-    Gain(std::array::from_fn(|channel| to[channel].max(NOISE) / from[channel].max(NOISE)))
+    Gain::between(from.map(|level| level.max(NOISE)), to.map(|level| level.max(NOISE)))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+
+    const FLOOR: [u8; 3] = [104, 106, 110];
+
+    /// So many samples of the floor, and so many of other colours.
+    fn ring(floor: usize, others: &[([u8; 3], usize)]) -> Vec<[u8; 3]> {
+        let others = others.iter().flat_map(|&(colour, count)| vec![colour; count]);
+        vec![FLOOR; floor].into_iter().chain(others).collect()
+    }
+
+    fn is_floor(ring: &[[u8; 3]]) -> bool {
+        floor_colour(ring).is_ok_and(|found| {
+            found
+                .into_iter()
+                .zip(FLOOR)
+                .all(|(found, level)| (found - f64::from(level)).abs() < 1e-9)
+        })
+    }
+
+    #[test]
+    fn what_is_less_than_half_of_the_ring_moves_nothing() {
+        let (wall, marker, lamp, tape) = ([206, 190, 158], [205, 35, 140], [255; 3], [240; 3]);
+        assert!(is_floor(&ring(100, &[])));
+        assert!(is_floor(&ring(60, &[(wall, 40)])));
+        assert!(is_floor(&ring(55, &[(wall, 25), (tape, 20)])));
+        assert!(is_floor(&ring(70, &[(marker, 30)])));
+        assert!(is_floor(&ring(60, &[(lamp, 40)])));
+        assert!(is_floor(&ring(60, &[(wall, 20), (marker, 10), (lamp, 10)])));
+    }
+
+    #[test]
+    fn where_the_light_changes_around_the_robot_the_middle_counts() {
+        // From three quarters to five quarters of the light, as around a circle.
+        let bearings = (0..360).map(|degree| f64::from(degree).to_radians().cos());
+        let ring: Vec<_> = bearings
+            .map(|cosine| [100.0, 120.0, 80.0].map(|level| (level * (1.0 + 0.25 * cosine)) as u8))
+            .collect();
+        let found = floor_colour(&ring).unwrap();
+        for (found, level) in found.into_iter().zip([100.0, 120.0, 80.0]) {
+            assert!((found / level - 1.0).abs() < 0.03, "{found} for {level}");
+        }
+    }
+
+    #[test]
+    fn a_ring_that_does_not_tell_the_light_says_why() {
+        assert_eq!(floor_colour(&[]), Err(LightError::Unseen));
+        assert_eq!(floor_colour(&ring(40, &[([255, 200, 180], 60)])), Err(LightError::BurntOut));
+        assert_eq!(floor_colour(&[[15, 12, 3]; 10]), Err(LightError::TooDark));
+        assert!(floor_colour(&[[16, 12, 3]; 10]).is_ok());
+        let levels = (0..1000).map(|nth| [nth * 7 % 250, nth * 13 % 250, nth * 29 % 250]);
+        let mixed: Vec<_> = levels.map(|colour| colour.map(|level| level as u8)).collect();
+        assert_eq!(floor_colour(&mixed), Err(LightError::Mixed));
+    }
+
+    proptest! {
+        #[test]
+        fn the_order_of_the_samples_does_not_matter(ring in vec(any::<[u8; 3]>(), 0..60)) {
+            let mut sorted = ring.clone();
+            sorted.sort_unstable();
+            prop_assert_eq!(floor_colour(&ring), floor_colour(&sorted));
+        }
+
+        #[test]
+        fn a_floor_is_some_colour_of_its_ring(ring in vec(any::<[u8; 3]>(), 0..60)) {
+            if let Ok(floor) = floor_colour(&ring) {
+                for (channel, level) in floor.into_iter().enumerate() {
+                    let levels = ring.iter().map(|colour| f64::from(colour[channel]));
+                    let least = levels.clone().fold(255.0, f64::min);
+                    prop_assert!((least..=levels.fold(0.0, f64::max)).contains(&level));
+                }
+            }
+        }
+    }
 }

@@ -18,7 +18,7 @@ mod training;
 pub use confusion::Confusion;
 pub use file::{Cause, ColourFileError, Place};
 pub use light::{FloorRing, LightError};
-pub use model::{ColourModel, Priors, Stripe, StripeKind};
+pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
 pub use training::{Example, ExampleError, Training, TrainingError, View};
 

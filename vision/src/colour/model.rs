@@ -2,7 +2,7 @@
 
 use super::{
     Class, ColourTable, Gain,
-    hsv::{BINS, Bin, PLANE, VALUES},
+    hsv::{BINS, Bin, Lattice, PLANE, VALUES},
     light,
     table::{self, CELLS},
 };
@@ -55,6 +55,16 @@ impl Priors {
     }
 }
 
+/// How far the colours that were seen stand for others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smoothing {
+    /// By how much the same colour in the same light differs, in steps of chroma, for a picture is
+    /// noisy, and the light is never quite as white as it was.
+    pub colour: f64,
+    /// By which share the light differs from place to place.
+    pub light: f64,
+}
+
 /// Which colours a class has: bins in their order, each once, and how many pixels are in each.
 pub(super) type Histogram = Vec<(Bin, u64)>;
 
@@ -67,9 +77,9 @@ pub struct ColourModel {
     pub floor: [f64; 3],
     /// How likely each class is.
     pub priors: Priors,
-    /// How far pixels spread over the bins around theirs: standard deviation, in bins.
-    pub smoothing: f64,
-    /// A colour of which each class has a smaller share is unknown.
+    /// How far the colours that were seen stand for others.
+    pub smoothing: Smoothing,
+    /// A colour is unknown of which each class has a smaller share.
     pub unknown_below: f64,
     /// What each of [`Class::LEARNED`] looks like.
     pub(super) histograms: [Histogram; 4],
@@ -96,9 +106,11 @@ impl ColourModel {
     /// The class of each bin: that of the greatest prior times density.
     fn classes(&self) -> Vec<Class> {
         let mut best = vec![(0.0, Class::Unknown); BINS];
-        let classes = Class::LEARNED.into_iter().zip(&self.histograms);
-        for ((class, histogram), prior) in classes.zip(self.priors.of_learned()) {
-            for (best, density) in best.iter_mut().zip(smoothed(histogram, self.smoothing)) {
+        let smoothed = self.smoothing.of(&self.histograms);
+        for ((class, densities), prior) in
+            Class::LEARNED.into_iter().zip(smoothed).zip(self.priors.of_learned())
+        {
+            for (best, density) in best.iter_mut().zip(densities) {
                 let likelihood = prior * density;
                 if density >= self.unknown_below && likelihood > best.0 {
                     *best = (likelihood, class);
@@ -109,39 +121,65 @@ impl ColourModel {
     }
 }
 
-/// Beyond so many standard deviations nothing spreads.
-const REACH: f64 = 2.5;
-
-/// The share of each bin when each pixel spreads over the bins around its own, evenly in hue and
-/// chroma and in value.
-fn smoothed(histogram: &Histogram, deviation: f64) -> Vec<f64> {
-    let mut shares = vec![0.0; BINS];
-    let total: f64 = histogram.iter().map(|&(_, count)| count as f64).sum();
-    let weight = |distance: f64| (-0.5 * (distance / deviation).powi(2)).exp();
-    let steps = (REACH * deviation) as usize;
-    let weights: Vec<f64> = (0..=steps).map(|step| weight(step as f64)).collect();
-    for group in histogram.chunk_by(|(a, _), (b, _)| a.value == b.value) {
-        // First over the plane of this value, then from it to the values around.
-        let mut plane = vec![0.0; PLANE];
-        for &(bin, count) in group {
-            let around: Vec<_> = bin
-                .around(REACH * deviation)
-                .map(|(other, distance)| (other.in_plane(), weight(distance)))
-                .collect();
-            let whole: f64 = around.iter().map(|(_, weight)| weight).sum();
-            for (place, weight) in around {
-                plane[place] += count as f64 / total * weight / whole;
+impl Smoothing {
+    /// The share of each bin in each class.
+    fn of(self, histograms: &[Histogram; 4]) -> [Vec<f64>; 4] {
+        let lattice = Lattice::new();
+        let near = self.near();
+        histograms.each_ref().map(|histogram| {
+            let lit = self.in_other_light(histogram);
+            let mut shares = vec![0.0; BINS];
+            for place in 0..PLANE {
+                let values =
+                    (0..VALUES).map(|value| (value, lit[usize::from(value) * PLANE + place]));
+                let values: Vec<_> = values.filter(|&(_, share)| share > 0.0).collect();
+                if values.is_empty() {
+                    continue;
+                }
+                for &(offset, steps, weight) in &near {
+                    let Some(beside) = lattice.beside(place, offset) else { continue };
+                    for &(value, share) in &values {
+                        let value = value.saturating_add_signed(steps).min(VALUES - 1);
+                        shares[usize::from(value) * PLANE + beside] += weight * share;
+                    }
+                }
             }
-        }
-        let value = usize::from(group[0].0.value);
-        let values = value.saturating_sub(steps)..=(value + steps).min(VALUES - 1);
-        let whole: f64 = values.clone().map(|other| weights[other.abs_diff(value)]).sum();
-        for other in values {
-            let part = weights[other.abs_diff(value)] / whole;
-            for (share, plane) in shares[other * PLANE..].iter_mut().zip(&plane) {
-                *share += part * plane;
-            }
-        }
+            shares
+        })
     }
-    shares
+
+    /// The shares of a class when the light is as often brighter as darker than it was.
+    fn in_other_light(self, histogram: &Histogram) -> Vec<f64> {
+        const STEPS: i32 = 8;
+        let lights = (-STEPS..=STEPS).map(|step| {
+            let deviations = 2.5 * f64::from(step) / f64::from(STEPS);
+            ((self.light * deviations).exp(), (-0.5 * deviations * deviations).exp())
+        });
+        let lights: Vec<_> = lights.collect();
+        let whole: f64 = lights.iter().map(|(_, weight)| weight).sum();
+        let pixels: f64 = histogram.iter().map(|&(_, pixels)| pixels as f64).sum();
+        let mut shares = vec![0.0; BINS];
+        for &(bin, count) in histogram {
+            for &(light, weight) in &lights {
+                shares[bin.under(light).index()] += count as f64 / pixels * weight / whole;
+            }
+        }
+        shares
+    }
+
+    /// Where in the lattice, and how many values on, which share of a bin goes. Student's
+    /// distribution: most stays near, and a little goes far, so that a colour that was never quite
+    /// seen belongs to what is most like it.
+    fn near(self) -> Vec<([i32; 2], i8, f64)> {
+        // A step of value is two steps of chroma.
+        let apart = |[offset, value]: [f64; 2]| (offset * offset + 4.0 * value * value).sqrt();
+        let weight = |distance: f64| (1.0 + (distance / self.colour).powi(2)).powi(-2);
+        let near: Vec<_> = Lattice::offsets(4)
+            .flat_map(|(offset, distance)| {
+                [-1, 0, 1].map(|steps| (offset, steps, weight(apart([distance, f64::from(steps)]))))
+            })
+            .collect();
+        let whole: f64 = near.iter().map(|(_, _, weight)| weight).sum();
+        near.into_iter().map(|(offset, steps, weight)| (offset, steps, weight / whole)).collect()
+    }
 }

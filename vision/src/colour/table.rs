@@ -17,24 +17,39 @@ pub(super) fn centre(cell: usize) -> [f64; 3] {
     [12, 6, 0].map(|shift| (4 * (cell >> shift & 63)) as f64 + 1.5)
 }
 
-/// By what an image's channels are multiplied.
+/// By what the light of an image's channels, red, green and blue, is multiplied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain(pub [f64; 3]);
 
+/// The light that a level tells, from 0 to 1, by the curve of sRGB: that of most cameras, or near it.
+/// Light is what lamps multiply; multiplied levels would make dark surfaces too dark.
+fn light(level: f64) -> f64 {
+    let part = level / 255.0;
+    if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The level that tells a light.
+fn level(light: f64) -> f64 {
+    let part =
+        if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+    255.0 * part
+}
+
 impl Gain {
+    /// What makes these levels those.
+    pub(super) fn between(from: [f64; 3], to: [f64; 3]) -> Self {
+        Self(std::array::from_fn(|channel| light(to[channel]) / light(from[channel])))
+    }
+
     /// For each level of each channel, its part of the index of a colour.
     pub(super) fn offsets(self) -> [[u32; 256]; 3] {
-        let offset = |channel: usize, level: usize| {
-            let bright = (level as f64 * self.0[channel]).round().clamp(0.0, 255.0);
-            (bright as u32 >> 2) << (12 - 6 * channel)
-        };
-        let mut offsets = [[0; 256]; 3];
-        for (channel, table) in offsets.iter_mut().enumerate() {
-            for (level, entry) in table.iter_mut().enumerate() {
-                *entry = offset(channel, level);
-            }
-        }
-        offsets
+        let lights: [_; 256] = std::array::from_fn(|dark| light(dark as f64));
+        std::array::from_fn(|channel| {
+            lights.map(|light| {
+                let bright = level(light * self.0[channel]).round().clamp(0.0, 255.0);
+                (bright as u32 >> 2) << (12 - 6 * channel)
+            })
+        })
     }
 }
 
@@ -66,5 +81,52 @@ impl LitTable<'_> {
     #[must_use]
     pub fn class(&self, colour: [u8; 3]) -> Class {
         self.classes[index(&self.offsets, colour)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn the_gain_of_no_change_keeps_every_level() {
+        let offsets = Gain([1.0; 3]).offsets();
+        for level in 0..=255_u8 {
+            let cell = index(&offsets, [level; 3]);
+            assert_eq!(cell, usize::from(level >> 2) * 0b1_000_001_000_001);
+            assert!(centre(cell).iter().all(|middle| (middle - f64::from(level)).abs() <= 1.5));
+        }
+    }
+
+    #[test]
+    fn half_the_light_is_what_srgb_says() {
+        // 50 % grey is level 188, a quarter 137, as printed in tables of sRGB.
+        let gain = Gain([0.5, 0.25, 1.0]);
+        let centre = centre(index(&gain.offsets(), [255, 255, 255]));
+        assert!((centre[0] - 188.0).abs() < 2.0 && (centre[1] - 137.0).abs() < 2.0, "{centre:?}");
+        assert!((centre[2] - 253.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn no_gain_leads_out_of_the_table() {
+        for gain in [0.0, -1.0, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let offsets = Gain([gain; 3]).offsets();
+            for level in 0..=255 {
+                assert!(index(&offsets, [level; 3]) < CELLS);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_gain_brings_one_colour_to_another(
+            from in prop::array::uniform3(4..250_u8), to in prop::array::uniform3(4..250_u8),
+        ) {
+            let gain = Gain::between(from.map(f64::from), to.map(f64::from));
+            let plain = Gain([1.0; 3]);
+            prop_assert_eq!(index(&gain.offsets(), from), index(&plain.offsets(), to));
+        }
     }
 }

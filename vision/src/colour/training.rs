@@ -4,7 +4,7 @@ use image::RgbImage;
 use thiserror::Error;
 
 use super::{
-    Class, ColourModel, Confusion, FloorRing, Priors, Stripe,
+    Class, ColourModel, Confusion, FloorRing, Priors, Smoothing, Stripe,
     hsv::{BINS, Bin},
     light::{self, LightError},
     model::Histogram,
@@ -15,10 +15,10 @@ use crate::camera::Camera;
 /// How far from the robot's centre the floor is looked at, in metres.
 const RANGE: f64 = 3.0;
 
-/// How far pixels spread over the bins around theirs.
-const SMOOTHING: f64 = 0.8;
+/// What served best on rendered pictures of other buildings than those learned from.
+const SMOOTHING: Smoothing = Smoothing { colour: 0.7, light: 0.08 };
 /// The share of a class below which it does not have a colour.
-const UNKNOWN_BELOW: f64 = 1e-5;
+const UNKNOWN_BELOW: f64 = 1e-6;
 
 /// The pixels of a camera that matter.
 #[derive(Clone, Debug)]
