@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 10] = [
+const VERBS: [(&str, &[&str]); 11] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -18,6 +18,7 @@ const VERBS: [(&str, &[&str]); 10] = [
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
+    ("calibrate", &["--out", "--start", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
     ("evaluate", &["vision"]),
     ("completions", &[]),
