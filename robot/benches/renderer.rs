@@ -7,7 +7,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_model::format::world_file;
-use toposlam_robot::simulator::{Building, Effects, Look, Pose, Rig, labels, render, sized};
+use toposlam_robot::simulator::{Building, Effects, Look, Pose, Rig, labels, render};
 use toposlam_vision::camera::Camera;
 
 fn main() {
@@ -20,7 +20,7 @@ fn plan(name: &str) -> FloorPlan {
 }
 
 fn rig(width: u32) -> Rig {
-    Rig::new(&sized(&Camera::superscout(), [width, width * 3 / 4]))
+    Rig::new(&Camera::superscout().sized([width, width * 3 / 4]))
 }
 
 const POSE: Pose = Pose { position: [0.3, 4.2], heading: 1.2 };

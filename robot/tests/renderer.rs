@@ -15,7 +15,7 @@ use toposlam_model::{
     format::world_file,
 };
 use toposlam_robot::simulator::{
-    Building, Effects, KNOBS, LOOKS, Look, Pose, Rig, RigErrors, label_mask, labels, render, sized,
+    Building, Effects, KNOBS, LOOKS, Look, Pose, Rig, RigErrors, label_mask, labels, render,
 };
 use toposlam_vision::{
     camera::Camera,
@@ -32,7 +32,7 @@ fn look(name: &str) -> &'static Look {
 }
 
 fn small_camera() -> Camera {
-    sized(&Camera::superscout(), [640, 480])
+    Camera::superscout().sized([640, 480])
 }
 
 /// A dart of the plan's first L.
@@ -90,60 +90,82 @@ fn near_walls(floors: &[Rectangle], [x, y]: [f64; 2], distance: f64) -> bool {
         .any(|place| !is_floor(floors, place))
 }
 
+/// Which place of the floor a pixel shows, if nothing is in the way, and from above which place it is
+/// seen; both in the robot's coordinates.
+type Grounds<'a> = &'a dyn Fn([f64; 2]) -> Option<[[f64; 2]; 2]>;
+
+/// Holds labels against the plan, pixel by pixel; answers how many showed floor, stripe and marker.
+fn hold_against_plan(plan: &FloorPlan, look: &Look, rig: &Rig, grounds: Grounds) -> [usize; 3] {
+    let effects = Effects::plain();
+    let floors: Vec<_> = plan.floor().collect();
+    let marker = at_an_l(plan);
+    let building = Building::new(plan, look, Some(marker), &effects, 1);
+    let marked = building.marker().unwrap();
+    let corner = plan.junction(plan.graph().vertex(marker)).position;
+    let near_corner = Pose { position: [corner[0] + 0.2, corner[1] - 0.1], heading: 1.0 };
+    let mut counts = [0; 3];
+    for pose in poses(plan, 0.3, 12, 5).into_iter().chain([near_corner]) {
+        let classes = labels(rig, &building, pose, &effects);
+        for (at, &class) in classes.iter().enumerate().step_by(3) {
+            let pixel = [at % 640, at / 640].map(|at| at as f64);
+            let Some([origin, ground]) = grounds(pixel) else { continue };
+            if ground[0].hypot(ground[1]) > 5.0 {
+                continue;
+            }
+            let [origin, place] = [origin, ground].map(|place| in_building(pose, place));
+            let expected = |slack: f64| {
+                if !sees(&floors, origin, place) {
+                    Class::Other
+                } else if marked.widened(slack).holds(place) {
+                    Class::Marker
+                } else if near_walls(&floors, place, look.stripe.width + slack) {
+                    Class::Stripe
+                } else {
+                    Class::Floor
+                }
+            };
+            // Borders, to a millimetre; and ways that graze a corner.
+            if expected(1e-3) != expected(-1e-3)
+                || near_walls(&floors, place, 2e-3)
+                || class == Class::Other && grazes(&floors, origin, place)
+            {
+                continue;
+            }
+            assert_eq!(class, expected(0.0), "{pose:?} {pixel:?} {place:?}");
+            match class {
+                Class::Floor => counts[0] += 1,
+                Class::Stripe => counts[1] += 1,
+                Class::Marker => counts[2] += 1,
+                _ => {}
+            }
+        }
+    }
+    counts
+}
+
+// paper: env.boundary
 #[test]
 fn each_pixel_shows_what_the_plan_has_at_its_place() {
     let camera = small_camera();
     let rig = Rig::new(&camera);
-    let effects = Effects::plain();
-    let mut counts = [0; 3];
+    let grounds = |pixel| camera.pixel_to_ground(pixel).map(|ground| [[0.0; 2], ground]);
     for (name, look) in [("shape-8", look("tiles")), ("building-25", look("school"))] {
-        let plan = plan(name);
-        let floors: Vec<_> = plan.floor().collect();
-        let marker = at_an_l(&plan);
-        let building = Building::new(&plan, look, Some(marker), &effects, 1);
-        let marked = building.marker().unwrap();
-        let corner = plan.junction(plan.graph().vertex(marker)).position;
-        let near_corner = Pose { position: [corner[0] + 0.2, corner[1] - 0.1], heading: 1.0 };
-        for pose in poses(&plan, 0.3, 12, 5).into_iter().chain([near_corner]) {
-            let classes = labels(&rig, &building, pose, &effects);
-            for (at, &class) in classes.iter().enumerate().step_by(3) {
-                let pixel = [at % 640, at / 640].map(|at| at as f64);
-                let Some(ground) = camera.pixel_to_ground(pixel) else { continue };
-                if ground[0].hypot(ground[1]) > 5.0 {
-                    continue;
-                }
-                let place = in_building(pose, ground);
-                let expected = |slack: f64| {
-                    if !sees(&floors, pose.position, place) {
-                        Class::Other
-                    } else if marked.widened(slack).holds(place) {
-                        Class::Marker
-                    } else if near_walls(&floors, place, look.stripe.width + slack) {
-                        Class::Stripe
-                    } else {
-                        Class::Floor
-                    }
-                };
-                let nearly_hidden = near_walls(&floors, place, 2e-3);
-                // Borders, to a millimetre.
-                if expected(1e-3) != expected(-1e-3) || nearly_hidden {
-                    continue;
-                }
-                // A way may graze a corner that juts out.
-                if class == Class::Other && grazes(&floors, pose.position, place) {
-                    continue;
-                }
-                assert_eq!(class, expected(0.0), "{pose:?} {pixel:?} {place:?}");
-                match class {
-                    Class::Floor => counts[0] += 1,
-                    Class::Stripe => counts[1] += 1,
-                    Class::Marker => counts[2] += 1,
-                    _ => {}
-                }
-            }
-        }
+        let counts = hold_against_plan(&plan(name), look, &rig, &grounds);
+        assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
     }
-    assert!(counts[0] > 100_000 && counts[1] > 3_000 && counts[2] > 300, "{counts:?}");
+}
+
+#[test]
+fn a_rig_that_leans_shows_what_lies_along_its_rays() {
+    let errors = RigErrors { tilt: 0.03, towards: 2.0, centre: [3.0, -2.0], height: 0.01 };
+    let rig = Rig::with_errors(&small_camera(), &errors);
+    let grounds = |pixel| {
+        let ray = rig.ray(pixel);
+        let origin = [ray.origin[0], ray.origin[1]];
+        ray.floor().map(|ground| [origin, ground])
+    };
+    let counts = hold_against_plan(&plan("shape-8"), look("tiles"), &rig, &grounds);
+    assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
 }
 
 /// Whether a way on the floor comes near a wall before its end.
@@ -410,7 +432,7 @@ fn a_small_picture_shows_what_a_large_one_shows() {
 
 #[test]
 fn the_label_mask_has_the_colours_that_training_reads() {
-    let rig = Rig::new(&sized(&Camera::superscout(), [4, 3]));
+    let rig = Rig::new(&Camera::superscout().sized([4, 3]));
     let mut classes = vec![Class::Floor; 12];
     classes[1] = Class::Stripe;
     classes[4] = Class::Marker;
@@ -426,9 +448,9 @@ fn odd_buildings_and_poses_are_no_panic() {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(9));
     let errors = RigErrors { tilt: 0.3, towards: -2.0, centre: [900.0, -40.0], height: 0.4 };
     let rigs = [
-        Rig::new(&sized(&Camera::superscout(), [64, 48])),
-        Rig::with_errors(&sized(&Camera::superscout(), [80, 48]), &errors),
-        Rig::new(&sized(&Camera::superscout(), [1, 1])),
+        Rig::new(&Camera::superscout().sized([64, 48])),
+        Rig::with_errors(&Camera::superscout().sized([80, 48]), &errors),
+        Rig::new(&Camera::superscout().sized([1, 1])),
     ];
     for (width, length) in [(1.6, 4.0), (1e-3, 2e-3), (0.4, 1e5), (3000.0, 1e6)] {
         let junctions = [("a", [length, 0.0]), ("b", [length, length]), ("c", [0.0, length])]

@@ -13,7 +13,7 @@ use toposlam_model::{
     floor_plan::{FloorPlan, JunctionKind},
 };
 use toposlam_robot::simulator::{
-    Building, Effects, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render, sized,
+    Building, Effects, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render,
 };
 use toposlam_vision::camera::Camera;
 
@@ -32,9 +32,12 @@ pub(super) struct Arguments {
     /// The file to write: .png, .jpg or .jpeg
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Width and height of the picture, in pixels
-    #[arg(long, default_value = "1280x960", value_name = "SIZE")]
-    size: Size,
+    /// The camera [default: a spherical mirror, 1280x960]
+    #[arg(long, value_name = "FILE")]
+    calibration: Option<PathBuf>,
+    /// Width and height of the picture, in pixels [default: the camera's]
+    #[arg(long, value_name = "SIZE")]
+    size: Option<Size>,
     /// What the building looks like
     #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
     look: &'static Look,
@@ -93,6 +96,7 @@ impl Arguments {
         }
         let world = input::read_world(&self.plan)?;
         let plan = input::floor_plan(&self.plan, &world)?;
+        let camera = self.camera()?;
         let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
         let marker = if self.marker { Some(self.marked(plan, world.start)?) } else { None };
         let effects = self.effects()?;
@@ -101,7 +105,7 @@ impl Arguments {
             let [x, y] = pose.position;
             return Err(Failure::at("--pose", format!("there is no floor at {x},{y}")));
         }
-        let rig = Rig::new(&sized(&Camera::superscout(), self.size.pixels()));
+        let rig = Rig::new(&camera);
         let picture = render(&rig, &building, pose, &effects, self.seed);
         let picture = encoded(&self.out, &picture)?;
         let mask = match &self.labels {
@@ -116,6 +120,17 @@ impl Arguments {
             output::write_whole(path, &mask)?;
         }
         Ok(Outcome::Holds)
+    }
+
+    fn camera(&self) -> Result<Camera, Failure> {
+        let camera = match &self.calibration {
+            Some(path) => input::read_camera(path)?,
+            None => Camera::superscout(),
+        };
+        Ok(match self.size {
+            Some(size) => camera.sized(size.pixels()),
+            None => camera,
+        })
     }
 
     fn effects(&self) -> Result<Effects, Failure> {
@@ -173,14 +188,32 @@ fn read_setting(text: &str) -> Result<(String, f64), String> {
 
 /// The effects, and an example.
 fn after_help() -> String {
-    let mut text = "Effects, and the range that each is drawn from:\n".to_owned();
-    for (of, title) in [(Of::Building, "Of the building"), (Of::Picture, "Of the picture")] {
+    let mut text = "Effects, the range that each is drawn from, and what it is:\n".to_owned();
+    for (of, title) in [(Of::Building, "Of the building:"), (Of::Picture, "Of the picture:")] {
         text += &format!("  {title}\n");
         for knob in KNOBS.iter().filter(|knob| knob.of == of) {
             let range = format!("{}..{}", knob.default.start(), knob.default.end());
-            text += &format!("    {:<14} {range:<12} {}\n", knob.name, knob.about);
+            let head = format!("    {:<14} {range:<12} ", knob.name);
+            text += &hanging(&head, knob.about);
         }
     }
     text + "\nExample:\n  toposlam render worlds/shape-8.toml --pose 2,8,0 --look vinyl \
             --effect blur=1.5 --out view.png"
+}
+
+/// Words in lines of a hundred columns, those after the first as far in as the head is long.
+fn hanging(head: &str, words: &str) -> String {
+    let (mut text, mut line) = (String::new(), head.trim_end().to_owned());
+    let mut gap = head.len() - line.len();
+    for word in words.split(' ') {
+        if line.len() + gap + word.len() > 98 {
+            text += &line;
+            text.push('\n');
+            (line, gap) = (String::new(), head.len());
+        }
+        line += &" ".repeat(gap);
+        line += word;
+        gap = 1;
+    }
+    text + &line + "\n"
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, names_in, objects, run, stderr, stdout};
+use crate::{folder, names_in, objects, read_world, run, stderr, stdout};
 
 /// The arguments that measure so few views that it is quick.
 const FEW: [&str; 10] = [
@@ -79,12 +79,12 @@ fn one_view_is_shown_step_by_step() {
     assert_eq!(line["view"], 5);
     assert!(line["truth"].is_string() && line["verdict"].is_string());
     assert_eq!(names_in(&folder), ["view-00005"]);
-    let names = names_in(&folder.join("view-00005"));
-    assert_eq!(
-        (names.len(), names[0].as_str(), names[7].as_str()),
-        (8, "0-picture.png", "view.json")
-    );
-    assert_eq!(fs::read_to_string(folder.join("view-00005/view.json")).unwrap(), stdout(&output));
+    let view = folder.join("view-00005");
+    let names = names_in(&view).join(" ");
+    let steps = "1-classes.png 2-boundary.png 3-clusters.png 4-lines.png 5-scene.png 6-image.png";
+    assert_eq!(names, format!("0-picture.png {steps} plan.toml view.json"));
+    assert!(read_world(&view.join("plan.toml")).plan.is_some());
+    assert_eq!(fs::read_to_string(view.join("view.json")).unwrap(), stdout(&output));
 }
 
 #[test]

@@ -21,6 +21,10 @@ const VERBS: [(&str, &[&str]); 11] = [
     ("calibrate", &["--out", "--start", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
     ("evaluate", &["vision"]),
+    (
+        "render",
+        &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
+    ),
     ("completions", &[]),
 ];
 

@@ -12,6 +12,7 @@ mod evaluate;
 mod explore;
 mod help;
 mod proofs;
+mod render;
 mod sense;
 
 use std::{

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use crate::{
     colour::{Class, Stripe, StripeKind},
     ground_view::GroundView,
+    wall::{Frame, Wall},
 };
 
 /// What is seen on each bearing.
@@ -34,10 +35,14 @@ pub struct Sight {
 pub struct Edge {
     /// How far away, in metres.
     pub range: f64,
-    /// Whether no floor is seen behind the stripe.
+    /// Whether no floor is seen behind the stripe, or it is part of a long straight wall.
     pub sure: bool,
+    /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
+    pub width: f64,
 }
 
+/// A wall so long is none of the floor's patterns, in metres.
+const LONG: f64 = 0.60;
 /// No more edges than these are told of on a bearing.
 const EDGES: usize = 3;
 /// How many bearings are looked at.
@@ -49,7 +54,11 @@ pub const REACH: f64 = 2.6;
 /// Steps along a bearing, a pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 /// A stripe is seen at least at this part of its width: a pixel may cover as much.
-const SEEN_WIDTH: f64 = 0.55;
+const SEEN_WIDTH: f64 = 0.40;
+/// and at most at so many times its width;
+const WIDEST: f64 = 2.0;
+/// and so many steps more, for pixels and blur.
+const BLURRED: f64 = 10.0;
 /// Between floor and stripe colours mix, over so many steps.
 const MIXED: usize = 10;
 /// Fewer steps of something else do not end a stripe.
@@ -66,8 +75,8 @@ const LOST: usize = 60;
 pub struct Bearings {
     /// [`STEPS`] for each bearing.
     pixels: Vec<u32>,
-    /// How wide a stripe is at least that begins at a step, along a bearing, in steps.
-    least: Vec<usize>,
+    /// How wide a stripe is that begins at a step and is met at a right angle, in steps.
+    width: Vec<f64>,
 }
 
 impl Bearings {
@@ -84,7 +93,7 @@ impl Bearings {
                 })
             })
             .collect();
-        let least = (0..STEPS).map(|step| {
+        let width = (0..STEPS).map(|step| {
             let width = match stripe.kind {
                 StripeKind::OnFloor => stripe.width,
                 // What is above the floor is seen as if it lay behind.
@@ -92,9 +101,9 @@ impl Bearings {
                     range(step as f64) * stripe.width / (height - stripe.width).max(stripe.width)
                 }
             };
-            ((SEEN_WIDTH * width / GroundView::SCALE) as usize).max(1)
+            width / GroundView::SCALE
         });
-        Self { pixels, least: least.collect() }
+        Self { pixels, width: width.collect() }
     }
 
     /// What is seen on each bearing of a ground view.
@@ -133,15 +142,18 @@ impl Bearings {
                     {
                         step += 1;
                     }
+                    let width = (step + 1 - from) as f64;
                     if let Some(floor) = floor
-                        && step + 1 - from >= self.least[from]
+                        && width >= (SEEN_WIDTH * self.width[from]).floor()
                     {
                         // The edge is where the floor's last pixel ends; floor that was taken for
                         // something else has none.
                         let (last, seen) =
                             if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
                         let sure = seen && !floor_follows(&classes[step + 1..]);
-                        let edge = Edge { range: range(last as f64 + 0.5), sure };
+                        let most = WIDEST * self.width[from] + BLURRED;
+                        let range = range(last as f64 + 0.5);
+                        let edge = Edge { range, sure, width: width / most };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
@@ -165,7 +177,7 @@ impl Sight {
     /// A bearing on which there are only these edges.
     #[cfg(test)]
     pub(crate) fn at(range: Option<f64>) -> Self {
-        let edge = range.map(|range| Edge { range, sure: true });
+        let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
         Self { edges: [edge, None, None], floor: range.unwrap_or_default() }
     }
 
@@ -199,6 +211,12 @@ pub fn direction(bearing: usize) -> [f64; 2] {
     [cosine, sine]
 }
 
+/// The bearing nearest to a direction, in radians counter-clockwise from ahead.
+#[must_use]
+pub fn bearing(direction: f64) -> usize {
+    (direction.rem_euclid(TAU) / TAU * BEARINGS as f64).round() as usize % BEARINGS
+}
+
 impl Boundary {
     /// The boundary points, counter-clockwise from ahead: their bearing and their position.
     pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
@@ -206,6 +224,17 @@ impl Boundary {
             let ray = direction(bearing);
             sight.edges().map(move |edge| (bearing, ray.map(|part| edge.range * part)))
         })
+    }
+
+    /// Makes sure of the edges that lie on a long straight wall: a wall may have the floor's colour.
+    pub fn make_sure(&mut self, walls: &[Wall], frame: &Frame) {
+        for (bearing, sight) in self.sights.iter_mut().enumerate() {
+            let ray = frame.framed(direction(bearing));
+            for edge in sight.edges.iter_mut().flatten().filter(|edge| !edge.sure) {
+                let point = ray.map(|part| edge.range * part);
+                edge.sure = walls.iter().any(|wall| wall.length() >= LONG && wall.holds(point));
+            }
+        }
     }
 }
 

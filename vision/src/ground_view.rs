@@ -122,16 +122,3 @@ mod tests {
         assert_eq!(GroundView::index([GroundView::REACH + 0.01, 0.0]), None);
     }
 }
-/*TRIAL*/
-impl Unwrapping {
-    #[allow(missing_docs)]
-    pub fn perfect(&self, labels: &[Class], view: &mut GroundView) {
-        view.marker.clear();
-        for (index, (class, &pixel)) in view.classes.iter_mut().zip(&self.pixels).enumerate() {
-            *class = if pixel == Self::UNSEEN { Class::Unseen } else { labels[pixel as usize] };
-            if *class == Class::Marker {
-                view.marker.push(index as u32);
-            }
-        }
-    }
-}

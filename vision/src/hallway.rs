@@ -4,7 +4,7 @@
 use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
 
 use crate::{
-    boundary::{BEARINGS, Boundary, direction},
+    boundary::{BEARINGS, Boundary, bearing, direction},
     outline::{Agreement, Outline, Square},
     wall::{Axis, Frame, Wall},
 };
@@ -34,16 +34,24 @@ pub const BEHIND: f64 = 0.75;
 /// Nearer than this to a turning point, the walls are open at a side; in metres. So much wall is
 /// looked at, to either end, less half the width.
 const CLOSED: f64 = 1.4;
+/// Pieces of wall with offsets that differ by less are of the same wall, in metres.
+const SAME: f64 = 0.10;
+/// So many walls on each side are considered.
+const NEAREST: usize = 3;
+/// The floor must be seen to go on as if the turning point were so far ahead, at least; in metres.
+const SEEN_AHEAD: f64 = 0.75;
+/// Or a wall at a side must be seen to go on as if it were so far ahead.
+const SIDES_AHEAD: f64 = 0.65;
 /// A major cluster is at least so long, in metres,
 const MAJOR: f64 = 0.25;
 /// and begins no farther from the robot, along the hallway.
 const BESIDE: f64 = 0.9;
 /// What is seen must support the walls at least so much for a hallway to be likely,
-const LIKELY: f64 = 0.75;
+const LIKELY: f64 = 0.68;
 /// and so much for it to be sure: a door of the floor's colour looks like an opening.
-const SURE: f64 = 0.92;
+const SURE: f64 = 0.85;
 /// and this part of them must be seen.
-const COVER: f64 = 0.35;
+const COVER: f64 = 0.20;
 /// The floor is looked at so far to either side of the hallway's direction, in bearings.
 const SECTOR: usize = BEARINGS / 30;
 /// Further clusters nearer than this beside the robot count neither as ahead nor as behind, in metres.
@@ -64,13 +72,27 @@ pub fn hallway(walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hal
         .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
 }
 
+/// The best hallway along an axis, of the pieces of wall nearest to the robot on either side.
 fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hallway> {
-    let left = major(axis, 1.0, walls)?;
-    let right = major(axis, -1.0, walls)?;
-    let mut square = Square {
-        middle: axis.point(0.0, f64::midpoint(left.offset, right.offset)),
-        half: (left.offset - right.offset) / 2.0,
-    };
+    let lefts = majors(axis, 1.0, walls);
+    let rights = majors(axis, -1.0, walls);
+    let pairs = lefts.iter().flat_map(|&left| rights.iter().map(move |&right| (left, right)));
+    pairs
+        .filter_map(|(left, right)| between(axis, left, right, walls, boundary, frame))
+        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
+}
+
+/// The hallway along an axis between walls with these offsets.
+fn between(
+    axis: Axis,
+    left: f64,
+    right: f64,
+    walls: &[Wall],
+    boundary: &Boundary,
+    frame: &Frame,
+) -> Option<Hallway> {
+    let mut square =
+        Square { middle: axis.point(0.0, f64::midpoint(left, right)), half: (left - right) / 2.0 };
     if !HALF_WIDTH.contains(&square.half) {
         return None;
     }
@@ -93,20 +115,23 @@ fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Opti
     })
 }
 
-/// The piece of wall that is nearest to the robot, on one side of an axis.
+/// The offsets of the pieces of wall that are nearest to the robot, on one side of an axis; the major
+/// cluster is the first, unless what looks like it is a lamp's reflection on the floor.
 // paper: sense.opposite
 // paper: sense.parallel
-fn major(axis: Axis, side: f64, walls: &[Wall]) -> Option<&Wall> {
-    walls
-        .iter()
-        .filter(|wall| {
-            wall.along == axis
-                && side * wall.offset > 0.0
-                && wall.length() >= MAJOR
-                && wall.from < BESIDE
-                && wall.to > -BESIDE
-        })
-        .min_by(|one, other| one.offset.abs().total_cmp(&other.offset.abs()))
+fn majors(axis: Axis, side: f64, walls: &[Wall]) -> Vec<f64> {
+    let beside = walls.iter().filter(|wall| {
+        wall.along == axis
+            && side * wall.offset > 0.0
+            && wall.length() >= MAJOR
+            && wall.from < BESIDE
+            && wall.to > -BESIDE
+    });
+    let mut offsets: Vec<f64> = beside.map(|wall| wall.offset).collect();
+    offsets.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
+    offsets.dedup_by(|next, kept| (*next - *kept).abs() < SAME);
+    offsets.truncate(NEAREST);
+    offsets
 }
 
 /// Whether the floor goes on, ahead or behind, so far that no turning point is near.
@@ -120,10 +145,9 @@ fn goes_on(
 ) -> bool {
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
-    let least = square.half + if sign == frame.ahead(axis) { AHEAD } else { BEHIND };
-    let bearing = whither[1].atan2(whither[0]) / std::f64::consts::TAU * BEARINGS as f64;
-    let first = (bearing.round() as i64 - SECTOR as i64).rem_euclid(BEARINGS as i64) as usize;
-    let ahead = sign == frame.ahead(axis);
+    let least = square.half + SEEN_AHEAD;
+    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - SECTOR;
+    let ahead = sign * frame.ahead(axis) > 0.0;
     let (mut far, mut near) = (0, 0);
     for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];
@@ -135,21 +159,34 @@ fn goes_on(
         }
     }
     // What is behind the robot may be in the dark; it has come from there.
-    let enough = !ahead || far > SECTOR / 3;
+    let enough = !ahead
+        || far > SECTOR / 3
+        || reaches(axis, sign * (square.half + SIDES_AHEAD), square, walls);
     let closed = near > SECTOR / 2 && near > far;
     enough && !closed && !is_closed(axis, sign * least, square, walls)
 }
 
-/// Whether a wall stands across, nearer than this.
-fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+/// Whether a wall at a side goes on as far as this.
+fn reaches(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     let centre = square.middle[axis.split().1];
     walls.iter().any(|wall| {
-        let between = wall.from.max(centre - square.half)..wall.to.min(centre + square.half);
-        wall.along != axis
-            && wall.offset * least > 0.0
-            && wall.offset.abs() < least.abs()
-            && between.end - between.start > square.half
+        let off = ((wall.offset - centre).abs() - square.half).abs();
+        let far = if least > 0.0 { wall.to > least } else { wall.from < least };
+        wall.along == axis && off < OFF && far
     })
+}
+
+/// Whether walls stand across half of the hallway or more, nearer than this.
+fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+    let centre = square.middle[axis.split().1];
+    let across = walls.iter().filter(|wall| {
+        wall.along != axis && wall.offset * least > 0.0 && wall.offset.abs() < least.abs()
+    });
+    let closed = across.map(|wall| {
+        let within = wall.to.min(centre + square.half) - wall.from.max(centre - square.half);
+        within.max(0.0)
+    });
+    closed.sum::<f64>() > square.half
 }
 
 /// Whether the hallway along an axis is clear, on the way ahead.

@@ -93,14 +93,17 @@ pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: 
     best_first(&mut found);
     let Some(&best) = found.first() else { return Finding::Nothing };
     let wide = HALF_WIDTH.contains(&best.square.half);
-    if !wide || !best.agreement.holds(TRUST) || best.agreement.cover() < COVER {
+    let seen = best.agreement.cover() >= COVER && best.agreement.blank == 0;
+    if !wide || !seen || !best.agreement.holds(TRUST) {
         return Finding::Nothing;
     }
-    let rival = found
-        .iter()
-        .find(|other| other.doors != best.doors || apart(other.square, best.square) > SAME);
-    let ahead = |rival: &Junction| best.agreement.balance() - rival.agreement.balance();
-    if rival.is_some_and(|rival| ahead(rival) < bearings(MARGIN, 1)) {
+    // In a hallway it does not matter which junction is far ahead or behind.
+    let differs = |other: &Junction| {
+        (best.is_here() || other.is_here())
+            && (other.doors != best.doors || apart(other.square, best.square) > SAME)
+    };
+    let behind = |other: &Junction| best.agreement.balance() - other.agreement.balance();
+    if found.iter().any(|other| differs(other) && behind(other) < bearings(MARGIN, 1)) {
         return Finding::Ambiguous;
     }
     Finding::Junction(best)
@@ -163,7 +166,7 @@ impl Junction {
                 Outline::junction(self.doors, square).fitted(square, boundary, &frame);
         }
         let agreement = Outline::junction(self.doors, square).agreement(boundary, &frame, 1);
-        Self { square, frame, agreement, ..self }
+        Self { frame, square, agreement, ..self }
     }
 
     /// Whether the robot is there: the turning point is neither far ahead nor left behind.

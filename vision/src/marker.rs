@@ -6,7 +6,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    boundary::{BEARINGS, Boundary},
+    boundary::{Boundary, bearing},
     colour::Class,
     ground_view::GroundView,
     line::Line,
@@ -74,9 +74,7 @@ pub fn marker(
 fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<[f64; 2]> {
     let on_floor = view.marker.iter().filter_map(|&index| {
         let [x, y] = GroundView::ground(index as usize);
-        let bearing = y.atan2(x) / std::f64::consts::TAU * BEARINGS as f64;
-        let bearing = (bearing.round() as i64).rem_euclid(BEARINGS as i64) as usize;
-        let sight = boundary.sights[bearing];
+        let sight = boundary.sights[bearing(y.atan2(x))];
         let reach = sight.floor + BEHIND;
         (x.hypot(y) <= reach && is_within(view, index as usize)).then_some([x, y])
     });

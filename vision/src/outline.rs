@@ -7,7 +7,7 @@
 use nalgebra::{Matrix4, Vector4};
 
 use crate::{
-    boundary::{BEARINGS, Boundary, direction},
+    boundary::{BEARINGS, Boundary, Edge, direction},
     cluster::range,
     wall::{Axis, Frame},
 };
@@ -50,29 +50,43 @@ pub struct Square {
     pub half: f64,
 }
 
-/// How an outline agrees with what is seen: a count of bearings for each.
+/// How an outline agrees with what is seen: a count of bearings for each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
     /// A wall is seen where the outline has one.
     pub support: u32,
+    /// The floor ends where the outline has a wall, though at no stripe: at a door, or a gap.
+    pub ended: u32,
     /// The outline has a wall, and nothing is seen there.
     pub silent: u32,
     /// Floor is seen behind a wall of the outline: it may be a door of the floor's colour.
     pub through: u32,
     /// A wall is seen where the outline has floor.
     pub against: u32,
+    /// How many of its walls are not seen at all, though many bearings lead there.
+    pub blank: u32,
 }
 
 /// A point agrees with a wall that is so near, in metres,
 const NEAR: f64 = 0.05;
 /// and so much farther for each metre from the robot.
 const NEAR_BY_RANGE: f64 = 0.03;
-/// How many bearings in support one weighs on which floor is seen through a wall;
+/// How many bearings in support one weighs on which the floor ends without a stripe;
+const ENDED: f64 = 0.5;
+/// how many one weighs on which floor is seen through a wall;
 const THROUGH: f64 = 1.5;
 /// and one on which a wall is seen before it.
 const AGAINST: f64 = 3.0;
 /// Walls are seen where there are none on this part of the bearings in support, at most.
 const STRAY: f64 = 0.12;
+/// Walls that are farther away are not looked for, in metres: a pixel covers as much as a stripe.
+const FAR: f64 = 2.1;
+/// A wall to which so few bearings lead need not be seen, as a part of all;
+const NARROW: f64 = 0.02;
+/// of others, at least this part is.
+const BLANK: f64 = 0.25;
+/// A junction has at most so many sides: a T, with three at each door and the wall opposite.
+const MOST_SIDES: usize = 12;
 /// How far the arms of a junction reach from its square, in its widths: there the next one may begin.
 const ARM: f64 = 1.0;
 
@@ -136,9 +150,15 @@ impl Outline {
     #[must_use]
     pub fn agreement(&self, boundary: &Boundary, frame: &Frame, every: usize) -> Agreement {
         let mut agreement = Agreement::default();
+        // For each side, on how many bearings it should be seen, and is.
+        let mut seen = [(0, 0); MOST_SIDES];
         for (bearing, sight) in boundary.sights.iter().enumerate().step_by(every) {
             let ray = frame.framed(direction(bearing));
-            let Some((at, side)) = self.first_on(ray) else { continue };
+            let Some((at, number)) = self.first_on(ray) else { continue };
+            if at > FAR {
+                continue;
+            }
+            let side = &self.sides[number];
             // How far in front of the side something is, perpendicular to it.
             let (_, across) = side.along.split();
             let before = |range: f64| (at - range) * ray[across].abs();
@@ -148,23 +168,42 @@ impl Outline {
                 is_wall && before(range).abs() < near
                     || self.distance(ray.map(|part| range * part)) < near
             };
-            if sight.edges().any(|edge| fits(edge.range)) {
-                agreement.support += 1;
+            let is_stripe = |edge: &Edge| edge.width * ray[across].abs() <= 1.0;
+            let fitting = sight.edges().find(|edge| fits(edge.range));
+            let ends = is_wall && before(sight.floor).abs() < near(at);
+            if is_wall {
+                seen[number].0 += 1;
+                seen[number].1 += u32::from(fitting.is_some() || ends);
+            }
+            if let Some(edge) = fitting {
+                if is_stripe(&edge) {
+                    agreement.support += 1;
+                } else {
+                    agreement.silent += 1;
+                }
             } else if sight.sure().is_some_and(|wall| wall < at) {
                 agreement.against += 1;
+            } else if ends {
+                agreement.ended += 1;
             } else if is_wall && before(sight.floor) < -near(at) {
                 agreement.through += 1;
             } else if is_wall {
                 agreement.silent += 1;
             }
         }
+        agreement.blank = seen
+            .iter()
+            .filter(|&&(due, seen)| {
+                f64::from(due) > bearings(NARROW, every) && f64::from(seen) < BLANK * f64::from(due)
+            })
+            .count() as u32;
         agreement
     }
 
-    /// The first side that a ray from the robot meets, and how far away that is.
-    fn first_on(&self, ray: [f64; 2]) -> Option<(f64, &Side)> {
-        let mut first: Option<(f64, &Side)> = None;
-        for side in &self.sides {
+    /// How far away a ray from the robot meets a side first, and which.
+    fn first_on(&self, ray: [f64; 2]) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
+        for (number, side) in self.sides.iter().enumerate() {
             let (along, across) = side.along.split();
             let at = side.offset / ray[across];
             let on = at * ray[along];
@@ -173,7 +212,7 @@ impl Outline {
                 && on <= side.to
                 && first.is_none_or(|(nearest, _)| at < nearest)
             {
-                first = Some((at, side));
+                first = Some((at, number));
             }
         }
         first
@@ -241,32 +280,34 @@ impl Side {
 }
 
 impl Agreement {
-    /// Bearings that support the outline, less those that do not, which weigh more.
+    /// What supports the outline, less what does not, which weighs more.
     #[must_use]
     pub fn balance(&self) -> f64 {
-        f64::from(self.support)
-            - THROUGH * f64::from(self.through)
-            - AGAINST * f64::from(self.against)
+        self.good() - THROUGH * f64::from(self.through) - AGAINST * f64::from(self.against)
     }
 
     /// The part of what is seen that supports the outline, from 0 to 1.
     #[must_use]
     pub fn trust(&self) -> f64 {
-        let seen = self.support + self.through + self.against;
-        f64::from(self.support) / f64::from(seen.max(1))
+        self.good() / (self.good() + f64::from(self.through + self.against)).max(1.0)
     }
 
     /// The part of the outline's walls that is seen, from 0 to 1.
     #[must_use]
     pub fn cover(&self) -> f64 {
-        let all = self.support + self.through + self.against + self.silent;
-        f64::from(self.support) / f64::from(all.max(1))
+        let all = self.support + self.ended + self.silent + self.through + self.against;
+        self.good() / f64::from(all.max(1))
+    }
+
+    /// In bearings on which a stripe is seen where it should be.
+    fn good(&self) -> f64 {
+        f64::from(self.support) + ENDED * f64::from(self.ended)
     }
 
     /// Whether so much of what is seen supports the outline, and little of it stands against it.
     #[must_use]
     pub fn holds(&self, trust: f64) -> bool {
-        self.trust() >= trust && f64::from(self.against) <= STRAY * f64::from(self.support)
+        self.trust() >= trust && f64::from(self.against) <= STRAY * self.good()
     }
 }
 

@@ -235,7 +235,9 @@ impl Judge {
         });
         let pictures = judged.collect::<Result<Vec<_>, _>>()?;
         let mut visit = Visit::default();
-        pictures.iter().for_each(|picture| visit.see(&picture.scene));
+        for picture in &pictures {
+            visit.see(&picture.scene);
+        }
         let decided = visit.form().zip(visit.percept());
         Ok(Some(JudgedVisit { pictures, form, percept, decided }))
     }
@@ -336,7 +338,7 @@ fn errors([width, _]: [u32; 2], number: usize) -> RigErrors {
         // The golden section: no leaning is together with the same centre twice.
         towards: TAU * number as f64 * 0.618_034,
         centre: [centre * u, centre * v],
-        height: if number % 2 == 0 { HEIGHT_OFF } else { -HEIGHT_OFF },
+        height: if number.is_multiple_of(2) { HEIGHT_OFF } else { -HEIGHT_OFF },
     }
 }
 

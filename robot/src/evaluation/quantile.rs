@@ -1,5 +1,34 @@
 //! How large errors are: quantiles of a sample.
 
+/// A quantile that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantile {
+    /// Half of the values are below it.
+    Median,
+    /// 95 of 100 are.
+    P95,
+    /// 99 of 100 are.
+    P99,
+    /// The greatest value.
+    Most,
+}
+
+impl Quantile {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Median, Self::P95, Self::P99, Self::Most];
+
+    /// Which part of the values is below it.
+    #[must_use]
+    pub fn part(self) -> f64 {
+        match self {
+            Self::Median => 0.5,
+            Self::P95 => 0.95,
+            Self::P99 => 0.99,
+            Self::Most => 1.0,
+        }
+    }
+}
+
 /// Measured values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
@@ -26,11 +55,12 @@ impl Sample {
     /// values. Between two values it is interpolated (Hyndman and Fan 1996, definition 7, as in R
     /// and NumPy).
     #[must_use]
+    #[expect(clippy::cast_sign_loss, reason = "a place in a list is not negative")]
     pub fn quantile(&self, part: f64) -> Option<f64> {
         let at = part.clamp(0.0, 1.0) * (self.values.len().checked_sub(1)? as f64);
         let (below, above) = (at.floor(), at.ceil());
         let [low, high] = [below, above].map(|at| self.values[at as usize]);
-        Some(if low == high { low } else { low + (high - low) * (at - below) })
+        Some(low + (high - low) * (at - below))
     }
 }
 

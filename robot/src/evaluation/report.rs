@@ -11,7 +11,7 @@ use super::{
     bound::upper_bound,
     class::Class,
     judging::{Calibration, Judged, JudgedVisit, Zone},
-    quantile::Sample,
+    quantile::{Quantile, Sample},
     truth::{HallwayTruth, JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict, hallway_errors, junction_errors},
 };
@@ -75,8 +75,8 @@ pub struct Errors {
     pub unit: Unit,
     /// The errors, in metres or radians.
     pub sample: Sample,
-    /// Quantiles that may not be larger, in the unit: the part, and the limit.
-    pub limits: Vec<(f64, f64)>,
+    /// Quantiles that may not be larger than so much of the unit.
+    pub limits: Vec<(Quantile, f64)>,
 }
 
 /// A unit for people.
@@ -261,7 +261,7 @@ fn all_errors(views: &[Judged]) -> Vec<Errors> {
         .filter_map(|(truth, view)| junction_errors(truth, view))
         .collect();
     let lines = || junctions.iter().flat_map(|errors| &errors.lines);
-    let of = |subject, what, unit, sample, limits: &[(f64, f64)]| Errors {
+    let of = |subject, what, unit, sample, limits: &[(Quantile, f64)]| Errors {
         subject,
         what,
         unit,
@@ -274,28 +274,28 @@ fn all_errors(views: &[Judged]) -> Vec<Errors> {
             "direction",
             Unit::Degrees,
             hallways.iter().map(|errors| errors.heading).collect(),
-            &[(0.5, 0.5), (0.99, 4.0)],
+            &[(Quantile::Median, 0.5), (Quantile::P99, 4.0)],
         ),
         of(
             Subject::Hallway,
             "distance to a side",
             Unit::Centimetres,
             hallways.iter().flat_map(|errors| errors.sides).collect(),
-            &[(0.5, 2.0)],
+            &[(Quantile::Median, 2.0)],
         ),
         of(
             Subject::Junction,
             "place of a centre line",
             Unit::Centimetres,
             lines().map(|&(off, _)| off).collect(),
-            &[(0.95, 5.0)],
+            &[(Quantile::P95, 5.0)],
         ),
         of(
             Subject::Junction,
             "direction of a centre line",
             Unit::Degrees,
             lines().map(|&(_, turned)| turned).collect(),
-            &[(0.95, 3.0)],
+            &[(Quantile::P95, 3.0)],
         ),
         of(
             Subject::Junction,
@@ -349,20 +349,20 @@ impl Rate {
 }
 
 impl Errors {
-    /// The error below which this part of the errors is, from 0 to 1, in the unit.
+    /// A quantile of the errors, in the unit.
     #[must_use]
-    pub fn quantile(&self, part: f64) -> Option<f64> {
+    pub fn quantile(&self, quantile: Quantile) -> Option<f64> {
         let factor = match self.unit {
             Unit::Degrees => 1.0_f64.to_degrees(),
             Unit::Centimetres => 100.0,
         };
-        self.sample.quantile(part).map(|value| value * factor)
+        self.sample.quantile(quantile.part()).map(|value| value * factor)
     }
 
     /// Whether the errors are as small as is asked.
     #[must_use]
     pub fn standing(&self) -> Standing {
-        let standing = self.limits.iter().map(|&(part, limit)| match self.quantile(part) {
+        let standing = self.limits.iter().map(|&(quantile, limit)| match self.quantile(quantile) {
             None => Standing::Empty,
             Some(error) if error <= limit => Standing::Met,
             Some(_) => Standing::Missed,

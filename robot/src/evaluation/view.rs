@@ -154,7 +154,7 @@ impl Views {
     /// Where there are no plans, or no sizes.
     pub fn view(&self, number: u64) -> Result<View, NoView> {
         let (mut view, mut chance) = self.setting(Purpose::Single, number)?;
-        self.place(&mut view, &mut chance, AT_JUNCTIONS);
+        place(&mut view, &mut chance, AT_JUNCTIONS);
         Ok(view)
     }
 
@@ -165,7 +165,7 @@ impl Views {
     pub fn visit(&self, number: u64) -> Result<Vec<View>, NoView> {
         let (mut view, mut chance) = self.setting(Purpose::Visit, number)?;
         let Some(entry) = an_entry(&view.plan, &mut chance) else { return Ok(Vec::new()) };
-        self.put_marker(&mut view, Some(entry), &mut chance);
+        put_marker(&mut view, Some(entry), &mut chance);
         let reach = reach(&view.plan);
         let mut aside = chance.random_range(-reach..=reach);
         let mut before = VISIT[0] - chance.random_range(0.0..STEP[0]);
@@ -194,7 +194,7 @@ impl Views {
         let (mut view, mut chance) = self.setting(Purpose::Learning, number)?;
         view.look = look;
         view.image = image;
-        self.place(&mut view, &mut chance, 1.0);
+        place(&mut view, &mut chance, 1.0);
         Ok(view)
     }
 
@@ -231,43 +231,43 @@ impl Views {
         };
         Ok((view, chance))
     }
+}
 
-    /// Puts the robot somewhere, and the marker perhaps.
-    fn place(&self, view: &mut View, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
-        let entry = an_entry(&view.plan, chance).filter(|_| chance.random_bool(at_junctions));
-        let reach = reach(&view.plan);
-        let aside = chance.random_range(-reach..=reach);
-        let turned = chance.random_range(-TURNED..=TURNED);
-        let part = chance.random::<f64>();
-        view.pose = match entry {
-            Some(entry) => {
-                let nearest = CLEAR - view.plan.hallway_width() / 2.0;
-                let last = APPROACH[1].max(nearest);
-                let before = last + part * (APPROACH[0] - last);
-                before_junction(&view.plan, entry, before, aside, turned)
-            }
-            None => in_a_hallway(&view.plan, part, chance.random(), aside, turned),
-        };
-        self.put_marker(view, entry, chance);
-    }
+/// Puts the robot somewhere, and the marker perhaps.
+fn place(view: &mut View, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
+    let entry = an_entry(&view.plan, chance).filter(|_| chance.random_bool(at_junctions));
+    let reach = reach(&view.plan);
+    let aside = chance.random_range(-reach..=reach);
+    let turned = chance.random_range(-TURNED..=TURNED);
+    let part = chance.random::<f64>();
+    view.pose = match entry {
+        Some(entry) => {
+            let nearest = CLEAR - view.plan.hallway_width() / 2.0;
+            let last = APPROACH[1].max(nearest);
+            let before = last + part * (APPROACH[0] - last);
+            before_junction(&view.plan, entry, before, aside, turned)
+        }
+        None => in_a_hallway(&view.plan, part, chance.random(), aside, turned),
+    };
+    put_marker(view, entry, chance);
+}
 
-    /// Puts the marker on an L: on that of the door, if there is one, or on any other, or nowhere.
-    fn put_marker(&self, view: &mut View, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
-        let graph = view.plan.graph();
-        let is_l = |vertex: Vertex| view.plan.junction(vertex).kind == JunctionKind::L;
-        let here = entry.map(|dart| graph.vertex(dart)).filter(|&vertex| is_l(vertex));
-        let others: Vec<_> =
-            graph.vertices().filter(|&vertex| is_l(vertex) && Some(vertex) != here).collect();
-        let other = others.choose(chance).copied();
-        let by_chance: f64 = chance.random();
-        let vertex = match here {
-            Some(here) if by_chance < MARKED[0] => Some(here),
-            Some(_) => other.filter(|_| by_chance < MARKED[0] + MARKED[1]),
-            None => other.filter(|_| by_chance < MARKED[0]),
-        };
-        let index = chance.random_range(0..2);
-        view.marker = vertex.and_then(|vertex| graph.dart(vertex, index));
-    }
+/// Puts the marker on an L: on that of the door, if there is one, or on any other, or nowhere.
+fn put_marker(view: &mut View, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
+    let graph = view.plan.graph();
+    let is_l = |vertex: Vertex| view.plan.junction(vertex).kind == JunctionKind::L;
+    let here = entry.map(|dart| graph.vertex(dart)).filter(|&vertex| is_l(vertex));
+    let others: Vec<_> =
+        graph.vertices().filter(|&vertex| is_l(vertex) && Some(vertex) != here).collect();
+    let other = others.choose(chance).copied();
+    let by_chance: f64 = chance.random();
+    let vertex = match here {
+        Some(here) if by_chance < MARKED[0] => Some(here),
+        Some(_) => other.filter(|_| by_chance < MARKED[0] + MARKED[1]),
+        None => other.filter(|_| by_chance < MARKED[0]),
+    };
+    let index = chance.random_range(0..2);
+    view.marker = vertex.and_then(|vertex| graph.dart(vertex, index));
 }
 
 /// The stream of random numbers of a number.

@@ -211,3 +211,140 @@ fn compressed(image: RgbImage, loss: f64) -> RgbImage {
     // Only an image without pixels cannot be written; there is nothing to lose in it.
     read.map_or(image, image::DynamicImage::into_rgb8)
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::camera::Camera;
+
+    use super::*;
+
+    const WIDTH: usize = 40;
+    const HEIGHT: usize = 30;
+
+    /// Light from a table.
+    struct Table(Vec<[f32; 3]>);
+
+    impl Scan for Table {
+        fn row(&mut self, v: usize, out: &mut [f32]) {
+            out.copy_from_slice(self.0[v * WIDTH..][..WIDTH].as_flattened());
+        }
+
+        fn mean(&self) -> [f32; 3] {
+            [0, 1, 2]
+                .map(|c| self.0.iter().map(|light| light[c]).sum::<f32>() / self.0.len() as f32)
+        }
+    }
+
+    fn even(light: [f32; 3]) -> Table {
+        Table(vec![light; WIDTH * HEIGHT])
+    }
+
+    fn spotted() -> Table {
+        let mut table = even([0.1, 0.2, 0.3]);
+        for (at, light) in [(0, 0.9), (15 * WIDTH + 20, 0.8), (15 * WIDTH + 21, 0.1)] {
+            table.0[at] = [light, light / 2.0, light / 3.0];
+        }
+        table
+    }
+
+    fn photograph(mut light: Table, effects: &Effects) -> RgbImage {
+        let rig = Rig::new(&Camera::superscout().sized([WIDTH as u32, HEIGHT as u32]));
+        expose(&mut light, &rig, effects, 5)
+    }
+
+    fn with(settings: &[(&str, f64)]) -> Effects {
+        let mut effects = Effects::plain();
+        for (name, value) in settings {
+            effects.set(name, *value).unwrap();
+        }
+        effects
+    }
+
+    #[test]
+    fn without_effects_every_pixel_is_its_light() {
+        let table = spotted();
+        let expected: Vec<u8> = table.0.iter().flatten().map(|&light| response(light)).collect();
+        assert_eq!(photograph(table, &Effects::plain()).into_raw(), expected);
+    }
+
+    #[test]
+    fn the_response_is_that_of_srgb() {
+        let known = [(0.0, 0), (0.002, 7), (0.2140, 127), (0.5, 188), (1.0, 255), (7.0, 255)];
+        for (light, value) in known {
+            assert!(response(light).abs_diff(value) <= 1, "{light}");
+        }
+        assert_eq!(response(-1.0), 0);
+        for value in 0..=255_u8 {
+            let [light, ..] = super::super::looks::linear([value; 3]);
+            assert!(response(light).abs_diff(value) <= 1, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_stop_doubles_the_light_and_a_cast_takes_blue_away() {
+        let pixel = |settings: &[(&str, f64)]| {
+            photograph(even([0.2, 0.2, 0.2]), &with(settings)).get_pixel(9, 9).0
+        };
+        assert_eq!(pixel(&[("exposure", 1.0)]), [response(0.4); 3]);
+        assert_eq!(pixel(&[("exposure", -2.0)]), [response(0.05); 3]);
+        let yellow = [0.2, 0.2 * 0.9, 0.2 * 0.5].map(response);
+        assert_eq!(pixel(&[("cast", 0.5)]), yellow);
+        assert_eq!(pixel(&[("glare", 0.1)]), [response(0.2); 3]);
+    }
+
+    #[test]
+    fn blur_is_a_weighted_mean_of_the_neighbours() {
+        for deviation in [0.4, 1.0, 2.5] {
+            let mut table = spotted();
+            let clear = table.0.clone();
+            let mut blur = Blur::new([WIDTH, HEIGHT], deviation);
+            let reach = (2.5 * deviation).ceil() as isize;
+            let weight = |away: isize| (-0.5 * (away as f64 / deviation).powi(2)).exp();
+            let sum: f64 = (-reach..=reach).map(weight).sum();
+            let mut row = vec![0.0; WIDTH * 3];
+            for v in 0..HEIGHT {
+                blur.row(&mut table, v, &mut row);
+                for (u, found) in row.as_chunks::<3>().0.iter().enumerate() {
+                    for (channel, &found) in found.iter().enumerate() {
+                        let mut expected = 0.0;
+                        for (down, right) in
+                            (-reach..=reach).flat_map(|d| (-reach..=reach).map(move |r| (d, r)))
+                        {
+                            let v = v.saturating_add_signed(down).min(HEIGHT - 1);
+                            let u = u.saturating_add_signed(right).min(WIDTH - 1);
+                            let share = weight(down) * weight(right) / (sum * sum);
+                            expected += share * f64::from(clear[v * WIDTH + u][channel]);
+                        }
+                        assert!((f64::from(found) - expected).abs() < 1e-5, "{u} {v}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn noise_has_the_deviation_that_its_knob_says() {
+        let mut noise = Noise::new(0.02, stream(1, For::Sensor, 0));
+        for light in [0.1_f32, 0.5, 1.0] {
+            let mut row = vec![light; 60_000];
+            noise.add(&mut row);
+            let count = row.len() as f64;
+            let mean = row.iter().map(|&value| f64::from(value)).sum::<f64>() / count;
+            let square = |&value: &f32| (f64::from(value) - mean).powi(2);
+            let deviation = (row.iter().map(square).sum::<f64>() / count).sqrt();
+            let expected = 0.02 * (0.9 * f64::from(light) + 0.1).sqrt();
+            assert!((mean - f64::from(light)).abs() < 5e-4, "{mean}");
+            assert!((deviation / expected - 1.0).abs() < 0.03, "{deviation} {expected}");
+        }
+    }
+
+    #[test]
+    fn jpeg_loses_more_the_more_it_may() {
+        let off = |loss: f64| -> u64 {
+            let clear = photograph(spotted(), &Effects::plain());
+            let lossy = photograph(spotted(), &with(&[("jpeg-loss", loss)]));
+            clear.iter().zip(lossy.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum()
+        };
+        assert!(off(5.0) > 0 && off(5.0) < off(50.0) && off(50.0) < off(95.0));
+    }
+}

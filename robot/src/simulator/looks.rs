@@ -73,6 +73,7 @@ const ORANGE: Colour = [235, 110, 20];
 const CYAN: Colour = [15, 150, 190];
 
 /// All looks; the first is the default.
+// paper: env.boundary
 pub const LOOKS: [Look; 9] = [
     Look {
         name: "laboratory",

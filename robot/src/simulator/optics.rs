@@ -62,6 +62,7 @@ enum Kind {
 }
 
 /// A pinhole camera that looks up, and a mirrored sphere above it.
+// paper: hardware.camera
 #[derive(Clone, Debug, PartialEq)]
 struct UnderSphere {
     focal: f64,
@@ -219,14 +220,23 @@ mod tests {
 
     use super::*;
 
+    fn mirror(camera: &Camera) -> SphericalMirror {
+        match &camera.optics {
+            camera::Optics::SphericalMirror(mirror) => *mirror,
+            other => panic!("{other:?} is no mirror"),
+        }
+    }
+
     fn cameras() -> [Camera; 3] {
         let below = Camera::superscout();
         let above = Camera { seen_from: SeenFrom::Above, ahead: 0.3, ..below.clone() };
-        let mut turned = Camera { ahead: -2.0, ..below.clone() };
-        turned.optics.centre = [611.5, 502.25];
+        let off_middle = SphericalMirror { centre: [611.5, 502.25], ..mirror(&below) };
+        let optics = camera::Optics::SphericalMirror(off_middle);
+        let turned = Camera { ahead: -2.0, optics, ..below.clone() };
         [below, above, turned]
     }
 
+    // paper: hardware.camera
     #[test]
     fn the_mirror_ray_by_ray_agrees_with_its_closed_form() {
         for camera in cameras() {
@@ -285,9 +295,9 @@ mod tests {
         let camera = Camera::superscout();
         let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
         let optics = Optics::new(&camera, &errors);
-        let mut as_it_is = camera.clone();
-        as_it_is.optics.centre = [644.0, 477.0];
-        as_it_is.optics.camera_height = 0.92;
+        let mirror =
+            SphericalMirror { centre: [644.0, 477.0], camera_height: 0.92, ..mirror(&camera) };
+        let as_it_is = Camera { optics: camera::Optics::SphericalMirror(mirror), ..camera.clone() };
         let (found, expected) =
             (optics.ray([700.0, 300.0]).floor(), as_it_is.pixel_to_ground([700.0, 300.0]));
         let ([x, y], [expected_x, expected_y]) = (found.unwrap(), expected.unwrap());

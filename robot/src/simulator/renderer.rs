@@ -288,7 +288,7 @@ mod tests {
     use toposlam_vision::camera::Camera;
 
     use super::*;
-    use crate::simulator::{RigErrors, sight_lines::TURN_ERROR, sized};
+    use crate::simulator::{RigErrors, sight_lines::TURN_ERROR};
 
     fn apart(one: &PixelRay, other: &PixelRay) -> f32 {
         let square = |axis: usize| (one.direction[axis] - other.direction[axis]).powi(2);
@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn rays_within_a_pixel_are_as_good_as_straight() {
         for width in [640, 1280] {
-            let camera = sized(&Camera::superscout(), [width, width * 3 / 4]);
+            let camera = Camera::superscout().sized([width, width * 3 / 4]);
             let errors = RigErrors { tilt: 0.03, towards: 1.0, ..RigErrors::default() };
             let rig = Rig::with_errors(&camera, &errors);
             let [width, height] = rig.image();

@@ -3,11 +3,16 @@
 use std::{collections::BTreeMap, io::Write, path::Path};
 
 use serde::Serialize;
+use toposlam_model::{
+    floor_plan::FloorPlan,
+    format::{named_world::NamedWorld, world_file},
+};
 use toposlam_robot::evaluation::{
     class::Class,
     judging::{Calibration, Judge, Judged, JudgedVisit, Zone},
-    truth::Truth,
+    truth::{JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict},
+    view::View,
 };
 
 use crate::cli::{
@@ -87,9 +92,20 @@ fn write_steps(
     for (name, picture) in &stages {
         picture_file::write(&folder.join(format!("{name}.png")), picture)?;
     }
+    let plan = world_file::to_toml(&plan_of(&judged.view));
+    output::write_whole(&folder.join("plan.toml"), plan.as_bytes())?;
     let mut line = Vec::new();
     print_line(&mut line, judged, calibration, None)?;
     output::write_whole(&folder.join("view.json"), &line)
+}
+
+/// The floor plan of a view, as a world that starts at the marker.
+fn plan_of(view: &View) -> NamedWorld {
+    let plan = FloorPlan::clone(&view.plan);
+    let about = format!("The floor plan of view {}", view.number);
+    let names = plan.junctions().iter().map(|junction| junction.name.clone()).collect();
+    let world = NamedWorld::numbered(&view.plan_name, &about, plan.graph().clone(), view.marker);
+    NamedWorld { vertex_names: names, plan: Some(plan), ..world }
 }
 
 fn mark(calibration: Calibration) -> &'static str {
@@ -184,7 +200,7 @@ impl<'a> Line<'a> {
             }),
             effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
             truth,
-            distance: junction.and_then(|junction| junction.distance()),
+            distance: junction.and_then(JunctionTruth::distance),
             said: Class::of(&judged.scene).to_string(),
             verdict: judged.verdict.to_string(),
             answer: SceneLine::from(&judged.scene),

@@ -8,6 +8,7 @@ use toposlam_robot::evaluation::{
     causes::Group,
     class::Class,
     judging::Calibration,
+    quantile::Quantile,
     report::{Errors, Rate, Report, Standing, Unit},
     view::{Views, WhichEffects},
 };
@@ -36,9 +37,6 @@ pub(super) struct Printer<'o> {
 
 /// So many of what halves the views are shown.
 const HALVES: usize = 10;
-/// The quantiles that are shown.
-const QUANTILES: [(f64, &str); 4] =
-    [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %"), (1.0, "most")];
 
 impl<'o> Printer<'o> {
     pub(super) fn new(out: &'o mut dyn Write, json: bool) -> Self {
@@ -97,7 +95,8 @@ impl<'o> Printer<'o> {
         if !report.errors.is_empty() {
             writeln!(self.out)?;
             let errors: Vec<_> = report.errors.iter().map(errors_row).collect();
-            let [median, p95, p99, most] = QUANTILES.map(|(_, name)| format!("{name:>9}"));
+            let [median, p95, p99, most] =
+                Quantile::ALL.map(|quantile| format!("{:>9}", called(quantile)));
             let heads = ["of", "error of", "  cases", &median, &p95, &p99, &most, "target", ""];
             print_rows(self.out, heads, &errors)?;
         }
@@ -130,8 +129,9 @@ impl<'o> Printer<'o> {
         }
         for errors in &report.errors {
             let (unit, _) = unit(errors.unit);
-            let [median, p95, p99, most] = QUANTILES.map(|(part, _)| errors.quantile(part));
-            let limits = errors.limits.iter().map(|&(part, limit)| json!([part, limit]));
+            let [median, p95, p99, most] = Quantile::ALL.map(|quantile| errors.quantile(quantile));
+            let limits =
+                errors.limits.iter().map(|&(quantile, limit)| json!([quantile.part(), limit]));
             let met = (!errors.limits.is_empty()).then(|| errors.standing() == Standing::Met);
             let line = ErrorsLine {
                 schema: 1,
@@ -279,14 +279,12 @@ fn rate_row(rate: &Rate) -> [String; 8] {
 
 fn errors_row(errors: &Errors) -> [String; 9] {
     let (_, short) = unit(errors.unit);
-    let [median, p95, p99, most] = QUANTILES.map(|(part, _)| match errors.quantile(part) {
+    let [median, p95, p99, most] = Quantile::ALL.map(|quantile| match errors.quantile(quantile) {
         None => format!("{:>9}", "-"),
         Some(error) => format!("{:>9}", format!("{error:.2} {short}")),
     });
-    let limits = errors.limits.iter().map(|&(part, limit)| {
-        let name = QUANTILES.iter().find(|(other, _)| *other == part).map_or("", |(_, name)| name);
-        format!("{name} {limit} {short}")
-    });
+    let limits = errors.limits.iter();
+    let limits = limits.map(|&(quantile, limit)| format!("{} {limit} {short}", called(quantile)));
     let target = limits.collect::<Vec<_>>().join(", ");
     let asked = (!errors.limits.is_empty()).then(|| errors.standing());
     let (subject, what) = (errors.subject.name().to_owned(), errors.what.to_owned());
@@ -331,6 +329,16 @@ fn standing(standing: Option<Standing>) -> String {
 /// A share in percent.
 fn percent(share: f64) -> String {
     format!("{:>9}", format!("{:.3} %", 100.0 * share))
+}
+
+/// What a quantile is called.
+fn called(quantile: Quantile) -> &'static str {
+    match quantile {
+        Quantile::Median => "median",
+        Quantile::P95 => "95 %",
+        Quantile::P99 => "99 %",
+        Quantile::Most => "most",
+    }
 }
 
 /// A unit's name, and its sign.

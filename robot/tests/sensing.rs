@@ -1,0 +1,67 @@
+//! Sensing on a few hundred rendered views, held against the floor plan: the small sister of
+//! `toposlam evaluate vision`.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use toposlam_robot::{
+    evaluation::{
+        judging::{Calibration, Judge, Judged, Zone},
+        plans,
+        report::{Report, Standing},
+        verdict::{MarkerVerdict, Verdict},
+        view::{Views, WhichEffects},
+    },
+    simulator::LOOKS,
+};
+use toposlam_vision::camera::Camera;
+
+/// The views and visits that are looked at.
+const VIEWS: u64 = 240;
+const VISITS: u64 = 16;
+
+fn views() -> Views {
+    Views {
+        seed: 2024,
+        plans: plans().unwrap(),
+        random_plans: true,
+        looks: LOOKS.iter().collect(),
+        sizes: vec![[640, 480]],
+        effects: WhichEffects::Default,
+    }
+}
+
+/// How many views in a zone there are, and how many of them are right.
+fn right(judged: &[Judged], zone: Zone) -> (usize, usize) {
+    let there = judged.iter().filter(|judged| judged.zone() == zone);
+    (there.clone().count(), there.filter(|judged| judged.verdict == Verdict::Right).count())
+}
+
+// paper: sense.place
+// paper: sense.junction.type
+// paper: sense.junction.entry
+#[test]
+fn sensing_is_never_wrong_and_seldom_at_a_loss() {
+    let views = views();
+    let judge = Judge::new(&Camera::superscout(), &views, &[Calibration::Right], &()).unwrap();
+    let judged = judge.views(&views, 0..VIEWS, Calibration::Right, &()).unwrap();
+    for judged in &judged {
+        assert!(!judged.verdict.is_wrong(), "{judged:#?}");
+        assert_ne!(judged.marker, MarkerVerdict::Phantom, "{judged:#?}");
+    }
+    let zones = [Zone::Hallway, Zone::Between, Zone::Before, Zone::Past, Zone::Turned];
+    let counted = zones.map(|zone| right(&judged, zone));
+    assert_eq!(counted.map(|(all, _)| all), [59, 100, 51, 24, 6]);
+    let least = [56, 96, 47, 22, 5];
+    let enough = counted.iter().zip(least).all(|((_, right), least)| *right >= least);
+    assert!(enough, "of each, and right: {counted:?}");
+    let visits = judge.visits(&views, 0..VISITS, Calibration::Right, &()).unwrap();
+    let decided = visits.iter().filter(|visit| visit.decided.is_some());
+    assert!(decided.clone().count() >= 15, "{}", decided.count());
+    for visit in decided {
+        assert_eq!(visit.decided, Some((visit.form, visit.percept)), "{visit:#?}");
+    }
+    let errors = Report::of(&judged, &visits, Calibration::Right).errors;
+    for errors in errors {
+        assert_eq!(errors.standing(), Standing::Met, "{errors:?}");
+    }
+}

@@ -1,0 +1,100 @@
+//! `toposlam render PLAN`.
+
+use std::fs;
+
+use image::{ImageFormat, RgbImage};
+use toposlam_vision::camera::{Camera, calibration};
+
+use crate::{folder, names_in, run, said, stderr};
+
+const PLAN: &str = "worlds/shape-8.toml";
+
+fn refused(arguments: &[&str], told: &str) {
+    let output = run([&["render"], arguments].concat());
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    assert!(stderr(&output).contains(told), "{}", stderr(&output));
+}
+
+#[test]
+fn the_same_command_writes_the_same_files() {
+    let folder = folder("render-same");
+    let render = |name: &str, more: &[&str]| -> [Vec<u8>; 2] {
+        let files = ["png", "labels.png"].map(|ending| folder.join(format!("{name}.{ending}")));
+        let [out, labels] = files.each_ref().map(|file| file.to_str().unwrap());
+        let small = ["render", PLAN, "--size", "640x480", "--out", out, "--labels", labels];
+        assert_eq!(said([&small, more].concat()), "");
+        files.map(|file| fs::read(file).unwrap())
+    };
+    let first = render("first", &[]);
+    assert!(first == render("again", &["--look", "laboratory", "--seed", "0"]));
+    // The start is at nw, and facing w, to the south: the robot looks north.
+    assert!(first == render("there", &["--pose", "0,8,90"]));
+    assert!(first[0] != render("other-seed", &["--seed", "1"])[0]);
+    assert!(first[0] != render("effect", &["--effect", "blur=2"])[0]);
+    // At the start the robot stands on the marker and hides it.
+    let aside = ["--pose", "0.8,8,90"];
+    assert!(
+        render("aside", &aside)[1] != render("marked", &[&aside[..], &["--marker"]].concat())[1]
+    );
+    let plain = render("plain", &["--effects", "none"]);
+    assert!(plain != first);
+    let labels = image::load_from_memory_with_format(&first[1], ImageFormat::Png).unwrap();
+    let labels: RgbImage = labels.into_rgb8();
+    assert_eq!(labels.dimensions(), (640, 480));
+    for colour in [[0, 255, 0], [255, 0, 0], [0, 0, 0], [255, 255, 255]] {
+        assert!(labels.pixels().any(|pixel| pixel.0 == colour), "{colour:?}");
+    }
+}
+
+#[test]
+fn a_jpeg_is_written_where_the_name_says_so() {
+    let folder = folder("render-jpeg");
+    let out = folder.join("view.jpg");
+    said(["render", PLAN, "--out", out.to_str().unwrap()]);
+    let bytes = fs::read(out).unwrap();
+    let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Jpeg).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 960));
+}
+
+#[test]
+fn the_camera_is_that_of_its_calibration() {
+    let folder = folder("render-calibration");
+    let [file, default, calibrated, small] =
+        ["camera.toml", "default.png", "calibrated.png", "small.png"].map(|name| folder.join(name));
+    fs::write(&file, calibration::to_toml(&Camera::superscout().sized([800, 600]))).unwrap();
+    let render = |out: &std::path::Path, more: &[&str]| {
+        said([&["render", PLAN, "--out", out.to_str().unwrap()], more].concat());
+        image::open(out).unwrap().into_rgb8()
+    };
+    let calibration = ["--calibration", file.to_str().unwrap()];
+    assert_eq!(render(&calibrated, &calibration).dimensions(), (800, 600));
+    let sized = [&calibration[..], &["--size", "640x480"]].concat();
+    // A camera in another size is the same camera.
+    let (one, other) = (render(&small, &sized), render(&default, &["--size", "640x480"]));
+    assert_eq!(one.dimensions(), (640, 480));
+    let off = one.iter().zip(other.iter()).filter(|(one, other)| one.abs_diff(**other) > 2);
+    assert!(off.count() < 5000);
+}
+
+#[test]
+fn what_cannot_be_rendered_is_told_and_nothing_is_written() {
+    let folder = folder("render-refused");
+    let out = folder.join("view.png");
+    let out = ["--out", out.to_str().unwrap()];
+    let with = |arguments: &[&'static str]| [&[PLAN], &out[..], arguments].concat();
+    refused(&with(&["--pose", "2,6,0"]), "--pose: there is no floor at 2,6");
+    refused(&with(&["--pose", "2,8"]), "write three numbers");
+    refused(&with(&["--pose", "2,8,nan"]), "write three numbers");
+    refused(&with(&["--effect", "fog=1"]), "--effect: there is no effect `fog`; there are ");
+    refused(&with(&["--effect", "blur=9"]), "--effect: `blur` is 9; it may be from 0 to 4");
+    refused(&with(&["--effect", "blur"]), "write NAME=VALUE");
+    refused(&with(&["--look", "cave"]), "laboratory");
+    refused(&with(&["--calibration", "nowhere.toml"]), "nowhere.toml: cannot be read");
+    refused(
+        &[&["worlds/figure-1a.toml"], &out[..]].concat(),
+        "figure-1a.toml: this world is no floor",
+    );
+    refused(&[PLAN, "--out", "view.gif"], "view.gif: the name must end in .png or .jpg or .jpeg");
+    refused(&with(&["--labels", "labels.jpg"]), "labels.jpg: the name must end in .png");
+    assert!(names_in(&folder).is_empty());
+}
