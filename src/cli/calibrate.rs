@@ -10,7 +10,9 @@ use clap::ValueEnum;
 use image::{GrayImage, RgbImage, imageops::grayscale};
 use serde::Serialize;
 use toposlam_vision::camera::{
-    Camera, Mask, Optics, SeenFrom, SphericalMirror, calibration, fit_picture,
+    Camera, Mask, Optics, SeenFrom, SphericalMirror,
+    calibration::{self, CalibrationError, Place},
+    fit_picture,
     rim::{self, Rim, RimError},
     unchanging,
 };
@@ -170,10 +172,9 @@ impl Arguments {
             seen_from,
             ..Camera::superscout()
         };
-        // What is out of range is told before long work begins. The rim's own focal length comes later.
-        let focal =
-            SphericalMirror::focal_of_rim(400.0, mirror.mirror_radius, mirror.mirror_distance);
-        let probe = Optics::SphericalMirror(SphericalMirror { focal, centre: [0.0; 2], ..mirror });
+        // What is out of range is told before long work begins, with some focal length.
+        let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2], ..mirror };
+        let probe = Optics::SphericalMirror(some);
         checked(&Camera { optics: probe, ..known.clone() })?;
         Ok((known, mirror))
     }
@@ -187,13 +188,15 @@ impl Arguments {
                     same_size(&self.images[0], first.dimensions().into(), path, found)
                 }),
                 None => picture_file::read_if(path, |found| {
-                    let [least, most] = calibration::SIDES.map(|side| side as u32);
+                    let [least, most] = calibration::SIDES;
                     if found.iter().all(|side| (least..=most).contains(side)) {
-                        Ok(())
-                    } else {
-                        let cause = format!("the image is {} by {} pixels", found[0], found[1]);
-                        Err(Failure::in_file(path, cause))
+                        return Ok(());
                     }
+                    let cause = format!(
+                        "the image is {} by {} pixels; its sides should be from {least} to {most}",
+                        found[0], found[1]
+                    );
+                    Err(Failure::in_file(path, cause))
                 }),
             };
             images.push(image?);
@@ -208,8 +211,6 @@ impl Arguments {
         rim: &Rim,
     ) -> Result<Camera, Failure> {
         let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
-        // Calibrations are read by people, and a hundredth of a pixel is more than can be told.
-        let hundredth = |number: f64| (100.0 * number).round() / 100.0;
         let focal = hundredth(SphericalMirror::focal_of_rim(rim.radius, radius, distance));
         let centre = rim.centre.map(hundredth);
         let optics = Optics::SphericalMirror(SphericalMirror { centre, focal, ..mirror });
@@ -249,11 +250,11 @@ impl Arguments {
                     images: self.images.len(),
                     image: camera.image,
                     centre: mirror.centre,
-                    rim: rim.radius,
+                    rim: hundredth(rim.radius),
                     focal: mirror.focal,
-                    rim_seen: rim.seen,
-                    rim_spread: rim.spread,
-                    mask_seen,
+                    rim_seen: hundredth(rim.seen),
+                    rim_spread: hundredth(rim.spread),
+                    mask_seen: mask_seen.map(hundredth),
                 },
             );
         }
@@ -281,14 +282,24 @@ impl Arguments {
     }
 }
 
+/// Calibrations are read by people, and a hundredth of a pixel is more than images tell.
+fn hundredth(number: f64) -> f64 {
+    (100.0 * number).round() / 100.0
+}
+
 /// Refuses a camera that no calibration file can tell.
 fn checked(camera: &Camera) -> Result<(), Failure> {
     let text = calibration::to_toml(camera);
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
-    calibration::read(text.as_bytes(), nothing).map(|_| ()).map_err(|error| {
-        // The keys are named as the arguments are.
-        Failure::Input(error.to_string())
-    })
+    match calibration::read(text.as_bytes(), nothing) {
+        Ok(_) => Ok(()),
+        // The arguments are named as the keys are.
+        Err(CalibrationError { place: Place::Key(key), cause }) => {
+            let name = key.trim_start_matches("camera.").replace('_', "-");
+            Err(Failure::at(format!("--{name}"), cause))
+        }
+        Err(error) => Err(Failure::at("the calibration that was found", error)),
+    }
 }
 
 fn same_size(

@@ -18,6 +18,7 @@ const VERBS: [(&str, &[&str]); 11] = [
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
+    ("calibrate", &["--out", "--start", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
     ("evaluate", &["vision"]),
     (

@@ -66,6 +66,7 @@ fn the_superscouts_next_pixel_outwards_shows_floor_so_many_centimetres_farther()
     assert_eq!(mirror.range(mirror.horizon() + 1e-6), None);
 }
 
+// paper: hardware.camera
 #[test]
 fn the_mirror_shows_what_tracing_its_rays_shows() {
     let camera = Camera { seen_from: SeenFrom::Above, ahead: 0.0, ..Camera::superscout() };

@@ -8,15 +8,15 @@ use super::{Camera, Optics, rim::Rim};
 /// The rim, and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
 /// Where the rim was seen.
-const RED: Rgb<u8> = Rgb([255, 50, 40]);
+const YELLOW: Rgb<u8> = Rgb([255, 230, 0]);
 /// The floor one, two, three metres from the robot.
 const BLUE: Rgb<u8> = Rgb([70, 150, 255]);
 /// The centre, and ahead.
 const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 
-/// An image with a camera drawn over it: the centre and ahead in white, the rim and the horizon in green,
-/// where the rim was seen in red, the floor at one, two and three metres in blue; reddish is what the
-/// camera's mask hides.
+/// An image with a camera drawn over it: the centre and ahead in white, the rim and the horizon in
+/// green, where the rim was seen in yellow, the floor at one, two and three metres in blue; reddish is
+/// what the camera's mask hides.
 #[must_use]
 pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     let mut picture = image.clone();
@@ -45,7 +45,7 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     for place in rim.places.iter().step_by(6) {
         let out = [0, 1].map(|axis| (place[axis] - rim.centre[axis]) / rim.radius);
         let tick = |far: f64| [0, 1].map(|axis| place[axis] + far * out[axis]);
-        segment(&mut picture, tick(3.0), tick(9.0), RED);
+        segment(&mut picture, tick(3.0), tick(9.0), YELLOW);
     }
     let [u, v] = camera.middle();
     for [across, down] in [[12.0, 0.0], [0.0, 12.0]] {

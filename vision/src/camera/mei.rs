@@ -61,7 +61,7 @@ impl Mei {
     /// Reads the YAML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`)
     /// or of camodocal (`model_type: MEI`).
     ///
-    /// Takes at most 256 bytes of memory for each byte of the file, and 16384 besides.
+    /// Takes at most 512 bytes of memory for each byte of the file, and 65536 besides.
     ///
     /// # Errors
     /// The first thing that is wrong. No bytes make it panic.

@@ -125,7 +125,7 @@ pub(super) fn within(
 #[expect(clippy::cast_sign_loss, reason = "a side is positive")]
 pub(super) fn side_of_image(what: &'static str, side: f64) -> Result<u32, OpticsFileError> {
     if side.fract() == 0.0 {
-        within(what, side, SIDES).map(|side| side as u32)
+        within(what, side, SIDES.map(f64::from)).map(|side| side as u32)
     } else {
         Err(OpticsFileError::NotWhole { what, value: side })
     }

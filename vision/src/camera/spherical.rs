@@ -13,6 +13,7 @@
 use super::{Ray, length, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
+// paper: hardware.camera
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalMirror {
     /// Where the axis meets the image, in pixels.

@@ -15,9 +15,10 @@ pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
 
 /// Between how many pixels each side of an image must have.
-pub const SIDES: [f64; 2] = [16.0, 16384.0];
+pub const SIDES: [u32; 2] = [16, 16384];
 
-const SIDE: Range = Range { what: "the side of an image in pixels", low: SIDES[0], high: SIDES[1] };
+const SIDE: Range =
+    Range { what: "the side of an image in pixels", low: SIDES[0] as f64, high: SIDES[1] as f64 };
 const FOCAL: Range = Range { what: "a focal length in pixels", low: 1.0, high: 1e6 };
 const RADIUS: Range = Range { what: "the radius of a mirror in metres", low: 1e-3, high: 1.0 };
 const HEIGHT: Range = Range { what: "a height above the floor in metres", low: 0.01, high: 10.0 };

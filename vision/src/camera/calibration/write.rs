@@ -25,30 +25,34 @@ pub fn to_toml(camera: &Camera) -> String {
             line("kind", quoted("spherical-mirror"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             let [u, v] = mirror.centre;
-            let centre = format!("[{u:?}, {v:?}]");
+            let centre = format!("[{}, {}]", number(u), number(v));
             line("centre", centre, "of the mirror in the image, u to the right, v down");
-            line("focal", format!("{:?}", mirror.focal), "pixels");
-            line("mirror_radius", format!("{:?}", mirror.mirror_radius), "metres");
-            let distance = format!("{:?}", mirror.mirror_distance);
+            line("focal", number(mirror.focal), "pixels");
+            line("mirror_radius", number(mirror.mirror_radius), "metres");
+            let distance = number(mirror.mirror_distance);
             line("mirror_distance", distance, "sphere's centre above the pinhole");
-            let height = format!("{:?}", mirror.camera_height);
+            let height = number(mirror.camera_height);
             line("camera_height", height, "pinhole above the floor");
-            line("rim", format!("{:.1}", mirror.rim()), "pixels; follows from the others");
+            line(
+                "rim",
+                number((10.0 * mirror.rim()).round() / 10.0),
+                "pixels; follows from the others",
+            );
         }
         Optics::OCamCalib(OCam { file, viewpoint_height, .. }) => {
             line("kind", quoted("ocamcalib"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             line("file", quoted(file), "");
-            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
+            line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
         }
         Optics::Mei(Mei { file, viewpoint_height, .. }) => {
             line("kind", quoted("mei"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             line("file", quoted(file), "");
-            line("viewpoint_height", format!("{viewpoint_height:?}"), "metres above the floor");
+            line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
         }
     }
-    let ahead = format!("{:?}", degrees(camera.ahead));
+    let ahead = number(degrees(camera.ahead));
     line("ahead", ahead, "degrees in the image, counter-clockwise from u, where \"ahead\" is");
     let seen_from = match camera.seen_from {
         SeenFrom::Below => "below",
@@ -59,6 +63,10 @@ pub fn to_toml(camera: &Camera) -> String {
         line("mask", quoted(&mask.file), "white where the floor can be seen");
     }
     text
+}
+
+fn number(number: f64) -> String {
+    Value::from(number).to_string()
 }
 
 fn quoted(text: &str) -> String {

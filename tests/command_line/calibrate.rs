@@ -1,0 +1,232 @@
+//! `toposlam calibrate IMAGE...`, on rendered images of a camera whose numbers are known.
+
+use std::{fs, path::Path, sync::LazyLock};
+
+use image::{ImageFormat, Rgb, RgbImage, imageops::crop_imm};
+use serde_json::Value;
+use toposlam_vision::camera::{Camera, Optics, SphericalMirror, calibration};
+
+use crate::{folder, names_in, objects, run, said, stderr, stdout};
+
+/// Places in shape 8, none of which looks like another.
+const POSES: [&str; 6] =
+    ["0.1,2.3,95", "0.05,5.1,70", "2.9,7.9,200", "4.1,6.5,280", "2.3,0.1,355", "1.9,4.1,33"];
+
+/// Images of one rig, and what each pixel of the first shows.
+struct Images {
+    files: Vec<String>,
+    labels: RgbImage,
+}
+
+fn rendered(look: &str) -> Images {
+    let folder = folder(&format!("calibrate-{look}"));
+    let file = |name: String| folder.join(name).to_str().unwrap().to_owned();
+    let labels = file("labels.png".to_owned());
+    let files: Vec<String> = (0..POSES.len()).map(|number| file(format!("{number}.jpg"))).collect();
+    for (number, (path, pose)) in files.iter().zip(POSES).enumerate() {
+        let seed = number.to_string();
+        let mut arguments = vec!["render", "worlds/shape-8.toml", "--pose", pose, "--look", look];
+        arguments.extend(["--seed", &seed, "--size", "640x480", "--out", path]);
+        // The rig is the same throughout; all else is as it comes.
+        for effect in ["strut-bearing=100", "struts=3", "lens=0.014"] {
+            arguments.extend(["--effect", effect]);
+        }
+        if number == 0 {
+            arguments.extend(["--labels", &labels]);
+        }
+        said(arguments);
+    }
+    Images { files, labels: image::open(labels).unwrap().into_rgb8() }
+}
+
+static LABORATORY: LazyLock<Images> = LazyLock::new(|| rendered("laboratory"));
+static THEATRE: LazyLock<Images> = LazyLock::new(|| rendered("theatre"));
+
+fn truth() -> SphericalMirror {
+    mirror(&Camera::superscout().sized([640, 480]))
+}
+
+fn mirror(camera: &Camera) -> SphericalMirror {
+    match camera.optics {
+        Optics::SphericalMirror(mirror) => mirror,
+        _ => unreachable!("this camera has a mirror"),
+    }
+}
+
+fn calibrate<'a>(images: &'a [String], more: &[&'a str]) -> Vec<&'a str> {
+    let images: Vec<&str> = images.iter().map(String::as_str).collect();
+    [&["calibrate"], &images[..], more].concat()
+}
+
+/// The camera of a calibration file that was written.
+fn read(path: &Path) -> Camera {
+    let beside = path.parent().unwrap();
+    let mut read = |name: &str| fs::read(beside.join(name));
+    calibration::read(&fs::read(path).unwrap(), &mut read).unwrap()
+}
+
+fn close(found: &SphericalMirror, expected: &SphericalMirror) {
+    let [u, v] = [0, 1].map(|axis| found.centre[axis] - expected.centre[axis]);
+    assert!(u.hypot(v) < 1.0, "{found:?}");
+    assert!((found.rim() - expected.rim()).abs() < 1.0, "{found:?}");
+    let known = |mirror: &SphericalMirror| {
+        (mirror.mirror_radius, mirror.mirror_distance, mirror.camera_height)
+    };
+    assert_eq!(known(found), known(expected));
+}
+
+#[test]
+fn the_rim_is_found_within_a_pixel_and_the_robot_hidden_by_the_mask() {
+    for (images, name) in [(&*LABORATORY, "laboratory"), (&*THEATRE, "theatre")] {
+        let folder = folder(&format!("calibrated-{name}"));
+        let [out, mask, fit] = ["camera.toml", "mask.png", "fit.png"].map(|name| folder.join(name));
+        let report = said(calibrate(
+            &images.files,
+            &[
+                "--json",
+                "--out",
+                out.to_str().unwrap(),
+                "--mask-out",
+                mask.to_str().unwrap(),
+                "--picture",
+                fit.to_str().unwrap(),
+            ],
+        ));
+        assert_eq!(names_in(&folder), ["camera.toml", "fit.png", "mask.png"]);
+        assert_eq!(image::open(&fit).unwrap().into_rgb8().dimensions(), (640, 480));
+        let camera = read(&out);
+        close(&mirror(&camera), &truth());
+        let [report]: [Value; 1] = objects(&report).try_into().unwrap();
+        assert_eq!(report["images"], 6);
+        assert_eq!(report["image"], serde_json::json!([640, 480]));
+        assert_eq!(report["focal"], mirror(&camera).focal);
+        assert!(report["rim_seen"].as_f64().unwrap() > 0.9, "{report}");
+        let (mut robot, mut hidden, mut floor, mut lost) = (0, 0, 0, 0);
+        for (u, v, label) in images.labels.enumerate_pixels() {
+            let at = [f64::from(u), f64::from(v)];
+            let near = |[x, y]: [f64; 2]| x.hypot(y) < 3.0;
+            if camera.pixel_to_ground(at).is_none_or(|ground| !near(ground)) {
+                continue;
+            }
+            let seen = camera.mask.as_ref().unwrap().sees([u, v]);
+            if *label == Rgb([255; 3]) {
+                robot += 1;
+                hidden += u32::from(!seen);
+            } else {
+                floor += 1;
+                lost += u32::from(!seen);
+            }
+        }
+        assert!(robot > 3000 && f64::from(hidden) > 0.99 * f64::from(robot), "{hidden}/{robot}");
+        assert!(floor > 50_000 && f64::from(lost) < 0.06 * f64::from(floor), "{lost}/{floor}");
+    }
+}
+
+#[test]
+fn one_image_is_enough_for_the_rim() {
+    for images in [&*LABORATORY, &*THEATRE] {
+        for image in images.files.chunks(1) {
+            let text = said(calibrate(image, &[]));
+            let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
+            close(&mirror(&calibration::read(text.as_bytes(), nothing).unwrap()), &truth());
+        }
+    }
+}
+
+#[test]
+fn a_rim_that_the_images_border_crops_is_found_by_its_arcs() {
+    let folder = folder("calibrate-cropped");
+    let files: Vec<String> = LABORATORY
+        .files
+        .iter()
+        .enumerate()
+        .map(|(number, file)| {
+            let path = folder.join(format!("{number}.png"));
+            let image = image::open(file).unwrap().into_rgb8();
+            crop_imm(&image, 30, 60, 600, 370).to_image().save(&path).unwrap();
+            path.to_str().unwrap().to_owned()
+        })
+        .collect();
+    let out = folder.join("camera.toml");
+    let told = said(calibrate(&files, &["--out", out.to_str().unwrap()]));
+    assert!(told.starts_with("centre  ") && told.lines().count() == 3, "{told}");
+    let expected = truth();
+    let [u, v] = expected.centre;
+    close(&mirror(&read(&out)), &SphericalMirror { centre: [u - 30.0, v - 60.0], ..expected });
+}
+
+#[test]
+fn what_is_known_comes_from_the_start_and_the_arguments() {
+    let folder = folder("calibrate-known");
+    let start = folder.join("start.toml");
+    fs::write(
+        &start,
+        "[camera]\nkind = \"spherical-mirror\"\nimage = [64, 48]\ncentre = [3, 4]\nfocal = 9.0\n\
+         mirror_radius = 0.03\nmirror_distance = 0.08\ncamera_height = 0.7\nahead = 12.5\n\
+         seen_from = \"above\"\n",
+    )
+    .unwrap();
+    let more = ["--start", start.to_str().unwrap(), "--camera-height", "0.75", "--ahead", "-12.5"];
+    let text = said(calibrate(&LABORATORY.files[..1], &more));
+    let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let camera = calibration::read(text.as_bytes(), nothing).unwrap();
+    let found = mirror(&camera);
+    assert_eq!((found.mirror_radius, found.mirror_distance), (0.03, 0.08));
+    assert_eq!((found.camera_height, camera.image), (0.75, [640, 480]));
+    assert!((found.rim() - truth().rim()).abs() < 1.0);
+    assert!(text.contains("ahead = -12.5 ") && text.contains("seen_from = \"above\"\n"), "{text}");
+}
+
+#[test]
+fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
+    let folder = folder("calibrate-refused");
+    let inputs = crate::folder("calibrate-refused-inputs");
+    let input = |name: &str, bytes: &[u8]| {
+        fs::write(inputs.join(name), bytes).unwrap();
+        inputs.join(name).to_str().unwrap().to_owned()
+    };
+    let picture = |name: &str, size: [u32; 2]| {
+        let path = inputs.join(name);
+        let image = RgbImage::from_pixel(size[0], size[1], Rgb([90, 80, 70]));
+        image.save_with_format(&path, ImageFormat::Png).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let image = LABORATORY.files[0].as_str();
+    let [flat, small, tiny] = [
+        picture("flat.png", [640, 480]),
+        picture("small.png", [320, 240]),
+        picture("tiny.png", [4, 4]),
+    ];
+    let text = input("text.png", b"this is no image");
+    let bad = input("bad.toml", b"[camera]\nkind = \"pinhole\"\n");
+    let other = concat!(env!("CARGO_MANIFEST_DIR"), "/vision/tests/cameras/ocamcalib.toml");
+    let out = folder.join("camera.toml").to_str().unwrap().to_owned();
+    let mask = folder.join("mask.png").to_str().unwrap().to_owned();
+    let cases: [(&[&str], String); 15] = [
+        (&[&flat], format!("{flat}: no mirror is seen in the images: no circle is brighter inside than outside over a quarter of its circumference")),
+        (&[&flat, &flat], format!("{flat} and 1 more: no mirror is seen")),
+        (&[image, &small], format!("{small}: the image is 320 by 240 pixels, but {image} is 640 by 480")),
+        (&[&tiny], format!("{tiny}: the image is 4 by 4 pixels; its sides should be from 16 to 16384")),
+        (&[&text], format!("{text}: this is not an image")),
+        (&["gone.png"], "gone.png: cannot be read: ".to_owned()),
+        (&[image, "--start", &bad], format!("{bad}: camera.kind: here should be \"spherical-mirror\"")),
+        (&[image, "--start", other], format!("{other}: camera.kind: only a spherical mirror is calibrated by its rim")),
+        (&[image, "--mirror-radius", "7"], "--mirror-radius: 7 is out of range; the radius of a mirror in metres lies between 0.001 and 1".to_owned()),
+        (&[image, "--mirror-distance", "0.05"], "--mirror-distance: 0.05 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10".to_owned()),
+        (&[image, "--camera-height", "nan"], "--camera-height: NaN is out of range".to_owned()),
+        (&[image, "--ahead", "1000"], "--ahead: ".to_owned()),
+        (&[image, "--mask-out", &mask], "--mask-out: 1 images are too few to tell what never changes; take at least 4, from different places".to_owned()),
+        (&[image, image, image, image, "--mask-out", &mask], "--mask-out: nearly nothing changes from image to image".to_owned()),
+        (&[image, "--picture", "fit.bmp"], "fit.bmp: the name must end in .png or .jpg or .jpeg".to_owned()),
+    ];
+    for (arguments, message) in cases {
+        let output = run([&["calibrate", "--out", &out], arguments].concat());
+        let found = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {found}");
+        assert!(found.starts_with(&format!("error: {message}")), "{arguments:?}: {found}");
+        assert_eq!(found.lines().count(), 1, "{arguments:?}: {found}");
+        assert!(stdout(&output).is_empty() && names_in(&folder).is_empty(), "{arguments:?}");
+    }
+    let output = run(["calibrate", image, "--mask-out", &mask]);
+    assert!(stderr(&output).starts_with("error: --mask-out: this goes with --out"));
+}

@@ -1,0 +1,154 @@
+//! No bytes make a reader of calibrations take more memory than the multiple of them that it states.
+//! The allocator of the whole program is watched, so this is a program of its own, with one test in it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::hint::black_box;
+
+use peak_alloc::PeakAlloc;
+use toposlam_vision::camera::{Mask, Mei, OCam, calibration};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// What a reader states: so many bytes of memory for each byte, and so many besides.
+struct Stated {
+    reader: &'static str,
+    /// Reads all there is, and says what is wrong.
+    read: fn(&[u8]),
+    multiple: usize,
+    besides: usize,
+}
+
+const CALIBRATION: Stated = Stated {
+    reader: "calibration",
+    read: |bytes| {
+        let read = calibration::read(bytes, &mut |_| Err(std::io::ErrorKind::NotFound.into()));
+        let _ = black_box(read.map_err(|error| error.to_string()));
+    },
+    multiple: 512,
+    besides: 4096,
+};
+
+const OCAM: Stated = Stated {
+    reader: "OCamCalib",
+    read: |bytes| {
+        let _ = black_box(OCam::read("f", bytes, 1.0).map_err(|error| error.to_string()));
+    },
+    multiple: 32,
+    besides: 4096,
+};
+
+const MEI: Stated = Stated {
+    reader: "MEI",
+    read: |bytes| {
+        let _ = black_box(Mei::read("f", bytes, 1.0).map_err(|error| error.to_string()));
+    },
+    multiple: 512,
+    besides: 65_536,
+};
+
+/// The most memory taken at any time while this runs.
+fn peak(run: impl FnOnce()) -> usize {
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
+    run();
+    MEMORY.peak_usage() - before
+}
+
+impl Stated {
+    /// The memory for each byte, which is no more than stated.
+    fn holds(&self, bytes: &[u8]) -> usize {
+        let taken = peak(|| (self.read)(bytes));
+        let stated = self.multiple * bytes.len() + self.besides;
+        assert!(
+            taken <= stated,
+            "{} takes {taken} bytes of memory to read {}; stated are {stated}: {}...",
+            self.reader,
+            bytes.len(),
+            bytes[..bytes.len().min(80)].escape_ascii()
+        );
+        taken / bytes.len()
+    }
+}
+
+#[test]
+fn reading_takes_no_more_memory_than_stated() {
+    // The watch sees what is there.
+    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+
+    let parts = [
+        "\n",
+        ",",
+        "[",
+        "{",
+        "=",
+        "\"",
+        "a.",
+        "#\n",
+        "[[a]]\n",
+        "[[a.b]]\n",
+        "'",
+        "\x7f",
+        "1 ",
+        "1\n",
+        "-1 ",
+        "- ",
+        "- 1\n",
+        "? ",
+        "a: ",
+        "a:\n ",
+        "a: 1\n",
+        "[1],",
+        "&a ",
+        "*a ",
+        "!!a ",
+        "%A\n",
+        "---\n",
+        "|\n",
+        "\t",
+        "\u{fffd}",
+        "1,",
+        "{},",
+        "[],",
+        "\\",
+        ">",
+        "a",
+    ];
+    let starts = [
+        "",
+        "a=[",
+        "[camera]\na=[",
+        "[camera]\nmask=\"",
+        "K:\n   data: [",
+        "D:\n   data: [ ",
+        "xi: [",
+        "5 ",
+        "#\n",
+        "%YAML:1.0\n---\n",
+        "model_type: ",
+        "model_type: \"",
+        "a: [",
+        "a: {",
+    ];
+    let mut most = [0; 3];
+    // Growing vectors are largest just after a power of two.
+    for length in (1..70).step_by(7).chain([127, 260, 1030, 4100, 16_400, 33_000]) {
+        for part in parts {
+            for start in starts {
+                let bytes = format!("{start}{}", part.repeat(length / part.len() + 1));
+                for (most, stated) in most.iter_mut().zip([CALIBRATION, OCAM, MEI]) {
+                    *most = (*most).max(stated.holds(bytes.as_bytes()));
+                }
+            }
+        }
+    }
+    println!("the most for each byte: {most:?}");
+
+    // A mask is as large as the images, however few bytes it takes.
+    let size = [1280, 960];
+    let png = Mask::new("m", size, vec![true; 1280 * 960]).to_png().unwrap();
+    assert!(peak(|| drop(black_box(Mask::from_png("m", &png, size)))) <= 16 * 1280 * 960);
+    let taken = peak(|| drop(black_box(Mask::from_png("m", &png, [640, 480]))));
+    assert!(taken <= 16 * 640 * 480 / 10, "{taken}");
+}
