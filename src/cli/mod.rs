@@ -1,5 +1,6 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod calibrate;
 mod check;
 mod columns;
 mod compare;
@@ -62,6 +63,7 @@ enum Verb {
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
     Render(render::Arguments),
+    Calibrate(calibrate::Arguments),
     Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
     Completions(completions::Arguments),
@@ -129,6 +131,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
+        Some(Verb::Calibrate(verb)) => verb.run(&mut out),
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),

@@ -14,6 +14,20 @@ use super::{Failure, input, output};
 /// The picture of a PNG or JPEG file that must be of this size; one of another size is refused before
 /// it takes any memory.
 pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure> {
+    read_if(path, |found| {
+        if found == expected {
+            Ok(())
+        } else {
+            Err(Failure::in_file(path, WrongSize { found, expected }))
+        }
+    })
+}
+
+/// The picture of a PNG or JPEG file whose size, width and height, is not refused.
+pub(super) fn read_if(
+    path: &Path,
+    fits: impl FnOnce([u32; 2]) -> Result<(), Failure>,
+) -> Result<RgbImage, Failure> {
     let bytes = input::read(path)?;
     let refused = |cause: &dyn std::fmt::Display| {
         Failure::in_file(path, format!("this cannot be read as an image: {cause}"))
@@ -27,10 +41,7 @@ pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure>
         return Err(Failure::in_file(path, cause));
     }
     let decoder = reader.into_decoder().map_err(|error| refused(&error))?;
-    let found = <[u32; 2]>::from(decoder.dimensions());
-    if found != expected {
-        return Err(Failure::in_file(path, WrongSize { found, expected }));
-    }
+    fits(decoder.dimensions().into())?;
     // The decoder would make up what is missing.
     if format == Some(ImageFormat::Jpeg) && !is_whole_jpeg(&bytes) {
         return Err(refused(&"the file is truncated"));

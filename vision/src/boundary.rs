@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use crate::{
     colour::{Class, Stripe, StripeKind},
     ground_view::GroundView,
+    wall::{Frame, Wall},
 };
 
 /// What is seen on each bearing.
@@ -34,12 +35,14 @@ pub struct Sight {
 pub struct Edge {
     /// How far away, in metres.
     pub range: f64,
-    /// Whether no floor is seen behind the stripe.
+    /// Whether no floor is seen behind the stripe, or it is part of a long straight wall.
     pub sure: bool,
     /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
     pub width: f64,
 }
 
+/// A wall so long is none of the floor's patterns, in metres.
+const LONG: f64 = 0.60;
 /// No more edges than these are told of on a bearing.
 const EDGES: usize = 3;
 /// How many bearings are looked at.
@@ -215,6 +218,17 @@ impl Boundary {
             let ray = direction(bearing);
             sight.edges().map(move |edge| (bearing, ray.map(|part| edge.range * part)))
         })
+    }
+
+    /// Makes sure of the edges that lie on a long straight wall: a wall may have the floor's colour.
+    pub fn make_sure(&mut self, walls: &[Wall], frame: &Frame) {
+        for (bearing, sight) in self.sights.iter_mut().enumerate() {
+            let ray = frame.framed(direction(bearing));
+            for edge in sight.edges.iter_mut().flatten().filter(|edge| !edge.sure) {
+                let point = ray.map(|part| edge.range * part);
+                edge.sure = walls.iter().any(|wall| wall.length() >= LONG && wall.holds(point));
+            }
+        }
     }
 }
 

@@ -40,6 +40,8 @@ const SAME: f64 = 0.10;
 const NEAREST: usize = 3;
 /// The floor must be seen to go on as if the turning point were so far ahead, at least; in metres.
 const SEEN_AHEAD: f64 = 0.75;
+/// Or a wall at a side must be seen to go on as if it were so far ahead.
+const SIDES_AHEAD: f64 = 0.65;
 /// A major cluster is at least so long, in metres,
 const MAJOR: f64 = 0.25;
 /// and begins no farther from the robot, along the hallway.
@@ -47,7 +49,7 @@ const BESIDE: f64 = 0.9;
 /// What is seen must support the walls at least so much for a hallway to be likely,
 const LIKELY: f64 = 0.68;
 /// and so much for it to be sure: a door of the floor's colour looks like an opening.
-const SURE: f64 = 0.92;
+const SURE: f64 = 0.85;
 /// and this part of them must be seen.
 const COVER: f64 = 0.20;
 /// The floor is looked at so far to either side of the hallway's direction, in bearings.
@@ -158,7 +160,9 @@ fn goes_on(
         }
     }
     // What is behind the robot may be in the dark; it has come from there.
-    let enough = !ahead || far > SECTOR / 3 || reaches(axis, sign * least, square, walls);
+    let enough = !ahead
+        || far > SECTOR / 3
+        || reaches(axis, sign * (square.half + SIDES_AHEAD), square, walls);
     let closed = near > SECTOR / 2 && near > far;
     enough && !closed && !is_closed(axis, sign * least, square, walls)
 }
@@ -173,16 +177,17 @@ fn reaches(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     })
 }
 
-/// Whether a wall stands across, nearer than this.
+/// Whether walls stand across half of the hallway or more, nearer than this.
 fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     let centre = square.middle[axis.split().1];
-    walls.iter().any(|wall| {
-        let between = wall.from.max(centre - square.half)..wall.to.min(centre + square.half);
-        wall.along != axis
-            && wall.offset * least > 0.0
-            && wall.offset.abs() < least.abs()
-            && between.end - between.start > square.half
-    })
+    let across = walls.iter().filter(|wall| {
+        wall.along != axis && wall.offset * least > 0.0 && wall.offset.abs() < least.abs()
+    });
+    let closed = across.map(|wall| {
+        let within = wall.to.min(centre + square.half) - wall.from.max(centre - square.half);
+        within.max(0.0)
+    });
+    closed.sum::<f64>() > square.half
 }
 
 /// Whether the hallway along an axis is clear, on the way ahead.

@@ -97,11 +97,13 @@ pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: 
     if !wide || !seen || !best.agreement.holds(TRUST) {
         return Finding::Nothing;
     }
-    let rival = found
-        .iter()
-        .find(|other| other.doors != best.doors || apart(other.square, best.square) > SAME);
-    let ahead = |rival: &Junction| best.agreement.balance() - rival.agreement.balance();
-    if rival.is_some_and(|rival| ahead(rival) < bearings(MARGIN, 1)) {
+    // In a hallway it does not matter which junction is far ahead or behind.
+    let differs = |other: &Junction| {
+        (best.is_here() || other.is_here())
+            && (other.doors != best.doors || apart(other.square, best.square) > SAME)
+    };
+    let behind = |other: &Junction| best.agreement.balance() - other.agreement.balance();
+    if found.iter().any(|other| differs(other) && behind(other) < bearings(MARGIN, 1)) {
         return Finding::Ambiguous;
     }
     Finding::Junction(best)

@@ -136,11 +136,14 @@ impl Sensor {
 // paper: sense.hallway.first
 #[must_use]
 pub fn interpreted(view: &GroundView, bearings: &Bearings, stripe: Stripe) -> (Scene, Trace) {
-    let boundary = bearings.look(view);
+    let mut boundary = bearings.look(view);
     let clusters = clusters(&boundary);
     let lines = lines(&clusters);
     let frame = Frame::of(&lines);
     let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
+    if let Some(frame) = &frame {
+        boundary.make_sure(&walls, frame);
+    }
     let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame));
     let mut trace = Trace { clusters, lines, frame, walls, hallway, ..Trace::default() };
     let place = place(&mut trace, &boundary, margin(stripe));

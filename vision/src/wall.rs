@@ -42,6 +42,9 @@ pub struct Wall {
 /// A line that is off the axes by more is no wall, in radians.
 const ASKEW: f64 = 0.20;
 
+/// A point is on a wall that is so near, in metres.
+const ON: f64 = 0.06;
+
 impl Frame {
     /// The frame with x in this direction, or at right angles to it.
     #[must_use]
@@ -163,6 +166,14 @@ impl Axis {
 }
 
 impl Wall {
+    /// Whether a point of the frame lies on it.
+    #[must_use]
+    pub fn holds(&self, point: [f64; 2]) -> bool {
+        let (along, across) = self.along.split();
+        (self.from - ON..=self.to + ON).contains(&point[along])
+            && (point[across] - self.offset).abs() <= ON
+    }
+
     /// Its length in metres.
     #[must_use]
     pub fn length(&self) -> f64 {

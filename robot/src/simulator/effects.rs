@@ -98,7 +98,7 @@ knobs! {
         "How much less light there is away from the lamps: 0 is even light, 1 lamps alone.";
     lamps_out "lamps-out" Building 0.0 0.0..=1.0, 0.0..=0.15,
         "Share of the lamps that are out.";
-    hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.8,
+    hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.5,
         "How much more light there is in hot spots on the floor, as a share.";
     shadows "shadows" Building 0.0 0.0..=1.0, 0.0..=0.45,
         "Which share of the light is gone in shadows.";
@@ -126,7 +126,7 @@ knobs! {
         "Angle that each of the mirror's two struts hides, in degrees.";
     strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
         "Where one of the struts is, the other being opposite, in degrees from ahead to the left.";
-    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.6,
+    exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.3,
         "How much the picture is overexposed, in stops.";
     cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
         "How yellow the light is: which share of the blue is gone, and a fifth of it of the green.";

@@ -9,14 +9,18 @@
 //! ([`SeenFrom`]).
 
 pub mod calibration;
+mod fit_picture;
 mod mask;
 mod mei;
 mod ocam;
 mod optics_file;
+pub mod rim;
 mod root;
 mod spherical;
+pub mod unchanging;
 mod yaml;
 
+pub use fit_picture::fit_picture;
 pub use mask::{Mask, MaskError};
 pub use mei::Mei;
 pub use ocam::OCam;

@@ -34,6 +34,12 @@ impl SphericalMirror {
         self.focal * (self.mirror_radius / self.mirror_distance).asin().tan()
     }
 
+    /// The focal length with which the mirror ends so many pixels from the centre.
+    #[must_use]
+    pub fn focal_of_rim(rim: f64, mirror_radius: f64, mirror_distance: f64) -> f64 {
+        rim / (mirror_radius / mirror_distance).asin().tan()
+    }
+
     /// How far from the centre the horizon is in the image, in pixels: always inside of the rim.
     #[must_use]
     pub fn horizon(&self) -> f64 {

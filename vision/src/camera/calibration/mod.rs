@@ -33,6 +33,6 @@ mod table;
 mod write;
 
 pub use error::{CalibrationError, Cause, Place};
-pub(super) use read::SIDES;
+pub use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;

@@ -14,8 +14,8 @@ pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 /// The keys of every camera.
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
 
-/// Between how many pixels the side of an image lies.
-pub(in crate::camera) const SIDES: [f64; 2] = [16.0, 16384.0];
+/// Between how many pixels each side of an image must have.
+pub const SIDES: [f64; 2] = [16.0, 16384.0];
 
 const SIDE: Range = Range { what: "the side of an image in pixels", low: SIDES[0], high: SIDES[1] };
 const FOCAL: Range = Range { what: "a focal length in pixels", low: 1.0, high: 1e6 };

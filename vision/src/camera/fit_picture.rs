@@ -1,0 +1,74 @@
+//! A calibration drawn over an image: what was found, and what follows from it.
+
+use image::{Rgb, RgbImage};
+use imageproc::drawing::draw_line_segment_mut;
+
+use super::{Camera, Optics, rim::Rim};
+
+/// The rim, and the horizon.
+const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
+/// Where the rim was seen.
+const RED: Rgb<u8> = Rgb([255, 50, 40]);
+/// The floor one, two, three metres from the robot.
+const BLUE: Rgb<u8> = Rgb([70, 150, 255]);
+/// The centre, and ahead.
+const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
+
+/// An image with a camera drawn over it: the centre and ahead in white, the rim and the horizon in green,
+/// where the rim was seen in red, the floor at one, two and three metres in blue; reddish is what the
+/// camera's mask hides.
+#[must_use]
+pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
+    let mut picture = image.clone();
+    if let Some(mask) = &camera.mask {
+        let hidden = picture.enumerate_pixels_mut().filter(|(u, v, _)| !mask.sees([*u, *v]));
+        for (_, _, pixel) in hidden {
+            let [red, green, blue] = pixel.0;
+            pixel.0 = [red / 2 + 100, green / 2, blue / 2];
+        }
+    }
+    for range in [1.0, 2.0, 3.0] {
+        let at = |angle: f64| camera.ground_to_pixel([range * angle.cos(), range * angle.sin()]);
+        closed(&mut picture, at, BLUE);
+    }
+    let round = |radius: f64| {
+        move |angle: f64| {
+            let [u, v] = rim.centre;
+            Some([u + radius * angle.cos(), v + radius * angle.sin()])
+        }
+    };
+    if let Optics::SphericalMirror(mirror) = &camera.optics {
+        closed(&mut picture, round(mirror.horizon()), GREEN);
+    }
+    closed(&mut picture, round(rim.radius), GREEN);
+    // Both sides of the rim, so that the line can be held against what it lies on.
+    for place in rim.places.iter().step_by(6) {
+        let out = [0, 1].map(|axis| (place[axis] - rim.centre[axis]) / rim.radius);
+        let tick = |far: f64| [0, 1].map(|axis| place[axis] + far * out[axis]);
+        segment(&mut picture, tick(3.0), tick(9.0), RED);
+    }
+    let [u, v] = camera.middle();
+    for [across, down] in [[12.0, 0.0], [0.0, 12.0]] {
+        segment(&mut picture, [u - across, v - down], [u + across, v + down], WHITE);
+    }
+    if let Some(ahead) = camera.ground_to_pixel([1.0, 0.0]) {
+        segment(&mut picture, [u, v], ahead, WHITE);
+    }
+    picture
+}
+
+/// A closed curve, by the angle all around.
+fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<[f64; 2]>, colour: Rgb<u8>) {
+    const STEPS: u32 = 720;
+    let angle = |step: u32| f64::from(step) * std::f64::consts::TAU / f64::from(STEPS);
+    for step in 0..STEPS {
+        if let (Some(from), Some(to)) = (at(angle(step)), at(angle(step + 1))) {
+            segment(picture, from, to, colour);
+        }
+    }
+}
+
+fn segment(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+    let [from, to] = [from, to].map(|[u, v]| (u as f32, v as f32));
+    draw_line_segment_mut(picture, from, to, colour);
+}

@@ -1,0 +1,166 @@
+//! The mirror's rim, found in images that are drawn for it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use image::{GrayImage, Luma};
+use toposlam_vision::camera::rim::{self, RimError};
+
+/// Numbers by chance.
+struct Chance(u64);
+
+impl Chance {
+    /// Between 0 and 1. (xorshift64*)
+    fn number(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.number()
+    }
+
+    /// Of mean 0 and, nearly, standard deviation 1.
+    fn noise(&mut self) -> f64 {
+        (0..12).map(|_| self.number()).sum::<f64>() - 6.0
+    }
+}
+
+/// How images are drawn.
+#[derive(Clone, Copy)]
+struct Drawn {
+    size: [u32; 2],
+    centre: [f64; 2],
+    radius: f64,
+    /// The brightness outside.
+    around: f64,
+    noise: f64,
+}
+
+const PLAIN: Drawn =
+    Drawn { size: [640, 480], centre: [322.3, 241.8], radius: 224.6, around: 12.0, noise: 4.0 };
+
+/// A disc with a scene in it: patches of light and dark, and two struts across; vignetting, noise.
+fn draw(drawn: &Drawn, seed: u64) -> GrayImage {
+    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    // Half planes, each of which makes what lies in it brighter or darker.
+    let patches: Vec<[f64; 4]> = (0..12)
+        .map(|_| {
+            let angle = chance.between(0.0, std::f64::consts::TAU);
+            let far = chance.between(-1.0, 1.0) * drawn.radius;
+            [angle.cos(), angle.sin(), far, chance.between(-45.0, 45.0)]
+        })
+        .collect();
+    let base = chance.between(70.0, 150.0);
+    let [width, height] = drawn.size;
+    let light = |u: f64, v: f64| {
+        let [across, down] = [u - drawn.centre[0], v - drawn.centre[1]];
+        let from_centre = across.hypot(down);
+        let vignette = 1.0 - 0.35 * (from_centre / drawn.radius).powi(2);
+        let strut = (0.3 * across + 0.95 * down).abs() < 0.012 * from_centre;
+        if from_centre > drawn.radius {
+            drawn.around
+        } else if strut || from_centre < 0.15 * drawn.radius {
+            20.0
+        } else {
+            let inside = |patch: &&[f64; 4]| patch[0] * across + patch[1] * down > patch[2];
+            let patches: f64 = patches.iter().filter(inside).map(|patch| patch[3]).sum();
+            (base + patches).clamp(35.0, 250.0) * vignette.max(0.2)
+        }
+    };
+    GrayImage::from_fn(width, height, |u, v| {
+        let [across, down] = [f64::from(u) - drawn.centre[0], f64::from(v) - drawn.centre[1]];
+        // More closely at the rim.
+        let finely = (across.hypot(down) - drawn.radius).abs() < 2.0;
+        let steps = if finely { 8 } else { 1 };
+        let within = |step: u32| (f64::from(step) + 0.5) / f64::from(steps) - 0.5;
+        let mut sum = 0.0;
+        for row in 0..steps {
+            for column in 0..steps {
+                sum += light(f64::from(u) + within(column), f64::from(v) + within(row));
+            }
+        }
+        let mean = sum / f64::from(steps * steps);
+        Luma([(mean + drawn.noise * chance.noise()).round().clamp(0.0, 255.0) as u8])
+    })
+}
+
+fn images(drawn: &Drawn, count: u64, seed: u64) -> Vec<GrayImage> {
+    (0..count).map(|number| draw(drawn, 1000 * seed + number + 1)).collect()
+}
+
+fn found(drawn: &Drawn, count: u64, seed: u64) {
+    let rim = rim::find(&images(drawn, count, seed)).unwrap();
+    let off = (rim.centre[0] - drawn.centre[0]).hypot(rim.centre[1] - drawn.centre[1]);
+    let what = format!("{count} images, seed {seed}: {:?} {} {}", rim.centre, rim.radius, rim.seen);
+    assert!(off < 0.5 && (rim.radius - drawn.radius).abs() < 0.5, "{what}");
+    assert!(rim.spread < 1.0 && rim.seen <= 1.0, "{what} {}", rim.spread);
+}
+
+#[test]
+fn the_rim_of_a_bright_disc_is_found_within_half_a_pixel() {
+    for seed in 0..6 {
+        let mut chance = Chance(seed + 77);
+        let drawn = Drawn {
+            centre: [chance.between(280.0, 360.0), chance.between(225.0, 255.0)],
+            radius: chance.between(140.0, 220.0),
+            ..PLAIN
+        };
+        found(&drawn, 1, seed);
+        found(&drawn, 4, seed);
+    }
+}
+
+#[test]
+fn a_rim_that_the_images_border_crops_is_found_by_its_arcs() {
+    for seed in 0..4 {
+        let mut chance = Chance(seed + 7);
+        let drawn = Drawn {
+            centre: [chance.between(300.0, 340.0), chance.between(225.0, 255.0)],
+            radius: chance.between(260.0, 290.0),
+            ..PLAIN
+        };
+        found(&drawn, 4, seed);
+    }
+}
+
+#[test]
+fn noise_does_not_hide_the_rim() {
+    found(&Drawn { noise: 25.0, ..PLAIN }, 4, 1);
+    found(&Drawn { noise: 12.0, around: 25.0, ..PLAIN }, 3, 2);
+}
+
+#[test]
+fn a_large_image_is_as_good() {
+    let drawn =
+        Drawn { size: [1280, 960], centre: [652.4, 470.7], radius: 447.2, around: 9.0, noise: 5.0 };
+    found(&drawn, 2, 3);
+}
+
+#[test]
+fn without_a_mirror_there_is_no_rim() {
+    let noise = |seed| {
+        let mut chance = Chance(seed);
+        GrayImage::from_fn(320, 240, |_, _| Luma([(100.0 + 20.0 * chance.noise()) as u8]))
+    };
+    for seed in 1..20 {
+        assert!(matches!(rim::find(&[noise(seed), noise(99 * seed)]), Err(RimError::NoRim)));
+    }
+    for value in [0, 128, 255] {
+        let flat = GrayImage::from_pixel(320, 240, Luma([value]));
+        assert!(matches!(rim::find(&[flat]), Err(RimError::NoRim)));
+    }
+    // A mirror darker than its surroundings is none.
+    let drawn = Drawn { around: 250.0, ..PLAIN };
+    assert!(rim::find(&images(&drawn, 2, 5)).is_err());
+}
+
+#[test]
+fn images_that_do_not_go_together_are_refused() {
+    let small = GrayImage::new(320, 240);
+    let error = rim::find(&[small.clone(), GrayImage::new(640, 480)]).unwrap_err();
+    assert_eq!(error.to_string(), "image 2 is 640 by 480 pixels, the first is 320 by 240");
+    assert_eq!(rim::find(&[]), Err(RimError::NoImage));
+    assert!(matches!(rim::find(&[GrayImage::new(320, 20)]), Err(RimError::TooSmall(_))));
+}
