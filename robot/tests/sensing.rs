@@ -5,11 +5,14 @@
 
 use toposlam_robot::{
     evaluation::{
-        judging::{Calibration, Judge, Judged, Zone},
+        calibration::Calibration,
+        judged::{Judged, Zone},
+        judging::Judge,
         plans,
         report::{Report, Standing},
         verdict::{MarkerVerdict, Verdict},
-        view::{Views, WhichEffects},
+        view::WhichEffects,
+        views::Views,
     },
     simulator::LOOKS,
 };

@@ -9,10 +9,7 @@ use std::{
 use image::{ImageFormat, RgbImage};
 use serde_json::Value;
 use toposlam_robot::{
-    evaluation::{
-        learned,
-        view::{Views, WhichEffects},
-    },
+    evaluation::{learned, view::WhichEffects, views::Views},
     simulator::{Look, Rig},
 };
 use toposlam_vision::camera::{Camera, calibration};

@@ -2,7 +2,7 @@
 
 use super::{
     class::Class,
-    judging::{Judged, Zone},
+    judged::{Judged, Zone},
     quantile::Sample,
     truth::Truth,
     verdict::Verdict,
@@ -147,4 +147,55 @@ fn rounded(value: f64) -> String {
 
 fn failed_at(judged: &Judged) -> bool {
     judged.verdict != Verdict::Right
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::driving::scene::{Place, Reason, Scene};
+
+    use super::*;
+    use crate::{
+        evaluation::{plans, verdict::MarkerVerdict, view::WhichEffects, views::Views},
+        simulator::LOOKS,
+    };
+
+    #[test]
+    fn failures_show_in_the_groups_in_which_they_are_more_often() {
+        let views = Views {
+            seed: 0,
+            plans: plans().unwrap(),
+            random_plans: false,
+            looks: LOOKS.iter().collect(),
+            sizes: vec![[640, 480]],
+            effects: WhichEffects::Default,
+        };
+        // Sensing that fails where it is blurred, in the theatre only.
+        let judged: Vec<_> = (0..600)
+            .map(|number| {
+                let view = views.view(number).unwrap();
+                let fails = view.look.name == "theatre" && view.effects.blur > 0.7;
+                let verdict = if fails { Verdict::Unknown } else { Verdict::Right };
+                let scene = Scene { place: Place::Unknown(Reason::FewWalls), marker: None };
+                let truth = view.truth().unwrap();
+                Judged { view, truth, scene, verdict, marker: MarkerVerdict::NotSeen }
+            })
+            .collect();
+        let groups = groups(&judged);
+        let rate = |by: &str, what: &str| {
+            let is_it = |group: &&Group| group.by == by && group.what.starts_with(what);
+            groups.iter().find(is_it).unwrap().rate()
+        };
+        assert!(rate("look", "theatre") > 0.2);
+        assert_eq!(rate("look", "school"), 0.0);
+        assert!(rate("blur", "above") > 0.02);
+        assert!(rate("blur", "up to") < 0.01);
+        let asked =
+            judged.iter().filter(|judged| matches!(judged.zone(), Zone::Hallway | Zone::Before));
+        let all = asked.count();
+        for by in ["look", "place", "distance", "blur"] {
+            let of: usize =
+                groups.iter().filter(|group| group.by == by).map(|group| group.of).sum();
+            assert_eq!(of, all, "{by}");
+        }
+    }
 }

@@ -2,7 +2,6 @@
 
 use std::{
     collections::BTreeMap,
-    f64::consts::TAU,
     sync::{Mutex, PoisonError},
 };
 
@@ -10,10 +9,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 use thiserror::Error;
 use toposlam_model::{
-    driving::{
-        scene::Scene,
-        visit::{Form, Visit},
-    },
+    driving::{scene::Scene, visit::Visit},
     enumerate::Watch,
     percept::{Percept, Sighting},
 };
@@ -23,32 +19,15 @@ use toposlam_vision::{
 };
 
 use super::{
-    class::Class,
+    calibration::{Calibration, wrong_rigs},
+    judged::{Judged, JudgedVisit},
     learning::{LearningError, learned},
-    truth::{JunctionTruth, MarkerTruth, Truth},
-    verdict::{MarkerVerdict, Verdict, judge, judge_marker},
-    view::{NoView, View, Views},
+    truth::{JunctionTruth, Truth},
+    verdict::{judge, judge_marker},
+    view::View,
+    views::{NoView, Views},
 };
-use crate::simulator::{Look, Rig, RigErrors};
-
-/// Whether the camera is as its calibration says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Calibration {
-    /// It is.
-    Right,
-    /// Its middle is 5 pixels (of an image 1280 wide) off, it is 2 cm too high or too low, and leans
-    /// by one degree.
-    Wrong,
-}
-
-/// So many cameras that are not as their calibration says.
-const WRONG_RIGS: usize = 6;
-/// How far the middle of the mirror is off, as a part of the image's width.
-const CENTRE_OFF: f64 = 5.0 / 1280.0;
-/// How much too high or too low it is, in metres.
-const HEIGHT_OFF: f64 = 0.02;
-/// How far it leans, in degrees.
-const TILT: f64 = 1.0;
+use crate::simulator::{Look, Rig};
 
 /// Why views cannot be judged.
 #[derive(Debug, Error)]
@@ -70,52 +49,6 @@ pub enum JudgingError {
         /// Its plan.
         plan: String,
     },
-}
-
-/// Where a view is, as it matters to what is asked of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Zone {
-    /// 1.5 m or more from any junction.
-    Hallway,
-    /// Nearer, but not yet at a junction.
-    Between,
-    /// At a junction, up to 0.1 m past its turning point.
-    Before,
-    /// At a junction, farther past its turning point.
-    Past,
-    /// At a junction, and turned away from the door by which it was entered.
-    Turned,
-}
-
-/// So far past the turning point a junction is to be made out, in metres.
-const PAST: f64 = 0.1;
-
-/// A view, and what sensing made of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
-    /// What was to be seen.
-    pub view: View,
-    /// What is true there.
-    pub truth: Truth,
-    /// What sensing says.
-    pub scene: Scene,
-    /// Whether it is right about the place,
-    pub verdict: Verdict,
-    /// and about the marker.
-    pub marker: MarkerVerdict,
-}
-
-/// A visit to a junction, and what came of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JudgedVisit {
-    /// Its pictures.
-    pub pictures: Vec<Judged>,
-    /// What the junction looks like from its entry.
-    pub form: Form,
-    /// What the robot should perceive.
-    pub percept: Percept,
-    /// As what the junction was made out, once two pictures agreed.
-    pub decided: Option<(Form, Percept)>,
 }
 
 /// All that judging takes: rigs and sensors for each size of picture, made once.
@@ -154,17 +87,18 @@ impl Judge {
         let station = |&size: &[u32; 2]| {
             let camera = camera.sized(size);
             let right = Rig::new(&camera);
-            let wrong = if calibrations.contains(&Calibration::Wrong) { WRONG_RIGS } else { 0 };
             let sensors = views.looks.par_iter().map(|look| {
                 let sensors = Sensors::new(views, look, &camera, &right);
                 watch.part_done(1);
                 sensors
             });
             let sensors = sensors.collect::<Result<_, LearningError>>()?;
-            let wrong = (0..wrong)
-                .into_par_iter()
-                .map(|number| Rig::with_errors(&camera, &errors(size, number)));
-            Ok((size, Station { wrong: wrong.collect(), right, sensors }))
+            let wrong = if calibrations.contains(&Calibration::Wrong) {
+                wrong_rigs(&camera)
+            } else {
+                Vec::new()
+            };
+            Ok((size, Station { right, wrong, sensors }))
         };
         Ok(Self { stations: views.sizes.iter().map(station).collect::<Result<_, JudgingError>>()? })
     }
@@ -272,7 +206,7 @@ impl Judge {
         let station = self.station(view);
         match calibration {
             Calibration::Wrong if !station.wrong.is_empty() => {
-                &station.wrong[(view.number % station.wrong.len() as u64) as usize]
+                &station.wrong[(view.seeds[0] % station.wrong.len() as u64) as usize]
             }
             Calibration::Right | Calibration::Wrong => &station.right,
         }
@@ -328,77 +262,6 @@ fn in_turn<R: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// The error of a camera: all of them as large as they are to be, in directions all around.
-fn errors([width, _]: [u32; 2], number: usize) -> RigErrors {
-    let around = |turns: f64| (TAU * (number as f64 * turns + 0.11)).sin_cos();
-    let (v, u) = around(1.0 / WRONG_RIGS as f64);
-    let centre = CENTRE_OFF * f64::from(width);
-    RigErrors {
-        tilt: TILT.to_radians(),
-        // The golden section: no leaning is together with the same centre twice.
-        towards: TAU * number as f64 * 0.618_034,
-        centre: [centre * u, centre * v],
-        height: if number.is_multiple_of(2) { HEIGHT_OFF } else { -HEIGHT_OFF },
-    }
-}
-
 fn off_the_floor(view: &View) -> JudgingError {
     JudgingError::OffTheFloor { number: view.number, plan: view.plan_name.clone() }
-}
-
-impl Zone {
-    /// Where a view with this truth is.
-    #[must_use]
-    pub fn of(truth: &Truth) -> Self {
-        match truth {
-            Truth::Hallway(_) => Self::Hallway,
-            Truth::Between(..) => Self::Between,
-            Truth::Junction(junction) => match junction.distance() {
-                None => Self::Turned,
-                Some(distance) if distance >= -PAST => Self::Before,
-                Some(_) => Self::Past,
-            },
-        }
-    }
-}
-
-impl Judged {
-    /// Where it is.
-    #[must_use]
-    pub fn zone(&self) -> Zone {
-        Zone::of(&self.truth)
-    }
-
-    /// What the image shows; `None` where different answers are right.
-    #[must_use]
-    pub fn class(&self) -> Option<Class> {
-        match &self.truth {
-            Truth::Hallway(_) => Some(Class::Hallway),
-            Truth::Between(..) => None,
-            Truth::Junction(junction) => junction.form.map(Class::Junction),
-        }
-    }
-
-    /// Whether the marker is just where it should be seen, on the approach to its L.
-    #[must_use]
-    pub fn marker_ahead(&self) -> Option<MarkerTruth> {
-        let marker = self.view.marker()?;
-        let junction = match &self.truth {
-            Truth::Junction(junction) => std::slice::from_ref(junction),
-            Truth::Between(_, junctions) => junctions.as_slice(),
-            Truth::Hallway(_) => &[],
-        };
-        let vertex = self.view.plan.graph().vertex(self.view.marker?);
-        let here = junction.iter().any(|junction| junction.vertex == vertex);
-        let distance = marker.distance.filter(|distance| (0.2..=0.8).contains(distance));
-        (here && distance.is_some()).then_some(marker)
-    }
-}
-
-impl JudgedVisit {
-    /// Whether the junction was made out as another.
-    #[must_use]
-    pub fn is_wrong(&self) -> bool {
-        self.decided.is_some_and(|(form, _)| form != self.form)
-    }
 }

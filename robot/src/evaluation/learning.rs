@@ -6,7 +6,7 @@ use toposlam_vision::{
     colour::{ColourModel, ExampleError, Training, TrainingError},
 };
 
-use super::view::{NoView, Views};
+use super::views::{NoView, Views};
 use crate::simulator::{Look, Rig, label_mask, labels};
 
 /// From so many images the colours of a look are learned.

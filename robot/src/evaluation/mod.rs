@@ -1,8 +1,10 @@
 //! Sensing, judged against the truth of the floor plan.
 
 pub mod bound;
+pub mod calibration;
 pub mod causes;
 pub mod class;
+pub mod judged;
 pub mod judging;
 mod learning;
 mod plans;
@@ -12,6 +14,7 @@ pub mod report;
 pub mod truth;
 pub mod verdict;
 pub mod view;
+pub mod views;
 
 pub use learning::{LearningError, learned};
 pub use plans::plans;

@@ -8,8 +8,10 @@ use toposlam_model::{
     format::{named_world::NamedWorld, world_file},
 };
 use toposlam_robot::evaluation::{
+    calibration::Calibration,
     class::Class,
-    judging::{Calibration, Judge, Judged, JudgedVisit, Zone},
+    judged::{Judged, JudgedVisit, Zone},
+    judging::Judge,
     truth::{JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict},
     view::View,

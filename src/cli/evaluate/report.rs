@@ -5,12 +5,13 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use toposlam_robot::evaluation::{
+    calibration::Calibration,
     causes::Group,
     class::Class,
-    judging::Calibration,
     quantile::Quantile,
     report::{Errors, Rate, Report, Standing, Unit},
-    view::{Views, WhichEffects},
+    view::WhichEffects,
+    views::Views,
 };
 
 use crate::cli::{

@@ -10,11 +10,14 @@ use std::{
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_robot::{
     evaluation::{
+        calibration::Calibration,
         causes::groups,
-        judging::{Calibration, Judge, Judged, JudgedVisit},
+        judged::{Judged, JudgedVisit},
+        judging::Judge,
         plans,
         report::{Report, Standing},
-        view::{Views, WhichEffects},
+        view::WhichEffects,
+        views::Views,
     },
     simulator::{LOOKS, Look},
 };

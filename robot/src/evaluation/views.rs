@@ -1,0 +1,400 @@
+//! Views drawn by chance, each from its number alone.
+
+use std::{f64::consts::FRAC_PI_2, sync::Arc};
+
+use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    driving::visit::Form,
+    embedded_graph::{Dart, Vertex},
+    floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
+};
+
+use super::{
+    class::FORMS,
+    random_plan::random_plan,
+    truth::{JunctionTruth, angle},
+    view::{View, WhichEffects},
+};
+use crate::simulator::{Effects, Look, Pose};
+
+/// From so far before a turning point, to so far beyond it junctions are looked at, in metres.
+const APPROACH: [f64; 2] = [1.5, -0.3];
+/// So far aside of a hallway's middle the robot may be, in metres.
+const ASIDE: f64 = 0.3;
+/// Nearer to a wall it never is: the robot's radius, and where its sonars stop it; in metres.
+const CLEAR: f64 = 0.205 + 0.2;
+/// So far to either side of its hallway's direction it may look, in degrees.
+const TURNED: f64 = 25.0;
+/// The share of views at junctions; the others are anywhere in hallways.
+const AT_JUNCTIONS: f64 = 0.6;
+/// The share of views with a marker at the L at which they are, and somewhere else.
+const MARKED: [f64; 2] = [0.5, 0.2];
+
+/// Pictures of a visit: the first so far before the turning point, the last so far beyond it,
+const VISIT: [f64; 2] = [1.5, -0.1];
+/// so far apart, a little more or less, in metres.
+const STEP: [f64; 2] = [0.22, 0.28];
+/// On its way the robot turns by so much to either side of its hallway's direction, in degrees,
+const SWAY: f64 = 12.0;
+/// and moves aside by so much a picture, in metres.
+const DRIFT: f64 = 0.04;
+
+/// What views are for: each purpose has views of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be judged one by one.
+    Single,
+    /// To be judged together, visit by visit.
+    Visit,
+    /// To learn colours from.
+    Learning,
+}
+
+/// All views of a seed.
+#[derive(Clone, Debug)]
+pub struct Views {
+    /// From which everything follows.
+    pub seed: u64,
+    /// The floor plans, by their names.
+    pub plans: Vec<(String, Arc<FloorPlan>)>,
+    /// Whether there are random plans, too.
+    pub random_plans: bool,
+    /// What the buildings look like.
+    pub looks: Vec<&'static Look>,
+    /// The sizes of pictures, which views have in turn.
+    pub sizes: Vec<[u32; 2]>,
+    /// Which effects there are.
+    pub effects: WhichEffects,
+}
+
+/// Why a view cannot be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoView {
+    /// There is nothing to look at.
+    #[error("there is neither a floor plan nor are there random ones")]
+    NoPlan,
+    /// There is nothing to look with.
+    #[error("there is no size of pictures")]
+    NoSize,
+    /// Nothing looks like anything.
+    #[error("there is no look")]
+    NoLook,
+    /// There is something wrong with the random plans.
+    #[error("random plan {seed} is not valid")]
+    RandomPlan {
+        /// The plan's seed.
+        seed: u64,
+    },
+}
+
+impl Views {
+    /// The view of a number.
+    ///
+    /// # Errors
+    /// Where there are no plans, or no sizes.
+    pub fn view(&self, number: u64) -> Result<View, NoView> {
+        let (mut view, mut chance) = self.setting(Purpose::Single, number)?;
+        place(&mut view, &mut chance, AT_JUNCTIONS);
+        Ok(view)
+    }
+
+    /// The pictures of one approach to a junction, in their order.
+    ///
+    /// # Errors
+    /// As [`Self::view`].
+    pub fn visit(&self, number: u64) -> Result<Vec<View>, NoView> {
+        let (mut view, mut chance) = self.setting(Purpose::Visit, number)?;
+        let Some(entry) = an_entry(&view.plan, &mut chance) else { return Ok(Vec::new()) };
+        put_marker(&mut view, Some(entry), &mut chance);
+        let reach = reach(&view.plan);
+        let mut aside = chance.random_range(-reach..=reach);
+        let mut before = VISIT[0] - chance.random_range(0.0..STEP[0]);
+        let mut pictures = Vec::new();
+        while before >= VISIT[1] {
+            let turned = chance.random_range(-SWAY..=SWAY);
+            let pose = before_junction(&view.plan, entry, before, aside, turned);
+            let seeds = [view.seeds[0], chance.next_u64()];
+            pictures.push(View { pose, seeds, ..view.clone() });
+            before -= chance.random_range(STEP[0]..STEP[1]);
+            aside = (aside + chance.random_range(-DRIFT..=DRIFT)).clamp(-reach, reach);
+        }
+        Ok(pictures)
+    }
+
+    /// A view to learn the colours of a look from, at this size; often with a marker nearby.
+    ///
+    /// # Errors
+    /// As [`Self::view`].
+    pub fn to_learn_from(
+        &self,
+        look: &'static Look,
+        image: [u32; 2],
+        number: u64,
+    ) -> Result<View, NoView> {
+        let (mut view, mut chance) = self.setting(Purpose::Learning, number)?;
+        view.look = look;
+        view.image = image;
+        place(&mut view, &mut chance, 1.0);
+        Ok(view)
+    }
+
+    /// A building and a camera, and what else follows from a number.
+    fn setting(&self, purpose: Purpose, number: u64) -> Result<(View, Xoshiro256PlusPlus), NoView> {
+        let mut chance = stream(self.seed, purpose, number);
+        let drawn = self.plans.choose(&mut chance).cloned();
+        let of_seed = chance.next_u64() >> 32;
+        let (plan_name, plan) = match drawn.filter(|_| !self.random_plans || chance.random()) {
+            Some(plan) => plan,
+            None if self.random_plans => {
+                let plan =
+                    random_plan(of_seed).map_err(|_| NoView::RandomPlan { seed: of_seed })?;
+                (format!("random-{of_seed}"), Arc::new(plan))
+            }
+            None => return Err(NoView::NoPlan),
+        };
+        let size = number.checked_rem(self.sizes.len() as u64).ok_or(NoView::NoSize)?;
+        let look = self.looks.choose(&mut chance).copied().ok_or(NoView::NoLook)?;
+        let drawn = Effects::drawn(&mut chance);
+        let view = View {
+            number,
+            plan_name,
+            plan,
+            look,
+            effects: match self.effects {
+                WhichEffects::Default => drawn,
+                WhichEffects::None => Effects::plain(),
+            },
+            marker: None,
+            pose: Pose { position: [0.0; 2], heading: 0.0 },
+            image: self.sizes[size as usize],
+            seeds: [chance.next_u64(), chance.next_u64()],
+        };
+        Ok((view, chance))
+    }
+}
+
+/// Puts the robot somewhere, and the marker perhaps.
+fn place(view: &mut View, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
+    let entry = an_entry(&view.plan, chance).filter(|_| chance.random_bool(at_junctions));
+    let reach = reach(&view.plan);
+    let aside = chance.random_range(-reach..=reach);
+    let turned = chance.random_range(-TURNED..=TURNED);
+    let part = chance.random::<f64>();
+    view.pose = match entry {
+        Some(entry) => {
+            let nearest = CLEAR - view.plan.hallway_width() / 2.0;
+            let last = APPROACH[1].max(nearest);
+            let before = last + part * (APPROACH[0] - last);
+            before_junction(&view.plan, entry, before, aside, turned)
+        }
+        None => in_a_hallway(&view.plan, part, chance.random(), aside, turned),
+    };
+    put_marker(view, entry, chance);
+}
+
+/// Puts the marker on an L: on that of the door, if there is one, or on any other, or nowhere.
+fn put_marker(view: &mut View, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
+    let graph = view.plan.graph();
+    let is_l = |vertex: Vertex| view.plan.junction(vertex).kind == JunctionKind::L;
+    let here = entry.map(|dart| graph.vertex(dart)).filter(|&vertex| is_l(vertex));
+    let others: Vec<_> =
+        graph.vertices().filter(|&vertex| is_l(vertex) && Some(vertex) != here).collect();
+    let other = others.choose(chance).copied();
+    let by_chance: f64 = chance.random();
+    let vertex = match here {
+        Some(here) if by_chance < MARKED[0] => Some(here),
+        Some(_) => other.filter(|_| by_chance < MARKED[0] + MARKED[1]),
+        None => other.filter(|_| by_chance < MARKED[0]),
+    };
+    let index = chance.random_range(0..2);
+    view.marker = vertex.and_then(|vertex| graph.dart(vertex, index));
+}
+
+/// The stream of random numbers of a number.
+fn stream(seed: u64, purpose: Purpose, number: u64) -> Xoshiro256PlusPlus {
+    let mut of_seed = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut salt = 0;
+    for _ in 0..=purpose as u8 {
+        salt = of_seed.next_u64();
+    }
+    // Neighbouring seeds have unlike streams: the generator is seeded by SplitMix64.
+    Xoshiro256PlusPlus::seed_from_u64(salt.wrapping_add(number))
+}
+
+/// A door by which a junction may be entered: first what the junction looks like from it is drawn, of
+/// what there is in the plan, so that rare forms are not rare.
+fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
+    let entries = FORMS.map(|(form, _)| {
+        let entries = plan.graph().darts().filter(|&dart| form_from(plan, dart) == Some(form));
+        entries.collect::<Vec<_>>()
+    });
+    let there: Vec<_> = entries.iter().filter(|entries| !entries.is_empty()).collect();
+    there.choose(chance)?.choose(chance).copied()
+}
+
+/// What the junction of a dart looks like to a robot that enters by it.
+fn form_from(plan: &FloorPlan, dart: Dart) -> Option<Form> {
+    let pose = before_junction(plan, dart, 0.0, 0.0, 0.0);
+    JunctionTruth::of(plan, plan.graph().vertex(dart), pose).form
+}
+
+/// How far aside of the middle the robot may be.
+fn reach(plan: &FloorPlan) -> f64 {
+    (plan.hallway_width() / 2.0 - CLEAR).clamp(0.0, ASIDE)
+}
+
+/// A pose so far before the turning point of the dart's junction, on the way in by the dart.
+fn before_junction(plan: &FloorPlan, entry: Dart, before: f64, aside: f64, turned: f64) -> Pose {
+    let junction = plan.junction(plan.graph().vertex(entry));
+    along(junction.position, plan.direction(entry).reversed(), -before, aside, turned)
+}
+
+/// A pose in a hallway; `part` says in which and where.
+fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64) -> Pose {
+    let ends =
+        |hallway: &Hallway| [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position);
+    let length = |[from, to]: [[f64; 2]; 2]| (from[0] - to[0]).hypot(from[1] - to[1]);
+    let hallways: Vec<_> = plan.hallways().iter().map(ends).collect();
+    let mut left = part * hallways.iter().map(|&ends| length(ends)).sum::<f64>();
+    let mut at = [[0.0; 2]; 2];
+    for &ends in &hallways {
+        at = ends;
+        if left <= length(ends) {
+            break;
+        }
+        left -= length(ends);
+    }
+    let [mut from, mut to] = at;
+    if back {
+        std::mem::swap(&mut from, &mut to);
+    }
+    let direction = match (to[0] - from[0], to[1] - from[1]) {
+        (x, y) if x.abs() > y.abs() => {
+            if x > 0.0 {
+                Direction::East
+            } else {
+                Direction::West
+            }
+        }
+        (_, y) => {
+            if y > 0.0 {
+                Direction::North
+            } else {
+                Direction::South
+            }
+        }
+    };
+    along(from, direction, left.min(length(at)), aside, turned)
+}
+
+/// A pose so far along a direction from a position, so far to the left of it, turned by so many
+/// degrees to the left.
+fn along(from: [f64; 2], direction: Direction, by: f64, aside: f64, turned: f64) -> Pose {
+    let ahead = angle(direction);
+    let (left, ahead_vector) = ((ahead + FRAC_PI_2).sin_cos(), direction.vector());
+    let position = [
+        from[0] + by * ahead_vector[0] + aside * left.1,
+        from[1] + by * ahead_vector[1] + aside * left.0,
+    ];
+    Pose { position, heading: ahead + turned.to_radians() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use toposlam_model::format::world_file;
+
+    use super::*;
+    use crate::{
+        evaluation::truth::Truth,
+        simulator::{LOOKS, Wall, walls},
+    };
+
+    fn views() -> Views {
+        let text = include_bytes!("../../../worlds/shape-8.toml");
+        let plan = world_file::read(text).unwrap().plan.unwrap();
+        Views {
+            seed: 1,
+            plans: vec![("shape-8".to_owned(), Arc::new(plan))],
+            random_plans: true,
+            looks: LOOKS.iter().collect(),
+            sizes: vec![[1280, 960], [640, 480]],
+            effects: WhichEffects::Default,
+        }
+    }
+
+    fn distance(wall: &Wall, position: [f64; 2]) -> f64 {
+        let across = 1 - wall.along;
+        let beyond =
+            (wall.span[0] - position[wall.along]).max(position[wall.along] - wall.span[1]).max(0.0);
+        (position[across] - wall.plane).hypot(beyond)
+    }
+
+    #[test]
+    fn no_view_is_nearer_to_a_wall_than_a_robot_can_be() {
+        let views = views();
+        let visits = (0..60).flat_map(|number| views.visit(number).unwrap());
+        for view in (0..600).map(|number| views.view(number).unwrap()).chain(visits) {
+            let distances =
+                walls(&view.plan).into_iter().map(|wall| distance(&wall, view.pose.position));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            assert!(nearest >= CLEAR - 1e-9, "{nearest} m in {view:?}");
+            assert!(view.truth().is_some(), "{view:?}");
+        }
+    }
+
+    #[test]
+    fn a_view_follows_from_its_number() {
+        let views = views();
+        assert_eq!(views.view(17), views.view(17));
+        assert_eq!(views.visit(17), views.visit(17));
+        assert_ne!(views.view(17), views.view(18));
+        assert_ne!(views.view(17), Views { seed: 2, ..views.clone() }.view(17));
+        assert_ne!(views.view(17).unwrap().seeds, views.visit(17).unwrap()[0].seeds);
+    }
+
+    #[test]
+    fn every_truth_is_looked_at_often() {
+        let views = views();
+        let mut forms = BTreeMap::new();
+        let (mut hallways, mut between, mut random, mut marked) = (0, 0, 0, 0);
+        for view in (0..1000).map(|number| views.view(number).unwrap()) {
+            match view.truth().unwrap() {
+                Truth::Hallway(_) => hallways += 1,
+                Truth::Between(..) => between += 1,
+                Truth::Junction(junction) => *forms.entry(junction.form).or_insert(0) += 1,
+            }
+            random += usize::from(view.plan_name.starts_with("random-"));
+            marked += usize::from(view.marker.is_some());
+        }
+        assert!(hallways > 100 && between > 200, "{hallways} {between}");
+        assert!((400..600).contains(&random), "{random}");
+        assert!((300..700).contains(&marked), "{marked}");
+        for (form, name) in FORMS {
+            assert!(forms[&Some(form)] > 20, "{name}: {}", forms[&Some(form)]);
+        }
+    }
+
+    #[test]
+    fn a_visit_comes_from_a_metre_and_a_half_to_the_turning_point() {
+        let views = views();
+        for number in 0..50 {
+            let pictures = views.visit(number).unwrap();
+            assert!((5..=8).contains(&pictures.len()), "{}", pictures.len());
+            let nearest = pictures.last().unwrap();
+            let Some(Truth::Junction(junction)) = nearest.truth() else { panic!("{nearest:?}") };
+            let distance = junction.distance().unwrap();
+            assert!((-0.1..=0.18).contains(&distance), "{distance}");
+        }
+    }
+
+    #[test]
+    fn without_plans_there_is_no_view() {
+        let none = Views { plans: Vec::new(), random_plans: false, ..views() };
+        assert_eq!(none.view(0), Err(NoView::NoPlan));
+        assert_eq!(Views { sizes: Vec::new(), ..views() }.view(0), Err(NoView::NoSize));
+        assert_eq!(Views { looks: Vec::new(), ..views() }.view(0), Err(NoView::NoLook));
+    }
+}
