@@ -256,6 +256,8 @@ impl Hallway {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
@@ -300,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
-        for (turned, heading, left) in [(0.1, 0.1 - 1.570_796, 1.0), (-0.1, 1.470_796, 0.6)] {
+        for (turned, heading, left) in [(0.1, 0.1 - FRAC_PI_2, 1.0), (-0.1, FRAC_PI_2 - 0.1, 0.6)] {
             let hallway = Hallway {
                 frame: Frame::along(turned),
                 axis: Axis::Y,
