@@ -144,7 +144,7 @@ impl Bearings {
                     }
                     let width = (step + 1 - from) as f64;
                     if let Some(floor) = floor
-                        && width >= (SEEN_WIDTH * self.width[from]).floor()
+                        && width >= SEEN_WIDTH * self.width[from]
                     {
                         // The edge is where the floor's last pixel ends; floor that was taken for
                         // something else has none.

@@ -7,7 +7,7 @@ use crate::boundary::{BEARINGS, Boundary};
 /// Boundary points that follow each other, counter-clockwise as seen from the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cluster {
-    /// In metres, at least [`LEAST`] of them.
+    /// In metres.
     pub points: Vec<[f64; 2]>,
 }
 

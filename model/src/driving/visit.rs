@@ -116,7 +116,6 @@ impl Visit {
 
     /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
     /// junctions that are Ls.
-    // paper: percept.degree
     #[must_use]
     pub fn percept(&self) -> Option<Percept> {
         let form = self.form()?;
@@ -174,7 +173,7 @@ mod tests {
     fn two_pictures_must_agree() {
         let (l, t) = (junction(&[PI, FRAC_PI_2], 0.3), junction(&[PI, FRAC_PI_2, 0.0], 0.3));
         let unknown = Place::Unknown(Reason::NothingFits);
-        assert_eq!(seen(&[unknown.clone()], None).percept(), None);
+        assert_eq!(seen(std::slice::from_ref(&unknown), None).percept(), None);
         assert_eq!(seen(&[l.clone(), unknown.clone()], None).percept(), None);
         assert_eq!(seen(&[l.clone(), t.clone()], None).percept(), None);
         assert_eq!(seen(&[l.clone(), t.clone(), t.clone(), l.clone()], None).percept(), None);
