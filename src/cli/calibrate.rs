@@ -107,11 +107,7 @@ impl Arguments {
             }
             None => None,
         };
-<<<<<<< HEAD
-        let camera = Self::camera(known, images[0].dimensions().into(), &rim)?;
-=======
         let camera = with_rim(known, images[0].dimensions().into(), &rim)?;
->>>>>>> camera
         let camera = Camera { mask: mask.as_ref().map(|(_, mask)| mask.clone()), ..camera };
         let text = calibration::to_toml(&camera);
         if let Some(path) = &self.picture {
@@ -208,24 +204,6 @@ impl Arguments {
         Ok(images)
     }
 
-<<<<<<< HEAD
-    /// The camera with this rim.
-    fn camera(
-        (known, mirror): (Camera, SphericalMirror),
-        image: [u32; 2],
-        rim: &Rim,
-    ) -> Result<Camera, Failure> {
-        let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
-        let focal = hundredth(SphericalMirror::focal_of_rim(rim.radius, radius, distance));
-        let centre = rim.centre.map(hundredth);
-        let optics = Optics::SphericalMirror(SphericalMirror { centre, focal, ..mirror });
-        let camera = Camera { image, optics, mask: None, ..known };
-        checked(&camera)?;
-        Ok(camera)
-    }
-
-=======
->>>>>>> camera
     /// The failure that there is no rim.
     fn no_rim(&self, error: RimError) -> Failure {
         match self.images.as_slice() {
