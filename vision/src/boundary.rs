@@ -6,7 +6,7 @@
 //! lamps look like stripes, and walls may have the floor's colour. So on a bearing there may be several
 //! edges, the last of them sure or not; which of them are walls, their neighbours decide.
 
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, sync::LazyLock};
 
 use crate::{
     colour::{Class, Stripe, StripeKind},
@@ -207,8 +207,13 @@ fn range(step: f64) -> f64 {
 /// The unit vector on a bearing.
 #[must_use]
 pub fn direction(bearing: usize) -> [f64; 2] {
-    let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
-    [cosine, sine]
+    static DIRECTIONS: LazyLock<[[f64; 2]; BEARINGS]> = LazyLock::new(|| {
+        std::array::from_fn(|bearing| {
+            let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
+            [cosine, sine]
+        })
+    });
+    DIRECTIONS[bearing % BEARINGS]
 }
 
 /// The bearing nearest to a direction, in radians counter-clockwise from ahead.

@@ -4,8 +4,9 @@
 use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
 
 use crate::{
+    agreement::Agreement,
     boundary::{BEARINGS, Boundary, bearing, direction},
-    outline::{Agreement, Outline, Square},
+    outline::{Outline, Square},
     wall::{Axis, Frame, Wall},
 };
 

@@ -12,10 +12,11 @@ use std::f64::consts::FRAC_PI_2;
 use toposlam_model::driving::scene::{CentreLine, JunctionView, wrapped};
 
 use crate::{
+    agreement::{Agreement, bearings},
     boundary::Boundary,
     corner::{Bend, Corner},
     hallway::{AHEAD, BEHIND, HALF_WIDTH, Hallway, status},
-    outline::{Agreement, DIRECTIONS, Outline, Square, bearings},
+    outline::{DIRECTIONS, Outline, Square},
     wall::{Axis, Frame, Wall},
 };
 
@@ -213,5 +214,86 @@ impl Junction {
         let confidence = self.agreement.trust() * self.agreement.cover().sqrt();
         JunctionView { doors: doors.collect(), turning_point, confidence }
             .entered_from(std::f64::consts::PI)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        boundary::{BEARINGS, Bearings, Sight},
+        cluster::clusters,
+        colour::{Stripe, StripeKind},
+        corner::{Formed, corners},
+        drawn::{self, Place},
+        line::lines,
+    };
+
+    const HALF: f64 = 0.8;
+
+    fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> Finding {
+        let place = Place::junction(doors, HALF);
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
+        let mut boundary = Bearings::new(stripe, 1.05).look(&place.seen_from([-0.3, 0.1], 0.2));
+        for bearing in hidden {
+            boundary.sights[bearing % BEARINGS] = Sight::default();
+        }
+        let lines = lines(&clusters(&boundary));
+        let frame = Frame::of(&lines).unwrap();
+        let walls = frame.walls(&lines);
+        junction(&corners(&walls), &walls, &boundary, &frame)
+    }
+
+    // paper: sense.junction.two
+    // paper: sense.junction.three
+    #[test]
+    fn corners_of_the_same_type_make_an_l_and_of_different_types_with_a_wall_a_t() {
+        let kinds = [
+            [false, true, true, false],
+            [false, false, true, true],
+            [false, true, true, true],
+            [true, true, true, false],
+            [true, false, true, true],
+        ];
+        for doors in kinds {
+            let Finding::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
+            assert_eq!(found.doors, doors);
+            let [x, y] = found.frame.unframed(found.square.middle);
+            // 0.3 m ahead and 0.1 m to the right in a hallway to which the robot is turned by 0.2.
+            let [ahead, left] = [0.3 * 0.2_f64.cos() - 0.1 * 0.2_f64.sin(), -0.157_601];
+            assert!((x - ahead).abs() < 0.01 && (y - left).abs() < 0.01, "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn where_half_of_the_view_is_dark_no_junction_is_made_up() {
+        // What is dark would tell the L from the T.
+        for doors in [[false, true, true, false], [false, true, true, true]] {
+            let found = seen(doors, BEARINGS / 2..BEARINGS);
+            assert!(!matches!(found, Finding::Junction(_)), "{doors:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_corner_tells_the_turning_point_and_the_doors_that_there_can_be() {
+        let corner = |bend| Corner {
+            position: [0.5, 0.8],
+            arms: [-1.0, 1.0],
+            bend,
+            formed: Formed::Clusters,
+        };
+        // An edge between the hallway behind and the one to the left.
+        let (square, kinds) = around(&corner(Bend::Outwards), HALF);
+        assert!((square.middle[0] - 1.3).abs() < 1e-9 && square.middle[1].abs() < 1e-9);
+        assert_eq!(kinds[0], [false, true, true, false]);
+        assert_eq!(kinds[1], [true, true, true, false]);
+        assert_eq!(kinds[2], [false, true, true, true]);
+        // A corner of the room, ahead to the right.
+        let corner = Corner { position: [0.5, -0.8], ..corner(Bend::Inwards) };
+        let (square, kinds) = around(&corner, HALF);
+        assert!((square.middle[0] + 0.3).abs() < 1e-9 && square.middle[1].abs() < 1e-9);
+        assert_eq!(kinds[0], [false, true, true, false]);
+        assert_eq!(kinds[1], [false, false, true, false]);
+        assert_eq!(kinds[2], [false, true, false, false]);
     }
 }

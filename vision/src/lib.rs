@@ -7,7 +7,7 @@
 //! * [`ground_view`]: the floor from straight above;
 //! * [`boundary`]: where the floor ends at a wall, on every bearing;
 //! * [`cluster`], [`line`](mod@line), [`wall`]: pieces of wall, straight, and at right angles to each other;
-//! * [`outline`]: a place of a given form, held against what is seen;
+//! * [`outline`], [`agreement`]: a place of a given form, held against what is seen;
 //! * [`hallway`], [`corner`], [`junction`]: what place it is;
 //! * [`marker`]: whether the marker is there, and along which hallway it lies;
 //! * [`sensing`]: all of it;
@@ -16,6 +16,7 @@
 // Tests state numbers as they are, and list at length what is wrong with a file.
 #![cfg_attr(test, allow(clippy::float_cmp, clippy::too_many_lines))]
 
+pub mod agreement;
 pub mod annotate;
 pub mod boundary;
 pub mod camera;

@@ -101,9 +101,24 @@ fn allowed() -> String {
 pub struct Example {
     /// The floor's colour in this light.
     floor: [f64; 3],
-    /// Which colours of which classes there are, in order, and in how many pixels.
-    colours: Vec<([u8; 3], Class, u32)>,
+    /// Which colours of which classes there are, in order.
+    colours: Vec<Alike>,
 }
+
+/// Pixels of one colour and class.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alike {
+    colour: [u8; 3],
+    class: Class,
+    /// Pixels amid others of their class.
+    pure: u32,
+    /// Pixels beside others of another class, whose colours mix.
+    mixed: u32,
+}
+
+/// So many mixed pixels count as much as a pure one. A floor in the shade has the colour of a mixture of
+/// lit floor and dark stripe; it is floor. Where nothing pure has that colour, it is a mixture.
+const MIXED: u64 = 256;
 
 impl Example {
     /// What an image shows where the robot sees the floor's surroundings, by its labels.
@@ -132,14 +147,26 @@ impl Example {
             .iter()
             .filter_map(|&pixel| {
                 let class = Class::of_label(labels[pixel]).unwrap_or_default();
-                (class != Class::Unseen).then_some((colours[pixel], class))
+                let mixed = || is_mixed(labels, expected[0] as usize, pixel);
+                (class != Class::Unseen).then(|| (colours[pixel], class, mixed()))
             })
             .collect();
         pixels.sort_unstable();
-        let alike = pixels.chunk_by(|a, b| a == b);
-        let colours = alike.map(|group| (group[0].0, group[0].1, group.len() as u32)).collect();
-        Ok(Self { floor, colours })
+        let colours = pixels.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(|group| {
+            let mixed = group.iter().filter(|(_, _, mixed)| *mixed).count() as u32;
+            let pure = group.len() as u32 - mixed;
+            Alike { colour: group[0].0, class: group[0].1, pure, mixed }
+        });
+        Ok(Self { floor, colours: colours.collect() })
     }
+}
+
+/// Whether one of the eight pixels around a pixel has another label.
+fn is_mixed(labels: &[[u8; 3]], width: usize, pixel: usize) -> bool {
+    [pixel.saturating_sub(width), pixel, pixel + width].into_iter().any(|middle| {
+        let row = labels.get(middle.saturating_sub(1)..=middle + 1).unwrap_or_default();
+        row.iter().any(|label| *label != labels[pixel])
+    })
 }
 
 /// Why nothing can be learned.
@@ -249,8 +276,9 @@ impl Training {
             let table = model.table();
             for (_, example) in left_out {
                 let lit = table.lit(light::gain(example.floor, model.floor));
-                for &(colour, class, pixels) in &example.colours {
-                    confusion.count(class, lit.class(colour), pixels.into());
+                for alike in &example.colours {
+                    let pixels = u64::from(alike.pure + alike.mixed);
+                    confusion.count(alike.class, lit.class(alike.colour), pixels);
                 }
             }
         }
@@ -292,10 +320,11 @@ fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
     let mut cells = Class::LEARNED.map(|class| (class, vec![0_u64; CELLS]));
     for example in examples {
         let offsets = light::gain(example.floor, floor).offsets();
-        for &(colour, class, pixels) in &example.colours {
-            let counts = cells.iter_mut().filter(|(learned, _)| *learned == class);
+        for alike in &example.colours {
+            let counts = cells.iter_mut().filter(|(learned, _)| *learned == alike.class);
             counts.for_each(|(_, counts)| {
-                counts[table::index(&offsets, colour)] += u64::from(pixels);
+                counts[table::index(&offsets, alike.colour)] +=
+                    MIXED * u64::from(alike.pure) + u64::from(alike.mixed);
             });
         }
     }

@@ -1,0 +1,164 @@
+//! How fast sensing is, and each of its steps. `cargo bench -p toposlam-robot --bench sensing`; all on
+//! one thread, decoding apart.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use divan::Bencher;
+use image::RgbImage;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{floor_plan::FloorPlan, format::world_file};
+use toposlam_robot::{
+    evaluation::{learned, plans, view::WhichEffects, views::Views},
+    simulator::{Building, Effects, Look, Pose, Rig, render},
+};
+use toposlam_vision::{
+    boundary::Bearings,
+    camera::Camera,
+    cluster::clusters,
+    colour::{ColourModel, FloorRing},
+    corner::corners,
+    ground_view::{GroundView, Unwrapping},
+    hallway::hallway,
+    junction::junction,
+    line::lines,
+    marker::marker,
+    sensing::Sensor,
+    wall::Frame,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// Places of the floor plan shape-8: their name and a pose there.
+const PLACES: [(&str, Pose); 3] = [
+    ("hallway", Pose { position: [0.1, 2.1], heading: 1.5 }),
+    ("corner", Pose { position: [0.1, 7.6], heading: 1.4 }),
+    ("tee", Pose { position: [-0.1, 3.6], heading: 1.7 }),
+];
+
+/// All that is made once, and pictures with all effects, by the width of the picture.
+struct Case {
+    camera: Camera,
+    colours: ColourModel,
+    pictures: [RgbImage; 3],
+}
+
+fn case(width: u32) -> Case {
+    let camera = Camera::superscout().sized([width, width * 3 / 4]);
+    let rig = Rig::new(&camera);
+    let look = Look::named("laboratory").unwrap();
+    let views = Views {
+        seed: 7,
+        plans: plans().unwrap(),
+        random_plans: false,
+        looks: vec![look],
+        sizes: vec![camera.image],
+        effects: WhichEffects::Default,
+    };
+    let colours = learned(&views, look, &camera, &rig).unwrap();
+    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
+    let building = Building::new(&plan("shape-8"), look, None, &effects, 7);
+    let pictures = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));
+    Case { camera, colours, pictures }
+}
+
+fn plan(name: &str) -> FloorPlan {
+    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
+}
+
+/// The whole of sensing, from the decoded image to the scene.
+#[divan::bench(args = [640, 1280], consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
+fn whole<const PLACE: usize>(bencher: Bencher, width: u32) {
+    let case = case(width);
+    let mut sensor = Sensor::new(&case.camera, &case.colours);
+    bencher.bench_local(|| sensor.sense(&case.pictures[PLACE]).unwrap());
+}
+
+/// The common light of an image, and the table for it.
+#[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
+fn step_1_light(bencher: Bencher, width: u32) {
+    let case = case(width);
+    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
+    bencher.bench_local(|| {
+        let gain = case.colours.gain(&ring.colours(&case.pictures[0])).unwrap();
+        table.lit(gain).class([100; 3])
+    });
+}
+
+/// The ground view, its colours classified.
+#[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
+fn step_2_ground_view(bencher: Bencher, width: u32) {
+    let case = case(width);
+    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
+    let unwrapping = Unwrapping::new(&case.camera);
+    let gain = case.colours.gain(&ring.colours(&case.pictures[0])).unwrap();
+    let lit = table.lit(gain);
+    let mut view = GroundView::unseen();
+    bencher.bench_local(|| unwrapping.view(&case.pictures[0], &lit, &mut view));
+}
+
+/// A ground view, to go on from.
+fn view(case: &Case, place: usize) -> GroundView {
+    let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
+    let gain = case.colours.gain(&ring.colours(&case.pictures[place])).unwrap();
+    let mut view = GroundView::unseen();
+    Unwrapping::new(&case.camera).view(&case.pictures[place], &table.lit(gain), &mut view);
+    view
+}
+
+fn bearings(case: &Case) -> Bearings {
+    Bearings::new(case.colours.stripe, case.camera.eye_height())
+}
+
+/// The boundary points.
+#[divan::bench(sample_count = 200, sample_size = 1)]
+fn step_3_boundary(bencher: Bencher) {
+    let case = case(1280);
+    let (view, bearings) = (view(&case, 2), bearings(&case));
+    bencher.bench_local(|| bearings.look(&view));
+}
+
+/// Clusters, their lines and the walls.
+#[divan::bench(sample_count = 200, sample_size = 1)]
+fn step_4_walls(bencher: Bencher) {
+    let case = case(1280);
+    let boundary = bearings(&case).look(&view(&case, 2));
+    bencher.bench_local(|| {
+        let lines = lines(&clusters(&boundary));
+        Frame::of(&lines).map(|frame| frame.walls(&lines))
+    });
+}
+
+/// Whether it is a hallway.
+#[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
+fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
+    let case = case(1280);
+    let boundary = bearings(&case).look(&view(&case, PLACE));
+    let lines = lines(&clusters(&boundary));
+    let frame = Frame::of(&lines).unwrap();
+    let walls = frame.walls(&lines);
+    bencher.bench_local(|| hallway(&walls, &boundary, &frame));
+}
+
+/// Corners, and which junction it is.
+#[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
+fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
+    let case = case(1280);
+    let boundary = bearings(&case).look(&view(&case, PLACE));
+    let lines = lines(&clusters(&boundary));
+    let frame = Frame::of(&lines).unwrap();
+    let walls = frame.walls(&lines);
+    bencher.bench_local(|| junction(&corners(&walls), &walls, &boundary, &frame));
+}
+
+/// The marker.
+#[divan::bench(sample_count = 200, sample_size = 1)]
+fn step_7_marker(bencher: Bencher) {
+    let case = case(1280);
+    let view = view(&case, 1);
+    let boundary = bearings(&case).look(&view);
+    bencher.bench_local(|| marker(&view, &boundary, None));
+}

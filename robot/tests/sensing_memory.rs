@@ -1,0 +1,62 @@
+//! Sensing takes the same memory for the hundredth frame as for the first. The allocator of the whole
+//! program is watched, so this is a program of its own, with one test in it.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{hint::black_box, path::Path};
+
+use image::RgbImage;
+use peak_alloc::PeakAlloc;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::format::world_file;
+use toposlam_robot::{
+    evaluation::{learned, plans, view::WhichEffects, views::Views},
+    simulator::{Building, Effects, Look, Pose, Rig, render},
+};
+use toposlam_vision::{camera::Camera, sensing::Sensor};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Poses in shape-8: in a hallway, at a corner, at a tee.
+const POSES: [Pose; 3] = [
+    Pose { position: [0.1, 2.1], heading: 1.5 },
+    Pose { position: [0.1, 7.6], heading: 1.4 },
+    Pose { position: [-0.1, 3.6], heading: 1.7 },
+];
+
+/// What the pictures and their scenes keep after these rounds, and the most that was taken.
+fn taken(sensor: &mut Sensor, pictures: &[RgbImage], rounds: u32) -> (usize, usize) {
+    MEMORY.reset_peak_usage();
+    for _ in 0..rounds {
+        for picture in pictures {
+            black_box(sensor.sense(picture).unwrap());
+        }
+    }
+    (MEMORY.current_usage(), MEMORY.peak_usage())
+}
+
+#[test]
+fn no_frame_takes_more_memory_than_the_frames_before_it() {
+    let camera = Camera::superscout().sized([640, 480]);
+    let rig = Rig::new(&camera);
+    let look = Look::named("laboratory").unwrap();
+    let views = Views {
+        seed: 1,
+        plans: plans().unwrap(),
+        random_plans: false,
+        looks: vec![look],
+        sizes: vec![camera.image],
+        effects: WhichEffects::Default,
+    };
+    let colours = learned(&views, look, &camera, &rig).unwrap();
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds/shape-8.toml");
+    let plan = world_file::read(&std::fs::read(plan).unwrap()).unwrap().plan.unwrap();
+    let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
+    let building = Building::new(&plan, look, None, &effects, 1);
+    let pictures = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
+    let mut sensor = Sensor::new(&camera, &colours);
+    let first = taken(&mut sensor, &pictures, 1);
+    assert_eq!(taken(&mut sensor, &pictures, 33), first);
+}

@@ -1,0 +1,312 @@
+//! Agreement: an outline held against what is seen on each bearing. Section 3.
+//!
+//! A place is decided on by its walls *and* by its floor: where floor is seen through a wall that an
+//! outline has, or a wall where it has floor, the outline is wrong. A door of the floor's colour looks
+//! like more floor, too; but it is narrower than any hallway, with the wall on either side of it.
+
+use crate::{
+    boundary::{BEARINGS, Boundary, Edge, Sight, direction},
+    outline::{Outline, Side, near},
+    wall::Frame,
+};
+
+/// How an outline agrees with what is seen: a count of bearings for each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Agreement {
+    /// A wall is seen where the outline has one.
+    pub support: u32,
+    /// The floor ends where the outline has a wall, though at no stripe: at a door, or a gap.
+    pub ended: u32,
+    /// The outline has a wall, and nothing is seen there.
+    pub silent: u32,
+    /// Floor is seen behind a wall of the outline, through a door.
+    pub door: u32,
+    /// Floor is seen behind a wall of the outline, and no door explains it.
+    pub through: u32,
+    /// A wall is seen where the outline has floor.
+    pub against: u32,
+    /// In how many of the four directions neither the wall nor the floor of it is seen.
+    pub blank: u32,
+}
+
+/// What is seen on one bearing where an outline has something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    Support,
+    Ended,
+    Silent,
+    Through,
+    Against,
+    /// Floor is seen behind a wall, through a door.
+    Door,
+    /// There is floor, as the outline says.
+    Open,
+    /// There may be floor, as the outline says.
+    Unseen,
+}
+
+/// How many bearings in support one weighs on which the floor ends without a stripe;
+const ENDED: f64 = 0.5;
+/// how many one weighs on which floor is seen through a wall;
+const THROUGH: f64 = 1.5;
+/// and one on which a wall is seen before it.
+const AGAINST: f64 = 3.0;
+/// Walls are seen where there are none on this part of the bearings in support, at most.
+const STRAY: f64 = 0.12;
+/// Walls that are farther away are not looked for, in metres: a pixel covers as much as a stripe.
+const FAR: f64 = 2.1;
+/// A direction to which so few bearings lead need not be seen, as a part of all;
+const NARROW: f64 = 0.02;
+/// of others, at least this part is.
+const BLANK: f64 = 0.25;
+/// Where it should be open, floor is seen for this part of the way.
+const OPEN: f64 = 0.8;
+/// A gap in a wall is a door, and no hallway, if it is narrower than this part of a hallway.
+const DOOR: f64 = 0.75;
+/// Beside a door, the wall is seen over such a length, in metres,
+const BESIDE: f64 = 0.30;
+/// on this part of the bearings.
+const UNBROKEN: f64 = 0.75;
+
+impl Outline {
+    /// How the outline agrees with what is seen, on every so many bearings.
+    #[must_use]
+    pub fn agreement(&self, boundary: &Boundary, frame: &Frame, every: usize) -> Agreement {
+        let mut agreement = Agreement::default();
+        let mut towards = [Seen::default(); 4];
+        let mut gap = None;
+        for bearing in (0..BEARINGS).step_by(every) {
+            let ray = frame.framed(direction(bearing));
+            let Some((range, number)) = self.first_on(ray).filter(|&(range, _)| range <= FAR)
+            else {
+                continue;
+            };
+            let side = &self.sides[number];
+            let sight = &boundary.sights[bearing];
+            let mut held = self.held(side, range, ray, sight);
+            if held == Held::Through {
+                let (along, _) = side.along.split();
+                let at = range * ray[along];
+                let in_gap = |gap: &Gap| gap.side == number && gap.from <= at && at <= gap.to;
+                gap = gap.filter(in_gap).or_else(|| self.gap(number, bearing, at, boundary, frame));
+                if gap.is_some() {
+                    held = Held::Door;
+                }
+            }
+            let seen = &mut towards[side.towards];
+            seen.due += u32::from(held != Held::Door);
+            match held {
+                Held::Support => agreement.support += 1,
+                Held::Ended => agreement.ended += 1,
+                Held::Silent => agreement.silent += 1,
+                Held::Door => agreement.door += 1,
+                Held::Through => agreement.through += 1,
+                Held::Against => agreement.against += 1,
+                Held::Open | Held::Unseen => {}
+            }
+            seen.seen += u32::from(matches!(held, Held::Support | Held::Ended | Held::Open));
+        }
+        agreement.blank = towards.iter().filter(|seen| seen.is_blank(every)).count() as u32;
+        agreement
+    }
+
+    /// What is seen on a bearing that meets a side first, so far away.
+    fn held(&self, side: &Side, at: f64, ray: [f64; 2], sight: &Sight) -> Held {
+        // How far in front of the side something is, perpendicular to it.
+        let (_, across) = side.along.split();
+        let before = |range: f64| (at - range) * ray[across].abs();
+        let is_wall = side.is_wall();
+        let fits = |edge: &Edge| {
+            let near = near(edge.range);
+            is_wall && before(edge.range).abs() < near
+                || self.distance(ray.map(|part| edge.range * part)) < near
+        };
+        match sight.edges().find(fits) {
+            Some(edge) if edge.width * ray[across].abs() <= 1.0 => Held::Support,
+            // What is so wide is no stripe, but a wall of its colour, or a shadow.
+            Some(_) => Held::Silent,
+            None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
+            None if is_wall && before(sight.floor).abs() < near(at) => Held::Ended,
+            None if is_wall && before(sight.floor) < -near(at) => Held::Through,
+            None if is_wall => Held::Silent,
+            None if sight.floor >= OPEN * at => Held::Open,
+            None => Held::Unseen,
+        }
+    }
+
+    /// The door, if there is one, through which floor is seen where a bearing meets a wall: the wall
+    /// goes on, on either side, nearer than the other side of a hallway would be.
+    fn gap(
+        &self,
+        number: usize,
+        bearing: usize,
+        at: f64,
+        boundary: &Boundary,
+        frame: &Frame,
+    ) -> Option<Gap> {
+        let side = &self.sides[number];
+        let (along, across) = side.along.split();
+        // Where the wall is seen on the bearings that follow, until they leave it or are too far.
+        let on_wall = |bearing: usize| {
+            let ray = frame.framed(direction(bearing));
+            let range = side.offset / ray[across];
+            let on = range * ray[along];
+            let within = range > 0.0 && range <= FAR;
+            let seen = |edge: Edge| ((edge.range - range) * ray[across]).abs() < near(range);
+            within.then(|| (on, boundary.sights[bearing].edges().any(seen)))
+        };
+        let edge = |step: usize| {
+            let bearings = (1..BEARINGS).map(|steps| (bearing + steps * step) % BEARINGS);
+            let mut wall = bearings.map_while(on_wall).skip_while(|&(_, seen)| !seen);
+            let (first, _) = wall.next().filter(|(on, _)| (on - at).abs() < DOOR * self.width)?;
+            let (mut all, mut seen, mut length) = (1, 1, 0.0);
+            for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= BESIDE) {
+                (all, seen, length) = (all + 1, seen + u32::from(is_seen), (on - first).abs());
+            }
+            let unbroken = f64::from(seen) >= UNBROKEN * f64::from(all);
+            (unbroken && length >= 0.8 * BESIDE).then_some(first)
+        };
+        let (one, other) = (edge(1)?, edge(BEARINGS - 1)?);
+        let gap = Gap { side: number, from: one.min(other), to: one.max(other) };
+        (gap.to - gap.from < DOOR * self.width).then_some(gap)
+    }
+}
+
+/// A door in a side of an outline: from where to where along it, in metres.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    side: usize,
+    from: f64,
+    to: f64,
+}
+
+/// On how many bearings something should be seen, and is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    due: u32,
+    seen: u32,
+}
+
+impl Seen {
+    /// Whether it is not seen at all, though many bearings lead there.
+    fn is_blank(self, every: usize) -> bool {
+        let Self { due, seen } = self;
+        f64::from(due) > bearings(NARROW, every) && f64::from(seen) < BLANK * f64::from(due)
+    }
+}
+
+impl Agreement {
+    /// What supports the outline, less what does not, which weighs more.
+    #[must_use]
+    pub fn balance(&self) -> f64 {
+        self.good() - THROUGH * f64::from(self.through) - AGAINST * f64::from(self.against)
+    }
+
+    /// The part of what is seen that supports the outline, from 0 to 1.
+    #[must_use]
+    pub fn trust(&self) -> f64 {
+        self.good() / (self.good() + f64::from(self.through + self.against)).max(1.0)
+    }
+
+    /// The part of the outline's walls that is seen, from 0 to 1.
+    #[must_use]
+    pub fn cover(&self) -> f64 {
+        let all = self.support + self.ended + self.silent + self.door + self.through + self.against;
+        self.good() / f64::from(all.max(1))
+    }
+
+    /// In bearings on which a stripe is seen where it should be.
+    fn good(&self) -> f64 {
+        f64::from(self.support) + ENDED * f64::from(self.ended)
+    }
+
+    /// Whether so much of what is seen supports the outline, little of it stands against it, and
+    /// there is more wall than door.
+    #[must_use]
+    pub fn holds(&self, trust: f64) -> bool {
+        self.trust() >= trust
+            && f64::from(self.against) <= STRAY * self.good()
+            && f64::from(self.door) <= self.good()
+    }
+}
+
+/// A number of bearings as a part of all.
+#[must_use]
+pub fn bearings(part: f64, every: usize) -> f64 {
+    part * (BEARINGS / every) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        boundary::Bearings,
+        colour::{Stripe, StripeKind},
+        drawn::{self, Place},
+        outline::Square,
+        wall::Axis,
+    };
+
+    const HALF: f64 = 0.8;
+    const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn::TAPE };
+
+    fn seen(place: &Place) -> Boundary {
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
+        Bearings::new(stripe, 1.05).look(&place.seen_from([0.0, 0.0], 0.0))
+    }
+
+    fn held(doors: [bool; 4], boundary: &Boundary) -> Agreement {
+        Outline::junction(doors, SQUARE).agreement(boundary, &Frame::along(0.0), 1)
+    }
+
+    #[test]
+    fn the_walls_of_a_junction_support_its_own_outline_and_no_other() {
+        let forms: Vec<[bool; 4]> = (1..15_u32)
+            .map(|form| std::array::from_fn(|door| form & 1 << door != 0))
+            .filter(|doors: &[bool; 4]| *doors != [true, false, true, false])
+            .filter(|doors| *doors != [false, true, false, true])
+            .collect();
+        for &doors in &forms {
+            let boundary = seen(&Place::junction(doors, HALF));
+            let own = held(doors, &boundary);
+            assert!(own.trust() > 0.99 && own.cover() > 0.9, "{doors:?}: {own:?}");
+            assert_eq!((own.against, own.blank), (0, 0), "{doors:?}");
+            for other in forms.iter().filter(|&&other| other != doors) {
+                let agreement = held(*other, &boundary);
+                assert!(!agreement.holds(0.85), "{other:?} at {doors:?}: {agreement:?}");
+                assert!(agreement.balance() < own.balance() - 100.0, "{other:?} at {doors:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn floor_seen_through_a_door_is_no_opening_and_through_a_gap_as_wide_as_a_hallway_it_is() {
+        let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
+        let beside = |gap: [f64; 2]| {
+            let mut hallway = Place::junction([true, false, true, false], HALF);
+            hallway.floor.push([gap[0], 0.0, gap[1], 9.0]);
+            outline.agreement(&seen(&hallway), &Frame::along(0.0), 1)
+        };
+        for from in [-0.45, -0.2, 0.1] {
+            let door = beside([from, from + 0.9]);
+            assert_eq!(door.through, 0, "a door from {from}: {door:?}");
+            assert!(door.door > 50, "a door from {from}: {door:?}");
+        }
+        let opening = beside([-HALF, HALF]);
+        assert!(opening.through > 150 && !opening.holds(0.7), "{opening:?}");
+    }
+
+    #[test]
+    fn a_direction_in_which_nothing_is_seen_is_blank() {
+        let doors = [false, true, true, true];
+        let mut boundary = seen(&Place::junction(doors, HALF));
+        for bearing in 0..BEARINGS / 8 {
+            boundary.sights[bearing] = Sight::default();
+            boundary.sights[BEARINGS - 1 - bearing] = Sight::default();
+        }
+        let outline = Outline::junction(doors, SQUARE);
+        let agreement = outline.agreement(&boundary, &Frame::along(0.0), 1);
+        assert_eq!(agreement.blank, 1, "{agreement:?}");
+        assert!(agreement.trust() > 0.99, "what is not seen does not speak against it");
+    }
+}
