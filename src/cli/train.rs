@@ -86,7 +86,7 @@ enum On {
     Wall,
 }
 
-/// As many parts as people choose who do not think about it.
+/// The usual number of parts.
 const FOLDS: usize = 5;
 
 /// An image, and its labels.
@@ -148,9 +148,9 @@ impl Arguments {
         output::write_whole(&self.out, model.to_toml().as_bytes())?;
         let report = Report { training: &training, left_out, stripe, validation };
         if self.json {
-            report.print_json(out)?
+            report.print_json(out)?;
         } else {
-            report.print(out)?
+            report.print(out)?;
         }
         Ok(Outcome::Holds)
     }
@@ -180,15 +180,15 @@ impl Arguments {
             let cause = "there is no image in this folder: no .png, .jpg or .jpeg";
             return Err(Failure::in_file(&self.images, cause));
         }
-        let pairs: Result<Vec<_>, _> = images
+        let pairs: Result<Vec<Pair>, Failure> = images
             .into_iter()
-            .map(|(stem, image)| match labels.remove(&stem) {
-                Some(labels) => Ok(Pair { image, labels }),
-                None => {
+            .map(|(stem, image)| {
+                let labels = labels.remove(&stem).ok_or_else(|| {
                     let expected = named(&self.labels, &stem);
                     let cause = format!("its labels, {}, are not there", expected.display());
-                    Err(Failure::in_file(&image, cause))
-                }
+                    Failure::in_file(&image, cause)
+                })?;
+                Ok(Pair { image, labels })
             })
             .collect();
         let pairs = pairs?;

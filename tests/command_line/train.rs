@@ -232,6 +232,7 @@ fn an_image_without_light_is_left_out_and_named() {
 type Breaking = fn(&Set) -> String;
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a list")]
 fn what_cannot_be_learned_from_is_refused_with_its_file() {
     let cases: [(&str, Breaking); 17] = [
         ("no-image", |set| {

@@ -64,6 +64,8 @@ impl<'bytes> ImageFile<'bytes> {
 
     /// The image. No bytes make it panic.
     ///
+    /// Takes at most 16 bytes of memory for each pixel, besides what [`Self::open`] takes.
+    ///
     /// # Errors
     /// If it has more pixels than any camera's, or cannot be decoded.
     pub fn image(self) -> Result<RgbImage, ImageFileError> {

@@ -23,6 +23,7 @@ pub mod camera;
 pub mod cluster;
 pub mod colour;
 pub mod corner;
+pub mod fuzz;
 pub mod ground_view;
 pub mod hallway;
 pub mod image_file;
