@@ -16,6 +16,9 @@ use toposlam_vision::{
 use crate::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [320, 240];
+/// A PNG of 69 bytes whose head promises two thousand million.
+const PROMISES_MUCH: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/image/error-promises-much");
 const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
 
 /// A folder with images, their labels and the calibration of their camera.
@@ -234,7 +237,7 @@ type Breaking = fn(&Set) -> String;
 #[test]
 #[expect(clippy::too_many_lines, reason = "a list")]
 fn what_cannot_be_learned_from_is_refused_with_its_file() {
-    let cases: [(&str, Breaking); 17] = [
+    let cases: [(&str, Breaking); 19] = [
         ("no-image", |set| {
             fs::remove_dir_all(set.0.join("images")).unwrap();
             fs::create_dir(set.0.join("images")).unwrap();
@@ -281,6 +284,14 @@ fn what_cannot_be_learned_from_is_refused_with_its_file() {
             set.paint("images/7.png", [640, 480], [90; 3]);
             let image = set.path("images/7.png");
             format!("{image}: the image has 640 x 480 pixels; those of the calibrated camera have ")
+        }),
+        ("image-promises-much", |set| {
+            fs::copy(PROMISES_MUCH, set.0.join("images/7.png")).unwrap();
+            format!("{}: the image has 16384 x 16384 pixels; those of", set.path("images/7.png"))
+        }),
+        ("labels-promise-much", |set| {
+            fs::copy(PROMISES_MUCH, set.0.join("labels/7.png")).unwrap();
+            format!("{}: the labels have 16384 x 16384 pixels; their", set.path("labels/7.png"))
         }),
         ("labels-size", |set| {
             set.paint("labels/7.png", [240, 320], [0, 255, 0]);
