@@ -35,8 +35,9 @@ use super::{
 ///
 ///   floor (0,255,0)  stripe (255,0,0)  marker (0,0,255)  other (0,0,0)  ignore (255,255,255)
 ///
-/// What lies beyond 3 m, on the robot's body or outside of the mirror is ignored anyway. Images that
-/// are too dark or too bright to tell the light by the floor are left out, and named.
+/// Floor, stripe and marker must be there. What lies beyond 3 m, on the robot's body or outside of the
+/// mirror is ignored anyway. Images that are too dark or too bright to tell the light by the floor are
+/// left out, and named.
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
