@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{fs, path::Path, process::Command};
+use std::{env, fs, path::Path, process::Command};
 
 use toposlam::{
     model::format::{named_world::NamedWorld, world_file},
@@ -24,10 +24,38 @@ fn toposlam(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_readme_shows_what_check_and_counterexample_print() {
+fn the_readme_shows_what_check_counterexample_and_train_print() {
     let readme = read("README.md");
-    let blocks = readme.split("```text\n").skip(1).map(|block| block.split_once("```").unwrap().0);
-    assert_eq!(blocks.collect::<Vec<_>>(), [toposlam(&["check"]), toposlam(&["counterexample"])]);
+    let shown = blocks(&readme, "text");
+    let [check, counterexample] = ["check", "counterexample"].map(|verb| toposlam(&[verb]));
+    assert_eq!(shown, [check, counterexample, trained(&readme)]);
+}
+
+fn blocks<'t>(text: &'t str, kind: &str) -> Vec<&'t str> {
+    let begin = format!("```{kind}\n");
+    text.split(&begin).skip(1).map(|block| block.split_once("```").unwrap().0).collect()
+}
+
+/// What the README's own commands print, line by line up to that which trains.
+fn trained(readme: &str) -> String {
+    let chain = blocks(readme, "sh").into_iter().find(|block| block.contains("toposlam train"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("worlds")).unwrap();
+    fs::write(folder.join("worlds/shape-8.toml"), read("worlds/shape-8.toml")).unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_toposlam")).parent().unwrap().to_owned();
+    let others = env::var_os("PATH").unwrap();
+    let path = env::join_paths([program].into_iter().chain(env::split_paths(&others))).unwrap();
+    for command in chain.unwrap().lines() {
+        let mut bash = Command::new("bash");
+        bash.args(["-euo", "pipefail", "-c", command]).current_dir(&folder).env("PATH", &path);
+        let output = bash.output().unwrap();
+        assert!(output.status.success(), "{command}: {output:?}");
+        if command.starts_with("toposlam train") {
+            return String::from_utf8(output.stdout).unwrap();
+        }
+    }
+    panic!("no command trains")
 }
 
 /// Draw them again with the commands of the README, look at them, and commit them.

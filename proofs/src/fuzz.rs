@@ -1,7 +1,7 @@
 //! What fuzzers try to break: for each parser, and for Algorithm 1, what it promises of any bytes.
 //!
-//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by a test on stable Rust, on the seeds
-//! in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
+//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by `tests/fuzz.rs` on stable Rust, on
+//! the seeds in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
 
 use std::fmt;
 

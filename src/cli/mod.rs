@@ -21,6 +21,7 @@ mod proofs;
 mod render;
 mod scene;
 mod sense;
+mod train;
 mod walk_page;
 mod with_marker;
 mod words;
@@ -64,6 +65,7 @@ enum Verb {
     Proofs(proofs::Arguments),
     Render(render::Arguments),
     Calibrate(calibrate::Arguments),
+    Train(train::Arguments),
     Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
     Completions(completions::Arguments),
@@ -132,6 +134,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
         Some(Verb::Calibrate(verb)) => verb.run(&mut out),
+        Some(Verb::Train(verb)) => verb.run(&mut out),
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),

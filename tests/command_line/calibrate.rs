@@ -185,29 +185,45 @@ fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
         fs::write(inputs.join(name), bytes).unwrap();
         inputs.join(name).to_str().unwrap().to_owned()
     };
-    let picture = |name: &str, size: [u32; 2]| {
+    let picture = |name: &str, size: [u32; 2], colour: [u8; 3]| {
         let path = inputs.join(name);
-        let image = RgbImage::from_pixel(size[0], size[1], Rgb([90, 80, 70]));
+        let image = RgbImage::from_pixel(size[0], size[1], Rgb(colour));
         image.save_with_format(&path, ImageFormat::Png).unwrap();
         path.to_str().unwrap().to_owned()
     };
     let image = LABORATORY.files[0].as_str();
     let [flat, small, tiny] = [
-        picture("flat.png", [640, 480]),
-        picture("small.png", [320, 240]),
-        picture("tiny.png", [4, 4]),
+        picture("flat.png", [640, 480], [90, 80, 70]),
+        picture("small.png", [320, 240], [90, 80, 70]),
+        picture("tiny.png", [4, 4], [90, 80, 70]),
     ];
     let text = input("text.png", b"this is no image");
+    let jpeg = fs::read(image).unwrap();
+    let half_jpeg = input("half.jpg", &jpeg[..jpeg.len() / 2]);
+    let png = fs::read(&flat).unwrap();
+    let half_png = input("half.png", &png[..png.len() / 2]);
+    let black = picture("black.png", [640, 480], [0; 3]);
+    let white = picture("white.png", [640, 480], [255; 3]);
+    let known = calibration::to_toml(&Camera::superscout());
+    let absurd = input("absurd.toml", known.replace("= 0.9 ", "= 90 ").as_bytes());
+    let promises_much =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/image/error-promises-much");
     let bad = input("bad.toml", b"[camera]\nkind = \"pinhole\"\n");
     let other = concat!(env!("CARGO_MANIFEST_DIR"), "/vision/tests/cameras/ocamcalib.toml");
     let out = folder.join("camera.toml").to_str().unwrap().to_owned();
     let mask = folder.join("mask.png").to_str().unwrap().to_owned();
-    let cases: [(&[&str], String); 15] = [
+    let cases: [(&[&str], String); 21] = [
         (&[&flat], format!("{flat}: no mirror is seen in the images: no circle is brighter inside than outside over a quarter of its circumference")),
         (&[&flat, &flat], format!("{flat} and 1 more: no mirror is seen")),
         (&[image, &small], format!("{small}: the image is 320 by 240 pixels, but {image} is 640 by 480")),
         (&[&tiny], format!("{tiny}: the image is 4 by 4 pixels; its sides should be from 16 to 16384")),
         (&[&text], format!("{text}: this is not an image")),
+        (&[&half_png], format!("{half_png}: this cannot be read as an image: ")),
+        (&[&half_jpeg], format!("{half_jpeg}: this cannot be read as an image: the file is truncated")),
+        (&[promises_much], format!("{promises_much}: the image has 16384 x 16384 pixels, which are too many")),
+        (&[&black], format!("{black}: no mirror is seen in the images")),
+        (&[&white], format!("{white}: no mirror is seen in the images")),
+        (&[image, "--start", &absurd], format!("{absurd}: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10")),
         (&["gone.png"], "gone.png: cannot be read: ".to_owned()),
         (&[image, "--start", &bad], format!("{bad}: camera.kind: here should be \"spherical-mirror\"")),
         (&[image, "--start", other], format!("{other}: camera.kind: only a spherical mirror is calibrated by its rim")),

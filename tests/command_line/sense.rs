@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, LazyLock},
 };
 
-use image::{ImageFormat, RgbImage};
+use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::Value;
 use toposlam_robot::{
     evaluation::{learned, view::WhichEffects, views::Views},
@@ -17,6 +17,9 @@ use toposlam_vision::camera::{Camera, calibration};
 use crate::{folder, names_in, objects, read_world, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [640, 480];
+/// A PNG of 69 bytes whose head promises two thousand million.
+const PROMISES_MUCH: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/image/error-promises-much");
 
 /// A folder with the calibration of a camera and the colours of a look.
 struct Files {
@@ -153,17 +156,37 @@ fn people_get_words_and_a_picture_of_each_step() {
 
 #[test]
 fn a_useless_image_is_unknown_with_the_reason() {
-    let of = |name: &str, colour: [u8; 3]| {
+    let saved = |name: &str, image: RgbImage| {
         let path = FILES.folder.join(name);
-        RgbImage::from_pixel(SIZE[0], SIZE[1], image::Rgb(colour)).save(&path).unwrap();
+        image.save(&path).unwrap();
         path.to_str().unwrap().to_owned()
     };
-    let (black, white) = (of("black.png", [0; 3]), of("white.png", [255; 3]));
-    for object in objects(&said(sense(&[&black, &white], &["--json"]))) {
-        assert_eq!(object["scene"], "unknown", "{object}");
-        assert!(object["reason"].is_string() && object["marker"].is_null(), "{object}");
+    let of = |name, colour| saved(name, RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb(colour)));
+    let mut state = 1_u32;
+    let mut level = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 24) as u8
+    };
+    let noise = RgbImage::from_fn(SIZE[0], SIZE[1], |_, _| Rgb([level(), level(), level()]));
+    // Where all is of one colour, it is that of the floor.
+    let cases = [
+        (of("black.png", [0; 3]), "no-floor"),
+        (of("white.png", [255; 3]), "no-floor"),
+        (saved("noise.png", noise), "no-floor"),
+        (of("wall.png", [206, 190, 158]), "few-walls"),
+    ];
+    let images = cases.each_ref().map(|(path, _)| path.as_str());
+    let told = objects(&said(sense(&images, &["--json"])));
+    assert_eq!(told.len(), cases.len());
+    for (object, (path, reason)) in told.iter().zip(&cases) {
+        assert_eq!(
+            (&object["image"], &object["scene"]),
+            (&path.as_str().into(), &"unknown".into())
+        );
+        assert_eq!(object["reason"], *reason, "{object}");
+        assert!(object["marker"].is_null(), "{object}");
+        assert_eq!(said(sense(&[path], &[])), format!("{path}: unknown: {reason}\n"));
     }
-    assert!(said(sense(&[&black], &[])).starts_with(&format!("{black}: unknown: ")));
 }
 
 #[test]
@@ -186,6 +209,10 @@ fn what_is_no_image_of_the_camera_is_refused_with_the_reason() {
             small_path.to_str().unwrap().to_owned(),
             "the image has 320 x 240 pixels; those of the calibrated camera have 640 x 480",
         ),
+        (
+            PROMISES_MUCH.to_owned(),
+            "the image has 16384 x 16384 pixels; those of the calibrated camera have 640 x 480",
+        ),
         (FILES.folder.join("none.png").to_str().unwrap().to_owned(), "cannot be read: "),
     ];
     for (path, cause) in refused {
@@ -197,21 +224,77 @@ fn what_is_no_image_of_the_camera_is_refused_with_the_reason() {
     }
 }
 
-#[test]
-fn colours_of_another_version_and_a_calibration_without_a_camera_are_refused() {
+/// Runs with one of the two files changed, and answers the message that refuses it.
+fn refusal(changed: &str, from: &str, to: &str) -> String {
     let image = rendered("image.png", "2,4,0");
-    let colours = fs::read_to_string(&FILES.colours).unwrap();
-    let later = written("later.toml", colours.replacen("version = 1", "version = 2", 1).as_bytes());
-    let nothing = written("nothing.toml", b"");
-    for (calibration, colours) in [(&FILES.calibration, &later), (&nothing, &FILES.colours)] {
-        let output = run(["sense", &image, "--calibration", calibration, "--colours", colours]);
-        let message = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert_eq!(message.matches("error:").count(), 1, "{message}");
+    let [mut calibration, mut colours] = [FILES.calibration.clone(), FILES.colours.clone()];
+    let file = if changed == "camera.toml" { &mut calibration } else { &mut colours };
+    let text = fs::read_to_string(&*file).unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    *file = written(&format!("changed-{changed}"), text.replace(from, to).as_bytes());
+    let message = format!("error: {file}: ");
+    let output = run(["sense", &image, "--calibration", &calibration, "--colours", &colours]);
+    let told = stderr(&output);
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{told}");
+    assert_eq!(told.lines().count(), 1, "{told}");
+    told.strip_prefix(&message).unwrap_or_else(|| panic!("{told}")).trim_end().to_owned()
+}
+
+#[test]
+fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
+    let cases = [
+        ("camera_height = 0.9", "", "camera: the key `camera_height` is missing"),
+        (
+            "camera_height = 0.9",
+            "camera_height = 90",
+            "camera.camera_height: 90 is out of range; a height above the floor in metres lies \
+             between 0.01 and 10",
+        ),
+        (
+            "mirror_radius = 0.05",
+            "mirror_radius = -1",
+            "camera.mirror_radius: -1 is out of range; the radius of a mirror in metres lies between \
+             0.001 and 1",
+        ),
+        (
+            "image = [640, 480]",
+            "image = [640, 480000]",
+            "camera.image: 480000 is out of range; the side of an image in pixels lies between 16 \
+             and 16384",
+        ),
+        (
+            "seen_from = \"below\"",
+            "seen_from = \"aside\"",
+            "camera.seen_from: here should be \"below\" or \"above\", not another text",
+        ),
+    ];
+    for (from, to, message) in cases {
+        assert_eq!(refusal("camera.toml", from, to), message);
     }
-    let message =
-        stderr(&run(["sense", &image, "--calibration", &FILES.calibration, "--colours", &later]));
-    assert!(message.contains("version"), "{message}");
+    let image = rendered("image.png", "2,4,0");
+    let nothing = written("nothing.toml", b"");
+    let output = run(["sense", &image, "--calibration", &nothing, "--colours", &FILES.colours]);
+    assert_eq!(stderr(&output), format!("error: {nothing}: the file is empty\n"));
+}
+
+#[test]
+fn colours_that_were_never_learned_are_refused_with_what_can_be() {
+    let cases = [
+        ("version = 1", "version = 2", "this is version 2 of colour files; only version 1 is read"),
+        ("version = 1", "", "the key `version` is missing"),
+        (
+            "width = 0.05",
+            "width = 5.0",
+            "stripe.width: the width in metres is 5; it can be from 0.005 to 0.5",
+        ),
+        ("[priors]", "[prior]", "prior: unknown key; here can stand: "),
+        ("floor = [\n", "floor = [\n  [40, 0, 0, 1],\n", "histograms.floor[0]: the value is 40; "),
+        ("[histograms]", "[histograms", "line "),
+    ];
+    for (from, to, message) in cases {
+        let refusal = refusal("colours.toml", from, to);
+        assert!(refusal.starts_with(message), "{refusal}");
+    }
 }
 
 #[test]

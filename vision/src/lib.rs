@@ -2,6 +2,7 @@
 //!
 //! From the ground up:
 //!
+//! * [`image_file`]: the image of a PNG or JPEG file;
 //! * [`colour`]: floor, stripe, marker or something else, by a Bayes classifier on HSV colours;
 //! * [`camera`]: which point of the floor a pixel shows;
 //! * [`ground_view`]: the floor from straight above;
@@ -23,8 +24,10 @@ pub mod camera;
 pub mod cluster;
 pub mod colour;
 pub mod corner;
+pub mod fuzz;
 pub mod ground_view;
 pub mod hallway;
+pub mod image_file;
 pub mod junction;
 pub mod line;
 pub mod marker;

@@ -120,6 +120,12 @@ fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
         let found = read(changed(&toml, from, to).as_bytes(), b"").unwrap_err().to_string();
         assert!(found.starts_with(message) && !found.contains('\n'), "{to}: {found}");
     }
+    let far = changed(&changed(&toml, "rim = 450.0", ""), "focal = 1272.8", "focal = 2.5");
+    assert_eq!(
+        read(far.as_bytes(), b"").unwrap_err().to_string(),
+        "camera.mirror_distance: by focal, mirror_radius and mirror_distance the rim is at \
+         0.88 pixels; it lies between 1 and 1000000"
+    );
     assert!(read(changed(&toml, "rim = 450.0", "rim = 458.9").as_bytes(), b"").is_ok());
     assert!(read(changed(&toml, "rim = 450.0", "").as_bytes(), b"").is_ok());
     assert_eq!(read(b" \n", b"").unwrap_err().to_string(), "the file is empty");

@@ -112,6 +112,7 @@ fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
     counts.map(|[all, right]| right / all)
 }
 
+// paper: sense.classify
 #[test]
 fn colours_are_recognised_under_a_light_that_was_never_seen() {
     let ring = FloorRing::new(&CAMERA);

@@ -20,7 +20,7 @@ pub use file::{Cause, ColourFileError, Place};
 pub use light::{FloorRing, LightError};
 pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
-pub use training::{Example, ExampleError, Training, TrainingError, View};
+pub use training::{Example, ExampleError, Seen, Training, TrainingError, View};
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

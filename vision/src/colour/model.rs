@@ -104,6 +104,7 @@ impl ColourModel {
     }
 
     /// The class of each bin: that of the greatest prior times density.
+    // paper: sense.classify, marker-sense.colour
     fn classes(&self) -> Vec<Class> {
         let mut best = vec![(0.0, Class::Unknown); BINS];
         let smoothed = self.smoothing.of(&self.histograms);

@@ -178,7 +178,7 @@ pub enum TrainingError {
     /// There is nothing to learn a class from.
     #[error("no pixel within 3 m is labelled as {}", class.name())]
     NoPixel {
-        /// Floor or stripe.
+        /// The class: without floor or stripe there is no model, without marker no marker.
         class: Class,
     },
     /// The images cannot be parted so.
@@ -197,6 +197,15 @@ pub enum TrainingError {
         /// Why nothing can be learned from the others.
         cause: Box<TrainingError>,
     },
+}
+
+/// How much of a class has been seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// In how many images.
+    pub images: usize,
+    /// In how many pixels of them, within the range of sensing.
+    pub pixels: u64,
 }
 
 /// What has been seen of a building, to learn its colours from.
@@ -243,6 +252,19 @@ impl Training {
     #[must_use]
     pub fn images(&self) -> usize {
         self.examples.len()
+    }
+
+    /// How much of a class has been seen.
+    #[must_use]
+    pub fn seen(&self, class: Class) -> Seen {
+        let pixels = self.examples.iter().map(|example| {
+            let of_class = example.colours.iter().filter(|(_, is, _)| *is == class);
+            of_class.map(|&(_, _, pixels)| u64::from(pixels)).sum::<u64>()
+        });
+        pixels.filter(|&pixels| pixels > 0).fold(Seen::default(), |seen, pixels| Seen {
+            images: seen.images + 1,
+            pixels: seen.pixels + pixels,
+        })
     }
 
     /// What is learned from all that has been seen.

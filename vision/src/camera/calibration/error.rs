@@ -106,6 +106,19 @@ pub enum Cause {
         /// What it should be.
         expected: f64,
     },
+    /// A mirror that would be seen as a dot, or as larger than any image.
+    #[error(
+        "by focal, mirror_radius and mirror_distance the rim is at {rim:.2} pixels; it lies between {low} \
+         and {high}"
+    )]
+    RimOutOfRange {
+        /// Where it is, in pixels.
+        rim: f64,
+        /// The least that it can be.
+        low: f64,
+        /// The most that it can be.
+        high: f64,
+    },
     /// A file that is named cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),

@@ -92,11 +92,17 @@ fn spherical_mirror(values: &toml::Table) -> Result<Camera, CalibrationError> {
     )?;
     let camera_height = table.number("camera_height", HEIGHT)?;
     let mirror = SphericalMirror { centre, focal, mirror_radius, mirror_distance, camera_height };
+    let expected = mirror.rim();
     if table.has("rim") {
-        let (rim, expected) = (table.number("rim", RIM)?, mirror.rim());
+        let rim = table.number("rim", RIM)?;
         if (rim - expected).abs() > 0.02 * expected {
             return Err(table.error("rim", Cause::Rim { rim, expected }));
         }
+    }
+    let Range { low, high, .. } = RIM;
+    if !(low..=high).contains(&expected) {
+        let cause = Cause::RimOutOfRange { rim: expected, low, high };
+        return Err(table.error("mirror_distance", cause));
     }
     on_robot(&table, image, Optics::SphericalMirror(mirror))
 }

@@ -35,7 +35,7 @@ pub fn to_toml(camera: &Camera) -> String {
             line("camera_height", height, "pinhole above the floor");
             line(
                 "rim",
-                number((10.0 * mirror.rim()).round() / 10.0),
+                number((100.0 * mirror.rim()).round() / 100.0),
                 "pixels; follows from the others",
             );
         }

@@ -3,23 +3,49 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::{collections::BTreeSet, fs, path::PathBuf};
+use std::{
+    collections::BTreeSet,
+    fs,
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use proptest::{
     collection::vec,
     prelude::*,
-    sample::Index,
+    sample::{Index, select},
     test_runner::{RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner},
 };
 use toposlam_model::format::{
     plantri::{self, Code},
     world_file,
 };
-use toposlam_proofs::fuzz::{TARGETS, Target};
+use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
+
+/// A body for a fuzzer, and where it is.
+#[derive(Clone, Copy)]
+struct Target {
+    name: &'static str,
+    body: fn(&[u8]),
+    /// The package of the body.
+    package: &'static str,
+}
+
+/// Every body: of worlds and of choices, and of sensing.
+fn targets() -> Vec<Target> {
+    let proofs = toposlam_proofs::fuzz::TARGETS.iter().map(|target| Target {
+        name: target.name,
+        body: target.body,
+        package: "toposlam_proofs",
+    });
+    let vision = toposlam_vision::fuzz::TARGETS.iter();
+    let vision = vision.map(|&(name, body)| Target { name, body, package: "toposlam_vision" });
+    proofs.chain(vision).collect()
+}
 
 /// A file or folder of the repository.
 fn repository(path: &str) -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(path)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
 /// What stands in a folder, in the order of the names.
@@ -37,18 +63,42 @@ fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
 }
 
 fn target(name: &str) -> Target {
-    *TARGETS.iter().find(|target| target.name == name).unwrap()
+    targets().into_iter().find(|target| target.name == name).unwrap()
 }
 
 /// One change of a file.
 #[derive(Clone, Debug)]
 enum Edit {
-    Truncate { at: Index },
-    Delete { at: Index, bytes: usize },
-    Flip { at: Index, bit: u8 },
-    Replace { at: Index, byte: u8 },
-    Insert { at: Index, bytes: Vec<u8> },
-    Splice { at: Index, from: Index, bytes: usize, of: Index },
+    Truncate {
+        at: Index,
+    },
+    Delete {
+        at: Index,
+        bytes: usize,
+    },
+    Flip {
+        at: Index,
+        bit: u8,
+    },
+    Replace {
+        at: Index,
+        byte: u8,
+    },
+    Insert {
+        at: Index,
+        bytes: Vec<u8>,
+    },
+    Splice {
+        at: Index,
+        from: Index,
+        bytes: usize,
+        of: Index,
+    },
+    /// Another number in place of one, where the file has any.
+    Number {
+        at: Index,
+        number: String,
+    },
 }
 
 impl Edit {
@@ -83,8 +133,29 @@ impl Edit {
                 let at = place(at);
                 file.splice(at..at, part.iter().copied());
             }
+            Self::Number { at, number } => {
+                let numbers = numbers_in(file);
+                if !numbers.is_empty() {
+                    let place = numbers[at.index(numbers.len())].clone();
+                    file.splice(place, number.bytes());
+                }
+            }
         }
     }
+}
+
+/// Where numbers stand in a text.
+fn numbers_in(text: &[u8]) -> Vec<Range<usize>> {
+    let is_part = |byte: &u8| byte.is_ascii_digit() || *byte == b'.';
+    let mut numbers = Vec::new();
+    let mut at = 0;
+    for part in text.chunk_by(|one, other| is_part(one) == is_part(other)) {
+        if is_part(&part[0]) {
+            numbers.push(at..at + part.len());
+        }
+        at += part.len();
+    }
+    numbers
 }
 
 fn any_edit() -> impl Strategy<Value = Edit> {
@@ -103,6 +174,19 @@ fn any_edit() -> impl Strategy<Value = Edit> {
             bytes,
             of
         }),
+        (at(), any_number()).prop_map(|(at, number)| Edit::Number { at, number }),
+    ]
+}
+
+/// Numbers small and large, with and without a fraction, and what is none.
+fn any_number() -> impl Strategy<Value = String> {
+    prop_oneof![
+        4 => (0..40_u32).prop_map(|number| number.to_string()),
+        2 => any::<i16>().prop_map(|number| number.to_string()),
+        2 => (0.0..2.0_f64).prop_map(|number| number.to_string()),
+        1 => any::<f64>().prop_map(|number| format!("{number:e}")),
+        1 => select(vec!["nan", "inf", "-0.0", "9223372036854775808", "1e999"])
+            .prop_map(str::to_owned),
     ]
 }
 
@@ -160,8 +244,25 @@ fn mapping_holds() {
 }
 
 #[test]
+fn images_hold() {
+    holds("image", 20_000);
+}
+
+#[test]
+fn calibrations_hold() {
+    holds("calibration", 30_000);
+}
+
+#[test]
+fn colours_hold() {
+    holds("colours", 10_000);
+}
+
+#[test]
 fn every_target_has_a_body_and_seeds_and_is_run() {
-    let names: BTreeSet<String> = TARGETS.iter().map(|target| target.name.to_owned()).collect();
+    let targets = targets();
+    let names: BTreeSet<String> = targets.iter().map(|target| target.name.to_owned()).collect();
+    assert_eq!(names.len(), targets.len());
     assert_eq!(names_in("fuzz/corpus"), names);
     let manifest = fs::read_to_string(repository("fuzz/Cargo.toml")).unwrap();
     let manifest: toml::Table = manifest.parse().unwrap();
@@ -172,9 +273,9 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
     let (_, list) = workflow.split_once("target: [").expect("the workflow lists the targets");
     let list = list.split_once(']').unwrap().0.split(", ").map(str::to_owned);
     assert_eq!(list.collect::<BTreeSet<_>>(), names);
-    for name in &names {
+    for Target { name, package, .. } in targets {
         let main = fs::read_to_string(repository(&format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
-        assert!(main.contains(&format!("toposlam_proofs::fuzz::{name}(bytes)")), "{name}: {main}");
+        assert!(main.contains(&format!("{package}::fuzz::{name}(bytes)")), "{name}: {main}");
         let seeds = seeds(name);
         assert!(seeds.len() >= 8, "{name} has {} seeds", seeds.len());
         for (seed, bytes) in seeds {
@@ -186,13 +287,26 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
 /// A seed that is in error is called so, and no other.
 #[test]
 fn seeds_are_what_they_are_called() {
-    for target in ["world_file", "planar_code", "edge_code"] {
+    let others = targets().into_iter().map(|target| target.name).filter(|name| *name != "mapping");
+    for target in others {
         for (name, bytes) in seeds(target) {
             let all = |code| plantri::read_headerless(&bytes, code).all(|result| result.is_ok());
             let is_read = match target {
                 "planar_code" => all(Code::Planar),
                 "edge_code" => all(Code::Edge),
-                _ => world_file::read(&bytes).is_ok(),
+                "image" => ImageFile::open(&bytes)
+                    .is_ok_and(|file| file.size() == [96, 72] && file.image().is_ok()),
+                "calibration" => {
+                    let zero = bytes.iter().position(|&byte| byte == 0);
+                    let (toml, named) = bytes.split_at(zero.unwrap_or(bytes.len()));
+                    let named = named.get(1..).map(<[u8]>::to_vec);
+                    let missing = std::io::ErrorKind::NotFound;
+                    let mut read = |_: &str| named.clone().ok_or_else(|| missing.into());
+                    calibration::read(toml, &mut read).is_ok()
+                }
+                "colours" => ColourModel::read(&bytes).is_ok(),
+                "world_file" => world_file::read(&bytes).is_ok(),
+                _ => panic!("{target} is not known here"),
             };
             assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
         }

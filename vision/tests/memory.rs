@@ -1,12 +1,17 @@
-//! No bytes make a reader of calibrations take more memory than the multiple of them that it states.
+//! No bytes make a reader of calibrations, of colours or of images take more memory than it states.
 //! The allocator of the whole program is watched, so this is a program of its own, with one test in it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::hint::black_box;
+use std::{hint::black_box, io::Cursor};
 
+use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use peak_alloc::PeakAlloc;
-use toposlam_vision::camera::{Mask, Mei, OCam, calibration};
+use toposlam_vision::{
+    camera::{Mask, Mei, OCam, calibration},
+    colour::ColourModel,
+    image_file::{ImageFile, ImageFileError},
+};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -46,6 +51,25 @@ const MEI: Stated = Stated {
     },
     multiple: 512,
     besides: 65_536,
+};
+
+const COLOURS: Stated = Stated {
+    reader: "colours",
+    read: |bytes| {
+        let _ = black_box(ColourModel::read(bytes).map_err(|error| error.to_string()));
+    },
+    multiple: 512,
+    besides: 4096,
+};
+
+const IMAGE_HEAD: Stated = Stated {
+    reader: "image",
+    read: |bytes| {
+        let size = ImageFile::open(bytes).map(|file| file.size());
+        let _ = black_box(size.map_err(|error| error.to_string()));
+    },
+    multiple: 16,
+    besides: 1 << 20,
 };
 
 /// The most memory taken at any time while this runs.
@@ -130,14 +154,19 @@ fn reading_takes_no_more_memory_than_stated() {
         "model_type: \"",
         "a: [",
         "a: {",
+        "version=1\na=[",
+        "version=1\n[histograms]\nfloor=[",
+        "\x7f",
     ];
-    let mut most = [0; 3];
+    let mut most = [0; 5];
     // Growing vectors are largest just after a power of two.
     for length in (1..70).step_by(7).chain([127, 260, 1030, 4100, 16_400, 33_000]) {
         for part in parts {
             for start in starts {
                 let bytes = format!("{start}{}", part.repeat(length / part.len() + 1));
-                for (most, stated) in most.iter_mut().zip([CALIBRATION, OCAM, MEI]) {
+                for (most, stated) in
+                    most.iter_mut().zip([CALIBRATION, OCAM, MEI, COLOURS, IMAGE_HEAD])
+                {
                     *most = (*most).max(stated.holds(bytes.as_bytes()));
                 }
             }
@@ -151,4 +180,50 @@ fn reading_takes_no_more_memory_than_stated() {
     assert!(peak(|| drop(black_box(Mask::from_png("m", &png, size)))) <= 16 * 1280 * 960);
     let taken = peak(|| drop(black_box(Mask::from_png("m", &png, [640, 480]))));
     assert!(taken <= 16 * 640 * 480 / 10, "{taken}");
+
+    colour_files_hold();
+    images_hold();
+}
+
+/// Colour files that are read, with many bins.
+fn colour_files_hold() {
+    let colours = include_str!("../../fuzz/corpus/colours/of-the-images");
+    for bins in [1, 10, 100, 1000, 5000] {
+        let rows = (0..bins).map(|nth| format!("[31,{},{},1],", 60 - nth / 200, nth % 200));
+        let many = colours.replace("[13, 1, 4, 5673],", &rows.collect::<String>());
+        assert!(ColourModel::read(many.as_bytes()).is_ok(), "{bins}");
+        COLOURS.holds(many.as_bytes());
+    }
+    COLOURS.holds(colours.as_bytes());
+}
+
+/// The head of an image takes no more, whatever it promises; and the pixels of one that promises more
+/// than any camera's are never asked for.
+fn images_hold() {
+    let (head, pixels) = (include_bytes!("../../fuzz/corpus/image/error-promises-much"), 16_384);
+    IMAGE_HEAD.holds(head);
+    let taken = peak(|| {
+        let file = ImageFile::open(head).unwrap();
+        let refused = file.image().unwrap_err();
+        assert_eq!(refused, ImageFileError::TooLarge { size: [pixels; 2] });
+    });
+    assert!(taken <= IMAGE_HEAD.multiple * head.len() + IMAGE_HEAD.besides, "{taken}");
+    let size = [1280, 960];
+    let picture =
+        RgbImage::from_fn(size[0], size[1], |u, v| Rgb([u as u8, v as u8, (u + v) as u8]));
+    let deep = DynamicImage::ImageRgb8(picture.clone()).into_rgba16();
+    let encoded = |format| {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    };
+    let mut deep_png = Cursor::new(Vec::new());
+    deep.write_to(&mut deep_png, ImageFormat::Png).unwrap();
+    for image in [encoded(ImageFormat::Png), encoded(ImageFormat::Jpeg), deep_png.into_inner()] {
+        IMAGE_HEAD.holds(&image);
+        let taken = peak(|| drop(black_box(ImageFile::open(&image).unwrap().image().unwrap())));
+        let pixels = 1280 * 960;
+        println!("{} bytes for each pixel", taken / pixels);
+        assert!(taken <= 16 * image.len() + (1 << 20) + 16 * pixels, "{taken}");
+    }
 }

@@ -1,0 +1,436 @@
+//! `toposlam train`: the colours of a building, learned from labelled images of it. Section 3.
+
+use std::{
+    collections::BTreeMap,
+    ffi::{OsStr, OsString},
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use clap::ValueEnum;
+use image::RgbImage;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use toposlam_model::enumerate::Watch;
+use toposlam_vision::{
+    camera::Camera,
+    colour::{Class, Confusion, ExampleError, Stripe, StripeKind, Training, TrainingError},
+};
+
+use super::{
+    Failure, Outcome,
+    columns::print_rows,
+    input,
+    json::print_object,
+    output, picture_file,
+    progress::Progress,
+    words::{counted, grouped},
+};
+
+/// Learn the colours of a building from labelled images of it: floor, stripe, marker
+///
+/// Each image of the robot's camera (PNG or JPEG) has its labels in a PNG of the same name and size,
+/// in which every pixel has one of five colours:
+///
+///   floor (0,255,0)  stripe (255,0,0)  marker (0,0,255)  other (0,0,0)  ignore (255,255,255)
+///
+/// Floor, stripe and marker must be there. What lies beyond 3 m, on the robot's body or outside of the
+/// mirror is ignored anyway. Images that are too dark or too bright to tell the light by the floor are
+/// left out, and named.
+#[derive(clap::Args)]
+#[command(
+    verbatim_doc_comment,
+    after_help = "\
+Example, without a camera: render images and their labels, learn from them, and sense.
+  mkdir -p images labels
+  for n in 1 2 3 4 5 6 7; do toposlam render worlds/shape-8.toml --marker --pose 0,$n,$((50 * n)) \\
+    --seed $n --out images/$n.png --labels labels/$n.png; done
+  toposlam calibrate images/*.png --out camera.toml
+  toposlam train --images images --labels labels --calibration camera.toml --out colours.toml
+  toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 --out view.png
+  toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps"
+)]
+pub(super) struct Arguments {
+    /// The folder of the images: .png, .jpg and .jpeg
+    #[arg(long, value_name = "DIR")]
+    images: PathBuf,
+    /// The folder of their labels: .png
+    #[arg(long, value_name = "DIR")]
+    labels: PathBuf,
+    /// The calibration of the camera
+    #[arg(long, value_name = "FILE")]
+    calibration: PathBuf,
+    /// The file to write: .toml
+    #[arg(long, value_name = "COLOURS")]
+    out: PathBuf,
+    /// Where the stripe between floor and wall is
+    #[arg(long, value_name = "WHERE", default_value = "floor")]
+    stripe: On,
+    /// How wide the stripe is: across the floor, or up the wall
+    #[arg(long, value_name = "METRES", default_value_t = 0.05)]
+    stripe_width: f64,
+    /// Into how many parts the images are divided, each of which is told by what the others teach
+    /// [default: 5, or one for each image if there are fewer]
+    #[arg(long, value_name = "K")]
+    folds: Option<usize>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum On {
+    /// A tape on the floor along the wall
+    Floor,
+    /// A baseboard at the foot of the wall
+    Wall,
+}
+
+/// The usual number of parts.
+const FOLDS: usize = 5;
+
+/// An image, and its labels.
+struct Pair {
+    image: PathBuf,
+    labels: PathBuf,
+}
+
+/// What was learned from, and how well.
+struct Report<'t> {
+    training: &'t Training,
+    left_out: Vec<LeftOut>,
+    stripe: Stripe,
+    validation: Validation,
+}
+
+/// An image that teaches nothing, and why.
+struct LeftOut {
+    image: PathBuf,
+    cause: ExampleError,
+}
+
+/// How well images are told by what others teach.
+enum Validation {
+    /// In so many parts.
+    Folds(usize, Confusion),
+    /// Not known.
+    None { why: String },
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        output::check_place(&self.out, &["toml"])?;
+        let stripe = self.stripe()?;
+        let camera = input::read_camera(&self.calibration)?;
+        let pairs = self.pairs()?;
+        self.check_folds(pairs.len())?;
+        let progress = Progress::new("learning", "images")?;
+        progress.parts(pairs.len());
+        let (mut training, mut left_out) = (Training::new(stripe), Vec::new());
+        for pair in pairs {
+            if progress.stop() {
+                progress.finish();
+                eprintln!("interrupted: nothing was written");
+                return Ok(Outcome::Incomplete);
+            }
+            if let Some(cause) = learn(&mut training, &camera, &pair)? {
+                left_out.push(LeftOut { image: pair.image, cause });
+            }
+            progress.part_done(1);
+        }
+        progress.finish();
+        for LeftOut { image, cause } in &left_out {
+            eprintln!("left out: {}: {cause}", image.display());
+        }
+        self.check_classes(&training)?;
+        let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
+        let validation = self.validation(&training)?;
+        output::write_whole(&self.out, model.to_toml().as_bytes())?;
+        let report = Report { training: &training, left_out, stripe, validation };
+        if self.json {
+            report.print_json(out)?;
+        } else {
+            report.print(out)?;
+        }
+        Ok(Outcome::Holds)
+    }
+
+    fn stripe(&self) -> Result<Stripe, Failure> {
+        let [least, most] = Stripe::WIDTHS;
+        let width = self.stripe_width;
+        if !(least..=most).contains(&width) {
+            let cause = format!(
+                "{width} is out of range; the width of a stripe in metres lies between {least} and \
+                 {most}"
+            );
+            return Err(Failure::at("--stripe-width", cause));
+        }
+        let kind = match self.stripe {
+            On::Floor => StripeKind::OnFloor,
+            On::Wall => StripeKind::OnWall,
+        };
+        Ok(Stripe { kind, width })
+    }
+
+    /// Each image with its labels, by name.
+    fn pairs(&self) -> Result<Vec<Pair>, Failure> {
+        let images = by_stem(&self.images, &["png", "jpg", "jpeg"])?;
+        let mut labels = by_stem(&self.labels, &["png"])?;
+        if images.is_empty() {
+            let cause = "there is no image in this folder: no .png, .jpg or .jpeg";
+            return Err(Failure::in_file(&self.images, cause));
+        }
+        let pairs: Result<Vec<Pair>, Failure> = images
+            .into_iter()
+            .map(|(stem, image)| {
+                let labels = labels.remove(&stem).ok_or_else(|| {
+                    let expected = named(&self.labels, &stem);
+                    let cause = format!("its labels, {}, are not there", expected.display());
+                    Failure::in_file(&image, cause)
+                })?;
+                Ok(Pair { image, labels })
+            })
+            .collect();
+        let pairs = pairs?;
+        match labels.values().next() {
+            None => Ok(pairs),
+            Some(alone) => {
+                let images = self.images.display();
+                let cause = format!("there is no image of this name in {images}");
+                Err(Failure::in_file(alone, cause))
+            }
+        }
+    }
+
+    /// Refuses parts that there cannot be, before long work begins.
+    fn check_folds(&self, images: usize) -> Result<(), Failure> {
+        match self.folds {
+            Some(folds) if folds < 2 || folds > images => {
+                Err(Failure::at("--folds", too_few(folds, images)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses labels without a class that is needed to sense.
+    fn check_classes(&self, training: &Training) -> Result<(), Failure> {
+        if training.images() == 0 {
+            return Err(Failure::in_file(&self.images, "every image was left out"));
+        }
+        let needed = [Class::Floor, Class::Stripe, Class::Marker];
+        match needed.into_iter().find(|&class| training.seen(class).images == 0) {
+            None => Ok(()),
+            Some(class) => {
+                let [red, green, blue] = class.label();
+                let missing = TrainingError::NoPixel { class };
+                let cause = format!("{missing} ({red},{green},{blue})");
+                Err(Failure::in_file(&self.labels, cause))
+            }
+        }
+    }
+
+    /// How well it is learned. What was asked for must be possible; what was not is left out, with the
+    /// reason, where it is not.
+    fn validation(&self, training: &Training) -> Result<Validation, Failure> {
+        let images = training.images();
+        let folds = self.folds.unwrap_or(FOLDS.min(images));
+        match training.cross_validate(folds) {
+            Ok(confusion) => Ok(Validation::Folds(folds, confusion)),
+            Err(TrainingError::Folds { .. }) if self.folds.is_none() => {
+                Ok(Validation::None { why: "there is only one image to learn from".to_owned() })
+            }
+            Err(error) if self.folds.is_none() => Ok(Validation::None { why: error.to_string() }),
+            Err(TrainingError::Folds { .. }) => Err(Failure::at("--folds", too_few(folds, images))),
+            Err(error) => Err(Failure::at("--folds", error)),
+        }
+    }
+}
+
+fn too_few(folds: usize, images: usize) -> String {
+    let images_told = counted(images, "image");
+    if images < 2 {
+        return format!("{images_told} cannot be divided; there must be at least 2");
+    }
+    format!("{images_told} cannot be divided into {folds}; there can be from 2 to {images} parts")
+}
+
+/// The files in a folder that have one of these endings, by their names without it.
+fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf>, Failure> {
+    let unreadable =
+        |error| Failure::in_file(folder, format!("cannot be read as a folder: {error}"));
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        // What begins with a dot is not for people: other programs leave their own pictures there.
+        let hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+        let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+        let fits = ending.is_some_and(|ending| endings.contains(&ending.as_str()));
+        if fits && !hidden && !path.is_dir() {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    let mut files = BTreeMap::new();
+    for path in paths {
+        let stem = path.file_stem().unwrap_or_default().to_owned();
+        if let Some(other) = files.insert(stem, path.clone()) {
+            let cause = format!("its labels would be those of {}", other.display());
+            return Err(Failure::in_file(&path, cause));
+        }
+    }
+    Ok(files)
+}
+
+/// The label mask of this name.
+fn named(folder: &Path, stem: &OsStr) -> PathBuf {
+    let mut name = stem.to_owned();
+    name.push(".png");
+    folder.join(name)
+}
+
+/// Learns from an image, or answers why it teaches nothing.
+fn learn(
+    training: &mut Training,
+    camera: &Camera,
+    pair: &Pair,
+) -> Result<Option<ExampleError>, Failure> {
+    let image = picture_file::read(&pair.image, camera.image)?;
+    let labels = read_labels(&pair.labels, camera.image)?;
+    match training.add(camera, &image, &labels) {
+        Ok(()) => Ok(None),
+        Err(cause @ ExampleError::Light(_)) => Ok(Some(cause)),
+        Err(cause @ ExampleError::ImageSize { .. }) => Err(Failure::in_file(&pair.image, cause)),
+        Err(cause) => Err(Failure::in_file(&pair.labels, cause)),
+    }
+}
+
+fn read_labels(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure> {
+    picture_file::read_if(path, |found| {
+        if found == expected {
+            return Ok(());
+        }
+        Err(Failure::in_file(path, ExampleError::LabelSize { found, expected }))
+    })
+}
+
+impl Report<'_> {
+    fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let kind = match self.stripe.kind {
+            StripeKind::OnFloor => "a tape on the floor",
+            StripeKind::OnWall => "a baseboard on the wall",
+        };
+        writeln!(out, "stripe  {kind}, {} m wide", self.stripe.width)?;
+        write!(out, "images  {}", grouped(self.training.images() as u128))?;
+        match self.left_out.len() {
+            0 => writeln!(out)?,
+            others => writeln!(out, ", and {others} left out")?,
+        }
+        writeln!(out)?;
+        match &self.validation {
+            Validation::Folds(folds, confusion) => {
+                writeln!(
+                    out,
+                    "What pixels are (rows), and what they are told to be by the other images, in \
+                     {folds} parts:\n"
+                )?;
+                self.print_confusion(out, confusion)
+            }
+            Validation::None { why } => {
+                let rows = Class::LEARNED.map(|class| self.seen(class));
+                print_rows(out, ["", "images", "    pixels"], &rows)?;
+                Ok(writeln!(out, "\nnot cross-validated: {why}")?)
+            }
+        }
+    }
+
+    fn seen(&self, class: Class) -> [String; 3] {
+        let seen = self.training.seen(class);
+        let (images, pixels) = (grouped(seen.images as u128), grouped(seen.pixels.into()));
+        [class.name().to_owned(), format!("{images:>6}"), format!("{pixels:>10}")]
+    }
+
+    fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), Failure> {
+        let [floor, stripe, marker, other, unknown] =
+            Confusion::TOLD.map(|class| format!("{:>10}", class.name()));
+        let heads =
+            ["", "images", "    pixels", &floor, &stripe, &marker, &other, &unknown, "    right"];
+        let rows = Class::LEARNED.iter().zip(&confusion.pixels).map(|(&class, told)| {
+            let [name, images, pixels] = self.seen(class);
+            let [floor, stripe, marker, other, unknown] =
+                told.map(|pixels| format!("{:>10}", grouped(pixels.into())));
+            let right = confusion.recall(class).map_or_else(
+                || format!("{:>9}", "-"),
+                |share| format!("{:>9}", format!("{:.2} %", 100.0 * share)),
+            );
+            [name, images, pixels, floor, stripe, marker, other, unknown, right]
+        });
+        Ok(print_rows(out, heads, &rows.collect::<Vec<_>>())?)
+    }
+
+    fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let (folds, confusion) = match &self.validation {
+            Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion)),
+            Validation::None { .. } => (None, None),
+        };
+        let classes = Class::LEARNED.map(|class| {
+            let seen = self.training.seen(class);
+            ClassFigures {
+                class: class.name(),
+                images: seen.images,
+                pixels: seen.pixels,
+                recall: confusion.and_then(|confusion| confusion.recall(class)),
+                precision: confusion.and_then(|confusion| confusion.precision(class)),
+            }
+        });
+        let left_out = self.left_out.iter().map(|LeftOut { image, cause }| {
+            json!({ "image": image.display().to_string(), "reason": cause.to_string() })
+        });
+        print_object(
+            out,
+            &Line {
+                schema: 1,
+                images: self.training.images(),
+                left_out: left_out.collect(),
+                folds,
+                confusion: confusion.map(confusion_json),
+                classes,
+                stripe: json!({ "kind": self.stripe.kind.place(), "width": self.stripe.width }),
+            },
+        )
+    }
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Line {
+    schema: u32,
+    images: usize,
+    left_out: Vec<Value>,
+    folds: Option<usize>,
+    /// Of each class, how many pixels were told to be of which.
+    confusion: Option<Value>,
+    classes: [ClassFigures; 4],
+    stripe: Value,
+}
+
+/// How much of a class there is, and how well it is told.
+#[derive(Serialize)]
+struct ClassFigures {
+    class: &'static str,
+    images: usize,
+    pixels: u64,
+    recall: Option<f64>,
+    precision: Option<f64>,
+}
+
+/// A row for each class that pixels are, in it a number for each that they are told to be.
+fn confusion_json(confusion: &Confusion) -> Value {
+    let rows = Class::LEARNED.iter().zip(&confusion.pixels).map(|(is, told)| {
+        let columns = Confusion::TOLD.iter().zip(told);
+        let row: Map<_, _> =
+            columns.map(|(told, &pixels)| (told.name().to_owned(), pixels.into())).collect();
+        (is.name().to_owned(), Value::Object(row))
+    });
+    Value::Object(rows.collect())
+}
