@@ -62,7 +62,7 @@ const BLANK: f64 = 0.25;
 /// Where it should be open, floor is seen for this part of the way.
 const OPEN: f64 = 0.8;
 /// A gap in a wall is a door, and no hallway, if it is narrower than this part of a hallway.
-const DOOR: f64 = 0.75;
+pub(crate) const DOOR: f64 = 0.75;
 /// Beside a door, the wall is seen over such a length, in metres,
 const BESIDE: f64 = 0.30;
 /// on this part of the bearings.

@@ -44,6 +44,8 @@ const CLUSTERS: [Rgb<u8>; 6] = [
 const RADIUS: f64 = 0.205;
 /// How far a centre line is drawn, in metres.
 const CENTRE_LINE: f64 = 1.6;
+/// The pixels that a line over an image covers, about its own.
+const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
 /// The colour of what was not made out.
 const DARK: Rgb<u8> = Rgb([24, 24, 28]);
 
@@ -166,8 +168,8 @@ pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
             let ends =
                 [camera.ground_to_pixel(point(step)), camera.ground_to_pixel(point(step + 1))];
             if let [Some(from), Some(to)] = ends {
-                for offset in [-0.7, 0.0, 0.7] {
-                    let end = |[u, v]: [f64; 2]| ((u + offset) as f32, (v + offset) as f32);
+                for [right, down] in PEN {
+                    let end = |[u, v]: [f64; 2]| ((u + right) as f32, (v + down) as f32);
                     draw_line_segment_mut(&mut picture, end(from), end(to), colour);
                 }
             }
@@ -269,5 +271,72 @@ fn ring(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
     let [u, v] = at(point);
     for radius in [radius - 1, radius] {
         draw_hollow_circle_mut(picture, (u, v), radius, colour);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::driving::scene::{HallwayView, JunctionView, Reason, Status};
+
+    use super::*;
+
+    fn l_with_marker() -> Scene {
+        let through = [0.5, -0.1];
+        let doors = [3.0, -1.7].map(|direction| CentreLine { through, direction }).to_vec();
+        let place =
+            Place::Junction(JunctionView { doors, turning_point: through, confidence: 0.9 });
+        let marker = MarkerView { position: through, axis: -0.14, door: None };
+        Scene { place, marker: Some(marker) }
+    }
+
+    fn colour(picture: &RgbImage, [u, v]: [i32; 2]) -> Rgb<u8> {
+        *picture.get_pixel(u as u32, v as u32)
+    }
+
+    #[test]
+    fn the_entered_edge_is_green_the_other_red_and_the_marker_blue() {
+        let scene_picture = scene(&l_with_marker(), &Trace::default());
+        let camera = Camera::superscout();
+        let image = RgbImage::new(camera.image[0], camera.image[1]);
+        let over = over(&image, &camera, &l_with_marker());
+        let onwards = |direction: f64| [0.5 + direction.cos(), -0.1 + direction.sin()];
+        for (point, expected) in [(onwards(3.0), GREEN), (onwards(-1.7), RED)] {
+            assert_eq!(colour(&scene_picture, at(point)), expected);
+            let pixel = camera.ground_to_pixel(point).unwrap().map(|part| part.round() as i32);
+            assert_eq!(colour(&over, pixel), expected);
+        }
+        assert_eq!(colour(&scene_picture, at([0.75, -0.13])), BLUE);
+        let corner = rectangle(&l_with_marker().marker.unwrap())[0];
+        let pixel = camera.ground_to_pixel(corner).unwrap().map(|part| part.round() as i32);
+        assert_eq!(colour(&over, pixel), BLUE);
+    }
+
+    #[test]
+    fn a_hallways_centre_line_is_between_its_walls_and_of_nothing_there_is_none() {
+        let hallway = HallwayView {
+            heading: 0.0,
+            left: 1.0,
+            right: 0.6,
+            status: Status::Clear,
+            confidence: 1.0,
+        };
+        let lines = |place| centre_lines(&Scene { place, marker: None });
+        let [(from, to, _)] = lines(Place::Hallway(hallway))[..] else { panic!("one line") };
+        assert!((from[1] - 0.2).abs() < 1e-9 && (to[1] - 0.2).abs() < 1e-9);
+        assert!(lines(Place::Unknown(Reason::NoFloor)).is_empty());
+    }
+
+    #[test]
+    fn every_class_has_a_shade_of_its_own() {
+        let mut view = GroundView::unseen();
+        let classes = [Class::Floor, Class::Stripe, Class::Marker, Class::Other, Class::Unknown];
+        for (pixel, class) in classes.into_iter().enumerate() {
+            view.classes[pixel] = class;
+        }
+        let picture = super::classes(&view);
+        let shades: Vec<_> = picture.pixels().take(6).collect();
+        for (number, one) in shades.iter().enumerate() {
+            assert!(!shades[..number].contains(one), "{number}");
+        }
     }
 }

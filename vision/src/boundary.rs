@@ -265,6 +265,8 @@ mod tests {
         Bearings::new(stripe, 1.05).sight(&on(letters))
     }
 
+    // paper: sense.boundary
+    // paper: sense.boundary-points
     #[test]
     fn a_wall_is_where_floor_ends_at_a_stripe() {
         for classes in ["ffffsoooo", "ffff?soooo", "   fsoooo", "ffmmsoooo", "ffffsoo?oo   "] {

@@ -135,6 +135,7 @@ mod tests {
         assert_eq!(clusters[0].points.len(), BEARINGS);
     }
 
+    // paper: sense.cluster
     #[test]
     fn walls_at_both_sides_are_two_clusters() {
         let sides =
@@ -148,6 +149,7 @@ mod tests {
         assert_eq!(clusters(&strut).len(), 1);
     }
 
+    // paper: sense.small-clusters
     #[test]
     fn a_speck_is_no_cluster() {
         let speck = boundary(|bearing| Some(1.0).filter(|_| (1.0..1.03).contains(&bearing)));

@@ -112,6 +112,7 @@ fn colour(raw: &[u8], pixel: usize) -> [u8; 3] {
 mod tests {
     use super::*;
 
+    // paper: sense.orthographic
     #[test]
     fn a_pixel_is_where_its_middle_is() {
         for index in [0, 1, 799, 800, 320_400, 639_999] {

@@ -4,7 +4,7 @@
 use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
 
 use crate::{
-    agreement::Agreement,
+    agreement::{Agreement, DOOR},
     boundary::{BEARINGS, Boundary, bearing, direction},
     outline::{Outline, Square},
     wall::{Axis, Frame, Wall},
@@ -26,15 +26,17 @@ pub struct Hallway {
 }
 
 /// Half the width of a hallway, in metres.
-pub const HALF_WIDTH: std::ops::RangeInclusive<f64> = 0.45..=1.35;
+pub const HALF_WIDTH: std::ops::RangeInclusive<f64> = 0.45..=1.2;
 /// A turning point that is farther ahead than this is not yet there: the robot is in the hallway
 /// before it. In metres.
 pub const AHEAD: f64 = 1.0;
 /// A turning point that is farther behind than this has been left, in metres.
 pub const BEHIND: f64 = 0.75;
 /// Nearer than this to a turning point, the walls are open at a side; in metres. So much wall is
-/// looked at, to either end, less half the width.
+/// looked at, to either end, less half the width,
 const CLOSED: f64 = 1.4;
+/// but at least so much.
+const BESIDE_ROBOT: f64 = 0.5;
 /// Pieces of wall with offsets that differ by less are of the same wall, in metres.
 const SAME: f64 = 0.10;
 /// So many walls on each side are considered.
@@ -97,7 +99,7 @@ fn between(
     if !HALF_WIDTH.contains(&square.half) {
         return None;
     }
-    let reach = CLOSED - square.half;
+    let reach = (CLOSED - square.half).max(BESIDE_ROBOT);
     let mut frame = *frame;
     for _ in 0..2 {
         let outline = Outline::hallway(axis, square, -reach - 0.3, reach + 0.3);
@@ -177,17 +179,28 @@ fn reaches(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     })
 }
 
-/// Whether walls stand across half of the hallway or more, nearer than this.
+/// Whether walls stand across half of the hallway or more, nearer than this; doors in them included.
 fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     let centre = square.middle[axis.split().1];
     let across = walls.iter().filter(|wall| {
         wall.along != axis && wall.offset * least > 0.0 && wall.offset.abs() < least.abs()
     });
-    let closed = across.map(|wall| {
-        let within = wall.to.min(centre + square.half) - wall.from.max(centre - square.half);
-        within.max(0.0)
-    });
-    closed.sum::<f64>() > square.half
+    let mut pieces: Vec<[f64; 2]> = across
+        .map(|wall| [wall.from.max(centre - square.half), wall.to.min(centre + square.half)])
+        .filter(|[from, to]| from < to)
+        .collect();
+    pieces.sort_by(|one, other| one[0].total_cmp(&other[0]));
+    let mut closed = 0.0;
+    let mut last: Option<f64> = None;
+    for [from, to] in pieces {
+        let from = match last {
+            Some(last) if from - last < DOOR * 2.0 * square.half => last,
+            _ => from,
+        };
+        closed += (to - from).max(0.0);
+        last = Some(last.map_or(to, |last| last.max(to)));
+    }
+    closed > square.half
 }
 
 /// Whether the hallway along an axis is clear, on the way ahead.

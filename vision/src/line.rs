@@ -134,6 +134,7 @@ mod tests {
         Cluster { points: points.into_iter().collect() }
     }
 
+    // paper: sense.pca
     #[test]
     fn a_straight_cluster_is_one_line() {
         let wall =
@@ -144,6 +145,7 @@ mod tests {
         assert!((line.length() - 0.02 * 49.0 * 1.25_f64.sqrt()).abs() < 1e-9);
     }
 
+    // paper: sense.corner.single
     #[test]
     fn a_bent_cluster_is_two_lines_at_a_right_angle() {
         let bent = cluster(

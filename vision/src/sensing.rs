@@ -234,6 +234,8 @@ mod tests {
     // paper: sense.junction.entry
     // paper: sense.centre-lines
     // paper: sense.place
+    // paper: drive.junction
+    // paper: alg2.6
     #[test]
     fn every_junction_is_made_out_from_half_a_metre_before_it_to_beyond_it() {
         for (number, doors) in KINDS.into_iter().enumerate() {
@@ -262,6 +264,7 @@ mod tests {
         }
     }
 
+    // paper: sense.hallway.first
     // paper: sense.distances
     // paper: sense.parallel
     // paper: sense.opposite

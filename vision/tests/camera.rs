@@ -52,6 +52,7 @@ fn traced(mirror: &SphericalMirror, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     (back.z < 0.0).then(|| [met.x + length * back.x, met.y + length * back.y])
 }
 
+// paper: hardware.height
 #[test]
 fn the_superscouts_next_pixel_outwards_shows_floor_so_many_centimetres_farther() {
     let mirror = mirror(&Camera::superscout());
@@ -220,6 +221,7 @@ fn either_sign_of_the_polynomial_looks_down() {
     assert_eq!(one.ground_to_pixel([1.0, 2.0]), other.ground_to_pixel([1.0, 2.0]));
 }
 
+// paper: sense.contour
 #[test]
 fn without_a_mask_the_floor_is_seen_from_where_the_body_ends() {
     let camera = Camera::superscout();

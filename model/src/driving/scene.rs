@@ -19,6 +19,7 @@ pub struct Scene {
 
 /// Where the robot is, as far as one image tells.
 // paper: sense.place
+// paper: alg2.6
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// On an edge.
@@ -65,6 +66,7 @@ pub enum Unclear {
 }
 
 /// A junction, and where the robot is in it.
+// paper: drive.junction
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionView {
     /// The doors, clockwise from the entry door, and their centre lines; never empty.

@@ -114,6 +114,7 @@ impl Visit {
         (most >= AGREEING && leading.next().is_none()).then_some(form)
     }
 
+    // paper: marker-sense.place
     /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
     /// junctions that are Ls.
     #[must_use]
@@ -181,6 +182,7 @@ mod tests {
         assert_eq!(decided, Some(Percept { degree: 2, sighting: Sighting::Nothing }));
     }
 
+    // paper: marker-sense.place
     #[test]
     fn the_marker_lies_along_the_entry_or_along_the_other_door_of_an_l() {
         let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];

@@ -170,6 +170,7 @@ impl Camera {
         }
     }
 
+    // paper: hardware.height
     /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
     /// viewpoint.
     #[must_use]

@@ -116,6 +116,12 @@ struct Alike {
     mixed: u32,
 }
 
+impl Alike {
+    fn pixels(&self) -> u64 {
+        u64::from(self.pure + self.mixed)
+    }
+}
+
 /// So many mixed pixels count as much as a pure one. A floor in the shade has the colour of a mixture of
 /// lit floor and dark stripe; it is floor. Where nothing pure has that colour, it is a mixture.
 const MIXED: u64 = 256;
@@ -258,8 +264,8 @@ impl Training {
     #[must_use]
     pub fn seen(&self, class: Class) -> Seen {
         let pixels = self.examples.iter().map(|example| {
-            let of_class = example.colours.iter().filter(|(_, is, _)| *is == class);
-            of_class.map(|&(_, _, pixels)| u64::from(pixels)).sum::<u64>()
+            let of_class = example.colours.iter().filter(|alike| alike.class == class);
+            of_class.map(|alike| alike.pixels()).sum::<u64>()
         });
         pixels.filter(|&pixels| pixels > 0).fold(Seen::default(), |seen, pixels| Seen {
             images: seen.images + 1,
@@ -299,8 +305,7 @@ impl Training {
             for (_, example) in left_out {
                 let lit = table.lit(light::gain(example.floor, model.floor));
                 for alike in &example.colours {
-                    let pixels = u64::from(alike.pure + alike.mixed);
-                    confusion.count(alike.class, lit.class(alike.colour), pixels);
+                    confusion.count(alike.class, lit.class(alike.colour), alike.pixels());
                 }
             }
         }
