@@ -53,6 +53,8 @@ const THROUGH: f64 = 1.5;
 const AGAINST: f64 = 3.0;
 /// Walls are seen where there are none on this part of the bearings in support, at most.
 const STRAY: f64 = 0.12;
+/// There are no more bearings with doors than so many times those in support.
+const DOORS: f64 = 2.0;
 /// Walls that are farther away are not looked for, in metres: a pixel covers as much as a stripe.
 const FAR: f64 = 2.1;
 /// A direction to which so few bearings lead need not be seen, as a part of all;
@@ -77,12 +79,14 @@ impl Outline {
         let mut gap = None;
         for bearing in (0..BEARINGS).step_by(every) {
             let ray = frame.framed(direction(bearing));
-            let Some((range, number)) = self.first_on(ray).filter(|&(range, _)| range <= FAR)
+            let sight = &boundary.sights[bearing];
+            let Some((range, number)) = self
+                .first_on(ray)
+                .filter(|&(range, _)| range <= FAR || sight.sure().is_some_and(|wall| wall <= FAR))
             else {
                 continue;
             };
             let side = &self.sides[number];
-            let sight = &boundary.sights[bearing];
             let mut held = self.held(side, range, ray, sight);
             if held == Held::Through {
                 let (along, _) = side.along.split();
@@ -157,19 +161,25 @@ impl Outline {
         };
         let edge = |step: usize| {
             let bearings = (1..BEARINGS).map(|steps| (bearing + steps * step) % BEARINGS);
-            let mut wall = bearings.map_while(on_wall).skip_while(|&(_, seen)| !seen);
-            let (first, _) = wall.next().filter(|(on, _)| (on - at).abs() < DOOR * self.width)?;
-            let (mut all, mut seen, mut length) = (1, 1, 0.0);
-            for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= BESIDE) {
-                (all, seen, length) = (all + 1, seen + u32::from(is_seen), (on - first).abs());
-            }
-            let unbroken = f64::from(seen) >= UNBROKEN * f64::from(all);
-            (unbroken && length >= 0.8 * BESIDE).then_some(first)
+            let near = |&(on, _): &(f64, bool)| (on - at).abs() < DOOR * self.width + BESIDE;
+            let wall: Vec<(f64, bool)> = bearings.map_while(on_wall).take_while(near).collect();
+            let begins = (0..wall.len()).find(|&begin| wall_begins(&wall[begin..]))?;
+            Some(wall[begins].0)
         };
         let (one, other) = (edge(1)?, edge(BEARINGS - 1)?);
         let gap = Gap { side: number, from: one.min(other), to: one.max(other) };
         (gap.to - gap.from < DOOR * self.width).then_some(gap)
     }
+}
+
+/// Whether a wall begins here, by where it would be on the bearings that follow and whether it is seen
+/// there.
+fn wall_begins(wall: &[(f64, bool)]) -> bool {
+    let Some(&(first, true)) = wall.first() else { return false };
+    let beside = || wall.iter().take_while(|(on, _)| (on - first).abs() <= BESIDE);
+    let length = beside().last().map_or(0.0, |(on, _)| (on - first).abs());
+    let seen = beside().filter(|(_, seen)| *seen).count();
+    length >= 0.8 * BESIDE && seen as f64 >= UNBROKEN * beside().count() as f64
 }
 
 /// A door in a side of an outline: from where to where along it, in metres.
@@ -226,7 +236,7 @@ impl Agreement {
     pub fn holds(&self, trust: f64) -> bool {
         self.trust() >= trust
             && f64::from(self.against) <= STRAY * self.good()
-            && f64::from(self.door) <= self.good()
+            && f64::from(self.door) <= DOORS * self.good()
     }
 }
 
