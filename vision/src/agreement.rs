@@ -156,7 +156,8 @@ impl Outline {
             let range = side.offset / ray[across];
             let on = range * ray[along];
             let within = range > 0.0 && range <= FAR;
-            let seen = |edge: Edge| ((edge.range - range) * ray[across]).abs() < near(range);
+            let seen =
+                |edge: Edge| edge.sure && ((edge.range - range) * ray[across]).abs() < near(range);
             within.then(|| (on, boundary.sights[bearing].edges().any(seen)))
         };
         let edge = |step: usize| {

@@ -35,7 +35,7 @@ pub struct Sight {
 pub struct Edge {
     /// How far away, in metres.
     pub range: f64,
-    /// Whether no floor is seen behind the stripe, or it is part of a long straight wall.
+    /// Whether it is a stripe behind which no floor is seen, or part of a long straight wall.
     pub sure: bool,
     /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
     pub width: f64,
@@ -59,6 +59,8 @@ const SEEN_WIDTH: f64 = 0.40;
 const WIDEST: f64 = 2.0;
 /// and so many steps more, for pixels and blur.
 const BLURRED: f64 = 10.0;
+/// What is so many times wider still is an area: lit floor may have the colour of a stripe in the shade.
+const AREA: f64 = 3.0;
 /// Between floor and stripe colours mix, over so many steps.
 const MIXED: usize = 10;
 /// Fewer steps of something else do not end a stripe.
@@ -150,10 +152,9 @@ impl Bearings {
                         // something else has none.
                         let (last, seen) =
                             if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
-                        let sure = seen && !floor_follows(&classes[step + 1..]);
-                        let most = WIDEST * self.width[from] + BLURRED;
-                        let range = range(last as f64 + 0.5);
-                        let edge = Edge { range, sure, width: width / most };
+                        let width = width / (WIDEST * self.width[from] + BLURRED);
+                        let sure = seen && width < AREA && !floor_follows(&classes[step + 1..]);
+                        let edge = Edge { range: range(last as f64 + 0.5), sure, width };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
                         if sure {
