@@ -65,7 +65,9 @@ const BLANK: f64 = 0.25;
 const OPEN: f64 = 0.8;
 /// A gap in a wall is a door, and no hallway, if it is narrower than this part of a hallway.
 pub(crate) const DOOR: f64 = 0.75;
-/// Beside a door, the wall is seen over such a length, in metres,
+/// Beside a door the wall is this part of as near as elsewhere: around a corner, too, there is wall.
+const CLOSE: f64 = 0.5;
+/// It is seen over such a length, in metres,
 const BESIDE: f64 = 0.30;
 /// on this part of the bearings.
 const UNBROKEN: f64 = 0.75;
@@ -156,8 +158,8 @@ impl Outline {
             let range = side.offset / ray[across];
             let on = range * ray[along];
             let within = range > 0.0 && range <= FAR;
-            let seen =
-                |edge: Edge| edge.sure && ((edge.range - range) * ray[across]).abs() < near(range);
+            let off = |edge: Edge| ((edge.range - range) * ray[across]).abs();
+            let seen = |edge: Edge| edge.sure && off(edge) < CLOSE * near(range);
             within.then(|| (on, boundary.sights[bearing].edges().any(seen)))
         };
         let edge = |step: usize| {
@@ -226,8 +228,9 @@ impl Agreement {
         self.good() / f64::from(all.max(1))
     }
 
-    /// In bearings on which a stripe is seen where it should be.
-    fn good(&self) -> f64 {
+    /// What supports the outline, in bearings on which a stripe is seen where it should be.
+    #[must_use]
+    pub fn good(&self) -> f64 {
         f64::from(self.support) + ENDED * f64::from(self.ended)
     }
 

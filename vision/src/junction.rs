@@ -50,8 +50,10 @@ const COARSE: usize = 5;
 const SHORT_LIST: usize = 6;
 /// What is seen must support a junction at least so much,
 const TRUST: f64 = 0.75;
-/// and this part of its walls must be seen.
+/// this part of its walls must be seen,
 const COVER: f64 = 0.40;
+/// on this part of all bearings.
+const SEEN: f64 = 0.17;
 /// A different junction must be supported by less, by this part of all bearings.
 const MARGIN: f64 = 0.04;
 /// Junctions whose turning points are nearer to each other are the same, in metres.
@@ -94,7 +96,9 @@ pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: 
     best_first(&mut found);
     let Some(&best) = found.first() else { return Finding::Nothing };
     let wide = HALF_WIDTH.contains(&best.square.half);
-    let seen = best.agreement.cover() >= COVER && best.agreement.blank == 0;
+    let seen = best.agreement.cover() >= COVER
+        && best.agreement.good() >= bearings(SEEN, 1)
+        && best.agreement.blank == 0;
     if !wide || !seen || !best.agreement.holds(TRUST) {
         return Finding::Nothing;
     }

@@ -42,6 +42,9 @@ pub struct Wall {
 /// A line that is off the axes by more is no wall, in radians.
 const ASKEW: f64 = 0.20;
 
+/// No wall is nearer to the robot's centre than the edge of its body, in metres: what looks so is the edge
+/// of a strut.
+const BODY: f64 = 0.20;
 /// A point is on a wall that is so near, in metres.
 const ON: f64 = 0.06;
 
@@ -117,6 +120,9 @@ impl Frame {
         let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
         let [middle, from, to] = [line.middle, line.from, line.to].map(|point| self.framed(point));
         let (on, off) = along.split();
+        if middle[off].abs() < BODY {
+            return None;
+        }
         Some(Wall {
             along,
             offset: middle[off],
