@@ -66,7 +66,7 @@ impl Outline {
         let (along, across) = axis.split();
         let [beside, centre] = [square.middle[along], square.middle[across]];
         let number = |axis: Axis, sign: f64| {
-            let first = if axis == Axis::X { 0 } else { 1 };
+            let (first, _) = axis.split();
             if sign > 0.0 { first } else { first + 2 }
         };
         let wall = |sign: f64| Side {

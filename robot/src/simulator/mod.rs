@@ -31,5 +31,5 @@ pub use looks::{Colour, Floor, LOOKS, Look};
 pub use optics::{By, Ray, RigErrors};
 pub use pose::Pose;
 pub use renderer::render;
-pub use rig::{Rig, sized};
+pub use rig::Rig;
 pub use walls::{Wall, walls};

@@ -37,12 +37,6 @@ impl From<Ray> for PixelRay {
     }
 }
 
-/// The same camera with another size of image: every pixel larger or smaller.
-#[must_use]
-pub fn sized(camera: &Camera, image: [u32; 2]) -> Camera {
-    camera.sized(image)
-}
-
 impl Rig {
     /// A camera as its calibration says.
     #[must_use]

@@ -265,7 +265,7 @@ impl Training {
     pub fn seen(&self, class: Class) -> Seen {
         let pixels = self.examples.iter().map(|example| {
             let of_class = example.colours.iter().filter(|alike| alike.class == class);
-            of_class.map(|alike| alike.pixels()).sum::<u64>()
+            of_class.map(Alike::pixels).sum::<u64>()
         });
         pixels.filter(|&pixels| pixels > 0).fold(Seen::default(), |seen, pixels| Seen {
             images: seen.images + 1,
