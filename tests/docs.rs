@@ -36,7 +36,8 @@ fn blocks<'t>(text: &'t str, kind: &str) -> Vec<&'t str> {
     text.split(&begin).skip(1).map(|block| block.split_once("```").unwrap().0).collect()
 }
 
-/// What the README's own commands print, line by line up to that which trains.
+/// What the README's chain of sensing prints where it trains. Its last line draws each step of sensing
+/// as docs/sensing.md shows it: look at those that changed, and commit them.
 fn trained(readme: &str) -> String {
     let chain = blocks(readme, "sh").into_iter().find(|block| block.contains("toposlam train"));
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs");
@@ -46,16 +47,30 @@ fn trained(readme: &str) -> String {
     let program = Path::new(env!("CARGO_BIN_EXE_toposlam")).parent().unwrap().to_owned();
     let others = env::var_os("PATH").unwrap();
     let path = env::join_paths([program].into_iter().chain(env::split_paths(&others))).unwrap();
+    let mut trained = None;
     for command in chain.unwrap().lines() {
         let mut bash = Command::new("bash");
         bash.args(["-euo", "pipefail", "-c", command]).current_dir(&folder).env("PATH", &path);
         let output = bash.output().unwrap();
         assert!(output.status.success(), "{command}: {output:?}");
         if command.starts_with("toposlam train") {
-            return String::from_utf8(output.stdout).unwrap();
+            trained = Some(String::from_utf8(output.stdout).unwrap());
         }
     }
-    panic!("no command trains")
+    let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/sensing");
+    let names = |folder: &Path| {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let drawn = folder.join("steps");
+    assert_eq!(names(&shown), names(&drawn));
+    for name in names(&shown) {
+        let same = fs::read(shown.join(&name)).unwrap() == fs::read(drawn.join(&name)).unwrap();
+        assert!(same, "docs/sensing/{} is not what is drawn", name.display());
+    }
+    trained.unwrap()
 }
 
 /// Draw them again with the commands of the README, look at them, and commit them.
