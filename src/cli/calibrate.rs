@@ -9,9 +9,10 @@ use std::{
 use clap::ValueEnum;
 use image::{GrayImage, RgbImage, imageops::grayscale};
 use serde::Serialize;
+use toposlam_model::format::place::Place;
 use toposlam_vision::camera::{
     Camera, Mask, Optics, SeenFrom, SphericalMirror,
-    calibration::{self, CalibrationError, Place},
+    calibration::{self, CalibrationError},
     fit_picture,
     rim::{self, Rim, RimError},
     unchanging,

@@ -78,7 +78,7 @@ impl Outline {
     pub fn agreement(&self, boundary: &Boundary, frame: &Frame, every: usize) -> Agreement {
         let mut agreement = Agreement::default();
         let mut towards = [Seen::default(); 4];
-        let mut gap = None;
+        let mut gap: Option<Gap> = None;
         for bearing in (0..BEARINGS).step_by(every) {
             let ray = frame.framed(direction(bearing));
             let sight = &boundary.sights[bearing];
@@ -94,10 +94,13 @@ impl Outline {
                 let (along, _) = side.along.split();
                 let at = range * ray[along];
                 let in_gap = |gap: &Gap| gap.side == number && gap.from <= at && at <= gap.to;
-                gap = gap.filter(in_gap).or_else(|| self.gap(number, bearing, at, boundary, frame));
-                if gap.is_some() {
+                let around = gap
+                    .filter(in_gap)
+                    .unwrap_or_else(|| self.gap(number, bearing, at, boundary, frame));
+                if around.to - around.from < DOOR * self.width {
                     held = Held::Door;
                 }
+                gap = Some(around);
             }
             let seen = &mut towards[side.towards];
             seen.due += u32::from(held != Held::Door);
@@ -140,8 +143,8 @@ impl Outline {
         }
     }
 
-    /// The door, if there is one, through which floor is seen where a bearing meets a wall: the wall
-    /// goes on, on either side, nearer than the other side of a hallway would be.
+    /// The gap in a wall through which floor is seen on a bearing that meets it: from where to where the
+    /// wall does not go on. It is a door if the other side of a hallway would be farther away.
     fn gap(
         &self,
         number: usize,
@@ -149,43 +152,49 @@ impl Outline {
         at: f64,
         boundary: &Boundary,
         frame: &Frame,
-    ) -> Option<Gap> {
+    ) -> Gap {
         let side = &self.sides[number];
         let (along, across) = side.along.split();
-        // Where the wall is seen on the bearings that follow, until they leave it or are too far.
+        // Where the wall would be met on another bearing, and whether it is seen there.
         let on_wall = |bearing: usize| {
             let ray = frame.framed(direction(bearing));
             let range = side.offset / ray[across];
-            let on = range * ray[along];
-            let within = range > 0.0 && range <= FAR;
             let off = |edge: Edge| ((edge.range - range) * ray[across]).abs();
             let seen = |edge: Edge| edge.sure && off(edge) < CLOSE * near(range);
-            within.then(|| (on, boundary.sights[bearing].edges().any(seen)))
+            (range > 0.0 && range <= FAR)
+                .then(|| (range * ray[along], boundary.sights[bearing].edges().any(seen)))
         };
         let edge = |step: usize| {
-            let bearings = (1..BEARINGS).map(|steps| (bearing + steps * step) % BEARINGS);
-            let near = |&(on, _): &(f64, bool)| (on - at).abs() < DOOR * self.width + BESIDE;
-            let wall: Vec<(f64, bool)> = bearings.map_while(on_wall).take_while(near).collect();
-            let begins = (0..wall.len()).find(|&begin| wall_begins(&wall[begin..]))?;
-            Some(wall[begins].0)
+            let nth = |steps: usize| on_wall((bearing + steps * step) % BEARINGS);
+            (1..BEARINGS)
+                .map_while(|steps| Some((steps, nth(steps)?)))
+                .find(|&(steps, (_, seen))| seen && goes_on((steps..BEARINGS).map_while(nth)))
+                .map(|(_, (on, _))| on)
         };
-        let (one, other) = (edge(1)?, edge(BEARINGS - 1)?);
-        let gap = Gap { side: number, from: one.min(other), to: one.max(other) };
-        (gap.to - gap.from < DOOR * self.width).then_some(gap)
+        let edges = [edge(1), edge(BEARINGS - 1)];
+        // Bearings go along a wall one way or the other.
+        let before = edges.iter().flatten().copied().filter(|&edge| edge <= at);
+        let behind = edges.iter().flatten().copied().filter(|&edge| edge > at);
+        Gap {
+            side: number,
+            from: before.fold(f64::NEG_INFINITY, f64::max),
+            to: behind.fold(f64::INFINITY, f64::min),
+        }
     }
 }
 
-/// Whether a wall begins here, by where it would be on the bearings that follow and whether it is seen
-/// there.
-fn wall_begins(wall: &[(f64, bool)]) -> bool {
-    let Some(&(first, true)) = wall.first() else { return false };
-    let beside = || wall.iter().take_while(|(on, _)| (on - first).abs() <= BESIDE);
-    let length = beside().last().map_or(0.0, |(on, _)| (on - first).abs());
-    let seen = beside().filter(|(_, seen)| *seen).count();
-    length >= 0.8 * BESIDE && seen as f64 >= UNBROKEN * beside().count() as f64
+/// Whether a wall goes on from the first of these places, where it is met and may be seen.
+fn goes_on(wall: impl Iterator<Item = (f64, bool)>) -> bool {
+    let mut wall = wall.peekable();
+    let Some(&(first, _)) = wall.peek() else { return false };
+    let (mut all, mut seen, mut length) = (0, 0, 0.0);
+    for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= BESIDE) {
+        (all, seen, length) = (all + 1, seen + u32::from(is_seen), (on - first).abs());
+    }
+    length >= 0.8 * BESIDE && f64::from(seen) >= UNBROKEN * f64::from(all)
 }
 
-/// A door in a side of an outline: from where to where along it, in metres.
+/// A gap in a side of an outline: from where to where along it, in metres.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     side: usize,

@@ -2,5 +2,6 @@
 
 pub mod dot;
 pub mod named_world;
+pub mod place;
 pub mod plantri;
 pub mod world_file;

@@ -4,6 +4,7 @@ use std::fmt::{self, Write as _};
 
 use thiserror::Error;
 use toml::{Table as Toml, Value};
+use toposlam_model::format::place::Place;
 
 use super::{
     Class, ColourModel, Priors, Smoothing, Stripe, StripeKind, hsv::Bin, model::Histogram,
@@ -24,32 +25,6 @@ pub struct ColourFileError {
     /// What is wrong there.
     #[source]
     pub cause: Cause,
-}
-
-/// A place in a colour file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// The file as a whole.
-    File,
-    /// Where the text breaks; both count from 1, the column in characters.
-    Text {
-        /// The line.
-        line: usize,
-        /// The column.
-        column: usize,
-    },
-    /// The path of a key, such as `stripe.width` or `histograms.floor[3]`.
-    Key(String),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File => Ok(()),
-            Self::Text { line, column } => write!(formatter, "line {line}, column {column}: "),
-            Self::Key(path) => write!(formatter, "{path}: "),
-        }
-    }
 }
 
 /// What can be wrong at a place of a colour file.
@@ -130,15 +105,7 @@ impl Cause {
     }
 
     fn at_byte(self, text: &str, byte: usize) -> ColourFileError {
-        let before = text.get(..byte).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        ColourFileError {
-            place: Place::Text {
-                line: before.matches('\n').count() + 1,
-                column: before[line_start..].chars().count() + 1,
-            },
-            cause: self,
-        }
+        ColourFileError { place: Place::at_byte(text.as_bytes(), byte), cause: self }
     }
 }
 

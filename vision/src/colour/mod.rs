@@ -16,7 +16,7 @@ mod table;
 mod training;
 
 pub use confusion::Confusion;
-pub use file::{Cause, ColourFileError, Place};
+pub use file::{Cause, ColourFileError};
 pub use light::{FloorRing, LightError};
 pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};

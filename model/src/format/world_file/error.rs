@@ -1,11 +1,11 @@
 //! What can be wrong with a world file, and where.
 
-use std::fmt;
-
 use thiserror::Error;
 
 use crate::{
-    embedded_graph::ListError, floor_plan::FloorPlanError, format::named_world::StartError,
+    embedded_graph::ListError,
+    floor_plan::FloorPlanError,
+    format::{named_world::StartError, place::Place},
 };
 
 /// Why bytes are not a world file: one message that names place and cause.
@@ -17,32 +17,6 @@ pub struct WorldFileError {
     /// What is wrong there.
     #[source]
     pub cause: Cause,
-}
-
-/// A place in a world file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// The file as a whole.
-    File,
-    /// Where the text breaks; both count from 1, the column in characters.
-    Text {
-        /// The line.
-        line: usize,
-        /// The column.
-        column: usize,
-    },
-    /// The path of a key, such as `clockwise.a` or `hallways[0].from`.
-    Key(String),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File => Ok(()),
-            Self::Text { line, column } => write!(formatter, "line {line}, column {column}: "),
-            Self::Key(path) => write!(formatter, "{path}: "),
-        }
-    }
 }
 
 /// What is wrong at a place of a world file.
@@ -118,18 +92,6 @@ impl Cause {
 
     /// The error that has this cause at a byte of the text.
     pub(super) fn at_byte(self, text: &str, byte: usize) -> WorldFileError {
-        let before: String = text
-            .char_indices()
-            .take_while(|&(at, _)| at < byte)
-            .map(|(_, character)| character)
-            .collect();
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        WorldFileError {
-            place: Place::Text {
-                line: before.matches('\n').count() + 1,
-                column: before[line_start..].chars().count() + 1,
-            },
-            cause: self,
-        }
+        WorldFileError { place: Place::at_byte(text.as_bytes(), byte), cause: self }
     }
 }

@@ -7,7 +7,7 @@ mod read;
 mod tree;
 mod write;
 
-pub use error::{Cause, Place, WorldFileError};
+pub use error::{Cause, WorldFileError};
 pub use read::read;
 pub use write::{to_json, to_json_text, to_toml};
 

@@ -4,7 +4,8 @@ use std::{collections::HashSet, fmt};
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use super::error::{Cause, Place, WorldFileError};
+use super::error::{Cause, WorldFileError};
+use crate::format::place::Place;
 
 /// A value of a world file.
 #[derive(Clone, Debug, PartialEq)]

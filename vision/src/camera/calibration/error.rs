@@ -1,8 +1,9 @@
 //! What can be wrong with a calibration, and where.
 
-use std::{fmt, io};
+use std::io;
 
 use thiserror::Error;
+use toposlam_model::format::place::Place;
 
 use crate::camera::{MaskError, OpticsFileError};
 
@@ -10,45 +11,11 @@ use crate::camera::{MaskError, OpticsFileError};
 #[derive(Debug, Error)]
 #[error("{place}{cause}")]
 pub struct CalibrationError {
-    /// Where.
+    /// Where: a file that the calibration names stands behind its key.
     pub place: Place,
     /// What is wrong there.
     #[source]
     pub cause: Cause,
-}
-
-/// A place in a calibration file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// The file as a whole.
-    File,
-    /// Where the text breaks; both count from 1, the column in characters.
-    Text {
-        /// The line.
-        line: usize,
-        /// The column.
-        column: usize,
-    },
-    /// A key, such as `camera.focal`.
-    Key(String),
-    /// A file that the calibration names, under this key.
-    Named {
-        /// The key.
-        key: String,
-        /// The file.
-        file: String,
-    },
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File => Ok(()),
-            Self::Text { line, column } => write!(formatter, "line {line}, column {column}: "),
-            Self::Key(key) => write!(formatter, "{key}: "),
-            Self::Named { key, file } => write!(formatter, "{key}: {}: ", file.escape_debug()),
-        }
-    }
 }
 
 /// What is wrong at a place of a calibration file.
@@ -157,22 +124,12 @@ impl Cause {
 
     /// The error that has this cause in a file that a key names.
     pub(super) fn in_named(self, key: &str, file: &str) -> CalibrationError {
-        CalibrationError {
-            place: Place::Named { key: format!("camera.{key}"), file: file.to_owned() },
-            cause: self,
-        }
+        let place = Place::Key(format!("camera.{key}: {}", file.escape_debug()));
+        CalibrationError { place, cause: self }
     }
 
     /// The error that has this cause at a byte of the text.
     pub(super) fn at_byte(self, bytes: &[u8], byte: usize) -> CalibrationError {
-        let before = String::from_utf8_lossy(&bytes[..byte.min(bytes.len())]);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        CalibrationError {
-            place: Place::Text {
-                line: before.matches('\n').count() + 1,
-                column: before[line_start..].chars().count() + 1,
-            },
-            cause: self,
-        }
+        CalibrationError { place: Place::at_byte(bytes, byte), cause: self }
     }
 }

@@ -32,7 +32,7 @@ mod read;
 mod table;
 mod write;
 
-pub use error::{CalibrationError, Cause, Place};
+pub use error::{CalibrationError, Cause};
 pub use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;
