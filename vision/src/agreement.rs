@@ -320,6 +320,33 @@ mod tests {
     }
 
     #[test]
+    fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
+        let dead_end = Place::junction([false, false, true, false], HALF);
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
+        let view = dead_end.seen_from([-0.8, 0.0], 0.0);
+        let boundary = Bearings::new(stripe, 1.05).look(&view);
+        let square = Square { middle: [0.8, 0.0], half: HALF - drawn::TAPE };
+        let l = Outline::junction([false, true, true, false], square);
+        let agreement = l.agreement(&boundary, &Frame::along(0.0), 1);
+        assert!(agreement.against > 60, "{agreement:?}");
+        assert!(!agreement.holds(0.75), "{agreement:?}");
+    }
+
+    #[test]
+    fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
+        let t = Place::junction([false, true, true, true], 0.7);
+        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
+        for before in [0.4, 0.5, 0.55] {
+            let boundary = Bearings::new(stripe, 1.05).look(&t.seen_from([-before, 0.0], 0.0));
+            // A little too wide and too near: a camera that is not as calibrated errs so.
+            let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
+            let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
+            let agreement = bar.agreement(&boundary, &Frame::along(0.0), 1);
+            assert_eq!(agreement.door, 0, "{before} before: {agreement:?}");
+        }
+    }
+
+    #[test]
     fn a_direction_in_which_nothing_is_seen_is_blank() {
         let doors = [false, true, true, true];
         let mut boundary = seen(&Place::junction(doors, HALF));

@@ -294,6 +294,15 @@ mod tests {
     }
 
     #[test]
+    fn an_area_of_the_stripes_colour_is_no_sure_end_of_the_floor() {
+        let stripe = sight("ffffsssoooo");
+        assert_eq!(stripe.sure(), Some(range(31.5)));
+        let lit_floor = sight("ffffsssssssssoooo");
+        assert_eq!(lit_floor.sure(), None);
+        assert_eq!(lit_floor.edges().count(), 1);
+    }
+
+    #[test]
     fn a_joint_between_tiles_is_narrower_than_the_stripe() {
         let mut classes = on("ffffffffffff");
         classes[40..42].fill(Class::Stripe);

@@ -315,6 +315,18 @@ mod tests {
     }
 
     #[test]
+    fn a_wall_across_with_a_door_in_it_closes_a_hallway_and_half_of_it_does_not() {
+        let left = wall(Axis::Y, 1.2, 0.5, 0.8);
+        let right = wall(Axis::Y, 1.2, -0.8, -0.5);
+        assert!(is_closed(Axis::X, 1.5, SQUARE, &[left, right]));
+        assert!(!is_closed(Axis::X, 1.5, SQUARE, &[left]), "0.3 m of 1.6");
+        assert!(!is_closed(Axis::X, 1.0, SQUARE, &[left, right]), "it is farther away");
+        assert!(!is_closed(Axis::X, -1.5, SQUARE, &[left, right]), "it is ahead");
+        let edges = [wall(Axis::Y, 1.2, 0.7, 0.8), wall(Axis::Y, 1.2, -0.8, -0.7)];
+        assert!(!is_closed(Axis::X, 1.5, SQUARE, &edges), "no door is 1.4 of 1.6 m wide");
+    }
+
+    #[test]
     fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
         for (turned, heading, left) in [(0.1, 0.1 - FRAC_PI_2, 1.0), (-0.1, FRAC_PI_2 - 0.1, 0.6)] {
             let hallway = Hallway {

@@ -235,17 +235,24 @@ mod tests {
 
     const HALF: f64 = 0.8;
 
-    fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> Finding {
-        let place = Place::junction(doors, HALF);
+    fn bearings_of(place: &Place, position: [f64; 2]) -> Boundary {
         let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
-        let mut boundary = Bearings::new(stripe, 1.05).look(&place.seen_from([-0.3, 0.1], 0.2));
+        Bearings::new(stripe, 1.05).look(&place.seen_from(position, 0.2))
+    }
+
+    fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> Finding {
+        let mut boundary = bearings_of(&Place::junction(doors, HALF), [-0.3, 0.1]);
         for bearing in hidden {
             boundary.sights[bearing % BEARINGS] = Sight::default();
         }
-        let lines = lines(&clusters(&boundary));
+        finding(&boundary)
+    }
+
+    fn finding(boundary: &Boundary) -> Finding {
+        let lines = lines(&clusters(boundary));
         let frame = Frame::of(&lines).unwrap();
         let walls = frame.walls(&lines);
-        junction(&corners(&walls), &walls, &boundary, &frame)
+        junction(&corners(&walls), &walls, boundary, &frame)
     }
 
     // paper: sense.junction.two
@@ -276,6 +283,16 @@ mod tests {
             let found = seen(doors, BEARINGS / 2..BEARINGS);
             assert!(!matches!(found, Finding::Junction(_)), "{doors:?}: {found:?}");
         }
+    }
+
+    #[test]
+    fn what_is_seen_on_few_bearings_is_no_junction() {
+        let doors = [false, true, true, true];
+        let narrow = Place::junction(doors, 0.5);
+        let found = |before: f64| finding(&bearings_of(&narrow, [-before, 0.0]));
+        assert!(matches!(found(0.3), Finding::Junction(_)));
+        // Only the far end of its arm is near enough to be looked at.
+        assert_eq!(found(1.8), Finding::Nothing);
     }
 
     #[test]

@@ -220,6 +220,16 @@ mod tests {
     }
 
     #[test]
+    fn what_would_go_through_the_robots_body_is_the_edge_of_a_strut() {
+        let wall = line([-1.0, 0.8], [1.0, 0.8]);
+        let strut = line([0.1, 0.4], [0.1, 0.7]);
+        let across = line([1.2, 0.4], [1.2, 0.7]);
+        let walls = Frame::along(0.0).walls(&[wall, strut, across]);
+        assert_eq!(walls.iter().map(|wall| wall.along).collect::<Vec<_>>(), [Axis::X, Axis::Y]);
+        assert!((walls[1].offset - 1.2).abs() < 1e-9);
+    }
+
+    #[test]
     fn into_a_frame_and_out_again() {
         let frame = Frame::along(0.3);
         let [x, y] = frame.unframed(frame.framed([1.2, -0.7]));

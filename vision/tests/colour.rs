@@ -148,6 +148,42 @@ fn a_colour_that_no_class_has_is_unknown() {
     assert_eq!(seen, Class::LEARNED);
 }
 
+/// A picture in which floor and tape mix at the tape's edges, and, if it is so, a patch of floor in the
+/// shade has the colour of their mixture; and its labels.
+fn blurred(shade: bool) -> (RgbImage, RgbImage) {
+    let (mut image, labels) = taken(Taken { light: [1.0; 3], noise: 0.0, seed: 0 });
+    let [width, height] = CAMERA.image;
+    let around = |u: u32, v: u32| {
+        (v.max(1) - 1..=(v + 1).min(height - 1))
+            .flat_map(move |v| (u.max(1) - 1..=(u + 1).min(width - 1)).map(move |u| [u, v]))
+    };
+    for (nth, (u, v, pixel)) in image.enumerate_pixels_mut().enumerate() {
+        let own = *labels.get_pixel(u, v);
+        let is_mixed = around(u, v).any(|[u, v]| *labels.get_pixel(u, v) != own);
+        let by_tape = [Class::Floor, Class::Stripe].map(|class| Rgb(class.label())).contains(&own);
+        let in_shade =
+            shade && GROUND[nth].is_some_and(|[x, y]| (-1.2..-1.0).contains(&x) && y.abs() < 0.1);
+        if is_mixed && by_tape || in_shade {
+            *pixel = Rgb(MIXTURE);
+        }
+    }
+    (image, labels)
+}
+
+const MIXTURE: [u8; 3] = [172, 172, 170];
+
+#[test]
+fn a_mixture_at_a_stripes_edge_is_the_stripe_unless_floor_has_its_colour() {
+    for (shade, expected) in [(false, Class::Stripe), (true, Class::Floor)] {
+        let (image, labels) = blurred(shade);
+        let mut training = Training::new(TAPE);
+        training.add(&CAMERA, &image, &labels).unwrap();
+        let model = training.model().unwrap();
+        let told = model.table().lit(Gain([1.0; 3])).class(MIXTURE);
+        assert_eq!(told, expected, "with floor of this colour: {shade}");
+    }
+}
+
 #[test]
 fn cross_validation_counts_every_labelled_pixel_once() {
     let training = trained_without(9);
