@@ -1,8 +1,16 @@
-//! The SuperScout robot: a simulated building that its camera sees, and what sensing makes of the images,
-//! judged against the floor plan. Sections 2.4, 2.5 and 6.
+//! The SuperScout robot: what it does for Algorithm 2, a simulated building in which it does it, and
+//! what its sensing and driving make of that, judged against the floor plan. Sections 2.4, 2.5 and 4
+//! to 6.
 
 // Tests state numbers as they are.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
+pub mod conformance;
 pub mod evaluation;
+pub mod explorer;
+pub mod pose;
+pub mod robot;
+pub mod run;
 pub mod simulator;
+pub mod superscout;
+pub mod truth;

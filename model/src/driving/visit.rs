@@ -15,12 +15,14 @@ use crate::percept::{Door, Percept, Sighting};
 pub struct Form(pub [bool; 4]);
 
 /// What the pictures of one approach told so far.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Visit {
-    /// How many pictures told of each form, in the order in which they came up.
-    forms: Vec<(Form, u32)>,
+    /// How many pictures told of each form, by its [`Form::code`].
+    forms: [u32; 8],
     /// The best view of the marker.
     marker: Option<Glimpse>,
+    /// Whether a picture was taken from where a marker would be seen well.
+    looked: bool,
 }
 
 /// The marker, seen on the approach.
@@ -57,6 +59,17 @@ impl Form {
         Some(Self(doors))
     }
 
+    /// A number for it, below 8: its doors but the first, as bits.
+    fn code(self) -> usize {
+        let [_, left, ahead, right] = self.0;
+        usize::from(left) | usize::from(ahead) << 1 | usize::from(right) << 2
+    }
+
+    /// The form with a number below 8.
+    fn with_code(code: usize) -> Self {
+        Self([true, code & 1 != 0, code & 2 != 0, code & 4 != 0])
+    }
+
     /// The number of doors.
     #[must_use]
     pub fn degree(self) -> u32 {
@@ -71,27 +84,41 @@ impl Form {
 }
 
 impl Visit {
+    /// The visit of a robot that knows the junction at which it stands, and whether the marker lies
+    /// there.
+    #[must_use]
+    pub fn decided(form: Form, sighting: Sighting) -> Self {
+        let marker = match sighting {
+            Sighting::Pointing(door) => Some(Glimpse { off: 0.0, along_entry: door == Door::BACK }),
+            _ => None,
+        };
+        let mut visit = Self { marker, looked: true, ..Self::default() };
+        visit.forms[form.code()] = AGREEING;
+        visit
+    }
+
+    /// The visit of a robot that has put down the marker where it stands, along its entry door.
+    #[must_use]
+    pub fn at_marker() -> Self {
+        let marker = Some(Glimpse { off: 0.0, along_entry: true });
+        Self { marker, looked: true, ..Self::default() }
+    }
+
     /// Takes in what the next picture tells.
     pub fn see(&mut self, scene: &Scene) {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),
             Place::Junction(junction) => {
                 if let Some(form) = Form::of(junction) {
-                    self.count(form);
+                    self.forms[form.code()] += 1;
                 }
+                self.looked |= APPROACH.contains(&junction.distance());
                 junction.doors.first().map(|entry| entry.direction)
             }
             Place::Unknown(_) => None,
         };
         if let (Some(entry), Some(marker)) = (entry, &scene.marker) {
             self.glimpse(entry, marker);
-        }
-    }
-
-    fn count(&mut self, form: Form) {
-        match self.forms.iter_mut().find(|(known, _)| *known == form) {
-            Some((_, pictures)) => *pictures += 1,
-            None => self.forms.push((form, 1)),
         }
     }
 
@@ -108,22 +135,25 @@ impl Visit {
     /// The form of the junction, once two pictures agree on it and fewer on any other.
     #[must_use]
     pub fn form(&self) -> Option<Form> {
-        let most = self.forms.iter().map(|&(_, pictures)| pictures).max()?;
-        let mut leading = self.forms.iter().filter(|(_, pictures)| *pictures == most);
-        let &(form, _) = leading.next()?;
-        (most >= AGREEING && leading.next().is_none()).then_some(form)
+        let most = self.forms.into_iter().max().filter(|&most| most >= AGREEING)?;
+        let mut leading = (0..8).filter(|&code| self.forms[code] == most);
+        let code = leading.next()?;
+        leading.next().is_none().then(|| Form::with_code(code))
     }
 
     // paper: marker-sense.place
     /// What the robot perceives at the junction, once the visit is decided. The marker lies only at
-    /// junctions that are Ls.
+    /// junctions that are Ls; that it does not is known once it would have been seen.
     #[must_use]
     pub fn percept(&self) -> Option<Percept> {
         let form = self.form()?;
-        let sighting = match self.marker.filter(|_| form.is_l()) {
-            Some(Glimpse { along_entry: true, .. }) => Sighting::Pointing(Door::BACK),
-            Some(_) => Sighting::Pointing(Door(1)),
-            None => Sighting::Nothing,
+        let sighting = match self.marker {
+            Some(Glimpse { along_entry: true, .. }) if form.is_l() => {
+                Sighting::Pointing(Door::BACK)
+            }
+            Some(_) if form.is_l() => Sighting::Pointing(Door(1)),
+            None if form.is_l() && !self.looked => return None,
+            _ => Sighting::Nothing,
         };
         Some(Percept { degree: form.degree(), sighting })
     }

@@ -4,9 +4,9 @@ use super::{
     class::Class,
     judged::{Judged, Zone},
     quantile::Sample,
-    truth::Truth,
     verdict::Verdict,
 };
+use crate::truth::Truth;
 
 /// A group of views with something in common, and how many of them failed.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,10 +7,10 @@ use toposlam_model::{
 
 use super::{
     class::Class,
-    truth::{MarkerTruth, Truth},
     verdict::{MarkerVerdict, Verdict},
     view::View,
 };
+use crate::truth::{MarkerTruth, Truth};
 
 /// Where a view is, as it matters to what is asked of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -22,12 +22,12 @@ use super::{
     calibration::{Calibration, wrong_rigs},
     judged::{Judged, JudgedVisit},
     learning::{LearningError, learned},
-    truth::{JunctionTruth, Truth},
     verdict::{judge, judge_marker},
     view::View,
     views::{NoView, Views},
 };
 use crate::simulator::{Look, Rig};
+use crate::truth::{JunctionTruth, Truth};
 
 /// Why views cannot be judged.
 #[derive(Debug, Error)]

@@ -11,7 +11,6 @@ mod plans;
 pub mod quantile;
 pub mod random_plan;
 pub mod report;
-pub mod truth;
 pub mod verdict;
 pub mod view;
 pub mod views;

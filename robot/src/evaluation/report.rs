@@ -13,9 +13,9 @@ use super::{
     class::Class,
     judged::{Judged, JudgedVisit, Zone},
     quantile::{Quantile, Sample},
-    truth::{HallwayTruth, JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict, hallway_errors, junction_errors},
 };
+use crate::truth::{HallwayTruth, JunctionTruth, Truth};
 
 /// What was measured.
 #[derive(Clone, Debug, PartialEq)]

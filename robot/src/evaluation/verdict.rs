@@ -10,7 +10,7 @@ use toposlam_model::{
 };
 use toposlam_vision::marker::{LENGTH, WIDTH};
 
-use super::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
+use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
 /// How a scene's place compares with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use image::RgbImage;
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 
-use super::truth::{MarkerTruth, Truth};
 use crate::simulator::{Building, Effects, Look, Pose, Rig, render};
+use crate::truth::{MarkerTruth, Truth};
 
 /// A place for a robot, and what there is to see.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,10 +13,10 @@ use toposlam_model::{
 use super::{
     class::FORMS,
     random_plan::random_plan,
-    truth::{JunctionTruth, angle},
     view::{View, WhichEffects},
 };
 use crate::simulator::{Effects, Look, Pose};
+use crate::truth::{JunctionTruth, angle};
 
 /// From so far before a turning point, to so far beyond it junctions are looked at, in metres.
 const APPROACH: [f64; 2] = [1.5, -0.3];

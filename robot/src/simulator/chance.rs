@@ -14,6 +14,9 @@ pub(super) enum For {
     Doors,
     Posters,
     Sensor,
+    Wheels,
+    Scenes,
+    Faults,
 }
 
 /// The stream of a seed for this purpose and, say, this wall.

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use image::codecs::jpeg::JpegEncoder;
+use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{ImageFormat, RgbImage};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -48,8 +48,29 @@ pub(super) fn expose(light: &mut impl Scan, rig: &Rig, effects: &Effects, seed: 
             *byte = response(value);
         }
     }
-    let image = RgbImage::from_raw(width as u32, height as u32, bytes).unwrap_or_default();
-    if effects.jpeg_loss > 0.0 { compressed(image, effects.jpeg_loss) } else { image }
+    RgbImage::from_raw(width as u32, height as u32, bytes).unwrap_or_default()
+}
+
+/// The file that the camera makes of a photograph: JPEG, or PNG where nothing is to be lost.
+pub(super) fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let written = if effects.jpeg_loss > 0.0 {
+        let quality = (100.0 - effects.jpeg_loss).round().clamp(1.0, 100.0) as u8;
+        JpegEncoder::new_with_quality(&mut bytes, quality).encode_image(image)
+    } else {
+        image.write_with_encoder(PngEncoder::new(&mut bytes))
+    };
+    // Only an image without pixels cannot be written; there is nothing to see in it.
+    written.map_or_else(|_| Vec::new(), |()| bytes)
+}
+
+/// A photograph as it is read from the camera's file.
+pub(super) fn compressed(image: RgbImage, effects: &Effects) -> RgbImage {
+    if effects.jpeg_loss <= 0.0 {
+        return image;
+    }
+    let read = image::load_from_memory_with_format(&file(&image, effects), ImageFormat::Jpeg);
+    read.map_or(image, image::DynamicImage::into_rgb8)
 }
 
 /// By what each channel is multiplied.
@@ -202,16 +223,6 @@ fn response(light: f32) -> u8 {
 }
 
 /// What JPEG leaves of a picture.
-fn compressed(image: RgbImage, loss: f64) -> RgbImage {
-    let quality = (100.0 - loss).round().clamp(1.0, 100.0) as u8;
-    let mut bytes = Vec::new();
-    let written = JpegEncoder::new_with_quality(&mut bytes, quality).encode_image(&image);
-    let read =
-        written.and_then(|()| image::load_from_memory_with_format(&bytes, ImageFormat::Jpeg));
-    // Only an image without pixels cannot be written; there is nothing to lose in it.
-    read.map_or(image, image::DynamicImage::into_rgb8)
-}
-
 #[cfg(test)]
 mod tests {
     use toposlam_vision::camera::Camera;
@@ -249,7 +260,7 @@ mod tests {
 
     fn photograph(mut light: Table, effects: &Effects) -> RgbImage {
         let rig = Rig::new(&Camera::superscout().sized([WIDTH as u32, HEIGHT as u32]));
-        expose(&mut light, &rig, effects, 5)
+        compressed(expose(&mut light, &rig, effects, 5), effects)
     }
 
     fn with(settings: &[(&str, f64)]) -> Effects {

@@ -5,11 +5,11 @@ use toposlam_vision::colour::Class;
 
 use super::building::{Building, WallPart};
 use super::effects::Effects;
-use super::pose::Pose;
 use super::renderer::Shot;
 use super::rig::Rig;
 use super::sight_lines::SightLines;
 use super::surfaces::Surface;
+use crate::pose::Pose;
 
 /// What the middle of each pixel shows, row by row: [`Class::Unseen`] on the robot, its struts and
 /// beyond the mirror, and never [`Class::Unknown`].

@@ -5,12 +5,12 @@ use image::RgbImage;
 use super::body::Body;
 use super::building::Building;
 use super::effects::Effects;
-use super::exposure::{Scan, expose};
+use super::exposure::{Scan, compressed, expose, file};
 use super::optics::By;
-use super::pose::Pose;
 use super::rig::{PixelRay, Rig};
 use super::sight_lines::SightLines;
 use super::surfaces::{Surface, View, WorldRay};
+use crate::pose::Pose;
 
 /// How many rays along and across a pixel there are where different things meet in it.
 const FINE: usize = 3;
@@ -33,6 +33,23 @@ pub fn render(
     effects: &Effects,
     seed: u64,
 ) -> RgbImage {
+    compressed(exposed(rig, building, pose, effects, seed), effects)
+}
+
+/// The same picture as the file that the camera makes of it: JPEG, or PNG where the effects have no
+/// loss.
+#[must_use]
+pub fn photograph(
+    rig: &Rig,
+    building: &Building,
+    pose: Pose,
+    effects: &Effects,
+    seed: u64,
+) -> Vec<u8> {
+    file(&exposed(rig, building, pose, effects, seed), effects)
+}
+
+fn exposed(rig: &Rig, building: &Building, pose: Pose, effects: &Effects, seed: u64) -> RgbImage {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
     expose(&mut Rows::new(&shot), rig, effects, seed)

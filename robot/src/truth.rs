@@ -16,7 +16,7 @@ use toposlam_model::{
     percept::Door,
 };
 
-use crate::simulator::Pose;
+use crate::pose::Pose;
 
 /// So near a turning point the robot is at the junction, in metres.
 pub const JUNCTION_WITHIN: f64 = 0.5;
@@ -240,7 +240,7 @@ mod tests {
 
     /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
     fn shape_6() -> FloorPlan {
-        let text = include_bytes!("../../../worlds/shape-6.toml");
+        let text = include_bytes!("../../worlds/shape-6.toml");
         world_file::read(text).unwrap().plan.unwrap()
     }
 

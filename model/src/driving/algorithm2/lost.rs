@@ -1,0 +1,76 @@
+//! Why a path is given up, and where. Section 4.3.
+
+use thiserror::Error;
+
+use super::State;
+use crate::percept::Door;
+
+/// The robot no longer knows where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{why}; {}, {since_turn:.2} m after the last turn to a door", about(*state))]
+pub struct Lost {
+    /// What happened.
+    pub why: Why,
+    /// What the robot was about.
+    pub state: State,
+    /// How far it had come since it last turned to a door, in metres of odometry.
+    pub since_turn: f64,
+}
+
+/// What makes a robot give up a path.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum Why {
+    /// Too many pictures in a row tell of no place that the robot could be at.
+    #[error("{pictures} pictures in a row do not tell where the robot is")]
+    Unknown {
+        /// How many.
+        pictures: u32,
+    },
+    /// The robot has gone too far without knowing where it is.
+    #[error("the robot has crept {metres:.2} m without a picture that tells where it is")]
+    Crept {
+        /// How far.
+        metres: f64,
+    },
+    /// The hallway runs otherwise than odometry says.
+    #[error("the hallway runs {degrees:.0} degrees from where it should be by odometry")]
+    Turned {
+        /// By how much.
+        degrees: f64,
+    },
+    /// Motions are not carried out.
+    #[error("{times} commands in a row were not carried out")]
+    Stalled {
+        /// How many.
+        times: u32,
+    },
+    /// The robot looks and turns without getting anywhere.
+    #[error("{rounds} pictures in a row have brought the robot no farther")]
+    Idle {
+        /// How many.
+        rounds: u32,
+    },
+    /// There is no junction for too long.
+    #[error("there is no junction after {metres:.0} m of hallway")]
+    TooFar {
+        /// How far the robot came.
+        metres: f64,
+    },
+    /// The path asks for a door that is not there.
+    #[error("there is no door {} at a junction with {degree}", .door.0)]
+    NoSuchDoor {
+        /// What was asked for.
+        door: Door,
+        /// How many there are.
+        degree: u32,
+    },
+}
+
+fn about(state: State) -> &'static str {
+    match state {
+        State::Leaving => "leaving a junction",
+        State::Hallway => "in a hallway",
+        State::Junction => "at a junction",
+        State::Unknown => "looking around at a junction",
+    }
+}

@@ -1,0 +1,381 @@
+//! Algorithm 2: driving a door sequence. Section 4.3.
+//!
+//! The numbers are those of the printed lines. One call of [`PathExecution::round`] is one round of
+//! the printed loop: a scene in, a command out. Pictures, sensing and motors are the caller's. What
+//! odometry says and when to give up is [`Reckoning`]'s.
+
+mod lost;
+mod reckoning;
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+pub use lost::{Lost, Why};
+pub use reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
+
+use super::{
+    odometry::Odometry,
+    scene::{CentreLine, HallwayView, JunctionView, Place, Scene, Status, Turning, wrapped},
+    visit::{Form, Visit},
+};
+use crate::percept::{Door, Percept};
+use reckoning::{Reckoning, Round};
+
+/// A unit distance, in metres.
+// paper: alg2.2
+pub const UNIT: f64 = 0.5;
+/// Motions that are shorter count as done, in metres
+pub const LEAST_FORWARD: f64 = 0.03;
+/// and turns that are smaller, in radians.
+pub const LEAST_TURN: f64 = 0.035;
+
+/// The robot is too close to one side when it is so far from the centre line, in metres,
+const TOO_CLOSE: f64 = 0.10;
+/// and then turns towards that line by no more than this.
+const INWARDS: f64 = FRAC_PI_4 / 2.0;
+/// A door is straight ahead if it is no farther aside than this: ten degrees.
+const STRAIGHT: f64 = 10.0 / 180.0 * PI;
+/// The turning point is aimed at while it is no farther aside than this.
+const AHEAD: f64 = FRAC_PI_4;
+/// Arrival takes a hallway in between, or so many metres since the turn.
+const ARRIVAL: f64 = 1.2;
+/// A junction behind the robot is the one just left if odometry puts it there to so many metres.
+const SAME: f64 = 0.6;
+
+/// What the robot is about.
+// paper: alg2.1
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum State {
+    /// Leaving a junction.
+    Leaving,
+    /// In a hallway.
+    Hallway,
+    /// At a junction, on the way to its turning point or turning there.
+    Junction,
+    /// Not knowing where it is.
+    Unknown,
+}
+
+/// What the robot is told to do: first to turn, then to go straight ahead.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// Radians counter-clockwise, in (-pi, pi].
+    pub turn: f64,
+    /// Metres, from 0 to [`UNIT`].
+    pub forward: f64,
+}
+
+/// What a round of the loop ends with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// Do this, then take the next picture; nothing is asked for where only another picture is needed.
+    Go(Command),
+    /// The path is done: the robot is at the turning point of its last junction.
+    Arrived(Standing),
+}
+
+/// Where the robot stands between two paths: at the turning point of a junction that it knows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// What the junction looks like from its entry door.
+    pub form: Form,
+    /// What the robot perceives there.
+    pub percept: Percept,
+    /// Where the entry door is, as a direction in the frame of odometry.
+    pub entry: f64,
+}
+
+/// A path that is being driven.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathExecution<'a> {
+    /// The doors that have not been taken.
+    queue: &'a [Door],
+    state: State,
+    /// What is known of the junction ahead, or of the one at which the robot stands.
+    visit: Visit,
+    /// The door that the robot has taken from the queue and is turning to.
+    door: Option<Door>,
+    reckoning: Reckoning,
+}
+
+/// What a scene is taken for, given odometry.
+enum Seen {
+    Hallway(HallwayView),
+    /// The junction that the robot has just left.
+    Left(JunctionView),
+    /// The junction to which the robot has come, its doors clockwise from the entry door.
+    Junction(JunctionView),
+    Unknown,
+}
+
+impl<'a> PathExecution<'a> {
+    /// A path from where the last one ended.
+    // paper: drive.path
+    #[must_use]
+    pub fn new(queue: &'a [Door], from: &Standing) -> Self {
+        let visit = Visit::decided(from.form, from.percept.sighting);
+        Self::at_junction(queue, visit, from.entry)
+    }
+
+    /// The path of no door, by which a robot gets to know the junction at whose turning point it
+    /// stands at the very start, its back to the facing door and the marker along it.
+    #[must_use]
+    pub fn at_start(odometry: &Odometry) -> Self {
+        Self::at_junction(&[], Visit::at_marker(), odometry.whither(PI))
+    }
+
+    fn at_junction(queue: &'a [Door], visit: Visit, entry: f64) -> Self {
+        // 1
+        let state = State::Leaving;
+        Self { queue, state, visit, door: None, reckoning: Reckoning::at_junction(entry) }
+    }
+
+    /// Gives up a path that is so long from junction to junction, in metres; [`LEG`] otherwise.
+    #[must_use]
+    pub fn with_leg_bound(mut self, metres: f64) -> Self {
+        self.reckoning.bound_leg(metres);
+        self
+    }
+
+    /// What the robot is about.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The doors that have not been taken.
+    #[must_use]
+    pub fn queue(&self) -> &'a [Door] {
+        self.queue
+    }
+
+    /// How far the robot has come since it last turned to a door, in metres of odometry.
+    #[must_use]
+    pub fn since_turn(&self) -> f64 {
+        self.reckoning.since_turn()
+    }
+
+    /// One round of the loop, lines 3 to 32, on the scene of a picture and what odometry said when it
+    /// was taken.
+    ///
+    /// # Errors
+    /// Where the robot can no longer know where it is. So it always ends.
+    // paper: alg2.3, alg2.4, alg2.5, alg2.6, alg2.7, alg2.8, alg2.9, alg2.10, alg2.11, alg2.12
+    // paper: alg2.13, alg2.14, alg2.15, alg2.16, alg2.17, alg2.18, alg2.19, alg2.20, alg2.21
+    // paper: alg2.22, alg2.23, alg2.24, alg2.25, alg2.26, alg2.27, alg2.28, alg2.29, alg2.30
+    // paper: alg2.31, alg2.32
+    pub fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost> {
+        self.reckoning.begin(odometry).map_err(|why| self.lost(why))?;
+        // 4, 5, 6: the caller's; type and status are the scene's.
+        let seen = self.made_out(scene).map_err(|why| self.lost(why))?;
+        let command = match seen {
+            // 7
+            Seen::Hallway(hallway) => {
+                // 8
+                self.state = State::Hallway;
+                // 9
+                let along = self.aligned(&hallway);
+                // 10
+                let turn = along + towards_centre(&hallway, along);
+                let forward = match hallway.status {
+                    // 11, 12
+                    Status::Clear => UNIT,
+                    // 13, 14
+                    Status::Unclear(_) => UNIT / 2.0,
+                };
+                Command { turn, forward }
+            }
+            // The print is silent here: half a metre after the turn the robot is still in the
+            // junction's square. It goes on, still leaving.
+            Seen::Left(junction) => self.onwards(&junction),
+            // 15, 16
+            Seen::Junction(junction) if self.is_before(&junction) => {
+                // 17
+                self.state = State::Junction;
+                // 18, 19
+                to_turning_point(&junction)
+            }
+            // 20
+            Seen::Junction(junction) => {
+                self.state = State::Junction;
+                match self.at_turning_point(&junction).map_err(|why| self.lost(why))? {
+                    Step::Go(command) => command,
+                    arrived @ Step::Arrived(_) => return Ok(arrived),
+                }
+            }
+            // 27
+            Seen::Unknown => match self.state {
+                // 28, 29
+                State::Hallway | State::Leaving if !self.reckoning.is_at_junction() => {
+                    Command { turn: 0.0, forward: UNIT / 3.0 }
+                }
+                // 30
+                _ => {
+                    // 32
+                    self.state = State::Unknown;
+                    // 31
+                    Command { turn: self.reckoning.little_turn(), forward: 0.0 }
+                }
+            },
+        };
+        self.reckoning.end(command).map(Step::Go).map_err(|why| self.lost(why))
+    }
+
+    /// Lines 20 to 26: the red line is reached or passed.
+    fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, Why> {
+        let Some(standing) = self.standing() else {
+            // A visit is decided by two pictures: another one, from the same place.
+            return Ok(Step::Go(Command::default()));
+        };
+        let door = match (self.door, self.queue.split_first()) {
+            (Some(door), _) => door,
+            // 21, 22
+            (None, None) => return Ok(Step::Arrived(standing)),
+            // 23
+            (None, Some((&door, rest))) => {
+                self.queue = rest;
+                self.reckoning.stand();
+                door
+            }
+        };
+        let exit = junction.doors.get(door.0 as usize).map(|line| line.direction);
+        let Some(exit) = exit else {
+            return Err(Why::NoSuchDoor { door, degree: standing.form.degree() });
+        };
+        if exit.abs() > STRAIGHT {
+            // 24: and a picture must show the doors turned by it before the robot leaves.
+            self.door = Some(door);
+            return Ok(Step::Go(Command { turn: exit, forward: 0.0 }));
+        }
+        self.door = None;
+        // 26
+        self.state = State::Leaving;
+        self.visit = Visit::default();
+        self.reckoning.leave(exit);
+        // 25
+        Ok(Step::Go(Command { turn: exit, forward: UNIT }))
+    }
+
+    /// What a scene is taken for.
+    fn made_out(&mut self, scene: &Scene) -> Result<Seen, Why> {
+        let seen = match &scene.place {
+            Place::Unknown(_) => Seen::Unknown,
+            // At a junction that the robot has not left there is no hallway.
+            Place::Hallway(_) if self.reckoning.is_at_junction() => Seen::Unknown,
+            Place::Hallway(hallway) => {
+                self.reckoning.hallway(hallway.heading)?;
+                self.visit.see(scene);
+                Seen::Hallway(*hallway)
+            }
+            Place::Junction(junction) if self.has_left(junction) => {
+                self.reckoning.left(junction)?;
+                Seen::Left(junction.clone())
+            }
+            Place::Junction(junction) => self.junction(scene, junction)?,
+        };
+        self.reckoning.note(match seen {
+            Seen::Hallway(_) | Seen::Left(_) | Seen::Junction(_) => Round::Known,
+            Seen::Unknown => Round::Unknown,
+        })?;
+        Ok(seen)
+    }
+
+    /// A junction, from its entry door. Once its form is known, a picture of another one, or of the
+    /// same one turned otherwise than odometry says, tells nothing.
+    fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Result<Seen, Why> {
+        let Some(entry) = self.reckoning.entry(junction) else { return Ok(Seen::Unknown) };
+        let junction = junction.clone().entered_from(entry);
+        let form = Form::of(&junction);
+        let decided = self.reckoning.is_at_junction().then(|| self.standing()).flatten();
+        match decided {
+            Some(standing) if form != Some(standing.form) => return Ok(Seen::Unknown),
+            Some(_) => {}
+            None => self
+                .visit
+                .see(&Scene { place: Place::Junction(junction.clone()), marker: scene.marker }),
+        }
+        self.reckoning.at(&junction);
+        Ok(Seen::Junction(junction))
+    }
+
+    /// Whether a junction is the one that the robot has just left.
+    fn has_left(&self, junction: &JunctionView) -> bool {
+        if !self.reckoning.is_on_the_way() {
+            return false;
+        }
+        let since = self.reckoning.since_turn();
+        let [x, y] = junction.turning_point;
+        let direction = self.reckoning.ahead();
+        let ahead = x * direction.cos() + y * direction.sin();
+        let behind = ahead < 0.0 && (since + ahead).abs() < SAME;
+        behind || (self.state != State::Hallway && since < ARRIVAL)
+    }
+
+    /// Whether the turning point is still ahead. Once the robot turns to a door it no longer matters.
+    fn is_before(&self, junction: &JunctionView) -> bool {
+        self.door.is_none() && junction.turning() == Turning::Before
+    }
+
+    /// The junction at which the robot stands, once two pictures agree on it.
+    fn standing(&self) -> Option<Standing> {
+        let (form, percept) = (self.visit.form()?, self.visit.percept()?);
+        Some(Standing { form, percept, entry: self.reckoning.entry_direction() })
+    }
+
+    /// The hallway's direction onwards.
+    // paper: drive.align
+    fn aligned(&self, hallway: &HallwayView) -> f64 {
+        let ahead = self.reckoning.ahead();
+        let off = wrapped(hallway.heading - ahead);
+        if off.abs() <= PI / 2.0 { hallway.heading } else { wrapped(hallway.heading + PI) }
+    }
+
+    /// Out of a junction along the centre line of the door that was taken.
+    fn onwards(&self, junction: &JunctionView) -> Command {
+        let ahead = self.reckoning.ahead();
+        let off = |line: &&CentreLine| wrapped(line.direction - ahead).abs();
+        let exit = junction.doors.iter().min_by(|one, other| off(one).total_cmp(&off(other)));
+        let turn = exit.map_or(0.0, |exit| {
+            let (sine, cosine) = exit.direction.sin_cos();
+            let left = exit.through[1] * cosine - exit.through[0] * sine;
+            exit.direction + inwards(left)
+        });
+        Command { turn, forward: UNIT / 2.0 }
+    }
+
+    fn lost(&self, why: Why) -> Lost {
+        Lost { why, state: self.state, since_turn: self.reckoning.since_turn() }
+    }
+}
+
+/// By how much more the robot turns to get nearer to the centre line of a hallway, where it is too
+/// close to one side; `along` is the hallway's direction onwards.
+// paper: drive.centre
+fn towards_centre(hallway: &HallwayView, along: f64) -> f64 {
+    let left = (hallway.left - hallway.right) / 2.0;
+    let back = wrapped(along - hallway.heading).abs() > PI / 2.0;
+    inwards(if back { -left } else { left })
+}
+
+/// The turn towards a line that is so far to the left, if that is too far.
+fn inwards(left: f64) -> f64 {
+    if left.abs() > TOO_CLOSE { left.atan2(UNIT).clamp(-INWARDS, INWARDS) } else { 0.0 }
+}
+
+/// Lines 18 and 19: towards the crossing of the centre lines, in steps of half a unit, because a visit
+/// is decided by its pictures.
+// paper: drive.before
+fn to_turning_point(junction: &JunctionView) -> Command {
+    let [x, y] = junction.turning_point;
+    let bearing = y.atan2(x);
+    let along = junction.doors.first().map_or(0.0, |entry| wrapped(entry.direction + PI));
+    // Beside the turning point the crossing would be far aside.
+    let (turn, distance) = if wrapped(bearing - along).abs() <= AHEAD {
+        (bearing, x.hypot(y))
+    } else {
+        (along, junction.distance())
+    };
+    Command { turn, forward: distance.clamp(0.0, UNIT / 2.0) }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,285 @@
+//! A robot as a world: Algorithm 1 asks for doors, and Algorithm 2 takes the robot through them.
+//! Sections 4.3 and 5.
+
+use image::ImageError;
+use thiserror::Error;
+use toposlam_model::{
+    driving::{
+        algorithm2::{Lost, PathExecution, Standing, State, Step},
+        odometry::Odometry,
+        scene::Scene,
+    },
+    percept::{Door, Percept},
+    world::World,
+};
+use toposlam_vision::sensing::{Sensor, WrongSize};
+
+use crate::robot::{Picture, Robot, RobotError};
+
+/// What makes a scene of what a camera gives.
+pub trait Eye<V> {
+    /// The scene.
+    ///
+    /// # Errors
+    /// Where the picture cannot be read.
+    fn scene(&mut self, view: &V) -> Result<Scene, Unreadable>;
+}
+
+/// A picture that cannot be read.
+#[derive(Debug, Error)]
+pub enum Unreadable {
+    /// It is no image.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// It is of another camera.
+    #[error(transparent)]
+    Size(#[from] WrongSize),
+}
+
+/// The file of a photograph is decoded and sensed.
+impl Eye<Vec<u8>> for Sensor {
+    fn scene(&mut self, view: &Vec<u8>) -> Result<Scene, Unreadable> {
+        let image = image::load_from_memory(view)?;
+        Ok(self.sense(&image.into_rgb8())?)
+    }
+}
+
+/// A camera that tells scenes itself needs no eye.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Told;
+
+impl Eye<Scene> for Told {
+    fn scene(&mut self, view: &Scene) -> Result<Scene, Unreadable> {
+        Ok(view.clone())
+    }
+}
+
+/// A round of Algorithm 2, as it came about.
+#[derive(Debug)]
+pub struct Round<'a, V> {
+    /// How many doors were taken before.
+    pub moves: u64,
+    /// The door that the robot is to take or has taken; `None` at the start.
+    pub door: Option<Door>,
+    /// The picture.
+    pub picture: &'a Picture<V>,
+    /// Where the robot was by odometry when it was taken.
+    pub odometry: Odometry,
+    /// What sensing told of it.
+    pub scene: &'a Scene,
+    /// What the robot is about after it.
+    pub state: State,
+    /// What came of it.
+    pub step: &'a Result<Step, Lost>,
+}
+
+/// Whoever watches a robot explore.
+pub trait Observer<R: Robot> {
+    /// A round of Algorithm 2.
+    fn round(&mut self, _robot: &R, _round: &Round<R::View>) {}
+
+    /// The robot has come to a junction, by a door of the last one unless it is the first.
+    fn arrived(&mut self, _robot: &R, _door: Option<Door>, _at: &Standing) {}
+
+    /// Whether the run is to end.
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+impl<R: Robot> Observer<R> for () {}
+
+/// Why a robot cannot go on.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ExplorerError {
+    /// It no longer knows where it is.
+    #[error("on move {moves}, {}: {lost}", by_door(*.door))]
+    Lost {
+        /// Which move it is, counted from 1; 0 at the start.
+        moves: u64,
+        /// By which door.
+        door: Option<Door>,
+        /// What happened.
+        lost: Lost,
+    },
+    /// There is no picture that it could use.
+    #[error("on move {moves}, {}: {pictures} pictures in a row cannot be used: {cause}", by_door(*.door))]
+    NoPicture {
+        /// Which move it is.
+        moves: u64,
+        /// By which door.
+        door: Option<Door>,
+        /// How many.
+        pictures: u32,
+        /// What is wrong with the last.
+        cause: String,
+    },
+    /// The start is none.
+    #[error("the robot stands at a junction with {degree} doors; the marker is put down at an L")]
+    NotAnL {
+        /// How many doors the junction has.
+        degree: u32,
+    },
+    /// The robot does not obey.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// Somebody ended the run.
+    #[error("the run was ended on move {moves}")]
+    Stopped {
+        /// Which move it was.
+        moves: u64,
+    },
+}
+
+fn by_door(door: Option<Door>) -> String {
+    door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
+}
+
+/// A robot that explores.
+///
+/// At its start it stands at the turning point of an L, its back to the facing hallway, and has put
+/// its marker down along it.
+// paper: hardware.capture
+#[derive(Clone, Debug)]
+pub struct Explorer<R: Robot, E, O = ()> {
+    robot: R,
+    eye: E,
+    observer: O,
+    standing: Option<Standing>,
+    moves: u64,
+    door: Option<Door>,
+    /// What was last seen, and where by odometry.
+    last: Option<(R::View, Odometry)>,
+}
+
+/// So many pictures in a row that cannot be used are too many.
+const RETAKES: u32 = 6;
+
+impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
+    /// A robot with an eye, and somebody who watches.
+    pub fn new(robot: R, eye: E, observer: O) -> Self {
+        Self { robot, eye, observer, standing: None, moves: 0, door: None, last: None }
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> &R {
+        &self.robot
+    }
+
+    /// Whoever watches.
+    pub fn observer(&self) -> &O {
+        &self.observer
+    }
+
+    /// How many doors the robot has set out to take.
+    pub fn moves(&self) -> u64 {
+        self.moves
+    }
+
+    /// The robot and whoever watched.
+    pub fn into_parts(self) -> (R, O) {
+        (self.robot, self.observer)
+    }
+
+    /// Drives a path to its end.
+    fn drive(&mut self, mut path: PathExecution) -> Result<Standing, ExplorerError> {
+        loop {
+            let (moves, door) = (self.moves, self.door);
+            if self.observer.stop() {
+                return Err(ExplorerError::Stopped { moves });
+            }
+            let (picture, scene) = self.look()?;
+            let odometry = self.robot.odometry().odometry;
+            let step = path.round(&scene, odometry);
+            let round = Round {
+                moves,
+                door,
+                picture: &picture,
+                odometry,
+                scene: &scene,
+                state: path.state(),
+                step: &step,
+            };
+            self.observer.round(&self.robot, &round);
+            self.last = Some((picture.view, odometry));
+            let command = match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
+                Step::Arrived(standing) => return Ok(standing),
+                Step::Go(command) => command,
+            };
+            if command.turn != 0.0 {
+                self.robot.turn(command.turn)?;
+            }
+            if command.forward != 0.0 {
+                self.robot.forward(command.forward)?;
+            }
+        }
+    }
+
+    /// A picture that can be used: one that was taken since the robot last moved.
+    // paper: alg2.4, alg2.5
+    fn look(&mut self) -> Result<(Picture<R::View>, Scene), ExplorerError> {
+        let at = self.robot.odometry();
+        let mut cause = String::new();
+        for _ in 0..RETAKES {
+            let picture = match self.robot.capture() {
+                Ok(picture) => picture,
+                Err(error @ RobotError::NoPicture) => {
+                    cause = error.to_string();
+                    continue;
+                }
+                Err(error) => return Err(error.into()),
+            };
+            if picture.taken < at.time {
+                cause = "it is older than the end of the last motion".to_owned();
+                continue;
+            }
+            let same = |(view, odometry): &(R::View, Odometry)| {
+                *odometry != at.odometry && *view == picture.view
+            };
+            if self.last.as_ref().is_some_and(same) {
+                cause = "it is the same as before the robot moved".to_owned();
+                continue;
+            }
+            match self.eye.scene(&picture.view) {
+                Ok(scene) => return Ok((picture, scene)),
+                Err(error) => cause = error.to_string(),
+            }
+        }
+        let (moves, door) = (self.moves, self.door);
+        Err(ExplorerError::NoPicture { moves, door, pictures: RETAKES, cause })
+    }
+
+    /// Where the robot stands; at the very start it finds out.
+    fn standing(&mut self) -> Result<Standing, ExplorerError> {
+        if let Some(standing) = self.standing {
+            return Ok(standing);
+        }
+        let odometry = self.robot.odometry().odometry;
+        let standing = self.drive(PathExecution::at_start(&odometry))?;
+        if !standing.form.is_l() {
+            return Err(ExplorerError::NotAnL { degree: standing.form.degree() });
+        }
+        self.observer.arrived(&self.robot, None, &standing);
+        Ok(*self.standing.insert(standing))
+    }
+}
+
+impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
+    type Error = ExplorerError;
+
+    fn percept(&mut self) -> Result<Percept, ExplorerError> {
+        Ok(self.standing()?.percept)
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
+        let from = self.standing()?;
+        self.moves += 1;
+        self.door = Some(door);
+        // Where the robot is, is not known before it has arrived.
+        self.standing = None;
+        let standing = self.drive(PathExecution::new(&[door], &from))?;
+        self.standing = Some(standing);
+        self.observer.arrived(&self.robot, Some(door), &standing);
+        Ok(())
+    }
+}

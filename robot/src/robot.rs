@@ -1,0 +1,70 @@
+//! All that a robot does for Algorithm 2: it takes a picture, it turns, it goes ahead. Sections 2.5
+//! and 4.
+
+use thiserror::Error;
+use toposlam_model::driving::odometry::Odometry;
+
+/// A robot with a camera. What it is asked for may fail, be late, or come out differently: what came
+/// of a motion is what odometry says next.
+pub trait Robot {
+    /// What its camera gives.
+    type View: PartialEq;
+
+    /// Takes a picture.
+    ///
+    /// # Errors
+    /// [`RobotError::NoPicture`] where none came; others where the robot cannot go on.
+    // paper: hardware.capture
+    fn capture(&mut self) -> Result<Picture<Self::View>, RobotError>;
+
+    /// Turns on the spot by so many radians, counter-clockwise.
+    ///
+    /// # Errors
+    /// Where the robot cannot go on.
+    fn turn(&mut self, angle: f64) -> Result<(), RobotError>;
+
+    /// Goes straight ahead by so many metres.
+    ///
+    /// # Errors
+    /// Where the robot cannot go on.
+    fn forward(&mut self, distance: f64) -> Result<(), RobotError>;
+
+    /// Where the robot is by its wheels, and when.
+    fn odometry(&self) -> Reckoned;
+}
+
+/// A picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture<V> {
+    /// When it was taken, in seconds since the robot was switched on.
+    pub taken: f64,
+    /// What it shows.
+    pub view: V,
+}
+
+/// Where the robot is by its wheels, at some time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reckoned {
+    /// In seconds since the robot was switched on.
+    pub time: f64,
+    /// Where it is.
+    pub odometry: Odometry,
+}
+
+/// Why a robot does not do what it is asked for.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RobotError {
+    /// The camera gave no picture; the next may come.
+    #[error("the camera gives no picture")]
+    NoPicture,
+    /// A recorded robot was asked for something else than what is recorded.
+    #[error("entry {entry} of the recording is {recorded}; what is asked for is {asked}")]
+    NotRecorded {
+        /// Which entry it is, counted from 1.
+        entry: usize,
+        /// What it is.
+        recorded: String,
+        /// What the robot was asked for.
+        asked: String,
+    },
+}

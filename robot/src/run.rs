@@ -1,0 +1,182 @@
+//! A whole run: a simulated robot maps its building by Algorithm 1, and the specification says whether
+//! that was right. Section 6.
+
+use thiserror::Error;
+use toposlam_model::{
+    check::{Algorithm1, Flaw, judge},
+    driving::algorithm2::Standing,
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    isomorphism::Candidate,
+    mapping::{self, Exploration, MappingError, Nearest, map_world},
+    percept::Door,
+    world::{GraphWorld, State},
+};
+
+use crate::{
+    conformance::{Divergence, Specification},
+    explorer::{Explorer, ExplorerError, Eye, Observer, Round},
+    pose::Pose,
+    robot::Robot,
+    simulator::{Camera, SimulatedRobot},
+    truth::angle,
+};
+
+/// How a whole run ended, and what the specification says of it.
+#[derive(Debug)]
+pub struct Run<'p> {
+    /// The robot's map and where it takes itself to be.
+    pub exploration: Exploration,
+    /// Why it ended early, if it did.
+    pub error: Option<MappingError<ExplorerError>>,
+    /// What is wrong with its map or its pose, if it ended in good order.
+    pub flaw: Option<Flaw>,
+    /// Every arrival, judged.
+    pub specification: Specification<'p>,
+    /// How many moves Algorithm 1 makes in the plan's embedded graph.
+    pub explore_moves: u64,
+    /// Seconds of the simulated time.
+    pub seconds: f64,
+    /// How many pictures the robot asked for.
+    pub pictures: u64,
+}
+
+/// How a run ended, in a word.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Ending {
+    /// The map is right, the pose true, and each move as specified.
+    #[error("the map is right")]
+    Right,
+    /// The robot gave up and said why.
+    #[error("the robot gave up: {0}")]
+    GaveUp(MappingError<ExplorerError>),
+    /// The map or the pose is wrong, and the robot does not know.
+    #[error("{0}")]
+    Wrong(String),
+}
+
+impl Run<'_> {
+    /// Where the robot first did something else than the specification.
+    #[must_use]
+    pub fn divergence(&self) -> Option<Divergence> {
+        self.specification.divergence()
+    }
+
+    /// Whether the map is isomorphic to the plan, start to start.
+    #[must_use]
+    pub fn isomorphic(&self) -> bool {
+        self.error.is_none()
+            && matches!(self.flaw, None | Some(Flaw::WrongPose { .. } | Flaw::TooManyMoves { .. }))
+    }
+
+    /// Whether the robot is where it believes to be.
+    #[must_use]
+    pub fn pose_true(&self) -> bool {
+        self.isomorphic() && !matches!(self.flaw, Some(Flaw::WrongPose { .. }))
+    }
+
+    /// How it ended.
+    #[must_use]
+    pub fn ending(&self) -> Ending {
+        match (&self.error, &self.flaw, self.divergence()) {
+            (Some(error), ..) => Ending::GaveUp(error.clone()),
+            (None, Some(flaw), Some(divergence)) => Ending::Wrong(format!("{flaw}; {divergence}")),
+            (None, Some(flaw), None) => Ending::Wrong(flaw.to_string()),
+            (None, None, Some(divergence)) => Ending::Wrong(divergence.to_string()),
+            (None, None, None) if self.exploration.moves() != self.explore_moves => {
+                let (moves, explore) = (self.exploration.moves(), self.explore_moves);
+                Ending::Wrong(format!("it took {moves} moves instead of {explore}"))
+            }
+            (None, None, None) => Ending::Right,
+        }
+    }
+}
+
+/// Where a robot stands that begins at a dart: at its junction's turning point, its back to the dart's
+/// hallway.
+#[must_use]
+pub fn start_pose(plan: &FloorPlan, facing: Dart) -> Pose {
+    let position = plan.junction(plan.graph().vertex(facing)).position;
+    Pose { position, heading: angle(plan.direction(facing).reversed()) }
+}
+
+/// A simulated robot that stands at a dart's junction maps its building.
+///
+/// `story` is told what Algorithm 1 does, `observer` what the robot does.
+pub fn run<'p, C, E, O, S>(
+    plan: &'p FloorPlan,
+    facing: Dart,
+    robot: SimulatedRobot<C>,
+    eye: E,
+    observer: O,
+    story: &mut S,
+    dart_bound: usize,
+) -> (Run<'p>, SimulatedRobot<C>, O)
+where
+    C: Camera,
+    E: Eye<C::View>,
+    O: Observer<SimulatedRobot<C>>,
+    S: mapping::Observer,
+{
+    let judged = Judged { specification: Specification::new(plan, facing), observer };
+    let mut explorer = Explorer::new(robot, eye, judged);
+    let mut exploration = Exploration::new(dart_bound);
+    let error = map_world(&mut explorer, &mut Nearest, &mut exploration, story).err();
+    let (robot, Judged { specification, observer }) = explorer.into_parts();
+    let flaw = match error {
+        Some(_) => None,
+        None => flaw(plan, facing, &exploration, specification.reached()),
+    };
+    let explore_moves = explored(plan, facing, dart_bound);
+    let (seconds, pictures) = (robot.time(), robot.pictures());
+    let run = Run { exploration, error, flaw, specification, explore_moves, seconds, pictures };
+    (run, robot, observer)
+}
+
+/// What is wrong with the map, or with where the robot takes itself to be.
+fn flaw(
+    plan: &FloorPlan,
+    facing: Dart,
+    exploration: &Exploration,
+    reached: Option<Dart>,
+) -> Option<Flaw> {
+    let world = GraphWorld::new(plan.graph(), facing);
+    let placed = world.state().placed;
+    // At no junction at all is nowhere that it could believe to be.
+    let nowhere = Dart(u32::MAX);
+    let world = world.at(State { pose: reached.unwrap_or(nowhere), placed });
+    judge(&Algorithm1, exploration, facing, &world, &mut Candidate::default()).err()
+}
+
+/// How many moves Algorithm 1 makes in the plan's embedded graph.
+#[must_use]
+pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
+    let mut world = GraphWorld::new(plan.graph(), facing);
+    let mut exploration = Exploration::new(dart_bound);
+    // What goes wrong there goes wrong with the robot, too.
+    let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut ());
+    exploration.moves()
+}
+
+/// Judges each arrival, and lets somebody else watch, too.
+struct Judged<'p, O> {
+    specification: Specification<'p>,
+    observer: O,
+}
+
+impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for Judged<'_, O> {
+    fn round(&mut self, robot: &SimulatedRobot<C>, round: &Round<C::View>) {
+        self.observer.round(robot, round);
+    }
+
+    fn arrived(&mut self, robot: &SimulatedRobot<C>, door: Option<Door>, at: &Standing) {
+        let pose = robot.pose();
+        let seen = robot.odometry().odometry.seen(at.entry);
+        self.specification.judge(door, at, pose, pose.heading + seen);
+        self.observer.arrived(robot, door, at);
+    }
+
+    fn stop(&self) -> bool {
+        self.observer.stop()
+    }
+}

@@ -1,0 +1,124 @@
+//! What can go wrong with a simulated robot, on purpose. Section 2.5.
+
+use std::str::FromStr;
+
+use thiserror::Error;
+
+/// Something that goes wrong when the robot takes a picture of some number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What.
+    pub kind: FaultKind,
+    /// From which picture on, counted from 1.
+    pub picture: u64,
+    /// For how many pictures or commands, where it passes.
+    pub lasting: u32,
+}
+
+macro_rules! kinds {
+    ($($kind:ident $name:literal $lasting:literal $about:literal;)*) => {
+        /// What goes wrong.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum FaultKind {
+            $(#[doc = $about] $kind,)*
+        }
+
+        /// Everything that can go wrong: its name, for how many pictures or commands it lasts unless
+        /// something else is said, and what it is.
+        pub const FAULTS: &[(FaultKind, &str, u32, &str)] =
+            &[$((FaultKind::$kind, $name, $lasting, $about),)*];
+    };
+}
+
+kinds! {
+    Dropped "dropped" 3 "Pictures do not come.";
+    Late "late" 3 "Pictures come that were taken before the last motion.";
+    Frozen "frozen" 3 "The same picture comes again and again, as if it were new.";
+    OverExposed "over-exposed" 3 "Pictures are burnt out.";
+    Corrupt "corrupt" 3 "Pictures are damaged on their way.";
+    Ignored "ignored" 2 "Commands are not carried out.";
+    Blocked "blocked" 1 "Something stands across the hallway ahead; the camera does not see it.";
+    LightsOut "lights-out" 1 "The lights go out for good.";
+    Carried "carried" 1 "Somebody carries the robot elsewhere; odometry does not tell.";
+}
+
+/// A fault that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("write NAME@PICTURE or NAME@PICTURE:HOW-MANY, as in dropped@12:3; there are {}", names())]
+pub struct NoFault;
+
+fn names() -> String {
+    FAULTS.iter().map(|(_, name, ..)| *name).collect::<Vec<_>>().join(", ")
+}
+
+impl FaultKind {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        FAULTS.iter().find(|(kind, ..)| *kind == self).map_or("", |(_, name, ..)| name)
+    }
+}
+
+impl Fault {
+    /// A fault from a picture on that lasts as long as is usual for its kind.
+    #[must_use]
+    pub fn at(kind: FaultKind, picture: u64) -> Self {
+        let lasting = FAULTS.iter().find(|(known, ..)| *known == kind).map_or(1, |fault| fault.2);
+        Self { kind, picture, lasting }
+    }
+
+    /// Whether it spoils the picture of a number.
+    pub(super) fn spoils(&self, picture: u64) -> bool {
+        self.begins(picture)
+            || picture > self.picture && picture - self.picture < u64::from(self.lasting)
+    }
+
+    /// Whether it begins with the picture of a number.
+    pub(super) fn begins(&self, picture: u64) -> bool {
+        self.picture == picture
+    }
+}
+
+impl FromStr for Fault {
+    type Err = NoFault;
+
+    fn from_str(text: &str) -> Result<Self, NoFault> {
+        let (name, when) = text.trim().split_once('@').ok_or(NoFault)?;
+        let &(kind, ..) = FAULTS.iter().find(|(_, known, ..)| *known == name).ok_or(NoFault)?;
+        let (picture, lasting) = match when.split_once(':') {
+            Some((picture, lasting)) => (picture, Some(lasting)),
+            None => (when, None),
+        };
+        let fault = Self::at(kind, picture.parse().map_err(|_| NoFault)?);
+        let lasting = lasting.map_or(Ok(fault.lasting), str::parse).map_err(|_| NoFault)?;
+        if fault.picture == 0 || lasting == 0 {
+            Err(NoFault)
+        } else {
+            Ok(Self { lasting, ..fault })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_is_read_with_its_picture_and_how_long_it_lasts() {
+        let fault = Fault { kind: FaultKind::Dropped, picture: 12, lasting: 3 };
+        assert_eq!("dropped@12".parse(), Ok(fault));
+        assert_eq!("dropped@12:9".parse(), Ok(Fault { lasting: 9, ..fault }));
+        for text in
+            ["dropped", "dropped@", "dropped@0", "dropped@1:0", "fog@1", "late@x", "late@1:"]
+        {
+            assert_eq!(text.parse::<Fault>(), Err(NoFault), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_fault_spoils_as_many_pictures_as_it_lasts() {
+        let fault: Fault = "frozen@5:2".parse().unwrap();
+        let spoilt: Vec<_> = (1..10).filter(|&picture| fault.spoils(picture)).collect();
+        assert_eq!(spoilt, [5, 6]);
+    }
+}

@@ -1,0 +1,209 @@
+//! A simulated base: wheels that slip, a floor that is uneven, odometry that errs, walls that stop
+//! it, and time. Section 2.5.
+
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    driving::odometry::Odometry,
+    floor_plan::{FloorPlan, Rectangle},
+};
+
+use super::{
+    chance::{For, clouds, stream},
+    surroundings::Surroundings,
+};
+use crate::{
+    pose::Pose,
+    robot::RobotError,
+    superscout::{Base, Odometer, PERIOD, Reading, WATCHDOG, WheelSpeeds, along_arc},
+};
+
+/// How far a simulated base is from an ideal one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionNoise {
+    /// Of each motion each wheel slips by such a share; standard deviation.
+    pub slip: f64,
+    /// Throughout, one wheel goes by such a share farther than the other; standard deviation.
+    pub bias: f64,
+    /// On an uneven floor the robot turns by so much a metre, in radians, as the place has it.
+    pub uneven: f64,
+    /// Each wheel is longer by such a share than odometry takes it to be; standard deviation.
+    pub odometry: f64,
+}
+
+impl MotionNoise {
+    /// A base that does what it is told.
+    pub const NONE: Self = Self { slip: 0.0, bias: 0.0, uneven: 0.0, odometry: 0.0 };
+    /// A base like a SuperScout on tiles.
+    pub const DEFAULT: Self = Self { slip: 0.02, bias: 0.006, uneven: 0.03, odometry: 0.006 };
+    /// With so many times the default noise a robot can no longer find its way: at three deviations
+    /// from the mean, half a metre ends more than 20 degrees off, or a quarter turn.
+    pub const MOST: f64 = 5.0;
+
+    /// So many times as much of everything.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            slip: self.slip * factor,
+            bias: self.bias * factor,
+            uneven: self.uneven * factor,
+            odometry: self.odometry * factor,
+        }
+    }
+}
+
+/// A simulated base in a building.
+#[derive(Clone, Debug)]
+pub struct SimulatedBase {
+    pose: Pose,
+    /// What was last commanded, and how long ago.
+    wheels: WheelSpeeds,
+    silent: f64,
+    time: f64,
+    odometer: Odometer,
+    surroundings: Surroundings,
+    uneven: f64,
+    /// By what shares the wheels differ from what they should be, throughout, and in this motion.
+    always: [f64; 2],
+    slip: [f64; 2],
+    slip_deviation: f64,
+    /// By what shares odometry takes them to be longer.
+    odometry: [f64; 2],
+    chance: Xoshiro256PlusPlus,
+    /// Commands that will not be carried out.
+    deaf: u32,
+    reading: Reading,
+}
+
+impl SimulatedBase {
+    /// A base at a pose in a building; the same seed makes the same base.
+    #[must_use]
+    pub fn new(plan: &FloorPlan, pose: Pose, noise: &MotionNoise, seed: u64) -> Self {
+        let mut chance = stream(seed, For::Wheels, 0);
+        let mut share = |deviation: f64| deviation * standard(&mut chance);
+        let bias = share(noise.bias) / 2.0;
+        let odometry = [share(noise.odometry), share(noise.odometry)];
+        let surroundings = Surroundings::new(plan);
+        let sonars = surroundings.sonars(pose);
+        let odometer = Odometer::default();
+        Self {
+            pose,
+            wheels: WheelSpeeds::STOP,
+            silent: 0.0,
+            time: 0.0,
+            odometer,
+            surroundings,
+            uneven: noise.uneven,
+            always: [bias, -bias],
+            slip: [0.0; 2],
+            slip_deviation: noise.slip,
+            odometry,
+            chance,
+            deaf: 0,
+            reading: Reading { time: 0.0, odometry: odometer.told(), sonars },
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Seconds since it was switched on.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Lets time go by without a command: the wheels go on turning, until the watchdog stops them.
+    pub fn wait(&mut self, seconds: f64) {
+        let mut left = seconds;
+        while left > 0.0 {
+            let step = left.min(PERIOD);
+            if self.silent >= WATCHDOG {
+                self.wheels = WheelSpeeds::STOP;
+            }
+            self.silent += step;
+            self.advance(step);
+            left -= step;
+        }
+        self.read();
+    }
+
+    /// A new motion begins: its wheels slip in their own way. Whether it will be carried out.
+    pub(super) fn begin(&mut self) -> bool {
+        let slip = self.slip_deviation;
+        self.slip = [(); 2].map(|()| slip * standard(&mut self.chance));
+        if self.deaf == 0 {
+            return true;
+        }
+        self.deaf -= 1;
+        self.time += PERIOD;
+        self.read();
+        false
+    }
+
+    /// The next so many motions will not be carried out.
+    pub(super) fn ignore(&mut self, commands: u32) {
+        self.deaf = commands;
+    }
+
+    /// Somebody carries the robot elsewhere; its wheels do not turn.
+    pub(super) fn carry(&mut self, pose: Pose) {
+        self.pose = pose;
+        self.read();
+    }
+
+    /// Something stands on the floor from now on.
+    pub(super) fn put(&mut self, obstacle: Rectangle) {
+        self.surroundings.put(obstacle);
+        self.read();
+    }
+
+    /// The robot moves for so many seconds, unless something is in its way; its wheels turn anyway.
+    fn advance(&mut self, seconds: f64) {
+        self.time += seconds;
+        let WheelSpeeds { left, right } = self.wheels;
+        if left == 0.0 && right == 0.0 {
+            return;
+        }
+        let scaled = |shares: [f64; 2]| WheelSpeeds {
+            left: left * (1.0 + shares[0]),
+            right: right * (1.0 + shares[1]),
+        };
+        self.odometer.add(scaled(self.odometry), seconds);
+        let truly = scaled([0, 1].map(|wheel| self.always[wheel] - self.slip[wheel]));
+        let from = Odometry { position: self.pose.position, heading: self.pose.heading };
+        let to = along_arc(&from, truly, seconds);
+        let [x, y] = self.pose.position.map(|coordinate| coordinate as f32 * 3.0);
+        let tilted = self.uneven * f64::from(clouds(x, y, 7)) * from.distance(&to);
+        let position =
+            if self.surroundings.has_room(to.position) { to.position } else { from.position };
+        self.pose = Pose { position, heading: to.heading + tilted };
+    }
+
+    fn read(&mut self) {
+        let sonars = self.surroundings.sonars(self.pose);
+        self.reading = Reading { time: self.time, odometry: self.odometer.told(), sonars };
+    }
+}
+
+impl Base for SimulatedBase {
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError> {
+        self.wheels = wheels;
+        self.silent = PERIOD;
+        self.advance(PERIOD);
+        self.read();
+        Ok(self.reading)
+    }
+
+    fn reading(&self) -> Reading {
+        self.reading
+    }
+}
+
+/// A number of the standard normal distribution.
+fn standard(chance: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(chance)
+}

@@ -1,0 +1,173 @@
+//! A simulated SuperScout: a base, a camera, and what goes wrong with them. Section 2.5.
+
+use std::sync::Arc;
+
+use rand::{RngExt, seq::IndexedRandom};
+use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
+
+use super::{
+    cameras::Camera,
+    chance::{For, stream},
+    faults::{Fault, FaultKind},
+    motion::{MotionNoise, SimulatedBase},
+};
+use crate::{
+    pose::Pose,
+    robot::{Picture, Reckoned, Robot, RobotError},
+    superscout::{Base, Drive},
+};
+
+/// A SuperScout in a simulated building.
+#[derive(Clone, Debug)]
+pub struct SimulatedRobot<C: Camera> {
+    plan: Arc<FloorPlan>,
+    base: SimulatedBase,
+    camera: C,
+    /// How long a picture takes, in seconds.
+    picture_time: f64,
+    faults: Vec<Fault>,
+    seed: u64,
+    pictures: u64,
+    last: Option<Picture<C::View>>,
+}
+
+/// How overexposed a picture is that is burnt out, in stops.
+const BURNT_OUT: f64 = 4.0;
+/// Something that blocks a hallway stands so far ahead of the robot's middle, and is so deep, in
+/// metres.
+const AHEAD: f64 = 1.2;
+const DEEP: f64 = 0.3;
+
+impl<C: Camera> SimulatedRobot<C> {
+    /// A robot at a pose in the building of a plan, whose pictures take so many seconds; the same seed
+    /// makes the same robot.
+    #[must_use]
+    pub fn new(
+        plan: Arc<FloorPlan>,
+        pose: Pose,
+        camera: C,
+        noise: &MotionNoise,
+        picture_time: f64,
+        seed: u64,
+    ) -> Self {
+        let base = SimulatedBase::new(&plan, pose, noise, seed);
+        let faults = Vec::new();
+        Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
+    }
+
+    /// The same robot, with which these things go wrong.
+    #[must_use]
+    pub fn with_faults(mut self, faults: Vec<Fault>) -> Self {
+        self.faults = faults;
+        self
+    }
+
+    /// Where it really is.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.base.pose()
+    }
+
+    /// Seconds since it was switched on.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.base.time()
+    }
+
+    /// How many pictures it was asked for.
+    #[must_use]
+    pub fn pictures(&self) -> u64 {
+        self.pictures
+    }
+
+    fn begin(&mut self, fault: &Fault) {
+        match fault.kind {
+            FaultKind::Ignored => self.base.ignore(fault.lasting),
+            FaultKind::LightsOut => self.camera.lights_out(),
+            FaultKind::Blocked => self.base.put(across_hallway(self.pose(), &self.plan)),
+            FaultKind::Carried => {
+                let pose = elsewhere(&self.plan, self.seed, fault.picture);
+                self.base.carry(pose);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl<C: Camera> Robot for SimulatedRobot<C> {
+    type View = C::View;
+
+    fn capture(&mut self) -> Result<Picture<C::View>, RobotError> {
+        self.pictures += 1;
+        let number = self.pictures;
+        let begin: Vec<Fault> =
+            self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
+        begin.iter().for_each(|fault| self.begin(fault));
+        let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
+        let taken = self.base.time();
+        let stops = if spoilt(FaultKind::OverExposed) { BURNT_OUT } else { 0.0 };
+        let picture = match &self.last {
+            Some(last) if spoilt(FaultKind::Late) => last.clone(),
+            Some(last) if spoilt(FaultKind::Frozen) => Picture { taken, view: last.view.clone() },
+            _ => {
+                let corrupt = spoilt(FaultKind::Corrupt);
+                let view = self.camera.picture(self.base.pose(), number, stops);
+                Picture { taken, view: if corrupt { C::corrupt(view, number) } else { view } }
+            }
+        };
+        let dropped = spoilt(FaultKind::Dropped);
+        self.base.wait(self.picture_time);
+        if dropped {
+            return Err(RobotError::NoPicture);
+        }
+        self.last = Some(picture.clone());
+        Ok(picture)
+    }
+
+    fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
+        if self.base.begin() { Drive(&mut self.base).turn(angle) } else { Ok(()) }
+    }
+
+    fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
+        if self.base.begin() { Drive(&mut self.base).forward(distance) } else { Ok(()) }
+    }
+
+    fn odometry(&self) -> Reckoned {
+        let reading = self.base.reading();
+        Reckoned { time: reading.time, odometry: reading.odometry }
+    }
+}
+
+/// Something across the hallway ahead of a pose.
+fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
+    let (sine, cosine) = pose.heading.sin_cos();
+    let direction = match (cosine.abs() > sine.abs(), cosine > 0.0, sine > 0.0) {
+        (true, true, _) => Direction::East,
+        (true, false, _) => Direction::West,
+        (false, _, true) => Direction::North,
+        (false, _, false) => Direction::South,
+    };
+    let [x, y] = direction.vector();
+    let middle = [pose.position[0] + AHEAD * x, pose.position[1] + AHEAD * y];
+    let half = [x, y].map(|along| if along == 0.0 { plan.hallway_width() } else { DEEP / 2.0 });
+    Rectangle {
+        least: [0, 1].map(|axis| middle[axis] - half[axis]),
+        greatest: [0, 1].map(|axis| middle[axis] + half[axis]),
+    }
+}
+
+/// A pose somewhere in a hallway, along it.
+fn elsewhere(plan: &FloorPlan, seed: u64, picture: u64) -> Pose {
+    let mut chance = stream(seed, For::Faults, picture as usize);
+    let ends = plan
+        .hallways()
+        .choose(&mut chance)
+        .map(|hallway| [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position));
+    let [mut from, mut to] = ends.unwrap_or_default();
+    if chance.random() {
+        std::mem::swap(&mut from, &mut to);
+    }
+    let along = chance.random::<f64>();
+    let position = [0, 1].map(|axis| from[axis] + along * (to[axis] - from[axis]));
+    Pose { position, heading: (to[1] - from[1]).atan2(to[0] - from[0]) }
+}

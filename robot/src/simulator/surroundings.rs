@@ -1,0 +1,125 @@
+//! What stands in a simulated robot's way, and what its sonars hear. Section 2.5.
+
+use toposlam_model::floor_plan::{FloorPlan, Rectangle};
+
+use super::{
+    squares::Squares,
+    walls::{Wall, walls},
+};
+use crate::{
+    pose::Pose,
+    superscout::{RADIUS, SONARS, sonar_direction},
+};
+
+/// Sonars hear nothing that is farther from the robot's middle, in metres.
+const RANGE: f64 = 2.0;
+
+/// The walls of a building, and other things that stand on its floor.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings {
+    walls: Vec<Wall>,
+    /// The walls within a sonar's range of each place.
+    near: Squares,
+    obstacles: Vec<Rectangle>,
+}
+
+impl Surroundings {
+    pub(super) fn new(plan: &FloorPlan) -> Self {
+        let walls = walls(plan);
+        let floors: Vec<_> = plan.floor().collect();
+        let around: Vec<_> = walls.iter().map(|wall| rectangle(wall).widened(RANGE)).collect();
+        Self { near: Squares::new(&floors, 0.5, &around), walls, obstacles: Vec::new() }
+    }
+
+    /// Puts something on the floor.
+    pub(super) fn put(&mut self, obstacle: Rectangle) {
+        self.obstacles.push(obstacle);
+    }
+
+    /// All that stands within a sonar's range of a place, as rectangles; a wall is one without depth.
+    fn near(&self, [x, y]: [f64; 2]) -> impl Iterator<Item = Rectangle> {
+        let walls = self.near.at([x as f32, y as f32]).iter();
+        walls.map(|&number| rectangle(&self.walls[number as usize])).chain(self.obstacles.clone())
+    }
+
+    /// Whether the robot's body has room at a place.
+    pub(super) fn has_room(&self, place: [f64; 2]) -> bool {
+        self.near(place).all(|thing| {
+            let off = |axis: usize| {
+                place[axis] - place[axis].clamp(thing.least[axis], thing.greatest[axis])
+            };
+            off(0).hypot(off(1)) >= RADIUS
+        })
+    }
+
+    /// How far from its body each sonar of a robot hears something, in metres.
+    pub(super) fn sonars(&self, pose: Pose) -> [f64; SONARS] {
+        let mut heard = [f64::INFINITY; SONARS];
+        for (sonar, heard) in heard.iter_mut().enumerate() {
+            let (sine, cosine) = (pose.heading + sonar_direction(sonar)).sin_cos();
+            let meets = self.near(pose.position).filter_map(|thing| {
+                first_on(&thing, pose.position, [cosine, sine]).filter(|&range| range <= RANGE)
+            });
+            *heard = meets.fold(f64::INFINITY, f64::min) - RADIUS;
+        }
+        heard
+    }
+}
+
+fn rectangle(wall: &Wall) -> Rectangle {
+    let [from, to] = wall.span.map(|at| wall.foot(at));
+    Rectangle { least: from, greatest: to }
+}
+
+/// How far along a ray a rectangle is first met.
+fn first_on(thing: &Rectangle, from: [f64; 2], ray: [f64; 2]) -> Option<f64> {
+    let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+    for axis in 0..2 {
+        let [near, far] = [thing.least[axis], thing.greatest[axis]]
+            .map(|plane| (plane - from[axis]) / if ray[axis] == 0.0 { 1e-300 } else { ray[axis] });
+        enters = enters.max(near.min(far));
+        leaves = leaves.min(near.max(far));
+    }
+    (enters <= leaves).then_some(enters)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
+
+    use super::*;
+
+    /// One hallway to the east, 2 m wide; its dead ends' walls are at x = -1 and x = 7.
+    fn hallway() -> Surroundings {
+        let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [6.0, 0.0])];
+        let plan = FloorPlan::new(2.0, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
+        Surroundings::new(&plan)
+    }
+
+    // paper: hardware.sonar
+    #[test]
+    fn sonars_hear_the_walls_from_the_robots_body_on() {
+        let heard = hallway().sonars(Pose { position: [0.0, 0.2], heading: 0.0 });
+        let close = |sonar: usize, expected: f64| {
+            assert!((heard[sonar] - expected).abs() < 1e-6, "{sonar}: {}", heard[sonar]);
+        };
+        assert_eq!(heard[0], f64::INFINITY, "seven metres ahead");
+        close(4, 0.8 - RADIUS);
+        close(12, 1.2 - RADIUS);
+        close(8, 1.0 - RADIUS);
+        close(2, 0.8 * SQRT_2 - RADIUS);
+        let turned = hallway().sonars(Pose { position: [0.0, 0.2], heading: FRAC_PI_4 });
+        assert!((turned[0] - (0.8 * SQRT_2 - RADIUS)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_body_has_room_up_to_its_radius() {
+        let mut hallway = hallway();
+        assert!(hallway.has_room([3.0, 1.0 - RADIUS]));
+        assert!(!hallway.has_room([3.0, 1.001 - RADIUS]));
+        hallway.put(Rectangle { least: [3.5, -0.2], greatest: [3.7, 0.2] });
+        assert!(!hallway.has_room([3.4, 0.0]) && hallway.has_room([3.2, 0.0]));
+        let heard = hallway.sonars(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 });
+        assert!((heard[0] - (0.5 - RADIUS)).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,69 @@
+//! Differential drive: how fast each wheel turns. Section 2.5.
+
+use super::{SPEED, TURN_RATE, WHEEL_BASE};
+
+/// How fast the ground passes under each wheel, in metres a second.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelSpeeds {
+    /// Under the left wheel.
+    pub left: f64,
+    /// Under the right wheel.
+    pub right: f64,
+}
+
+impl WheelSpeeds {
+    /// The robot stands.
+    pub const STOP: Self = Self { left: 0.0, right: 0.0 };
+
+    /// The wheel speeds at which the robot goes so fast ahead, in metres a second, and turns so fast
+    /// counter-clockwise, in radians a second; no faster than it may.
+    #[must_use]
+    pub fn of(speed: f64, turn_rate: f64) -> Self {
+        let speed = speed.clamp(-SPEED, SPEED);
+        let half = turn_rate.clamp(-TURN_RATE, TURN_RATE) * WHEEL_BASE / 2.0;
+        Self { left: speed - half, right: speed + half }
+    }
+
+    /// How fast the robot goes ahead, in metres a second.
+    #[must_use]
+    pub fn speed(self) -> f64 {
+        f64::midpoint(self.left, self.right)
+    }
+
+    /// How fast it turns counter-clockwise, in radians a second.
+    #[must_use]
+    pub fn turn_rate(self) -> f64 {
+        (self.right - self.left) / WHEEL_BASE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    // paper: hardware.drive
+    #[test]
+    fn turning_on_the_spot_the_wheels_run_against_each_other() {
+        let wheels = WheelSpeeds::of(0.0, 0.2);
+        assert!((wheels.left + 0.2 * 0.1726).abs() < 1e-12);
+        assert!((wheels.right - 0.2 * 0.1726).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn no_command_is_beyond_the_limits(speed in -9.0..9.0, turn_rate in -9.0..9.0) {
+            let wheels = WheelSpeeds::of(speed, turn_rate);
+            prop_assert!(wheels.speed().abs() <= SPEED + 1e-12);
+            prop_assert!(wheels.turn_rate().abs() <= TURN_RATE + 1e-12);
+        }
+
+        #[test]
+        fn what_is_within_them_is_done(speed in -0.2..0.2, turn_rate in -0.3..0.3) {
+            let wheels = WheelSpeeds::of(speed, turn_rate);
+            prop_assert!((wheels.speed() - speed).abs() < 1e-12);
+            prop_assert!((wheels.turn_rate() - turn_rate).abs() < 1e-12);
+        }
+    }
+}
