@@ -6,6 +6,7 @@ use std::{
     sync::Arc,
 };
 
+use image::RgbImage;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -22,7 +23,8 @@ use super::{
     building::Building,
     chance::{For, stream},
     effects::Effects,
-    renderer::photograph,
+    exposure::file,
+    renderer::exposed,
     rig::Rig,
 };
 use crate::pose::Pose;
@@ -43,35 +45,79 @@ pub trait Camera {
     fn lights_out(&mut self);
 }
 
-/// A camera that renders what it sees of a building, and gives the file of a photograph.
+/// A camera that renders what it sees of a building, and gives the file of a photograph: JPEG, or PNG
+/// where its effects have no loss.
+///
+/// It sets its exposure as cameras do: after a picture whose middle is burnt out it exposes the next
+/// one less, and by and by as before.
 #[derive(Clone, Debug)]
 pub struct RenderingCamera {
-    /// The camera.
-    pub rig: Arc<Rig>,
-    /// What it looks at.
-    pub building: Building,
-    /// What makes its pictures harder to read.
-    pub effects: Effects,
-    /// From which the noise of its pictures follows.
-    pub seed: u64,
+    rig: Arc<Rig>,
+    building: Building,
+    effects: Effects,
+    seed: u64,
+    /// By how many stops it exposes less than its effects say.
+    less: f64,
 }
 
 /// How dark it is when the lights are out, in stops.
 const OUT: f64 = -8.0;
 /// One byte of so many is damaged in a corrupt picture.
-const DAMAGED: u64 = 400;
+const DAMAGED: usize = 400;
+/// A channel at this level is burnt out.
+const BURNT: u8 = 250;
+/// The light is metered in the middle of the picture, in this part of the mirror's radius.
+const METERED: f64 = 0.35;
+/// With more than this share burnt out there, a picture is followed by one
+const TOO_MUCH: f64 = 0.1;
+/// that is exposed less by so many stops;
+const LESS: f64 = 0.4;
+/// with less than this share
+const LITTLE: f64 = 0.02;
+/// it is followed by one that is exposed more by so many, up to what the effects say.
+const MORE: f64 = 0.1;
+
+impl RenderingCamera {
+    /// A camera in a building; the noise of its pictures follows from the seed.
+    #[must_use]
+    pub fn new(rig: Arc<Rig>, building: Building, effects: Effects, seed: u64) -> Self {
+        Self { rig, building, effects, seed, less: 0.0 }
+    }
+
+    /// Sets the exposure of the next picture by the middle of this one.
+    fn adapt(&mut self, image: &RgbImage) {
+        let ([u, v], reach) = (self.rig.optics.centre, METERED * self.rig.optics.rim());
+        let (mut metered, mut burnt) = (0_u32, 0_u32);
+        for (column, row, pixel) in image.enumerate_pixels() {
+            if (f64::from(column) - u).hypot(f64::from(row) - v) < reach {
+                metered += 1;
+                burnt += u32::from(pixel.0.iter().any(|&level| level >= BURNT));
+            }
+        }
+        let share = f64::from(burnt) / f64::from(metered.max(1));
+        if share > TOO_MUCH {
+            self.less += LESS;
+        } else if share < LITTLE {
+            self.less = (self.less - MORE).max(0.0);
+        }
+    }
+}
 
 impl Camera for RenderingCamera {
     type View = Vec<u8>;
 
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Vec<u8> {
-        let effects = Effects { exposure: self.effects.exposure + stops, ..self.effects.clone() };
-        photograph(&self.rig, &self.building, pose, &effects, self.seed.wrapping_add(number))
+        let exposure = self.effects.exposure - self.less + stops;
+        let effects = Effects { exposure, ..self.effects.clone() };
+        let seed = self.seed.wrapping_add(number);
+        let image = exposed(&self.rig, &self.building, pose, &effects, seed);
+        self.adapt(&image);
+        file(&image, &effects)
     }
 
     fn corrupt(mut view: Vec<u8>, number: u64) -> Vec<u8> {
         let mut chance = stream(number, For::Faults, view.len());
-        for _ in 0..=view.len() as u64 / DAMAGED {
+        for _ in 0..=view.len() / DAMAGED {
             let at = chance.random_range(0..view.len().max(1));
             if let Some(byte) = view.get_mut(at) {
                 *byte = chance.random();

@@ -38,7 +38,7 @@ pub use labels::{label_mask, labels};
 pub use looks::{Colour, Floor, LOOKS, Look};
 pub use motion::{MotionNoise, SimulatedBase};
 pub use optics::{By, Ray, RigErrors};
-pub use renderer::{photograph, render};
+pub use renderer::render;
 pub use rig::Rig;
 pub use simulated::SimulatedRobot;
 pub use walls::{Wall, walls};

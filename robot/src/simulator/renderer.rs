@@ -5,7 +5,7 @@ use image::RgbImage;
 use super::body::Body;
 use super::building::Building;
 use super::effects::Effects;
-use super::exposure::{Scan, compressed, expose, file};
+use super::exposure::{Scan, compressed, expose};
 use super::optics::By;
 use super::rig::{PixelRay, Rig};
 use super::sight_lines::SightLines;
@@ -36,20 +36,14 @@ pub fn render(
     compressed(exposed(rig, building, pose, effects, seed), effects)
 }
 
-/// The same picture as the file that the camera makes of it: JPEG, or PNG where the effects have no
-/// loss.
-#[must_use]
-pub fn photograph(
+/// The same picture before it is made a file.
+pub(super) fn exposed(
     rig: &Rig,
     building: &Building,
     pose: Pose,
     effects: &Effects,
     seed: u64,
-) -> Vec<u8> {
-    file(&exposed(rig, building, pose, effects, seed), effects)
-}
-
-fn exposed(rig: &Rig, building: &Building, pose: Pose, effects: &Effects, seed: u64) -> RgbImage {
+) -> RgbImage {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
     expose(&mut Rows::new(&shot), rig, effects, seed)

@@ -12,10 +12,10 @@ use toposlam_robot::evaluation::{
     class::Class,
     judged::{Judged, JudgedVisit, Zone},
     judging::Judge,
-    truth::{JunctionTruth, Truth},
     verdict::{MarkerVerdict, Verdict},
     view::View,
 };
+use toposlam_robot::truth::{JunctionTruth, Truth};
 
 use crate::cli::{
     Failure, json::print_object, output, picture_file, scene::SceneLine, words::counted,

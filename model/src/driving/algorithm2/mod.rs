@@ -267,8 +267,10 @@ impl<'a> PathExecution<'a> {
                 Seen::Hallway(*hallway)
             }
             Place::Junction(junction) if self.has_left(junction) => {
-                self.reckoning.left(junction)?;
-                Seen::Left(junction.clone())
+                match self.reckoning.left(junction) {
+                    true => Seen::Left(junction.clone()),
+                    false => Seen::Unknown,
+                }
             }
             Place::Junction(junction) => self.junction(scene, junction)?,
         };

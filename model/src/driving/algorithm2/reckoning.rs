@@ -188,24 +188,18 @@ impl Reckoning {
     /// A hallway is seen to run so.
     pub(super) fn hallway(&mut self, heading: f64) -> Result<(), Why> {
         let off = undirected(heading - self.ahead());
-        self.follow(off)
-    }
-
-    /// The junction just left is seen: one of its doors is where the robot goes.
-    pub(super) fn left(&mut self, junction: &JunctionView) -> Result<(), Why> {
-        let ahead = self.ahead();
-        match nearest(junction, ahead) {
-            Some(off) => self.follow(off),
-            None => Ok(()),
-        }
-    }
-
-    fn follow(&mut self, off: f64) -> Result<(), Why> {
         if off.abs() > AGAINST {
             return Err(Why::Turned { degrees: off.to_degrees().abs() });
         }
         self.leg = wrapped(self.leg + off);
         Ok(())
+    }
+
+    /// The junction just left is seen; whether one of its doors is where the robot goes.
+    pub(super) fn left(&mut self, junction: &JunctionView) -> bool {
+        let off = nearest(junction, self.ahead()).filter(|off| off.abs() <= AGAINST);
+        self.leg = wrapped(self.leg + off.unwrap_or(0.0));
+        off.is_some()
     }
 
     /// Where a junction's entry door is, relative to the robot's heading; `None` where no door is
