@@ -161,6 +161,13 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         Self { robot, eye, observer, standing: None, moves: 0, door: None, last: None }
     }
 
+    /// The same robot, where it is known to stand.
+    #[must_use]
+    pub fn standing_at(mut self, standing: Standing) -> Self {
+        self.standing = Some(standing);
+        self
+    }
+
     /// The robot.
     pub fn robot(&self) -> &R {
         &self.robot

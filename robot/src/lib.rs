@@ -9,6 +9,7 @@ pub mod conformance;
 pub mod evaluation;
 pub mod explorer;
 pub mod pose;
+pub mod recording;
 pub mod robot;
 pub mod run;
 pub mod simulator;

@@ -28,10 +28,26 @@ type Node = [usize; 2];
 /// # Errors
 /// Never, as far as its tests show; a plan that is refused would be a defect here.
 pub fn random_plan(seed: u64) -> Result<FloorPlan, FloorPlanError> {
+    drawn(seed, Pieces::grown)
+}
+
+/// The floor plan of a seed with so many junctions, from 2 on.
+///
+/// # Errors
+/// As [`random_plan`].
+pub fn random_plan_with(seed: u64, junctions: usize) -> Result<FloorPlan, FloorPlanError> {
+    drawn(seed, |chance| Pieces::with_junctions(chance, junctions.max(2)))
+}
+
+/// A plan of pieces of hallway: its lines are drawn by chance, too.
+fn drawn(
+    seed: u64,
+    grown: impl FnOnce(&mut Xoshiro256PlusPlus) -> Pieces,
+) -> Result<FloorPlan, FloorPlanError> {
     let mut chance = Xoshiro256PlusPlus::seed_from_u64(seed);
     let width = chance.random_range(WIDTHS[0]..WIDTHS[1]);
     let aside = if chance.random() { ASIDE } else { 0.0 };
-    let pieces = Pieces::grown(&mut chance);
+    let pieces = grown(&mut chance);
     let lines = pieces.size.map(|count| {
         let mut at = 0.0;
         let lines: Vec<f64> = (0..count)
@@ -76,11 +92,37 @@ impl Pieces {
     /// Connected pieces, with at most three at a node, and one at least.
     fn grown(chance: &mut Xoshiro256PlusPlus) -> Self {
         let size = [0; 2].map(|_| chance.random_range(LINES[0]..=LINES[1]));
-        let mut pieces = Self { size, onwards: vec![[false; 2]; size[0] * size[1]] };
         let wanted = chance.random_range(PIECES[0]..=PIECES[1]);
-        let mut reached = vec![size.map(|count| chance.random_range(0..count))];
         // Some tries lead nowhere; on a small grid there is no room for more.
-        for _ in 0..20 * wanted {
+        Self::grown_until(chance, size, 20 * wanted, |pieces| pieces.count() == wanted)
+    }
+
+    /// Pieces with so many junctions, two at least.
+    fn with_junctions(chance: &mut Xoshiro256PlusPlus, wanted: usize) -> Self {
+        // Room for twice as many.
+        let lines = (2.0 * wanted as f64).sqrt().ceil() as usize + 1;
+        loop {
+            // Of one junction and a dead end each piece makes one junction more or fewer, or none: the
+            // number is hardly ever passed by; if so, the next pieces may hit it.
+            let pieces = Self::grown_until(chance, [lines; 2], 200 * wanted, |pieces| {
+                pieces.junctions().len() == wanted
+            });
+            if pieces.junctions().len() == wanted {
+                return pieces;
+            }
+        }
+    }
+
+    /// Pieces that have grown by so many tries, or until they are done.
+    fn grown_until(
+        chance: &mut Xoshiro256PlusPlus,
+        size: [usize; 2],
+        tries: usize,
+        done: impl Fn(&Self) -> bool,
+    ) -> Self {
+        let mut pieces = Self { size, onwards: vec![[false; 2]; size[0] * size[1]] };
+        let mut reached = vec![size.map(|count| chance.random_range(0..count))];
+        for _ in 0..tries {
             let Some(&from) = reached.choose(chance) else { break };
             let Some(direction) = Direction::ALL.choose(chance) else { break };
             let Some(to) = pieces.neighbour(from, *direction) else { continue };
@@ -91,7 +133,7 @@ impl Pieces {
             if !reached.contains(&to) {
                 reached.push(to);
             }
-            if pieces.count() == wanted {
+            if done(&pieces) {
                 break;
             }
         }
@@ -217,6 +259,14 @@ mod tests {
     fn a_seed_is_a_plan() {
         assert_eq!(random_plan(7), random_plan(7));
         assert_ne!(random_plan(7), random_plan(8));
+    }
+
+    #[test]
+    fn a_plan_has_as_many_junctions_as_it_should() {
+        for (seed, junctions) in (2..=25).chain([100]).enumerate() {
+            let plan = random_plan_with(seed as u64, junctions).unwrap();
+            assert_eq!(plan.junctions().len(), junctions);
+        }
     }
 
     #[test]

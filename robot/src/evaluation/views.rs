@@ -308,7 +308,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        evaluation::truth::Truth,
+        truth::Truth,
         simulator::{LOOKS, Wall, walls},
     };
 
