@@ -13,7 +13,7 @@ use toposlam_model::{
 use super::*;
 use crate::{
     evaluation::{
-        plans, verdict,
+        verdict,
         view::{View, WhichEffects},
         views::Views,
     },
@@ -24,14 +24,8 @@ const L: Form = Form([true, true, false, false]);
 const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.0, left: 0.8, right: 0.8 };
 
 fn any_view() -> View {
-    let views = Views {
-        seed: 0,
-        plans: plans().unwrap(),
-        random_plans: false,
-        looks: LOOKS.iter().collect(),
-        sizes: vec![[640, 480]],
-        effects: WhichEffects::None,
-    };
+    let views = Views::of(&LOOKS, [640, 480], 0).unwrap();
+    let views = Views { effects: WhichEffects::None, ..views };
     View { marker: None, ..views.view(0).unwrap() }
 }
 
