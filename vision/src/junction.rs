@@ -225,7 +225,7 @@ impl Junction {
 mod tests {
     use super::*;
     use crate::{
-        boundary::{BEARINGS, Sight},
+        boundary::{BEARINGS, Sight, bearing},
         cluster::clusters,
         corner::{Formed, corners},
         drawn::{self, Place},
@@ -281,6 +281,15 @@ mod tests {
             let found = seen(doors, BEARINGS / 2..BEARINGS);
             assert!(!matches!(found, Finding::Junction(_)), "{doors:?}: {found:?}");
         }
+    }
+
+    #[test]
+    fn what_is_dark_in_one_direction_is_no_junction() {
+        let doors = [false, true, true, true];
+        assert!(matches!(seen(doors, 0..0), Finding::Junction(_)));
+        // The wall ahead, of a robot that is turned by 0.2.
+        let ahead = BEARINGS - bearing(0.2);
+        assert_eq!(seen(doors, ahead - BEARINGS / 9..ahead + BEARINGS / 9), Finding::Nothing);
     }
 
     #[test]
