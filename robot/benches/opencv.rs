@@ -16,9 +16,8 @@ use std::{
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::format::world_file;
 use toposlam_robot::{
-    evaluation::{learned, plans, view::WhichEffects, views::Views},
+    evaluation::{learned, views::Views},
     simulator::{Building, Effects, Look, Pose, Rig, label_mask, labels, render},
 };
 use toposlam_vision::{
@@ -40,19 +39,10 @@ fn main() {
     let look = Look::named("laboratory").unwrap();
     let camera = Camera::superscout();
     let rig = Rig::new(&camera);
-    let views = Views {
-        seed: 7,
-        plans: plans().unwrap(),
-        random_plans: false,
-        looks: vec![look],
-        sizes: vec![camera.image],
-        effects: WhichEffects::Default,
-    };
+    let views = Views::of([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
-    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds/shape-8.toml");
-    let plan = world_file::read(&std::fs::read(plan).unwrap()).unwrap().plan.unwrap();
-    let building = Building::new(&plan, look, None, &effects, 7);
+    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
     let pose = Pose { position: [-0.1, 3.6], heading: 1.7 };
     let picture = render(&rig, &building, pose, &effects, 7);
     picture.save(folder.join("picture.png")).unwrap();

@@ -7,9 +7,8 @@ use divan::Bencher;
 use image::RgbImage;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::{floor_plan::FloorPlan, format::world_file};
 use toposlam_robot::{
-    evaluation::{learned, plans, view::WhichEffects, views::Views},
+    evaluation::{learned, views::Views},
     simulator::{Building, Effects, Look, Pose, Rig, render},
 };
 use toposlam_vision::{
@@ -49,24 +48,12 @@ fn case(width: u32) -> Case {
     let camera = Camera::superscout().sized([width, width * 3 / 4]);
     let rig = Rig::new(&camera);
     let look = Look::named("laboratory").unwrap();
-    let views = Views {
-        seed: 7,
-        plans: plans().unwrap(),
-        random_plans: false,
-        looks: vec![look],
-        sizes: vec![camera.image],
-        effects: WhichEffects::Default,
-    };
+    let views = Views::of([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
-    let building = Building::new(&plan("shape-8"), look, None, &effects, 7);
+    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
     let pictures = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));
     Case { camera, colours, pictures }
-}
-
-fn plan(name: &str) -> FloorPlan {
-    let path = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
 }
 
 /// The whole of sensing, from the decoded image to the scene.

@@ -8,10 +8,8 @@ use toposlam_robot::{
         calibration::Calibration,
         judged::{Judged, Zone},
         judging::Judge,
-        plans,
         report::{Report, Standing},
         verdict::{MarkerVerdict, Verdict},
-        view::WhichEffects,
         views::Views,
     },
     simulator::LOOKS,
@@ -23,14 +21,7 @@ const VIEWS: u64 = 240;
 const VISITS: u64 = 16;
 
 fn views() -> Views {
-    Views {
-        seed: 2024,
-        plans: plans().unwrap(),
-        random_plans: true,
-        looks: LOOKS.iter().collect(),
-        sizes: vec![[640, 480]],
-        effects: WhichEffects::Default,
-    }
+    Views { random_plans: true, ..Views::of(&LOOKS, [640, 480], 2024).unwrap() }
 }
 
 /// How many views in a zone there are, and how many of them are right.

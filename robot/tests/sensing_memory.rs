@@ -3,15 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{hint::black_box, path::Path};
+use std::hint::black_box;
 
 use image::RgbImage;
 use peak_alloc::PeakAlloc;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_model::format::world_file;
 use toposlam_robot::{
-    evaluation::{learned, plans, view::WhichEffects, views::Views},
+    evaluation::{learned, views::Views},
     simulator::{Building, Effects, Look, Pose, Rig, render},
 };
 use toposlam_vision::{camera::Camera, sensing::Sensor};
@@ -42,19 +41,10 @@ fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let camera = Camera::superscout().sized([640, 480]);
     let rig = Rig::new(&camera);
     let look = Look::named("laboratory").unwrap();
-    let views = Views {
-        seed: 1,
-        plans: plans().unwrap(),
-        random_plans: false,
-        looks: vec![look],
-        sizes: vec![camera.image],
-        effects: WhichEffects::Default,
-    };
+    let views = Views::of([look], camera.image, 1).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
-    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds/shape-8.toml");
-    let plan = world_file::read(&std::fs::read(plan).unwrap()).unwrap().plan.unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
-    let building = Building::new(&plan, look, None, &effects, 1);
+    let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 1);
     let pictures = POSES.map(|pose| render(&rig, &building, pose, &effects, 1));
     let mut sensor = Sensor::new(&camera, &colours);
     let first = taken(&mut sensor, &pictures, 1);

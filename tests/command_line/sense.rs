@@ -1,20 +1,16 @@
 //! `toposlam sense IMAGE...`, on rendered images.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    sync::{Arc, LazyLock},
-};
+use std::{fs, path::PathBuf, sync::LazyLock};
 
 use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::Value;
 use toposlam_robot::{
-    evaluation::{learned, view::WhichEffects, views::Views},
+    evaluation::{learned, views::Views},
     simulator::{Look, Rig},
 };
 use toposlam_vision::camera::{Camera, calibration};
 
-use crate::{folder, names_in, objects, read_world, run, said, stderr, stdout};
+use crate::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [640, 480];
 /// A PNG of 69 bytes whose head promises two thousand million.
@@ -31,16 +27,9 @@ struct Files {
 static FILES: LazyLock<Files> = LazyLock::new(|| {
     let folder = folder("sense");
     let camera = Camera::superscout().sized(SIZE);
-    let plan = read_world(Path::new("worlds/shape-6.toml")).plan.unwrap();
     let look = Look::named("laboratory").unwrap();
-    let views = Views {
-        seed: 3,
-        plans: vec![("shape-6".to_owned(), Arc::new(plan))],
-        random_plans: false,
-        looks: vec![look],
-        sizes: vec![SIZE],
-        effects: WhichEffects::Default,
-    };
+    let mut views = Views::of([look], SIZE, 3).unwrap();
+    views.plans.retain(|(name, _)| name == "shape-6");
     let colours = learned(&views, look, &camera, &Rig::new(&camera)).unwrap();
     let file = |name: &str, text: String| {
         fs::write(folder.join(name), text).unwrap();

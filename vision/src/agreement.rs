@@ -263,9 +263,9 @@ pub fn bearings(part: f64, every: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::{
-        boundary::Bearings,
-        colour::{Stripe, StripeKind},
+        colour::Class,
         drawn::{self, Place},
+        ground_view::GroundView,
         outline::Square,
         wall::Axis,
     };
@@ -274,8 +274,7 @@ mod tests {
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn::TAPE };
 
     fn seen(place: &Place) -> Boundary {
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
-        Bearings::new(stripe, 1.05).look(&place.seen_from([0.0, 0.0], 0.0))
+        drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
     }
 
     fn held(doors: [bool; 4], boundary: &Boundary) -> Agreement {
@@ -322,9 +321,8 @@ mod tests {
     #[test]
     fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
         let dead_end = Place::junction([false, false, true, false], HALF);
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
         let view = dead_end.seen_from([-0.8, 0.0], 0.0);
-        let boundary = Bearings::new(stripe, 1.05).look(&view);
+        let boundary = drawn::bearings().look(&view);
         let square = Square { middle: [0.8, 0.0], half: HALF - drawn::TAPE };
         let l = Outline::junction([false, true, true, false], square);
         let agreement = l.agreement(&boundary, &Frame::along(0.0), 1);
@@ -335,15 +333,40 @@ mod tests {
     #[test]
     fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
         let t = Place::junction([false, true, true, true], 0.7);
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
         for before in [0.4, 0.5, 0.55] {
-            let boundary = Bearings::new(stripe, 1.05).look(&t.seen_from([-before, 0.0], 0.0));
+            let boundary = drawn::bearings().look(&t.seen_from([-before, 0.0], 0.0));
             // A little too wide and too near: a camera that is not as calibrated errs so.
             let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
             let agreement = bar.agreement(&boundary, &Frame::along(0.0), 1);
             assert_eq!(agreement.door, 0, "{before} before: {agreement:?}");
         }
+    }
+
+    #[test]
+    fn lines_on_the_floor_of_an_opening_do_not_make_a_door_of_it() {
+        let mut hallway = Place::junction([true, false, true, false], HALF);
+        hallway.floor.push([-HALF, 0.0, HALF, 9.0]);
+        let mut view = hallway.seen_from([0.0, 0.0], 0.0);
+        // Where the wall would be, on both sides of what would be a door.
+        for (index, class) in view.classes.iter_mut().enumerate() {
+            let [x, y] = GroundView::ground(index);
+            let on_line = x.abs() > 0.3 && (HALF - drawn::TAPE..HALF).contains(&y);
+            if on_line && *class == Class::Floor {
+                *class = Class::Stripe;
+            }
+        }
+        let boundary = drawn::bearings().look(&view);
+        let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
+        let agreement = outline.agreement(&boundary, &Frame::along(0.0), 1);
+        assert!(agreement.door == 0 && agreement.through > 60, "{agreement:?}");
+    }
+
+    #[test]
+    fn an_outline_with_more_than_twice_as_much_door_as_wall_does_not_hold() {
+        let with_doors = |door| Agreement { support: 100, ended: 20, door, ..Agreement::default() };
+        assert!(with_doors(220).holds(1.0));
+        assert!(!with_doors(221).holds(0.0));
     }
 
     #[test]
@@ -358,5 +381,21 @@ mod tests {
         let agreement = outline.agreement(&boundary, &Frame::along(0.0), 1);
         assert_eq!(agreement.blank, 1, "{agreement:?}");
         assert!(agreement.trust() > 0.99, "what is not seen does not speak against it");
+    }
+
+    #[test]
+    fn an_open_direction_is_blank_where_the_floor_is_not_seen_to_go_on() {
+        let doors = [false, true, true, true];
+        let square = Square { middle: [0.0, 0.0], half: 0.55 };
+        let mut boundary = seen(&Place::junction(doors, square.half + drawn::TAPE));
+        let blank = |boundary: &Boundary| {
+            Outline::junction(doors, square).agreement(boundary, &Frame::along(0.0), 1).blank
+        };
+        assert_eq!(blank(&boundary), 0);
+        for bearing in 3 * BEARINGS / 8..5 * BEARINGS / 8 {
+            boundary.sights[bearing] = Sight::default();
+            boundary.sights[bearing].floor = 0.6;
+        }
+        assert_eq!(blank(&boundary), 1);
     }
 }

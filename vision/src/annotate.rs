@@ -321,7 +321,8 @@ mod tests {
             confidence: 1.0,
         };
         let lines = |place| centre_lines(&Scene { place, marker: None });
-        let [(from, to, _)] = lines(Place::Hallway(hallway))[..] else { panic!("one line") };
+        let [(from, to, colour)] = lines(Place::Hallway(hallway))[..] else { panic!("one line") };
+        assert_eq!(colour, GREEN, "the robot is on it");
         assert!((from[1] - 0.2).abs() < 1e-9 && (to[1] - 0.2).abs() < 1e-9);
         assert!(lines(Place::Unknown(Reason::NoFloor)).is_empty());
     }

@@ -2,15 +2,26 @@
 
 use std::f64::consts::TAU;
 
-use crate::{colour::Class, ground_view::GroundView};
+use crate::{
+    boundary::Bearings,
+    colour::{Class, Stripe, StripeKind},
+    ground_view::GroundView,
+};
 
 /// The floor of a place: rectangles along the axes, in metres.
 pub(crate) struct Place {
     pub(crate) floor: Vec<[f64; 4]>,
 }
 
-/// The tape along the walls, in metres.
+/// How wide the tape along the walls is, in metres.
 pub(crate) const TAPE: f64 = 0.05;
+/// The tape as a stripe.
+pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAPE };
+
+/// The bearings of a camera above such floors.
+pub(crate) fn bearings() -> Bearings {
+    Bearings::new(STRIPE, 1.05)
+}
 
 impl Place {
     /// A junction at the origin with arms in some of the four directions, counter-clockwise from x.

@@ -273,8 +273,26 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
+    use crate::{
+        cluster::clusters,
+        drawn::{self, Place},
+        line::lines,
+    };
 
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
+
+    /// The hallway in which a robot is that stands at the origin of a place and looks along x.
+    fn seen(place: &Place) -> Option<Hallway> {
+        let boundary = drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
+        let lines = lines(&clusters(&boundary));
+        let frame = Frame::of(&lines)?;
+        hallway(&frame.walls(&lines), &boundary, &frame)
+    }
+
+    /// A hallway along x, so wide between its tapes.
+    fn straight(width: f64) -> Place {
+        Place::junction([true, false, true, false], width / 2.0 + drawn::TAPE)
+    }
 
     fn wall(along: Axis, offset: f64, from: f64, to: f64) -> Wall {
         Wall { along, offset, from, to, cluster: 0 }
@@ -324,6 +342,28 @@ mod tests {
         assert!(!is_closed(Axis::X, -1.5, SQUARE, &[left, right]), "it is ahead");
         let edges = [wall(Axis::Y, 1.2, 0.7, 0.8), wall(Axis::Y, 1.2, -0.8, -0.7)];
         assert!(!is_closed(Axis::X, 1.5, SQUARE, &edges), "no door is 1.4 of 1.6 m wide");
+    }
+
+    #[test]
+    fn what_is_narrower_or_wider_than_any_hallway_is_none() {
+        for width in [1.0, 1.6, 2.3] {
+            let found = seen(&straight(width)).unwrap();
+            assert!((2.0 * found.square.half - width).abs() < 0.02, "{width}: {found:?}");
+        }
+        for width in [0.8, 2.5] {
+            assert_eq!(seen(&straight(width)), None, "{width}");
+        }
+    }
+
+    #[test]
+    fn in_a_wide_hallway_too_more_is_looked_at_than_the_wall_just_beside_the_robot() {
+        let between_openings = |wall: f64| {
+            let mut place = straight(2.2);
+            place.floor.extend([[-9.0, -9.0, -wall, 9.0], [wall, -9.0, 9.0, 9.0]]);
+            seen(&place)
+        };
+        assert!(between_openings(0.6).is_some());
+        assert_eq!(between_openings(0.25), None);
     }
 
     #[test]

@@ -225,9 +225,8 @@ impl Junction {
 mod tests {
     use super::*;
     use crate::{
-        boundary::{BEARINGS, Bearings, Sight},
+        boundary::{BEARINGS, Sight, bearing},
         cluster::clusters,
-        colour::{Stripe, StripeKind},
         corner::{Formed, corners},
         drawn::{self, Place},
         line::lines,
@@ -236,8 +235,7 @@ mod tests {
     const HALF: f64 = 0.8;
 
     fn bearings_of(place: &Place, position: [f64; 2]) -> Boundary {
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
-        Bearings::new(stripe, 1.05).look(&place.seen_from(position, 0.2))
+        drawn::bearings().look(&place.seen_from(position, 0.2))
     }
 
     fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> Finding {
@@ -286,13 +284,33 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_on_few_bearings_is_no_junction() {
+    fn what_is_dark_in_one_direction_is_no_junction() {
         let doors = [false, true, true, true];
-        let narrow = Place::junction(doors, 0.5);
-        let found = |before: f64| finding(&bearings_of(&narrow, [-before, 0.0]));
-        assert!(matches!(found(0.3), Finding::Junction(_)));
-        // Only the far end of its arm is near enough to be looked at.
-        assert_eq!(found(1.8), Finding::Nothing);
+        assert!(matches!(seen(doors, 0..0), Finding::Junction(_)));
+        // The wall ahead, of a robot that is turned by 0.2.
+        let ahead = BEARINGS - bearing(0.2);
+        assert_eq!(seen(doors, ahead - BEARINGS / 9..ahead + BEARINGS / 9), Finding::Nothing);
+    }
+
+    #[test]
+    fn what_is_seen_on_few_bearings_is_no_junction() {
+        let far_off = Place::junction([false, true, true, true], 0.55);
+        let boundary = bearings_of(&far_off, [-1.9, 0.0]);
+        let lines = lines(&clusters(&boundary));
+        let frame = Frame::of(&lines).unwrap();
+        let walls = frame.walls(&lines);
+        let found = |every: usize| {
+            let mut boundary = boundary.clone();
+            for (bearing, sight) in boundary.sights.iter_mut().enumerate() {
+                if bearing % every != 0 {
+                    *sight = Sight::default();
+                }
+            }
+            junction(&corners(&walls), &walls, &boundary, &frame)
+        };
+        // Of its walls half is seen, but that is a seventh of all that is around the robot.
+        assert!(matches!(found(1), Finding::Junction(_)));
+        assert_eq!(found(2), Finding::Nothing);
     }
 
     #[test]

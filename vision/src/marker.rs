@@ -105,10 +105,7 @@ mod tests {
     use toposlam_model::driving::scene::CentreLine;
 
     use super::*;
-    use crate::{
-        boundary::Bearings,
-        colour::{Stripe, StripeKind},
-    };
+    use crate::drawn;
 
     /// Floor everywhere but under the body, and a marker on it.
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
@@ -131,13 +128,9 @@ mod tests {
         view
     }
 
-    fn bearings() -> Bearings {
-        Bearings::new(Stripe { kind: StripeKind::OnFloor, width: 0.05 }, 1.05)
-    }
-
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
         let view = floor_with_marker(position, axis);
-        marker(&view, &bearings().look(&view), junction)
+        marker(&view, &drawn::bearings().look(&view), junction)
     }
 
     // paper: marker-sense.direction
@@ -165,7 +158,7 @@ mod tests {
                 view.classes[index] = Class::Other;
             }
         }
-        assert_eq!(marker(&view, &bearings().look(&view), None), None);
+        assert_eq!(marker(&view, &drawn::bearings().look(&view), None), None);
     }
 
     #[test]

@@ -215,18 +215,13 @@ pub(crate) fn near(range: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        boundary::Bearings,
-        colour::{Stripe, StripeKind},
-        drawn::{self, Place},
-    };
+    use crate::drawn::{self, Place};
 
     #[test]
     fn a_place_is_moved_turned_and_widened_to_where_its_walls_are_seen() {
         let doors = [true, false, true, true];
-        let stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
         let view = Place::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
-        let boundary = Bearings::new(stripe, 1.05).look(&view);
+        let boundary = drawn::bearings().look(&view);
         let mut frame = Frame::along(-0.27);
         let mut square = Square { middle: [0.16, -0.06], half: 0.78 };
         for _ in 0..4 {

@@ -210,8 +210,6 @@ mod tests {
         drawn::{self, Place as Drawn},
     };
 
-    const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: drawn::TAPE };
-
     /// Each kind of junction, by the doors that it has ahead, to the left, behind and to the right.
     const KINDS: [[bool; 4]; 6] = [
         [false, false, true, false],
@@ -227,7 +225,7 @@ mod tests {
     fn scene(doors: [bool; 4], before: f64, view: usize) -> Place {
         let (half, left, heading) = VIEWS[view % VIEWS.len()];
         let drawn = Drawn::junction(doors, half).seen_from([-before, left], heading);
-        interpreted(&drawn, &Bearings::new(STRIPE, 1.05), STRIPE).0.place
+        interpreted(&drawn, &drawn::bearings(), drawn::STRIPE).0.place
     }
 
     // paper: sense.junction.type
@@ -290,7 +288,7 @@ mod tests {
         let reason = |class| {
             let mut view = GroundView::unseen();
             view.classes.fill(class);
-            interpreted(&view, &Bearings::new(STRIPE, 1.05), STRIPE).0.place
+            interpreted(&view, &drawn::bearings(), drawn::STRIPE).0.place
         };
         assert_eq!(reason(Class::Other), Place::Unknown(Reason::NoFloor));
         assert_eq!(reason(Class::Stripe), Place::Unknown(Reason::NoFloor));

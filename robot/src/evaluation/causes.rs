@@ -155,20 +155,13 @@ mod tests {
 
     use super::*;
     use crate::{
-        evaluation::{plans, verdict::MarkerVerdict, view::WhichEffects, views::Views},
+        evaluation::{verdict::MarkerVerdict, views::Views},
         simulator::LOOKS,
     };
 
     #[test]
     fn failures_show_in_the_groups_in_which_they_are_more_often() {
-        let views = Views {
-            seed: 0,
-            plans: plans().unwrap(),
-            random_plans: false,
-            looks: LOOKS.iter().collect(),
-            sizes: vec![[640, 480]],
-            effects: WhichEffects::Default,
-        };
+        let views = Views::of(&LOOKS, [640, 480], 0).unwrap();
         // Sensing that fails where it is blurred, in the theatre only.
         let judged: Vec<_> = (0..600)
             .map(|number| {

@@ -8,10 +8,12 @@ use toposlam_model::{
     driving::visit::Form,
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
+    format::world_file::WorldFileError,
 };
 
 use super::{
     class::FORMS,
+    plans::plans,
     random_plan::random_plan,
     view::{View, WhichEffects},
 };
@@ -89,6 +91,32 @@ pub enum NoView {
 }
 
 impl Views {
+    /// Views of these looks in the floor plans of `worlds/` and no others, with all effects, as pictures
+    /// of one size.
+    ///
+    /// # Errors
+    /// Never, as [`plans`].
+    pub fn of(
+        looks: impl IntoIterator<Item = &'static Look>,
+        size: [u32; 2],
+        seed: u64,
+    ) -> Result<Self, WorldFileError> {
+        Ok(Self {
+            seed,
+            plans: plans()?,
+            random_plans: false,
+            looks: looks.into_iter().collect(),
+            sizes: vec![size],
+            effects: WhichEffects::Default,
+        })
+    }
+
+    /// The floor plan of this name; of random ones there is none.
+    #[must_use]
+    pub fn plan(&self, name: &str) -> Option<&FloorPlan> {
+        self.plans.iter().find(|(other, _)| other == name).map(|(_, plan)| &**plan)
+    }
+
     /// The view of a number.
     ///
     /// # Errors
@@ -304,8 +332,6 @@ fn along(from: [f64; 2], direction: Direction, by: f64, aside: f64, turned: f64)
 mod tests {
     use std::collections::BTreeMap;
 
-    use toposlam_model::format::world_file;
-
     use super::*;
     use crate::{
         truth::Truth,
@@ -313,16 +339,9 @@ mod tests {
     };
 
     fn views() -> Views {
-        let text = include_bytes!("../../../worlds/shape-8.toml");
-        let plan = world_file::read(text).unwrap().plan.unwrap();
-        Views {
-            seed: 1,
-            plans: vec![("shape-8".to_owned(), Arc::new(plan))],
-            random_plans: true,
-            looks: LOOKS.iter().collect(),
-            sizes: vec![[1280, 960], [640, 480]],
-            effects: WhichEffects::Default,
-        }
+        let mut views = Views::of(&LOOKS, [1280, 960], 1).unwrap();
+        views.plans.retain(|(name, _)| name == "shape-8");
+        Views { random_plans: true, sizes: vec![[1280, 960], [640, 480]], ..views }
     }
 
     fn distance(wall: &Wall, position: [f64; 2]) -> f64 {

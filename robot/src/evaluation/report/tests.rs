@@ -1,0 +1,166 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::{
+    driving::{
+        scene::{CentreLine, Reason, Scene, Status},
+        visit::Form,
+    },
+    embedded_graph::Vertex,
+    floor_plan::JunctionKind,
+    percept::{Door, Percept},
+};
+
+use super::*;
+use crate::{
+    evaluation::{
+        verdict,
+        view::{View, WhichEffects},
+        views::Views,
+    },
+    simulator::LOOKS,
+};
+
+const L: Form = Form([true, true, false, false]);
+const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.0, left: 0.8, right: 0.8 };
+
+fn any_view() -> View {
+    let views = Views::of(&LOOKS, [640, 480], 0).unwrap();
+    let views = Views { effects: WhichEffects::None, ..views };
+    View { marker: None, ..views.view(0).unwrap() }
+}
+
+fn judged(truth: &Truth, place: Place) -> Judged {
+    let scene = Scene { place, marker: None };
+    let verdict = verdict::judge(truth, &scene);
+    let marker = MarkerVerdict::NotSeen;
+    Judged { view: any_view(), truth: truth.clone(), scene, verdict, marker }
+}
+
+fn corner(before: f64) -> Truth {
+    Truth::Junction(JunctionTruth {
+        vertex: Vertex(0),
+        kind: JunctionKind::L,
+        form: Some(L),
+        doors: vec![PI, FRAC_PI_2],
+        turning_point: [before, 0.0],
+    })
+}
+
+fn in_hallway(heading: f64) -> Place {
+    let status = Status::Clear;
+    Place::Hallway(HallwayView { heading, left: 0.81, right: 0.79, status, confidence: 1.0 })
+}
+
+fn at_junction(doors: &[f64]) -> Place {
+    let turning_point = [0.3, 0.01];
+    let line = |&direction| CentreLine { through: turning_point, direction };
+    let doors = doors.iter().map(line).collect();
+    Place::Junction(JunctionView { doors, turning_point, confidence: 1.0 })
+}
+
+fn rate(report: &Report, subject: Subject, what: &str) -> Rate {
+    let is_it = |rate: &&Rate| rate.subject == subject && rate.what == what;
+    *report.rates.iter().find(is_it).unwrap()
+}
+
+#[test]
+fn views_are_counted_where_they_are() {
+    let hallway = Truth::Hallway(HALLWAY);
+    let (l, unknown) = (at_junction(&[PI, FRAC_PI_2]), Place::Unknown(Reason::FewWalls));
+    let views = [
+        judged(&hallway, in_hallway(0.01)),
+        judged(&hallway, in_hallway(-0.02)),
+        judged(&hallway, unknown.clone()),
+        judged(&hallway, at_junction(&[PI])),
+        judged(&corner(0.3), l.clone()),
+        judged(&corner(0.3), at_junction(&[PI])),
+        judged(&corner(-0.2), unknown),
+        judged(&Truth::Between(HALLWAY, Vec::new()), in_hallway(0.0)),
+    ];
+    let report = Report::of(&views, &[], Calibration::Right);
+    let found = |subject, what| {
+        let rate = rate(&report, subject, what);
+        (rate.seen, rate.cases)
+    };
+    assert_eq!(found(Subject::Hallway, "not called hallway"), (2, 4));
+    assert_eq!(found(Subject::Hallway, "called junction"), (1, 4));
+    assert_eq!(found(Subject::Junction, "kind and entry not right"), (1, 2));
+    assert_eq!(found(Subject::Junction, "kind or entry wrong"), (1, 2));
+    assert_eq!(found(Subject::Past, "kind and entry not right"), (1, 1));
+    assert_eq!(found(Subject::Between, "unknown"), (0, 1));
+    assert_eq!(found(Subject::Turned, "kind wrong"), (0, 0));
+    assert_eq!(report.standing(), Standing::Missed);
+    let error = |what| {
+        let errors = report.errors.iter().find(|errors| errors.what == what).unwrap();
+        (errors.sample.count(), errors.quantile(Quantile::Most).unwrap())
+    };
+    let (count, most) = error("direction");
+    assert!(count == 2 && (most - 0.02_f64.to_degrees()).abs() < 1e-9, "{count} {most}");
+    let (count, most) = error("distance to a side");
+    assert!(count == 4 && (most - 1.0).abs() < 1e-9, "{count} {most}");
+    let (count, most) = error("place of a centre line");
+    assert!(count == 2 && (most - 1.0).abs() < 1e-9, "{count} {most}");
+    let said = &report.confusion[&Class::Hallway];
+    assert_eq!((said[&Class::Hallway], said[&Class::Unknown]), (2, 1));
+    // What lies beyond the turning point or between is not in the confusion.
+    assert_eq!(report.confusion.values().flat_map(BTreeMap::values).sum::<usize>(), 6);
+}
+
+#[test]
+fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
+    let pointing = |door| Sighting::Pointing(Door(door));
+    let visit = |sighting, decided: Option<(Form, Sighting)>| JudgedVisit {
+        pictures: Vec::new(),
+        form: L,
+        percept: Percept { degree: 2, sighting },
+        decided: decided
+            .map(|(form, sighting)| (form, Percept { degree: form.degree(), sighting })),
+    };
+    let dead_end = Form([true, false, false, false]);
+    let visits = [
+        visit(Sighting::Nothing, Some((L, Sighting::Nothing))),
+        visit(Sighting::Nothing, Some((L, pointing(0)))),
+        visit(pointing(1), Some((L, pointing(1)))),
+        visit(pointing(1), Some((L, pointing(0)))),
+        visit(pointing(1), Some((L, Sighting::Nothing))),
+        visit(pointing(1), Some((dead_end, Sighting::Nothing))),
+        visit(pointing(1), None),
+    ];
+    let report = Report::of(&[], &visits, Calibration::Right);
+    let found = |what| {
+        let rate = rate(&report, Subject::Visit, what);
+        (rate.seen, rate.cases)
+    };
+    assert_eq!(found("not decided"), (1, 7));
+    assert_eq!(found("kind or entry wrong"), (1, 7));
+    assert_eq!(found("marker missed"), (1, 3));
+    assert_eq!(found("marker seen where it is not"), (1, 2));
+    assert_eq!(found("marker's door wrong"), (1, 2));
+}
+
+#[test]
+fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
+    let empty = Report::of(&[], &[], Calibration::Right);
+    assert_eq!(empty.standing(), Standing::Empty);
+    let views = [
+        judged(&Truth::Hallway(HALLWAY), in_hallway(0.0)),
+        judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2])),
+    ];
+    let report = Report::of(&views, &[], Calibration::Right);
+    let asked = report.rates.iter().filter(|rate| rate.cases > 0).map(Rate::standing);
+    let errors = report.errors.iter().map(Errors::standing);
+    assert!(asked.chain(errors).all(|standing| standing == Standing::Met), "{report:?}");
+}
+
+#[test]
+fn with_a_wrong_calibration_three_times_as_much_may_go_wrong() {
+    let reports = [Calibration::Right, Calibration::Wrong].map(|which| Report::of(&[], &[], which));
+    for what in ["kind and entry not right", "kind or entry wrong"] {
+        let [right, wrong] = reports.each_ref().map(|report| rate(report, Subject::Junction, what));
+        assert!((wrong.limit.unwrap() / right.limit.unwrap() - 3.0).abs() < 1e-12);
+    }
+    let wrong = &reports[1];
+    assert!(wrong.errors.is_empty());
+    assert!(wrong.rates.iter().all(|rate| rate.subject != Subject::Marker));
+    assert_eq!(rate(wrong, Subject::Visit, "marker missed").limit, None);
+}
