@@ -334,8 +334,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        truth::Truth,
         simulator::{LOOKS, Wall, walls},
+        truth::Truth,
     };
 
     fn views() -> Views {
