@@ -8,10 +8,13 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     percept::{Door, Percept},
-    world::{GraphWorld, World},
+    world::{GraphWorld, State, World},
 };
 
-use crate::{pose::Pose, truth::angle};
+use crate::{
+    pose::Pose,
+    truth::{JunctionTruth, angle},
+};
 
 /// A robot that stands at a junction is no farther from its turning point, in metres.
 const THERE: f64 = 0.5;
@@ -80,7 +83,16 @@ impl<'p> Specification<'p> {
     /// A robot that stands at the facing dart's junction, its back to the dart's hallway.
     #[must_use]
     pub fn new(plan: &'p FloorPlan, facing: Dart) -> Self {
-        Self { plan, world: GraphWorld::new(plan.graph(), facing), arrivals: Vec::new() }
+        Self::at(plan, facing, facing)
+    }
+
+    /// A robot that stands at the entry dart's junction, having come by it; the marker lies along the
+    /// facing dart.
+    #[must_use]
+    pub fn at(plan: &'p FloorPlan, facing: Dart, entry: Dart) -> Self {
+        let world = GraphWorld::new(plan.graph(), facing);
+        let state = State { pose: entry, ..world.state() };
+        Self { plan, world: world.at(state), arrivals: Vec::new() }
     }
 
     /// Judges where a robot has come by a door, and what it knows of the junction; `entry` is the
@@ -113,6 +125,17 @@ impl<'p> Specification<'p> {
             .min_by(|one, other| off(one).total_cmp(&off(other)))?;
         let turned = |dart: &Dart| wrapped(angle(self.plan.direction(*dart)) - entry).abs();
         graph.darts_of(vertex).min_by(|one, other| turned(one).total_cmp(&turned(other)))
+    }
+
+    /// What a robot would know that stands where it is by the specification, at a pose: `None` at no
+    /// junction that a robot knows.
+    #[must_use]
+    pub fn standing(&self, pose: Pose) -> Option<Standing> {
+        let dart = self.world.pose();
+        let entry = wrapped(angle(self.plan.direction(dart)) - pose.heading);
+        let from = Pose { heading: angle(self.plan.direction(dart).reversed()), ..pose };
+        let form = JunctionTruth::of(self.plan, self.plan.graph().vertex(dart), from).form?;
+        Some(Standing { form, percept: self.world.sensed(), entry })
     }
 
     /// Every arrival so far, the start first.

@@ -16,10 +16,9 @@ use toposlam_model::{
 use crate::{
     conformance::{Divergence, Specification},
     explorer::{Explorer, ExplorerError, Eye, Observer, Round},
-    pose::Pose,
+    recording::Recording,
     robot::Robot,
     simulator::{Camera, SimulatedRobot},
-    truth::angle,
 };
 
 /// How a whole run ended, and what the specification says of it.
@@ -92,14 +91,6 @@ impl Run<'_> {
     }
 }
 
-/// Where a robot stands that begins at a dart: at its junction's turning point, its back to the dart's
-/// hallway.
-#[must_use]
-pub fn start_pose(plan: &FloorPlan, facing: Dart) -> Pose {
-    let position = plan.junction(plan.graph().vertex(facing)).position;
-    Pose { position, heading: angle(plan.direction(facing).reversed()) }
-}
-
 /// A simulated robot that stands at a dart's junction maps its building.
 ///
 /// `story` is told what Algorithm 1 does, `observer` what the robot does.
@@ -159,9 +150,9 @@ pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
 }
 
 /// Judges each arrival, and lets somebody else watch, too.
-struct Judged<'p, O> {
-    specification: Specification<'p>,
-    observer: O,
+pub(crate) struct Judged<'p, O> {
+    pub(crate) specification: Specification<'p>,
+    pub(crate) observer: O,
 }
 
 impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for Judged<'_, O> {
@@ -179,4 +170,20 @@ impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for 
     fn stop(&self) -> bool {
         self.observer.stop()
     }
+}
+
+/// The off-line version: Algorithm 1 on what was recorded, without a robot that moves. Its map is that
+/// of the recorded run, as far as that came.
+///
+/// # Errors
+/// Where the recorded run ended early, and where what was recorded is not what is asked for.
+pub fn offline<V: Clone + PartialEq>(
+    recording: &Recording<V>,
+    eye: impl Eye<V>,
+    dart_bound: usize,
+) -> Result<Exploration, MappingError<ExplorerError>> {
+    let mut explorer = Explorer::new(recording.robot(), eye, ());
+    let mut exploration = Exploration::new(dart_bound);
+    map_world(&mut explorer, &mut Nearest, &mut exploration, &mut ())?;
+    Ok(exploration)
 }

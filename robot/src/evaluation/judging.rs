@@ -20,6 +20,7 @@ use toposlam_vision::{
 
 use super::{
     calibration::{Calibration, wrong_rigs},
+    in_turn::in_turn,
     judged::{Judged, JudgedVisit},
     learning::{LearningError, learned},
     verdict::{judge, judge_marker},
@@ -240,26 +241,6 @@ impl Sensors {
         idle().push(sensor);
         result
     }
-}
-
-/// Works on numbers on all threads; the results are in the order of the numbers.
-fn in_turn<R: Send>(
-    numbers: std::ops::Range<u64>,
-    watch: &impl Watch,
-    work: impl Fn(u64) -> Result<R, JudgingError> + Sync,
-) -> Result<Vec<R>, JudgingError> {
-    watch.parts((numbers.end.saturating_sub(numbers.start)) as usize);
-    let numbers: Vec<_> = numbers.collect();
-    let results = numbers.into_par_iter().with_max_len(1).map(|number| {
-        if watch.stop() {
-            return Ok(None);
-        }
-        let result = work(number)?;
-        watch.part_done(1);
-        Ok(Some(result))
-    });
-    let results = results.collect::<Result<Vec<_>, JudgingError>>()?;
-    Ok(results.into_iter().flatten().collect())
 }
 
 fn off_the_floor(view: &View) -> JudgingError {

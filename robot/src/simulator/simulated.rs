@@ -9,7 +9,8 @@ use super::{
     cameras::Camera,
     chance::{For, stream},
     faults::{Fault, FaultKind},
-    motion::{MotionNoise, SimulatedBase},
+    motion::SimulatedBase,
+    setting::Setting,
 };
 use crate::{
     pose::Pose,
@@ -39,27 +40,10 @@ const AHEAD: f64 = 1.2;
 const DEEP: f64 = 0.3;
 
 impl<C: Camera> SimulatedRobot<C> {
-    /// A robot at a pose in the building of a plan, whose pictures take so many seconds; the same seed
-    /// makes the same robot.
-    #[must_use]
-    pub fn new(
-        plan: Arc<FloorPlan>,
-        pose: Pose,
-        camera: C,
-        noise: &MotionNoise,
-        picture_time: f64,
-        seed: u64,
-    ) -> Self {
-        let base = SimulatedBase::new(&plan, pose, noise, seed);
-        let faults = Vec::new();
+    pub(super) fn new(setting: &Setting, camera: C) -> Self {
+        let Setting { plan, pose, picture_time, faults, seed, .. } = setting.clone();
+        let base = SimulatedBase::new(&plan, pose, &setting.motion_noise(), seed);
         Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
-    }
-
-    /// The same robot, with which these things go wrong.
-    #[must_use]
-    pub fn with_faults(mut self, faults: Vec<Fault>) -> Self {
-        self.faults = faults;
-        self
     }
 
     /// Where it really is.

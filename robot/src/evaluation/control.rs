@@ -1,0 +1,216 @@
+//! Control: for each door at each junction, the junction that the robot reaches and the door by which
+//! it comes in, against those of the specification. Sections 4.2 and 4.3.
+
+use std::{f64::consts::FRAC_PI_2, fmt, sync::Arc};
+
+use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    embedded_graph::{Dart, Vertex},
+    enumerate::Watch,
+    floor_plan::FloorPlan,
+    percept::Door,
+    world::World,
+};
+
+use super::{Eyes, in_turn::in_turn, runs::starts_of};
+use crate::{
+    conformance::{Divergence, Specification},
+    explorer::{Explorer, ExplorerError, Eye, Told},
+    pose::Pose,
+    robot::Robot,
+    run::Judged,
+    simulator::{Camera, Effects, Setting, SimulatedRobot, start_pose},
+};
+
+/// Before it takes the door the robot stands up to so far from the turning point, along its entry and
+/// across it, in metres,
+const OFF: f64 = 0.10;
+/// and looks so far to either side of straight on from its entry, in degrees.
+const TURNED: f64 = 15.0;
+
+/// All traversals of a seed: each door of each junction, entered by each of its doors, of some plans;
+/// again and again, each time from another pose.
+#[derive(Clone, Debug)]
+pub struct Traversals {
+    plans: Vec<(String, Arc<FloorPlan>)>,
+    /// The number of the plan, the entry dart, the door.
+    cases: Vec<(usize, Dart, Door)>,
+    seed: u64,
+    noise: f64,
+}
+
+/// A traversal to be.
+#[derive(Clone, Debug)]
+pub struct Traversal {
+    /// Its number among those of its seed.
+    pub number: u64,
+    /// The plan's name.
+    pub plan_name: String,
+    /// The dart by which the robot came to where it stands.
+    pub entry: Dart,
+    /// The door that it is to take.
+    pub door: Door,
+    /// Where it stands and what is around it.
+    pub setting: Setting,
+}
+
+/// A traversal that was made.
+#[derive(Clone, Debug)]
+pub struct JudgedTraversal {
+    /// Which.
+    pub traversal: Traversal,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Seconds of simulated time.
+    pub seconds: f64,
+    /// How many pictures the robot asked for.
+    pub pictures: u64,
+}
+
+/// How a traversal ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// The robot is where it should be, and perceives what it should.
+    Right,
+    /// It is not, or does not.
+    Wrong(Divergence),
+    /// It gave up and said why.
+    GaveUp(ExplorerError),
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Right => out.write_str("as specified"),
+            Self::Wrong(divergence) => divergence.fmt(out),
+            Self::GaveUp(error) => error.fmt(out),
+        }
+    }
+}
+
+impl Traversals {
+    /// The traversals of a seed in these plans, those without an L left out: there is no place for a
+    /// marker in them. The robot is so many times as inexact as by default.
+    #[must_use]
+    pub fn new(plans: Vec<(String, Arc<FloorPlan>)>, seed: u64, noise: f64) -> Self {
+        let plans: Vec<_> =
+            plans.into_iter().filter(|(_, plan)| !starts_of(plan).is_empty()).collect();
+        let cases = plans.iter().enumerate().flat_map(|(number, (_, plan))| {
+            let graph = plan.graph();
+            graph.darts().flat_map(move |entry| {
+                (0..graph.degree_around(entry)).map(move |door| (number, entry, Door(door)))
+            })
+        });
+        Self { cases: cases.collect(), plans, seed, noise }
+    }
+
+    /// The number of doors, counted from each entry of each junction.
+    #[must_use]
+    pub fn cases(&self) -> usize {
+        self.cases.len()
+    }
+
+    /// The number of plans.
+    #[must_use]
+    pub fn plans(&self) -> usize {
+        self.plans.len()
+    }
+
+    /// The traversal of a number; `None` where there is no plan.
+    #[must_use]
+    pub fn traversal(&self, number: u64) -> Option<Traversal> {
+        let case = number.checked_rem(self.cases.len() as u64)?;
+        let (plan, entry, door) = self.cases[case as usize];
+        let (plan_name, plan) = self.plans[plan].clone();
+        let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
+        let pose = about(start_pose(&plan, entry), &mut chance);
+        let marker = marker(&plan, entry, door, &mut chance)?;
+        let setting = Setting {
+            pose,
+            noise: self.noise,
+            ..Setting::at_start(plan, marker, chance.next_u64())
+        };
+        Some(Traversal { number, plan_name, entry, door, setting })
+    }
+
+    /// Makes traversals by their numbers, on all threads; with pictures where there are eyes for them.
+    /// Where the watch breaks off, some are missing.
+    #[must_use]
+    pub fn judged(
+        &self,
+        numbers: std::ops::Range<u64>,
+        eyes: Option<&Eyes>,
+        watch: &impl Watch,
+    ) -> Vec<JudgedTraversal> {
+        let judged = in_turn(numbers, watch, |number| {
+            Ok::<_, std::convert::Infallible>(self.traversal(number).map(|case| judged(case, eyes)))
+        });
+        judged.into_iter().flatten().flatten().collect()
+    }
+}
+
+/// A traversal, made.
+fn judged(case: Traversal, eyes: Option<&Eyes>) -> JudgedTraversal {
+    match eyes {
+        None => {
+            let robot = case.setting.by_scene();
+            made(case, robot, Told)
+        }
+        Some(eyes) => {
+            let look = eyes.look(case.number);
+            let mut chance = Xoshiro256PlusPlus::seed_from_u64(case.setting.seed);
+            let robot = case.setting.with_images(eyes.rig(), look, &Effects::drawn(&mut chance));
+            made(case, robot, eyes.sensor(look))
+        }
+    }
+}
+
+fn made<C: Camera>(
+    case: Traversal,
+    robot: SimulatedRobot<C>,
+    eye: impl Eye<C::View>,
+) -> JudgedTraversal {
+    let plan = case.setting.plan.clone();
+    let specification = Specification::at(&plan, case.setting.marker, case.entry);
+    let standing = specification.standing(case.setting.pose);
+    let mut explorer = Explorer::new(robot, eye, Judged { specification, observer: () });
+    if let Some(standing) = standing {
+        explorer = explorer.standing_at(standing);
+    }
+    let error = explorer.traverse(case.door).err();
+    let (robot, judged) = explorer.into_parts();
+    let outcome = match (error, judged.specification.divergence()) {
+        (Some(error), _) => Outcome::GaveUp(error),
+        (None, Some(divergence)) => Outcome::Wrong(divergence),
+        (None, None) => Outcome::Right,
+    };
+    JudgedTraversal {
+        traversal: case,
+        outcome,
+        seconds: robot.odometry().time,
+        pictures: robot.pictures(),
+    }
+}
+
+/// Where the marker lies: at every other traversal to an L there, else at any L.
+fn marker(plan: &FloorPlan, entry: Dart, door: Door, chance: &mut impl Rng) -> Option<Dart> {
+    let graph = plan.graph();
+    let there: Vertex = graph.vertex(graph.after(entry, door));
+    let ls = starts_of(plan);
+    let at_end: Vec<Dart> = ls.iter().copied().filter(|&l| graph.vertex(l) == there).collect();
+    let candidates = if at_end.is_empty() || chance.random() { &ls } else { &at_end };
+    candidates.choose(chance).copied()
+}
+
+/// A pose about another one.
+fn about(pose: Pose, chance: &mut impl Rng) -> Pose {
+    let [along, aside] = [(); 2].map(|()| chance.random_range(-OFF..=OFF));
+    let turned = chance.random_range(-TURNED..=TURNED).to_radians();
+    let (ahead, left) = (pose.heading.sin_cos(), (pose.heading + FRAC_PI_2).sin_cos());
+    let position = [
+        pose.position[0] + along * ahead.1 + aside * left.1,
+        pose.position[1] + along * ahead.0 + aside * left.0,
+    ];
+    Pose { position, heading: pose.heading + turned }
+}

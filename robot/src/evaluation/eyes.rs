@@ -1,0 +1,79 @@
+//! Cameras and eyes of simulated robots: one rig, and for each look of buildings the colours that were
+//! learned from it.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use toposlam_model::enumerate::Watch;
+use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
+
+use super::{
+    learning::{LearningError, learned},
+    views::{NoView, Views},
+};
+use crate::simulator::{Look, Rig};
+
+/// All that simulated robots with one camera need to see in buildings of these looks.
+#[derive(Debug)]
+pub struct Eyes {
+    camera: Camera,
+    rig: Arc<Rig>,
+    looks: Vec<(&'static Look, ColourModel)>,
+}
+
+/// Colours are learned from the views of this seed, which are judged nowhere.
+const LEARNING: u64 = 1;
+
+impl Eyes {
+    /// Learns the colours of looks with a calibrated camera, as `toposlam evaluate vision` does.
+    ///
+    /// # Errors
+    /// Where the colours cannot be learned.
+    pub fn new(
+        camera: &Camera,
+        looks: &[&'static Look],
+        watch: &impl Watch,
+    ) -> Result<Self, LearningError> {
+        let rig = Rig::new(camera);
+        let views =
+            Views::of(looks.iter().copied(), camera.image, LEARNING).map_err(|_| NoView::NoPlan)?;
+        let views = Views { random_plans: true, ..views };
+        watch.parts(looks.len());
+        let learn = |&look: &&'static Look| {
+            let colours = learned(&views, look, camera, &rig)?;
+            watch.part_done(1);
+            Ok((look, colours))
+        };
+        let looks = looks.par_iter().map(learn).collect::<Result<Vec<_>, LearningError>>()?;
+        if looks.is_empty() {
+            return Err(NoView::NoLook.into());
+        }
+        Ok(Self { camera: camera.clone(), rig: Arc::new(rig), looks })
+    }
+
+    /// The same with colours that were learned elsewhere, for one look.
+    #[must_use]
+    pub fn with_colours(camera: &Camera, look: &'static Look, colours: ColourModel) -> Self {
+        let rig = Arc::new(Rig::new(camera));
+        Self { camera: camera.clone(), rig, looks: vec![(look, colours)] }
+    }
+
+    /// The camera's rig.
+    #[must_use]
+    pub fn rig(&self) -> &Arc<Rig> {
+        &self.rig
+    }
+
+    /// The look of a number, which counts round.
+    #[must_use]
+    pub fn look(&self, number: u64) -> &'static Look {
+        self.looks[(number % self.looks.len() as u64) as usize].0
+    }
+
+    /// Sensing in buildings of a look; of the first, where it is none of them.
+    #[must_use]
+    pub fn sensor(&self, look: &'static Look) -> Sensor {
+        let known = self.looks.iter().find(|(known, _)| known.name == look.name);
+        Sensor::new(&self.camera, &known.unwrap_or(&self.looks[0]).1)
+    }
+}

@@ -1,0 +1,24 @@
+//! Many cases on all threads, their results in order.
+
+use rayon::prelude::*;
+use toposlam_model::enumerate::Watch;
+
+/// Works on numbers on all threads; the results are in the order of the numbers.
+pub(super) fn in_turn<R: Send, E: Send>(
+    numbers: std::ops::Range<u64>,
+    watch: &impl Watch,
+    work: impl Fn(u64) -> Result<R, E> + Sync,
+) -> Result<Vec<R>, E> {
+    watch.parts((numbers.end.saturating_sub(numbers.start)) as usize);
+    let numbers: Vec<_> = numbers.collect();
+    let results = numbers.into_par_iter().with_max_len(1).map(|number| {
+        if watch.stop() {
+            return Ok(None);
+        }
+        let result = work(number)?;
+        watch.part_done(1);
+        Ok(Some(result))
+    });
+    let results = results.collect::<Result<Vec<_>, E>>()?;
+    Ok(results.into_iter().flatten().collect())
+}

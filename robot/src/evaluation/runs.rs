@@ -1,0 +1,176 @@
+//! Whole runs: on many plans, from several starts, with and without things that go wrong. Section 6.
+
+use std::sync::Arc;
+
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_model::{
+    embedded_graph::Dart,
+    enumerate::Watch,
+    floor_plan::{FloorPlan, JunctionKind},
+    mapping::DEFAULT_DART_BOUND,
+};
+
+use super::{Eyes, in_turn::in_turn};
+use crate::{
+    explorer::Told,
+    run::{Ending, explored, run},
+    simulator::{Effects, FAULTS, Fault, FaultKind, Setting},
+};
+
+/// All runs of a seed: in each plan from as many starts.
+#[derive(Clone, Debug)]
+pub struct Runs {
+    plans: Vec<(String, Arc<FloorPlan>)>,
+    /// The number of the plan, and the facing dart.
+    starts: Vec<(usize, Dart)>,
+    seed: u64,
+    noise: f64,
+    faults: Faults,
+}
+
+/// Whether things go wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Faults {
+    /// Nothing does.
+    None,
+    /// In each run one thing does, each kind in turn, at some picture.
+    Each,
+}
+
+/// A run to be.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its number among those of its seed.
+    pub number: u64,
+    /// The plan's name.
+    pub plan_name: String,
+    /// Where the robot starts and what is around it.
+    pub setting: Setting,
+}
+
+/// A run that was made.
+#[derive(Clone, Debug)]
+pub struct JudgedRun {
+    /// Which.
+    pub case: Case,
+    /// How it ended.
+    pub ending: Ending,
+    /// Moves that the robot made, those that Algorithm 1 makes in the plan's embedded graph.
+    pub moves: [u64; 2],
+    /// Seconds of simulated time.
+    pub seconds: f64,
+    /// How many pictures the robot asked for.
+    pub pictures: u64,
+}
+
+impl JudgedRun {
+    /// What went wrong, on purpose.
+    #[must_use]
+    pub fn fault(&self) -> Option<FaultKind> {
+        self.case.setting.faults.first().map(|fault| fault.kind)
+    }
+
+    /// Whether the robot has a wrong map, or a wrong pose, and does not know; but a robot that was
+    /// carried, unseen, to a place that looks and goes on alike cannot know.
+    #[must_use]
+    pub fn is_violation(&self) -> bool {
+        matches!(self.ending, Ending::Wrong(_)) && self.fault() != Some(FaultKind::Carried)
+    }
+}
+
+/// So many pictures a robot takes on one move, about: a fault comes up somewhere in a run.
+const PICTURES_A_MOVE: u64 = 16;
+
+impl Runs {
+    /// The runs of a seed in these plans, from so many starts each; those without an L are left out,
+    /// where a robot cannot put its marker down. Where it has fewer starts than that, from all of them.
+    #[must_use]
+    pub fn new(
+        plans: Vec<(String, Arc<FloorPlan>)>,
+        starts: usize,
+        faults: Faults,
+        seed: u64,
+        noise: f64,
+    ) -> Self {
+        let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
+            let all = starts_of(plan);
+            let wanted = starts.min(all.len());
+            // Evenly spread, beginning with another one in each plan.
+            let nth = move |n: usize| (number, all[(number + n * all.len() / wanted) % all.len()]);
+            (0..wanted).map(nth).collect::<Vec<_>>()
+        };
+        let starts = plans.iter().enumerate().flat_map(some).collect();
+        Self { plans, starts, seed, noise, faults }
+    }
+
+    /// The number of starts.
+    #[must_use]
+    pub fn starts(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// The run of a number; `None` where there is no start.
+    #[must_use]
+    pub fn case(&self, number: u64) -> Option<Case> {
+        let start = number.checked_rem(self.starts.len() as u64)?;
+        let (plan, facing) = self.starts[start as usize];
+        let (plan_name, plan) = self.plans[plan].clone();
+        let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
+        let mut setting = Setting::at_start(plan, facing, chance.next_u64());
+        setting.noise = self.noise;
+        if self.faults == Faults::Each {
+            let (kind, ..) = FAULTS[(number % FAULTS.len() as u64) as usize];
+            let moves = explored(&setting.plan, facing, DEFAULT_DART_BOUND);
+            let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
+            setting.faults.push(Fault::at(kind, picture));
+        }
+        Some(Case { number, plan_name, setting })
+    }
+
+    /// Makes runs by their numbers, on all threads; with pictures where there are eyes for them. Where
+    /// the watch breaks off, some are missing.
+    #[must_use]
+    pub fn judged(
+        &self,
+        numbers: std::ops::Range<u64>,
+        eyes: Option<&Eyes>,
+        watch: &impl Watch,
+    ) -> Vec<JudgedRun> {
+        let judged = in_turn(numbers, watch, |number| {
+            Ok::<_, std::convert::Infallible>(self.case(number).map(|case| judged(case, eyes)))
+        });
+        judged.into_iter().flatten().flatten().collect()
+    }
+}
+
+/// A run, made.
+fn judged(case: Case, eyes: Option<&Eyes>) -> JudgedRun {
+    let Setting { plan, marker, seed, .. } = case.setting.clone();
+    let run = match eyes {
+        None => {
+            run(&plan, marker, case.setting.by_scene(), Told, (), &mut (), DEFAULT_DART_BOUND).0
+        }
+        Some(eyes) => {
+            let look = eyes.look(case.number);
+            let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
+            let robot = case.setting.with_images(eyes.rig(), look, &effects);
+            run(&plan, marker, robot, eyes.sensor(look), (), &mut (), DEFAULT_DART_BOUND).0
+        }
+    };
+    JudgedRun {
+        case,
+        ending: run.ending(),
+        moves: [run.exploration.moves(), run.explore_moves],
+        seconds: run.seconds,
+        pictures: run.pictures,
+    }
+}
+
+/// Where a robot can start to explore a plan: the darts of its Ls.
+#[must_use]
+pub fn starts_of(plan: &FloorPlan) -> Vec<Dart> {
+    let graph = plan.graph();
+    let is_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
+    graph.darts().filter(is_l).collect()
+}
