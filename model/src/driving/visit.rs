@@ -225,6 +225,59 @@ mod tests {
     }
 
     #[test]
+    fn an_l_is_not_decided_without_a_view_from_where_the_marker_would_be_seen() {
+        let l = |distance| junction(&[PI, -FRAC_PI_2], distance);
+        assert_eq!(seen(&[l(0.1), l(0.1)], None).percept(), None);
+        assert_eq!(seen(&[l(0.9), l(0.9)], None).percept(), None);
+        for from in [0.2, 0.5, 0.8] {
+            assert_ne!(seen(&[l(0.1), l(from)], None).percept(), None);
+        }
+        // No marker lies anywhere else.
+        assert_ne!(seen(&[junction(&[PI], 0.1), junction(&[PI], 0.1)], None).percept(), None);
+    }
+
+    #[test]
+    fn a_marker_off_the_way_tells_nothing() {
+        let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];
+        for position in [[0.1, 0.0], [0.9, 0.0], [-0.5, 0.0]] {
+            let marker = MarkerView { position, axis: 0.0, door: None };
+            let percept = seen(&l, Some(marker)).percept().unwrap();
+            assert_eq!(percept.sighting, Sighting::Nothing, "{position:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_robot_knows_of_where_it_stands_is_decided() {
+        for code in 0..8 {
+            let form = Form::with_code(code);
+            let degree = form.degree();
+            let mut sightings = vec![Sighting::Nothing];
+            if form.is_l() {
+                sightings.extend([Door::BACK, Door(1)].map(Sighting::Pointing));
+            }
+            for sighting in sightings {
+                let visit = Visit::decided(form, sighting);
+                assert_eq!(visit.form(), Some(form));
+                assert_eq!(visit.percept(), Some(Percept { degree, sighting }));
+            }
+        }
+    }
+
+    #[test]
+    fn at_the_marker_two_pictures_decide_and_it_lies_along_the_entry_door() {
+        let mut visit = Visit::at_marker();
+        let here = junction(&[PI, FRAC_PI_2], 0.0);
+        for expected in
+            [None, Some(Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) })]
+        {
+            // A marker under the robot that seems to lie otherwise does not change it.
+            let marker = MarkerView { position: [0.5, 0.0], axis: 1.5, door: None };
+            visit.see(&Scene { place: here.clone(), marker: Some(marker) });
+            assert_eq!(visit.percept(), expected);
+        }
+    }
+
+    #[test]
     fn the_best_view_of_the_marker_counts() {
         let hallway = Place::Hallway(HallwayView {
             heading: 0.0,

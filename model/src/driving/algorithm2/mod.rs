@@ -186,7 +186,10 @@ impl<'a> PathExecution<'a> {
             }
             // The print is silent here: half a metre after the turn the robot is still in the
             // junction's square. It goes on, still leaving.
-            Seen::Left(junction) => self.onwards(&junction),
+            Seen::Left(junction) => {
+                self.state = State::Leaving;
+                self.onwards(&junction)
+            }
             // 15, 16
             Seen::Junction(junction) if self.is_before(&junction) => {
                 // 17
@@ -217,13 +220,15 @@ impl<'a> PathExecution<'a> {
                 }
             },
         };
-        self.reckoning.end(command).map(Step::Go).map_err(|why| self.lost(why))
+        Ok(Step::Go(self.reckoning.end(command)))
     }
 
     /// Lines 20 to 26: the red line is reached or passed.
     fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, Why> {
-        let Some(standing) = self.standing() else {
-            // A visit is decided by two pictures: another one, from the same place.
+        // A visit is decided by two pictures, and doors are counted in one that agrees with them: else
+        // another one, from the same place.
+        let agreed = |standing: &Standing| Form::of(junction) == Some(standing.form);
+        let Some(standing) = self.standing().filter(agreed) else {
             return Ok(Step::Go(Command::default()));
         };
         let door = match (self.door, self.queue.split_first()) {
@@ -267,12 +272,13 @@ impl<'a> PathExecution<'a> {
                 Seen::Hallway(*hallway)
             }
             Place::Junction(junction) if self.has_left(junction) => {
-                match self.reckoning.left(junction) {
-                    true => Seen::Left(junction.clone()),
-                    false => Seen::Unknown,
+                if self.reckoning.left(junction) {
+                    Seen::Left(junction.clone())
+                } else {
+                    Seen::Unknown
                 }
             }
-            Place::Junction(junction) => self.junction(scene, junction)?,
+            Place::Junction(junction) => self.junction(scene, junction),
         };
         self.reckoning.note(match seen {
             Seen::Hallway(_) | Seen::Left(_) | Seen::Junction(_) => Round::Known,
@@ -283,25 +289,25 @@ impl<'a> PathExecution<'a> {
 
     /// A junction, from its entry door. Once its form is known, a picture of another one, or of the
     /// same one turned otherwise than odometry says, tells nothing.
-    fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Result<Seen, Why> {
-        let Some(entry) = self.reckoning.entry(junction) else { return Ok(Seen::Unknown) };
+    fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
+        let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
         let form = Form::of(&junction);
         let decided = self.reckoning.is_at_junction().then(|| self.standing()).flatten();
         match decided {
-            Some(standing) if form != Some(standing.form) => return Ok(Seen::Unknown),
+            Some(standing) if form != Some(standing.form) => return Seen::Unknown,
             Some(_) => {}
             None => self
                 .visit
                 .see(&Scene { place: Place::Junction(junction.clone()), marker: scene.marker }),
         }
         self.reckoning.at(&junction);
-        Ok(Seen::Junction(junction))
+        Seen::Junction(junction)
     }
 
     /// Whether a junction is the one that the robot has just left.
     fn has_left(&self, junction: &JunctionView) -> bool {
-        if !self.reckoning.is_on_the_way() {
+        if self.reckoning.is_at_junction() {
             return false;
         }
         let since = self.reckoning.since_turn();
@@ -309,7 +315,8 @@ impl<'a> PathExecution<'a> {
         let direction = self.reckoning.ahead();
         let ahead = x * direction.cos() + y * direction.sin();
         let behind = ahead < 0.0 && (since + ahead).abs() < SAME;
-        behind || (self.state != State::Hallway && since < ARRIVAL)
+        let is_early = self.state == State::Leaving && since < ARRIVAL;
+        behind || is_early
     }
 
     /// Whether the turning point is still ahead. Once the robot turns to a door it no longer matters.

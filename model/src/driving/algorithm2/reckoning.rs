@@ -11,7 +11,7 @@ use crate::driving::{
 
 /// After so many pictures in a row that tell of no place the robot gives up,
 pub const UNKNOWNS: u32 = 7;
-/// or after so many metres on which it crept,
+/// or after more than so many metres on which it crept,
 pub const CREEP: f64 = 1.0;
 /// or after so many commands in a row that were not carried out,
 pub const STALLS: u32 = 3;
@@ -37,10 +37,8 @@ pub(super) enum Round {
 enum Stage {
     /// At a junction that it has not left.
     AtJunction,
-    /// Between two junctions.
+    /// On its way to the next junction, which it may have seen.
     OnTheWay,
-    /// At the next junction, which it has seen.
-    Arriving,
 }
 
 /// What is kept by odometry.
@@ -96,6 +94,9 @@ impl Reckoning {
         let forward = now.distance(&before);
         let turned = wrapped(now.heading - before.heading).abs();
         self.since_turn += forward;
+        if self.unknowns > 0 {
+            self.crept += forward;
+        }
         if self.since_turn > self.leg_bound {
             return Err(Why::TooFar { metres: self.since_turn });
         }
@@ -122,11 +123,14 @@ impl Reckoning {
         if self.unknowns >= UNKNOWNS {
             return Err(Why::Unknown { pictures: self.unknowns });
         }
+        if self.crept > CREEP {
+            return Err(Why::Crept { metres: self.crept });
+        }
         Ok(())
     }
 
     /// A round ends: what is asked for now. What is too little to be done is left out.
-    pub(super) fn end(&mut self, command: Command) -> Result<Command, Why> {
+    pub(super) fn end(&mut self, command: Command) -> Command {
         let Command { turn, forward } = command;
         let command = Command {
             turn: if turn.abs() < LEAST_TURN { 0.0 } else { wrapped(turn) },
@@ -134,14 +138,9 @@ impl Reckoning {
         };
         if self.unknowns == 0 {
             self.known = self.now.whither(command.turn);
-        } else {
-            self.crept += command.forward;
-            if self.crept > CREEP {
-                return Err(Why::Crept { metres: self.crept });
-            }
         }
         self.asked = Some((command, self.now));
-        Ok(command)
+        command
     }
 
     /// To one side and the other of the last known heading: by 10, 20, 30 degrees.
@@ -165,10 +164,6 @@ impl Reckoning {
 
     pub(super) fn is_at_junction(&self) -> bool {
         self.stage == Stage::AtJunction
-    }
-
-    pub(super) fn is_on_the_way(&self) -> bool {
-        self.stage == Stage::OnTheWay
     }
 
     pub(super) fn since_turn(&self) -> f64 {
@@ -207,7 +202,7 @@ impl Reckoning {
     pub(super) fn entry(&self, junction: &JunctionView) -> Option<f64> {
         let expected = match self.stage {
             Stage::OnTheWay => wrapped(self.ahead() + PI),
-            Stage::AtJunction | Stage::Arriving => self.now.seen(self.entry),
+            Stage::AtJunction => self.now.seen(self.entry),
         };
         let off = nearest(junction, expected)?;
         (off.abs() <= AGAINST).then(|| wrapped(expected + off))
@@ -215,9 +210,6 @@ impl Reckoning {
 
     /// The robot is at a junction, whose first door is the one by which it came.
     pub(super) fn at(&mut self, junction: &JunctionView) {
-        if self.stage == Stage::OnTheWay {
-            self.stage = Stage::Arriving;
-        }
         if let Some(entry) = junction.doors.first() {
             self.entry = self.now.whither(entry.direction);
             self.leg = wrapped(self.entry + PI);

@@ -1,1 +1,606 @@
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
+use super::*;
+use crate::driving::scene::{Reason, Unclear};
+use crate::percept::Sighting;
+
+/// The doors of the six forms, as a robot sees them that looks away from the entry door.
+const DEAD_END: &[f64] = &[PI];
+const L_LEFT: &[f64] = &[PI, FRAC_PI_2];
+const L_RIGHT: &[f64] = &[PI, -FRAC_PI_2];
+const T_STEM: &[f64] = &[PI, FRAC_PI_2, -FRAC_PI_2];
+const T_LEFT: &[f64] = &[PI, FRAC_PI_2, 0.0];
+const T_RIGHT: &[f64] = &[PI, 0.0, -FRAC_PI_2];
+
+/// A robot that does what it is told, and knows it by odometry.
+struct Robot<'a> {
+    path: PathExecution<'a>,
+    odometry: Odometry,
+}
+
+impl<'a> Robot<'a> {
+    /// At the turning point of a junction, its back to the entry door.
+    fn at(doors: &[f64], queue: &'a [Door]) -> Self {
+        let form = Form::of(&view(doors, 0.0, 0.0)).unwrap();
+        let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
+        let from = Standing { form, percept, entry: PI };
+        Self { path: PathExecution::new(queue, &from), odometry: Odometry::default() }
+    }
+
+    /// Half a metre after it left a junction, straight ahead.
+    fn leaving(queue: &'a [Door]) -> Self {
+        let mut robot = Self::at(T_LEFT, queue);
+        assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT));
+        robot
+    }
+
+    /// A metre after it left a junction, in the hallway.
+    fn in_hallway(queue: &'a [Door]) -> Self {
+        let mut robot = Self::leaving(queue);
+        assert_eq!(robot.sees(&hallway(0.0)), ahead(UNIT));
+        robot
+    }
+
+    /// In front of a junction of which one picture has told, half a metre before its turning point.
+    fn before(doors: &[f64], queue: &'a [Door]) -> Self {
+        let mut robot = Self::in_hallway(queue);
+        assert_eq!(robot.sees(&junction(doors, 0.75, 0.0)), ahead(UNIT / 2.0));
+        robot
+    }
+
+    /// At the turning point of the next junction, of which two pictures have told.
+    fn come_to(doors: &[f64], queue: &'a [Door]) -> Self {
+        let mut robot = Self::before(doors, queue);
+        robot.sees(&junction(doors, 0.5, 0.0));
+        robot.sees(&junction(doors, 0.25, 0.0));
+        robot
+    }
+
+    fn round(&mut self, scene: &Scene) -> Result<Step, Lost> {
+        self.path.round(scene, self.odometry)
+    }
+
+    /// Sees a scene and does this share of what it is told.
+    fn sees_and_does(&mut self, share: f64, scene: &Scene) -> Command {
+        let step = self.round(scene);
+        let Ok(Step::Go(command)) = step else { panic!("it goes on, and not: {step:?}") };
+        let Command { turn, forward } = command;
+        self.odometry = self.odometry.moved(turn * share, forward * share);
+        command
+    }
+
+    fn sees(&mut self, scene: &Scene) -> Command {
+        self.sees_and_does(1.0, scene)
+    }
+
+    fn arrives(&mut self, scene: &Scene) -> Standing {
+        let step = self.round(scene);
+        let Ok(Step::Arrived(standing)) = step else { panic!("it arrives, and not: {step:?}") };
+        standing
+    }
+
+    fn gives_up(&mut self, scene: &Scene) -> Why {
+        self.round(scene).expect_err("it gives up").why
+    }
+
+    /// Drives on by the same scene until it gives up: after so many commands, and why.
+    fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, Why) {
+        for commands in 0.. {
+            match self.round(scene) {
+                Ok(Step::Go(Command { turn, forward })) => {
+                    self.odometry = self.odometry.moved(turn * share, forward * share);
+                }
+                Ok(Step::Arrived(_)) => break,
+                Err(Lost { why, .. }) => return (commands, why),
+            }
+        }
+        panic!("it arrives");
+    }
+}
+
+fn ahead(forward: f64) -> Command {
+    Command { turn: 0.0, forward }
+}
+
+/// A junction whose turning point lies so far ahead of a robot that then has turned by so much.
+fn view(doors: &[f64], distance: f64, turned: f64) -> JunctionView {
+    let through = [distance * turned.cos(), -distance * turned.sin()];
+    let door = |&door: &f64| CentreLine { through, direction: wrapped(door - turned) };
+    let doors = doors.iter().map(door).collect();
+    JunctionView { doors, turning_point: through, confidence: 1.0 }
+}
+
+fn scene(place: Place) -> Scene {
+    Scene { place, marker: None }
+}
+
+fn junction(doors: &[f64], distance: f64, turned: f64) -> Scene {
+    scene(Place::Junction(view(doors, distance, turned)))
+}
+
+fn hallway_of(heading: f64, [left, right]: [f64; 2], status: Status) -> Scene {
+    scene(Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 }))
+}
+
+fn hallway(heading: f64) -> Scene {
+    hallway_of(heading, [0.8, 0.8], Status::Clear)
+}
+
+fn unknown() -> Scene {
+    scene(Place::Unknown(Reason::NothingFits))
+}
+
+#[track_caller]
+fn assert_near(one: f64, other: f64) {
+    assert!((one - other).abs() < 1e-9, "{one} is not {other}");
+}
+
+// paper: alg2.1, drive.path
+#[test]
+fn a_path_begins_as_leaving_with_all_of_its_doors() {
+    let queue = [Door(2), Door(1)];
+    let robot = Robot::at(T_LEFT, &queue);
+    assert_eq!((robot.path.state(), robot.path.queue()), (State::Leaving, &queue[..]));
+}
+
+// paper: alg2.2, alg2.7, alg2.8, alg2.11, alg2.12, drive.clear
+#[test]
+fn in_a_clear_hallway_the_robot_goes_half_a_metre() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    assert_eq!(robot.sees(&hallway(0.0)), Command { turn: 0.0, forward: 0.5 });
+    assert_eq!(robot.path.state(), State::Hallway);
+}
+
+// paper: alg2.13, alg2.14, drive.unclear
+#[test]
+fn in_an_unclear_hallway_it_goes_half_as_far() {
+    for why in [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind] {
+        let mut robot = Robot::leaving(&[Door(2)]);
+        let unclear = hallway_of(0.0, [0.8, 0.8], Status::Unclear(why));
+        assert_eq!(robot.sees(&unclear), Command { turn: 0.0, forward: 0.25 });
+    }
+}
+
+// paper: alg2.9, drive.align
+#[test]
+fn it_turns_to_the_direction_of_the_hallway() {
+    for heading in [0.3, -0.3] {
+        assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(heading)).turn, heading);
+    }
+}
+
+#[test]
+fn of_the_two_directions_of_a_hallway_it_takes_the_one_onwards() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    robot.odometry.heading = 1.8;
+    let off_centre = hallway_of(PI - 1.8, [1.1, 0.5], Status::Clear);
+    // What lies to the left of a robot that looks back lies to the right onwards.
+    assert_near(robot.sees(&off_centre).turn, -1.8 - PI / 8.0);
+}
+
+#[test]
+fn a_hallway_at_more_than_45_degrees_against_odometry_is_an_error() {
+    for sign in [1.0, -1.0] {
+        assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(sign * 0.78)).turn, sign * 0.78);
+        let why = Robot::leaving(&[Door(2)]).gives_up(&hallway(sign * 0.80));
+        assert!(matches!(why, Why::Turned { degrees } if (degrees - 45.8).abs() < 0.1), "{why}");
+    }
+}
+
+// paper: alg2.10, drive.centre
+#[test]
+fn too_close_to_one_side_it_turns_towards_the_centre_line() {
+    let turn = |sides| {
+        let scene = hallway_of(0.1, sides, Status::Clear);
+        Robot::leaving(&[Door(2)]).sees(&scene).turn - 0.1
+    };
+    assert_near(turn([0.95, 0.65]), 0.15_f64.atan2(0.5));
+    assert_near(turn([0.65, 0.95]), -0.15_f64.atan2(0.5));
+    assert_near(turn([0.4, 1.2]), -PI / 8.0);
+    assert_near(turn([0.85, 0.75]), 0.0);
+}
+
+// paper: alg2.15, alg2.16, alg2.17, alg2.18, alg2.19, drive.before
+#[test]
+fn before_the_turning_point_it_goes_towards_the_crossing_by_at_most_half_a_unit() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let aside = {
+        let mut view = view(L_LEFT, 0.0, 0.0);
+        view.turning_point = [0.6, 0.2];
+        scene(Place::Junction(view))
+    };
+    let Command { turn, forward } = robot.sees(&aside);
+    assert_near(turn, 0.2_f64.atan2(0.6));
+    assert_near(forward, 0.25);
+    assert_eq!(robot.path.state(), State::Junction);
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    assert_near(robot.sees(&junction(L_LEFT, 0.15, 0.0)).forward, 0.15);
+}
+
+#[test]
+fn a_crossing_far_aside_is_not_aimed_at() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let mut view = view(L_LEFT, 0.0, 0.0);
+    view.turning_point = [0.2, 0.5];
+    let Command { turn, forward } = robot.sees(&scene(Place::Junction(view)));
+    assert_near(turn, 0.0);
+    assert_near(forward, 0.2);
+}
+
+// paper: alg2.20, alg2.21, alg2.22
+#[test]
+fn at_the_turning_point_with_no_door_left_the_path_is_done() {
+    for (doors, degree) in
+        [(DEAD_END, 1), (L_LEFT, 2), (L_RIGHT, 2), (T_STEM, 3), (T_LEFT, 3), (T_RIGHT, 3)]
+    {
+        for distance in [0.05, 0.0, -0.2] {
+            let standing =
+                Robot::come_to(doors, &[Door(2)]).arrives(&junction(doors, distance, 0.0));
+            assert_eq!(Some(standing.form), Form::of(&view(doors, 0.0, 0.0)));
+            assert_eq!(standing.percept, Percept { degree, sighting: Sighting::Nothing });
+            assert_near(standing.entry.abs(), PI);
+        }
+    }
+}
+
+// paper: alg2.23, alg2.24, alg2.25, alg2.26, drive.turn
+#[test]
+fn with_a_door_left_it_turns_to_it_and_goes_half_a_metre_out_of_the_junction() {
+    for (doors, turn) in [(L_LEFT, FRAC_PI_2), (L_RIGHT, -FRAC_PI_2), (T_STEM, FRAC_PI_2)] {
+        let queue = [Door(2), Door(1), Door(0)];
+        let mut robot = Robot::come_to(doors, &queue);
+        assert_eq!(robot.sees(&junction(doors, 0.0, 0.0)), Command { turn, forward: 0.0 });
+        assert_eq!(robot.path.queue(), &queue[2..], "the door is taken from the queue, once");
+        assert_eq!(robot.path.state(), State::Junction);
+        assert_eq!(robot.sees(&junction(doors, 0.0, turn)), ahead(0.5));
+        assert_eq!(robot.path.state(), State::Leaving);
+        assert_eq!(robot.path.queue(), &queue[2..]);
+    }
+}
+
+#[test]
+fn a_door_straight_ahead_takes_no_turn() {
+    let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
+    let Command { turn, forward } = robot.sees(&junction(T_RIGHT, 0.0, 0.1));
+    assert_near(turn, -0.1);
+    assert_near(forward, 0.5);
+    assert_eq!(robot.path.state(), State::Leaving);
+}
+
+#[test]
+fn after_a_turn_a_picture_must_show_the_doors_turned_before_it_leaves() {
+    let turning = || {
+        let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+        robot.sees(&junction(T_STEM, 0.0, 0.0));
+        robot
+    };
+    let left = FRAC_PI_2;
+    // What is not turned, or of another form, or no junction, tells nothing.
+    for other in [
+        junction(T_STEM, 0.0, 0.0),
+        junction(L_LEFT, 0.0, left),
+        hallway(0.0),
+        hallway(FRAC_PI_2),
+        unknown(),
+    ] {
+        let mut robot = turning();
+        let command = robot.sees(&other);
+        assert_near(command.turn, FRAC_PI_6 / 3.0);
+        assert_near(command.forward, 0.0);
+        assert_eq!(robot.path.state(), State::Unknown);
+        let now = robot.odometry.heading;
+        assert_near(robot.sees(&junction(T_STEM, 0.0, now)).forward, 0.5);
+    }
+    // Turned too little, it turns on.
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+    robot.sees_and_does(0.6, &junction(T_STEM, 0.0, 0.0));
+    let Command { turn, forward } = robot.sees(&junction(T_STEM, 0.0, 0.6 * left));
+    assert_near(turn, 0.4 * left);
+    assert_near(forward, 0.0);
+}
+
+#[test]
+fn the_entry_door_is_carried_by_odometry_while_the_robot_turns() {
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1), Door(0)]);
+    robot.sees(&junction(T_STEM, 0.0, 0.0));
+    // Turned to the left, the door behind is the one on the other side of the stem.
+    let Place::Junction(seen) = junction(T_STEM, 0.0, FRAC_PI_2).place else { unreachable!() };
+    let listed = seen.entered_from(PI);
+    assert_near(listed.doors[0].direction.abs(), PI);
+    assert_eq!(robot.sees(&scene(Place::Junction(listed))), ahead(0.5));
+}
+
+#[test]
+fn the_entry_door_is_the_one_behind_on_arrival() {
+    // By its picture alone this T could have been entered by any of its doors.
+    for first in 0..3 {
+        let mut robot = Robot::before(T_STEM, &[Door(2)]);
+        let mut view = view(T_STEM, 0.05, 0.0);
+        view.doors.rotate_left(first);
+        let standing = robot.arrives(&scene(Place::Junction(view)));
+        assert_eq!(standing.form, Form([true, true, false, true]));
+        assert_near(standing.entry.abs(), PI);
+    }
+}
+
+#[test]
+fn a_junction_without_a_door_behind_tells_nothing() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let crosswise = [FRAC_PI_2, -FRAC_PI_2];
+    assert_eq!(robot.sees(&junction(&crosswise, 0.5, 0.0)), ahead(UNIT / 3.0));
+}
+
+#[test]
+fn a_junction_just_left_is_left_behind() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    for way in [0.5, 0.75, 1.0, 1.25, 1.5] {
+        assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
+        assert_eq!(robot.path.state(), State::Leaving, "after {way} m");
+    }
+}
+
+#[test]
+fn out_of_a_junction_it_goes_along_the_centre_line_of_the_door() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    let mut view = view(T_LEFT, -0.5, -0.1);
+    for line in &mut view.doors {
+        line.through = [-0.5, 0.1];
+    }
+    let left = 0.1 * 0.1_f64.cos() + 0.5 * 0.1_f64.sin();
+    assert_near(robot.sees(&scene(Place::Junction(view))).turn, 0.1 + left.atan2(0.5));
+}
+
+#[test]
+fn a_junction_just_left_tells_nothing_without_the_door_that_was_taken() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    assert_eq!(robot.sees(&junction(T_STEM, -0.5, 0.0)), ahead(UNIT / 3.0));
+    assert_eq!(robot.path.state(), State::Leaving);
+}
+
+#[test]
+fn arrival_takes_a_hallway_in_between_or_a_metre_and_20() {
+    // The turning point seems to be ahead still: it is that of the junction just left.
+    let mut robot = Robot::leaving(&[Door(2)]);
+    for _ in 0..3 {
+        robot.sees(&junction(T_LEFT, 0.2, 0.0));
+        assert_eq!(robot.path.state(), State::Leaving);
+    }
+    assert_near(robot.odometry.position[0], 1.25);
+    robot.sees(&junction(T_LEFT, 0.2, 0.0));
+    assert_eq!(robot.path.state(), State::Junction, "after more than 1.2 m");
+
+    let mut robot = Robot::leaving(&[Door(2)]);
+    robot.sees(&hallway_of(0.0, [0.8, 0.8], Status::Unclear(Unclear::ClustersAhead)));
+    robot.sees(&junction(T_LEFT, 0.2, 0.0));
+    assert_eq!(robot.path.state(), State::Junction, "after a hallway");
+}
+
+#[test]
+fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    robot.sees(&junction(T_LEFT, -1.0, 0.0));
+    assert_eq!(robot.path.state(), State::Leaving);
+    // Nor though one picture has told of a junction ahead, where there was none.
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    robot.sees(&junction(L_LEFT, 0.05, 0.0));
+    for _ in 0..4 {
+        let way = robot.odometry.position[0];
+        assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
+        assert_eq!(robot.path.state(), State::Leaving);
+    }
+}
+
+#[test]
+fn a_junction_that_was_passed_is_not_the_one_just_left() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    for _ in 0..4 {
+        robot.sees(&hallway(0.0));
+    }
+    // It is the next one, 3.3 m after the last, and the robot is 3 m after it.
+    let past = junction(L_LEFT, -0.3, 0.0);
+    assert_eq!(robot.sees(&past), Command::default(), "another picture");
+    assert_eq!(robot.path.state(), State::Junction);
+}
+
+#[test]
+fn a_junction_is_decided_by_two_pictures() {
+    let here = junction(T_STEM, 0.0, 0.0);
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    assert_eq!(robot.sees(&here), Command::default(), "another picture from the same place");
+    assert_eq!(robot.arrives(&here).form, Form([true, true, false, true]));
+
+    let mut robot = Robot::in_hallway(&[Door(2), Door(1)]);
+    assert_eq!(robot.sees(&here), Command::default());
+    assert_eq!(robot.path.queue(), [Door(1)], "no door is taken at one that is not decided");
+    assert_near(robot.sees(&here).turn, FRAC_PI_2);
+    assert_eq!(robot.path.queue(), []);
+}
+
+#[test]
+fn doors_are_not_counted_in_a_picture_of_another_junction() {
+    let queue = [Door(2), Door(1)];
+    let mut robot = Robot::come_to(L_RIGHT, &queue);
+    // Door 1 would be straight ahead.
+    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default());
+    assert_eq!(robot.path.queue(), [Door(1)]);
+    assert_near(robot.sees(&junction(L_RIGHT, 0.0, 0.0)).turn, -FRAC_PI_2);
+}
+
+#[test]
+fn a_junction_that_is_known_is_not_decided_again() {
+    let mut robot = Robot::at(L_LEFT, &[Door(1)]);
+    for _ in 0..3 {
+        robot.sees(&junction(T_LEFT, 0.0, robot.odometry.heading));
+        assert_eq!(robot.path.state(), State::Unknown);
+    }
+    assert_eq!(robot.path.queue(), [Door(1)]);
+    assert_near(robot.sees(&junction(L_LEFT, 0.0, robot.odometry.heading)).forward, 0.0);
+    assert_eq!(robot.path.queue(), []);
+}
+
+#[test]
+fn a_junction_is_seen_anew_after_the_last_one_was_left() {
+    let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_RIGHT, 0.0, 0.0));
+    robot.sees(&hallway(0.0));
+    assert_eq!(robot.sees(&junction(T_RIGHT, 0.0, 0.0)), Command::default(), "it takes two");
+    robot.arrives(&junction(T_RIGHT, 0.0, 0.0));
+}
+
+#[test]
+fn at_a_dead_end_it_turns_around_only_when_told_to() {
+    let here = junction(DEAD_END, 0.0, 0.0);
+    assert_eq!(Robot::come_to(DEAD_END, &[Door(2)]).arrives(&here).percept.degree, 1);
+
+    let mut robot = Robot::come_to(DEAD_END, &[Door(2), Door(0)]);
+    assert_eq!(robot.sees(&here), Command { turn: PI, forward: 0.0 });
+    assert_eq!(robot.sees(&junction(DEAD_END, 0.0, PI)), ahead(0.5));
+
+    let why = Robot::come_to(DEAD_END, &[Door(2), Door(1)]).gives_up(&here);
+    assert_eq!(why, Why::NoSuchDoor { door: Door(1), degree: 1 });
+}
+
+#[test]
+fn at_the_start_the_robot_gets_to_know_its_junction_with_its_back_to_the_marker() {
+    let odometry = Odometry { position: [3.0, 1.0], heading: 2.0 };
+    let mut robot = Robot { path: PathExecution::at_start(&odometry), odometry };
+    let here = junction(L_LEFT, 0.0, 0.0);
+    assert_eq!(robot.sees(&here), Command::default(), "it takes two pictures there too");
+    let Standing { percept, entry, .. } = robot.arrives(&here);
+    assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
+    assert_near(entry, 2.0 - PI);
+}
+
+// paper: alg2.27, alg2.28, alg2.29
+#[test]
+fn unknown_in_a_hallway_or_leaving_it_goes_a_third_with_care() {
+    for (mut robot, state) in [
+        (Robot::leaving(&[Door(2)]), State::Leaving),
+        (Robot::in_hallway(&[Door(2)]), State::Hallway),
+    ] {
+        assert_eq!(robot.sees(&unknown()), ahead(0.5 / 3.0));
+        assert_eq!(robot.path.state(), state, "the last printed line is not for it");
+    }
+}
+
+// paper: alg2.30, alg2.31, alg2.32
+#[test]
+fn unknown_at_a_junction_it_turns_by_10_20_30_degrees_to_either_side() {
+    let mut robot = Robot::before(L_LEFT, &[Door(2)]);
+    for degrees in [10.0, -10.0, 20.0, -20.0, 30.0, -30.0_f64] {
+        assert_near(robot.sees(&unknown()).forward, 0.0);
+        assert_near(robot.odometry.heading, degrees.to_radians());
+        assert_eq!(robot.path.state(), State::Unknown);
+    }
+}
+
+#[test]
+fn what_it_turns_about_is_where_it_looked_when_it_last_knew() {
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_STEM, 0.0, 0.0));
+    robot.sees(&unknown());
+    assert_near(robot.odometry.heading, FRAC_PI_2 + 10.0_f64.to_radians());
+
+    // At the beginning of a path that is where it looks.
+    let mut robot = Robot::at(L_LEFT, &[Door(1)]);
+    robot.odometry.heading = 0.2;
+    robot.sees(&unknown());
+    assert_near(robot.odometry.heading, 0.2 + 10.0_f64.to_radians());
+}
+
+#[test]
+fn after_seven_unknowns_in_a_row_it_gives_up() {
+    let gives_up = (6, Why::Unknown { pictures: 7 });
+    assert_eq!(Robot::at(L_LEFT, &[Door(1)]).drives_on(1.0, &unknown()), gives_up);
+    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(1.0, &unknown()), gives_up);
+    assert_eq!(Robot::before(L_LEFT, &[Door(2)]).drives_on(1.0, &unknown()), gives_up);
+
+    let mut robot = Robot::leaving(&[Door(2)]);
+    for _ in 0..6 {
+        robot.sees(&unknown());
+    }
+    robot.sees(&hallway(0.0));
+    assert_eq!(robot.drives_on(1.0, &unknown()), gives_up, "only in a row");
+}
+
+#[test]
+fn after_a_metre_of_creeping_it_gives_up() {
+    // Its wheels carry it farther than it asks for.
+    let (commands, why) = Robot::leaving(&[Door(2)]).drives_on(1.5, &unknown());
+    assert!(matches!(why, Why::Crept { metres } if (metres - 1.25).abs() < 1e-9), "{why}");
+    assert_eq!(commands, 5);
+
+    let mut robot = Robot::leaving(&[Door(2)]);
+    for _ in 0..4 {
+        robot.sees_and_does(1.5, &unknown());
+    }
+    robot.sees(&hallway(0.0));
+    assert_eq!(robot.drives_on(1.5, &unknown()).0, 5, "what was known in between counts anew");
+}
+
+#[test]
+fn what_is_not_carried_out_is_an_error_after_three_tries() {
+    let gives_up = (3, Why::Stalled { times: 3 });
+    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.0, &hallway(0.0)), gives_up);
+    assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.4, &hallway(0.0)), gives_up);
+    let mut turning = Robot::come_to(L_LEFT, &[Door(2), Door(1)]);
+    assert_eq!(turning.drives_on(0.0, &junction(L_LEFT, 0.0, 0.0)), gives_up);
+
+    let mut robot = Robot::leaving(&[Door(2)]);
+    for share in [0.0, 0.0, 0.6, 0.0, 0.0] {
+        robot.sees_and_does(share, &hallway(0.0));
+    }
+    assert_near(robot.sees(&hallway(0.0)).forward, 0.5);
+}
+
+#[test]
+fn sixteen_pictures_from_the_same_place_are_enough() {
+    // Beside its turning point the robot hides whether the marker lies at an L.
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let (commands, why) = robot.drives_on(1.0, &junction(L_LEFT, 0.0, 0.0));
+    assert_eq!((commands, why), (16, Why::Idle { rounds: 16 }));
+}
+
+#[test]
+fn a_hallway_without_end_is_given_up() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    let (commands, why) = robot.drives_on(1.0, &hallway(0.0));
+    assert_eq!((commands, why), (200, Why::TooFar { metres: 100.5 }));
+
+    let mut robot = Robot::leaving(&[Door(2)]);
+    robot.path = robot.path.with_leg_bound(2.0);
+    assert_eq!(robot.drives_on(1.0, &hallway(0.0)), (4, Why::TooFar { metres: 2.5 }));
+}
+
+#[test]
+fn what_is_too_little_counts_as_done() {
+    let mut robot = Robot::leaving(&[Door(2)]);
+    assert_eq!(robot.sees(&hallway(0.034)), ahead(0.5));
+    assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(0.036)).turn, 0.036);
+
+    let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
+    assert_eq!(reckoning.end(ahead(0.029)), Command::default());
+    assert_eq!(reckoning.end(ahead(0.031)), ahead(0.031));
+}
+
+#[test]
+fn no_command_goes_farther_than_a_unit_or_turns_farther_than_around() {
+    let mut reckoning = PathExecution::at_start(&Odometry::default()).reckoning;
+    assert_eq!(reckoning.end(ahead(0.6)), ahead(0.5));
+    assert_near(reckoning.end(Command { turn: 4.0, forward: 0.0 }).turn, 4.0 - 2.0 * PI);
+    let around = Command { turn: -PI, forward: 0.0 };
+    assert_eq!(reckoning.end(around), Command { turn: PI, forward: 0.0 });
+}
+
+#[test]
+fn a_path_is_given_up_in_words() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    for _ in 0..6 {
+        robot.sees(&unknown());
+    }
+    let lost = robot.round(&unknown()).unwrap_err();
+    let said = "7 pictures in a row do not tell where the robot is; in a hallway, 2.00 m after the \
+                last turn to a door";
+    assert_eq!(lost.to_string(), said);
+    assert_near(lost.since_turn, robot.path.since_turn());
+}
