@@ -1,7 +1,6 @@
 //! A robot as a world: Algorithm 1 asks for doors, and Algorithm 2 takes the robot through them.
 //! Sections 4.3 and 5.
 
-use image::ImageError;
 use thiserror::Error;
 use toposlam_model::{
     driving::{
@@ -12,7 +11,10 @@ use toposlam_model::{
     percept::{Door, Percept},
     world::World,
 };
-use toposlam_vision::sensing::{Sensor, WrongSize};
+use toposlam_vision::{
+    image_file::{ImageFile, ImageFileError},
+    sensing::{Sensor, WrongSize},
+};
 
 use crate::robot::{Picture, Robot, RobotError};
 
@@ -30,7 +32,7 @@ pub trait Eye<V> {
 pub enum Unreadable {
     /// It is no image.
     #[error(transparent)]
-    Image(#[from] ImageError),
+    Image(#[from] ImageFileError),
     /// It is of another camera.
     #[error(transparent)]
     Size(#[from] WrongSize),
@@ -39,8 +41,8 @@ pub enum Unreadable {
 /// The file of a photograph is decoded and sensed.
 impl Eye<Vec<u8>> for Sensor {
     fn scene(&mut self, view: &Vec<u8>) -> Result<Scene, Unreadable> {
-        let image = image::load_from_memory(view)?;
-        Ok(self.sense(&image.into_rgb8())?)
+        let image = ImageFile::open(view)?.image()?;
+        Ok(self.sense(&image)?)
     }
 }
 

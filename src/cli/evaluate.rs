@@ -1,7 +1,10 @@
-//! `toposlam evaluate WHAT`: what a robot senses, held against the truth.
+//! `toposlam evaluate WHAT`: what a robot senses and where it gets, held against the truth.
 
+mod control;
 mod failing;
 mod report;
+mod robots;
+mod runs;
 mod vision;
 
 use std::io::Write;
@@ -10,12 +13,12 @@ use clap::Subcommand;
 
 use super::{Failure, Outcome};
 
-/// Measure sensing against the truth, on many cases
+/// Measure sensing, driving or whole runs against the truth, on many cases
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  toposlam evaluate vision --views 200 --out failing    rendered views, \
-                  and pictures of those on which sensing fails"
-)]
+#[command(after_help = "Examples:
+  toposlam evaluate vision --views 200 --out failing    sensing, on rendered views
+  toposlam evaluate control                             each door of each junction
+  toposlam evaluate runs                                whole buildings, mapped")]
 pub(super) struct Arguments {
     #[command(subcommand)]
     what: What,
@@ -24,12 +27,16 @@ pub(super) struct Arguments {
 #[derive(Subcommand)]
 enum What {
     Vision(vision::Arguments),
+    Control(control::Arguments),
+    Runs(runs::Arguments),
 }
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         match self.what {
             What::Vision(vision) => vision.run(out),
+            What::Control(control) => control.run(out),
+            What::Runs(runs) => runs.run(out),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 mod doors;
 mod ending;
-mod story;
+pub(super) mod story;
 mod words;
 
 use std::{

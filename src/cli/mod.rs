@@ -1,5 +1,6 @@
 //! The verbs of the command line, and what they share: exit codes, failures, files written whole.
 
+mod appearance;
 mod calibrate;
 mod check;
 mod columns;
@@ -21,6 +22,7 @@ mod proofs;
 mod render;
 mod scene;
 mod sense;
+mod simulate;
 mod train;
 mod walk_page;
 mod with_marker;
@@ -37,6 +39,7 @@ use clap::{
 };
 use toposlam_model::check::DEFAULT_STATE_BUDGET;
 use toposlam_model::marker::{self, MARKERS, Marker};
+use toposlam_robot::simulator::MotionNoise;
 
 use outcome::{Failure, Outcome};
 
@@ -63,6 +66,7 @@ enum Verb {
     Draw(draw::Arguments),
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
+    Simulate(simulate::Arguments),
     Render(render::Arguments),
     Calibrate(calibrate::Arguments),
     Train(train::Arguments),
@@ -113,6 +117,18 @@ fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
 }
 
+/// Reads how many times as inexact as by default a simulated robot is.
+fn noise(text: &str) -> Result<f64, String> {
+    let most = MotionNoise::MOST;
+    match text.parse() {
+        Ok(times) if (0.0..=most).contains(&times) => Ok(times),
+        Ok(times) if times > most => {
+            Err(format!("with more than {most} times the default a robot cannot find its way"))
+        }
+        _ => Err(format!("write a number from 0 to {most}")),
+    }
+}
+
 /// Works with so many threads, where somebody says so.
 fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
@@ -132,6 +148,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Draw(verb)) => verb.run(&mut out),
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
+        Some(Verb::Simulate(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
         Some(Verb::Calibrate(verb)) => verb.run(&mut out),
         Some(Verb::Train(verb)) => verb.run(&mut out),

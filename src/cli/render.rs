@@ -6,18 +6,16 @@ use clap::{
     ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
 };
 use toposlam_robot::simulator::{
-    Building, Effects, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render,
+    Building, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render, start_pose,
 };
 use toposlam_vision::camera::Camera;
 
-use super::{Failure, Outcome, input, output, picture_file::encoded};
+use super::{Failure, Outcome, appearance::Appearance, input, output, picture_file::encoded};
 
 /// Render what the robot's camera would see from a pose in a floor plan
 #[derive(clap::Args)]
@@ -38,15 +36,8 @@ pub(super) struct Arguments {
     /// Width and height of the picture, in pixels [default: the camera's]
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
-    /// What the building looks like
-    #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
-    look: &'static Look,
-    /// Which effects there are
-    #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: Which,
-    /// Set one effect; may be given more than once
-    #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
-    effect: Vec<(String, f64)>,
+    #[command(flatten)]
+    appearance: Appearance,
     /// From which everything follows that is left to chance
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -99,8 +90,8 @@ impl Arguments {
         let camera = self.camera()?;
         let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
         let marker = if self.marker { Some(self.marked(plan, world.start)?) } else { None };
-        let effects = self.effects()?;
-        let building = Building::new(plan, self.look, marker, &effects, self.seed);
+        let effects = self.appearance.effects(self.seed)?;
+        let building = Building::new(plan, self.appearance.look, marker, &effects, self.seed);
         if !building.has_floor(pose.position) {
             let [x, y] = pose.position;
             return Err(Failure::at("--pose", format!("there is no floor at {x},{y}")));
@@ -133,17 +124,6 @@ impl Arguments {
         })
     }
 
-    fn effects(&self) -> Result<Effects, Failure> {
-        let mut effects = match self.effects {
-            Which::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(self.seed)),
-            Which::None => Effects::plain(),
-        };
-        for (name, value) in &self.effect {
-            effects.set(name, *value).map_err(|error| Failure::at("--effect", error))?;
-        }
-        Ok(effects)
-    }
-
     /// The dart that the marker points along.
     fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, Failure> {
         let graph = plan.graph();
@@ -152,13 +132,6 @@ impl Arguments {
             .or_else(|| graph.darts().find(at_l))
             .ok_or_else(|| Failure::in_file(&self.plan, "there is neither a start nor an L in it"))
     }
-}
-
-/// On the dart's junction, the back to the dart's hallway.
-fn start_pose(plan: &FloorPlan, start: Dart) -> Pose {
-    let [x, y] = plan.direction(start).reversed().vector();
-    let junction = plan.junction(plan.graph().vertex(start));
-    Pose { position: junction.position, heading: y.atan2(x) }
 }
 
 /// Reads the name of a look.
@@ -179,7 +152,7 @@ fn read_pose(text: &str) -> Result<Pose, String> {
     }
 }
 
-fn read_setting(text: &str) -> Result<(String, f64), String> {
+pub(super) fn read_setting(text: &str) -> Result<(String, f64), String> {
     let setting = text
         .split_once('=')
         .and_then(|(name, value)| Some((name.trim().to_owned(), value.trim().parse().ok()?)));

@@ -79,6 +79,8 @@ impl JudgedRun {
     }
 }
 
+/// A run is given up with so many more than twice the darts that there are.
+const SPARE_DARTS: usize = 20;
 /// So many pictures a robot takes on one move, about: a fault comes up somewhere in a run.
 const PICTURES_A_MOVE: u64 = 16;
 
@@ -147,15 +149,15 @@ impl Runs {
 /// A run, made.
 fn judged(case: Case, eyes: Option<&Eyes>) -> JudgedRun {
     let Setting { plan, marker, seed, .. } = case.setting.clone();
+    // A robot that has gone astray would go on mapping what is not there.
+    let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let run = match eyes {
-        None => {
-            run(&plan, marker, case.setting.by_scene(), Told, (), &mut (), DEFAULT_DART_BOUND).0
-        }
+        None => run(&plan, marker, case.setting.by_scene(), Told, (), &mut (), bound).0,
         Some(eyes) => {
             let look = eyes.look(case.number);
             let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
             let robot = case.setting.with_images(eyes.rig(), look, &effects);
-            run(&plan, marker, robot, eyes.sensor(look), (), &mut (), DEFAULT_DART_BOUND).0
+            run(&plan, marker, robot, eyes.sensor(look), (), &mut (), bound).0
         }
     };
     JudgedRun {

@@ -217,13 +217,13 @@ fn judge(views: &Views, calibrations: &[Calibration]) -> Result<Judge, Failure> 
     judge.map_err(unmeasured)
 }
 
-fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {
+pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {
     let world = input::read_world(path)?;
     let plan = input::floor_plan(path, &world)?.clone();
     Ok((world.name, Arc::new(plan)))
 }
 
 /// What nobody asked for wrongly.
-fn unmeasured(error: impl std::fmt::Display) -> Failure {
+pub(super) fn unmeasured(error: impl std::fmt::Display) -> Failure {
     Failure::at("evaluate", error)
 }

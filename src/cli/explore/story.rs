@@ -16,18 +16,18 @@ use super::words::{counted, dart, seen_against, vertices};
 
 /// How much is told.
 #[derive(Clone, Copy)]
-pub(super) struct Detail {
+pub(crate) struct Detail {
     /// Everything that was rejected, or only the first few of each round.
-    pub(super) every_hypothesis: bool,
+    pub(crate) every_hypothesis: bool,
     /// The doors taken, and what was done with the marker.
-    pub(super) doors: bool,
+    pub(crate) doors: bool,
 }
 
 /// How many of those rejected in a round are told one by one, where not all are wanted.
 const TOLD: usize = 4;
 
 /// Tells a run as it goes.
-pub(super) struct Story<'o, W> {
+pub(crate) struct Story<'o, W> {
     out: &'o mut W,
     detail: Detail,
     result: io::Result<()>,
@@ -40,7 +40,7 @@ pub(super) struct Story<'o, W> {
 }
 
 impl<'o, W: Write> Story<'o, W> {
-    pub(super) fn new(out: &'o mut W, world: &NamedWorld, facing: Dart, detail: Detail) -> Self {
+    pub(crate) fn new(out: &'o mut W, world: &NamedWorld, facing: Dart, detail: Detail) -> Self {
         let result = writeln!(
             out,
             "{}, from {} with its back to the door {}.",
@@ -51,7 +51,7 @@ impl<'o, W: Write> Story<'o, W> {
         Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
     }
 
-    pub(super) fn finish(self) -> io::Result<()> {
+    pub(crate) fn finish(self) -> io::Result<()> {
         self.result
     }
 

@@ -1,0 +1,38 @@
+//! What buildings look like, on the command line: a look, and effects.
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use toposlam_robot::simulator::{Effects, LOOKS, Look};
+
+use super::{
+    Failure,
+    render::{Which, looks, read_setting},
+};
+
+/// What a building looks like, and what makes pictures of it harder to read.
+#[derive(clap::Args)]
+pub(super) struct Appearance {
+    /// What the building looks like
+    #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
+    pub(super) look: &'static Look,
+    /// Which effects there are
+    #[arg(long, default_value = "default", value_name = "WHICH")]
+    effects: Which,
+    /// Set one effect; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
+    effect: Vec<(String, f64)>,
+}
+
+impl Appearance {
+    /// The effects of a seed.
+    pub(super) fn effects(&self, seed: u64) -> Result<Effects, Failure> {
+        let mut effects = match self.effects {
+            Which::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
+            Which::None => Effects::plain(),
+        };
+        for (name, value) in &self.effect {
+            effects.set(name, *value).map_err(|error| Failure::at("--effect", error))?;
+        }
+        Ok(effects)
+    }
+}

@@ -1,0 +1,287 @@
+//! `toposlam simulate PLAN`: a SuperScout that knows only its camera's pictures maps a floor plan.
+//! Sections 5 and 6.
+
+mod chronicle;
+mod ending;
+mod feasible;
+
+use std::{
+    cell::RefCell,
+    io::Write,
+    path::{Path, PathBuf},
+    rc::Rc,
+    sync::Arc,
+    time::Instant,
+};
+
+use toposlam::{journal::Journal, page, picture};
+use toposlam_model::{
+    embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
+};
+use toposlam_robot::{
+    evaluation::Eyes,
+    explorer::{Eye, Told},
+    run::{Run, offline, run},
+    simulator::{Camera, Effects, FAULTS, Fault, PICTURE_TIME, Setting, SimulatedRobot},
+};
+use toposlam_vision::camera::Camera as Calibrated;
+
+use super::{
+    Failure, Outcome,
+    appearance::Appearance,
+    explore::story::{Detail, Story},
+    input, noise, output,
+    progress::Progress,
+    render::Size,
+};
+use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
+use ending::Ending;
+
+/// Let a simulated SuperScout map a floor plan by Algorithm 1, from what its camera sees
+///
+/// The robot stands at the start, its back to the facing hallway, and puts its marker down along it.
+/// It is told nothing: it takes pictures, which are rendered; sensing makes scenes of them, Algorithm 2
+/// drives by them, and Algorithm 1 maps. The floor plan's embedded graph judges each move and each
+/// percept, and the map.
+#[derive(clap::Args)]
+#[command(after_help = after_help())]
+pub(super) struct Arguments {
+    /// The floor plan
+    plan: PathBuf,
+    /// Where the robot starts, and which door is behind it [default: the plan's own start]
+    #[arg(long, value_name = "VERTEX:FACING")]
+    start: Option<String>,
+    /// From which everything follows that is left to chance
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    seed: u64,
+    /// The camera [default: a spherical mirror]
+    #[arg(long, value_name = "FILE")]
+    calibration: Option<PathBuf>,
+    /// Width and height of the pictures [default: 640x480, or those of the calibration]
+    #[arg(long, value_name = "SIZE")]
+    size: Option<Size>,
+    /// The colours of the building [default: learned from rendered pictures of other views]
+    #[arg(long, value_name = "FILE")]
+    colours: Option<PathBuf>,
+    #[command(flatten)]
+    appearance: Appearance,
+    /// Without pictures: scenes are told as often right and as exactly as sensing was measured to be
+    #[arg(long, conflicts_with_all = ["calibration", "size", "colours", "frames"])]
+    by_scene: bool,
+    /// How inexact wheels and odometry are: 0 not at all, 1 as by default
+    #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
+    noise: f64,
+    /// How long a picture takes, in seconds
+    #[arg(long, default_value_t = PICTURE_TIME, value_name = "SECONDS", value_parser = seconds)]
+    picture_time: f64,
+    /// Something goes wrong; may be given more than once
+    #[arg(long, value_name = "NAME@PICTURE[:HOW-MANY]")]
+    fault: Vec<Fault>,
+    /// Give up when more edge ends are known
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    max_darts: usize,
+    /// Write a picture of the run: the floor plan, the way, what the robot called each junction
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Write a page on which the run can be watched: the plan, the camera, the map, the story
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// The folder for the annotated pictures that the robot took
+    #[arg(long, value_name = "DIR")]
+    frames: Option<PathBuf>,
+    /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is simulated.
+struct Simulation {
+    world: NamedWorld,
+    plan: Arc<FloorPlan>,
+    facing: Dart,
+    setting: Setting,
+    /// Begun before colours were learned.
+    begun: Instant,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        self.check_places()?;
+        let begun = Instant::now();
+        let world = input::read_world(&self.plan)?;
+        let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
+        let facing = input::start_of(&world, self.start.as_deref())?;
+        feasible::check(&self.plan, &world, &plan, facing)?;
+        let setting = Setting {
+            noise: self.noise,
+            picture_time: self.picture_time,
+            faults: self.fault.clone(),
+            ..Setting::at_start(plan.clone(), facing, self.seed)
+        };
+        let simulation = Simulation { world, plan, facing, setting, begun };
+        if self.by_scene {
+            let robot = simulation.setting.by_scene();
+            return self.simulate(&simulation, robot, || Told, Pictures::None, out);
+        }
+        let camera = self.camera()?;
+        let effects = self.appearance.effects(self.seed)?;
+        let eyes = self.eyes(&camera)?;
+        feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
+        let robot = simulation.robot(&eyes, &self.appearance, &effects);
+        let eye = || eyes.sensor(self.appearance.look);
+        let pictures = match (&self.frames, &self.html) {
+            (Some(folder), _) => Pictures::Files { camera, folder: folder.clone() },
+            (None, Some(_)) => Pictures::Small { camera },
+            (None, None) => Pictures::None,
+        };
+        self.simulate(&simulation, robot, eye, pictures, out)
+    }
+
+    fn check_places(&self) -> Result<(), Failure> {
+        let places: [(&Option<PathBuf>, &[&str]); 2] =
+            [(&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
+        for (path, endings) in places {
+            if let Some(path) = path {
+                output::check_place(path, endings)?;
+            }
+        }
+        if let Some(map) = &self.map {
+            // The map of a floor plan is simple.
+            output::check_world_place(map, true)?;
+        }
+        match &self.frames {
+            Some(folder) => output::make_folder(folder),
+            None => Ok(()),
+        }
+    }
+
+    fn camera(&self) -> Result<Calibrated, Failure> {
+        Ok(match (&self.calibration, self.size) {
+            (Some(path), None) => input::read_camera(path)?,
+            (Some(path), Some(size)) => input::read_camera(path)?.sized(size.pixels()),
+            (None, size) => Calibrated::superscout().sized(size.unwrap_or(Size::Small).pixels()),
+        })
+    }
+
+    fn eyes(&self, camera: &Calibrated) -> Result<Eyes, Failure> {
+        let look = self.appearance.look;
+        if let Some(path) = &self.colours {
+            return Ok(Eyes::with_colours(camera, look, input::read_colours(path)?));
+        }
+        let progress = Progress::new("learning colours", "looks")?;
+        let eyes = Eyes::new(camera, &[look], &progress);
+        progress.finish();
+        eyes.map_err(|error| Failure::at("--look", error))
+    }
+
+    /// The run, what it leaves, and what is said of it.
+    fn simulate<C: Camera, E: Eye<C::View>>(
+        &self,
+        simulation: &Simulation,
+        robot: SimulatedRobot<C>,
+        eye: impl Fn() -> E,
+        pictures: Pictures,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure>
+    where
+        C::View: Shown,
+    {
+        let Simulation { world, plan, facing, .. } = simulation;
+        let chronicle = Rc::new(RefCell::new(Chronicle::default()));
+        let progress = Progress::new("exploring", "pictures")?;
+        let watching = Watching::new(chronicle.clone(), pictures, progress);
+        let shown = (!self.json).then_some(&mut *out);
+        let mut lines = Lines::new(shown, chronicle.clone());
+        let detail = Detail { every_hypothesis: false, doors: false };
+        let story = Story::new(&mut lines, world, *facing, detail);
+        let mut telling = Telling::new(story, chronicle.clone());
+        let (run, _, watching) =
+            run(plan, *facing, robot, eye(), watching, &mut telling, self.max_darts);
+        telling.finish()?;
+        drop(lines);
+        let recording = watching.finish()?;
+        let computed = Instant::now();
+        let replayed = offline(&recording, eye(), self.max_darts);
+        let compute_seconds = computed.elapsed().as_secs_f64();
+        let ending = Ending {
+            world,
+            facing: *facing,
+            seed: self.seed,
+            run: &run,
+            replayed: replayed.ok(),
+            compute_seconds,
+            wall_seconds: simulation.begun.elapsed().as_secs_f64(),
+        };
+        if self.json {
+            ending.tell_json(out)?;
+        } else {
+            ending.tell(out)?;
+        }
+        let chronicle = chronicle.take();
+        self.write(simulation, &run, &ending, chronicle)?;
+        Ok(ending.outcome())
+    }
+
+    fn write(
+        &self,
+        simulation: &Simulation,
+        run: &Run,
+        ending: &Ending,
+        chronicle: Chronicle,
+    ) -> Result<(), Failure> {
+        if let Some(path) = &self.map {
+            match ending.map() {
+                Some(map) => output::write_world(path, &map)?,
+                None => eprintln!("the map is not complete, and is not written"),
+            }
+        }
+        let Simulation { world, plan, facing, .. } = simulation;
+        let journal: Journal =
+            chronicle.journal(&world.name, plan.clone(), *facing, run, ending.in_words());
+        let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
+        if let Some(path) = &self.svg {
+            write(path, picture::run_svg(&journal))?;
+        }
+        if let Some(path) = &self.html {
+            write(path, page::run_page(&journal))?;
+        }
+        Ok(())
+    }
+}
+
+impl Simulation {
+    fn robot(
+        &self,
+        eyes: &Eyes,
+        appearance: &Appearance,
+        effects: &Effects,
+    ) -> SimulatedRobot<toposlam_robot::simulator::RenderingCamera> {
+        self.setting.with_images(eyes.rig(), appearance.look, effects)
+    }
+}
+
+/// Reads how long a picture takes.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| (0.0..=60.0).contains(seconds));
+    seconds.ok_or_else(|| "write a number of seconds from 0 to 60".to_owned())
+}
+
+/// What can go wrong, and examples.
+fn after_help() -> String {
+    let mut text =
+        "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
+    for (_, name, lasting, about) in FAULTS {
+        text += &format!("  {name:<14} {lasting}   {about}\n");
+    }
+    text + "\nExamples:
+  toposlam simulate worlds/shape-6.toml
+  toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
+  toposlam simulate worlds/building-12.toml --start north-west:north --seed 3 --json
+  toposlam simulate worlds/shape-6.toml --fault blocked@40
+
+Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input,
+3 ended by Ctrl-C or at --max-darts."
+}

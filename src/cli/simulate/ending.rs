@@ -1,0 +1,136 @@
+//! How a simulated run ended, and what the specification says of it.
+
+use std::io::Write;
+
+use serde::Serialize;
+use toposlam_model::{
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    mapping::{Exploration, FACING, MappingError},
+};
+use toposlam_robot::{
+    explorer::ExplorerError,
+    run::{self, Run},
+};
+
+use super::{Failure, Outcome};
+use crate::cli::{json::print_object, words::sentence};
+
+/// How a run ended.
+pub(super) struct Ending<'a> {
+    pub(super) world: &'a NamedWorld,
+    pub(super) facing: Dart,
+    pub(super) seed: u64,
+    pub(super) run: &'a Run<'a>,
+    /// What the off-line version made of the recorded pictures, if it came to an end.
+    pub(super) replayed: Option<Exploration>,
+    /// How long that took.
+    pub(super) compute_seconds: f64,
+    /// How long all of it took.
+    pub(super) wall_seconds: f64,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Line {
+    schema: u32,
+    plan: String,
+    start: String,
+    seed: u64,
+    moves: u64,
+    edges: usize,
+    explore_moves: u64,
+    isomorphic: bool,
+    pose_true: bool,
+    conforms: bool,
+    divergence: Option<String>,
+    error: Option<String>,
+    simulated_seconds: f64,
+    compute_seconds: f64,
+    frames: u64,
+}
+
+impl Ending<'_> {
+    pub(super) fn outcome(&self) -> Outcome {
+        let incomplete = matches!(
+            self.run.error,
+            Some(MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }))
+        );
+        match self.run.ending() {
+            run::Ending::Right => Outcome::Holds,
+            _ if incomplete => Outcome::Incomplete,
+            run::Ending::GaveUp(_) | run::Ending::Wrong(_) => Outcome::Violated,
+        }
+    }
+
+    /// The map as a world, where it is complete.
+    pub(super) fn map(&self) -> Option<NamedWorld> {
+        let (name, moves) = (&self.world.name, self.run.exploration.moves());
+        let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
+        let graph = self.run.exploration.map().complete()?;
+        Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
+    }
+
+    /// In a sentence.
+    pub(super) fn in_words(&self) -> String {
+        let moves = self.run.exploration.moves();
+        match self.run.ending() {
+            run::Ending::Right => {
+                format!("The map is right, made in {moves} moves, as the specification makes them.")
+            }
+            ending => sentence(&ending.to_string()),
+        }
+    }
+
+    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let run = self.run;
+        let edges = self.world.graph.edge_count();
+        writeln!(out, "\n{}", self.in_words())?;
+        if let (Some(divergence), Some(_)) = (run.divergence(), &run.error) {
+            writeln!(out, "{}", sentence(&divergence.to_string()))?;
+        }
+        let map = run.exploration.map();
+        let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
+        writeln!(
+            out,
+            "  moves : edges      {} : {edges}; {} in the plan's embedded graph",
+            run.exploration.moves(),
+            run.explore_moves
+        )?;
+        writeln!(out, "  known              {} vertices, {known} edges", map.vertex_count())?;
+        let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
+        writeln!(out, "  simulated time     {minutes:.1} minutes, {} pictures", run.pictures)?;
+        if self.replayed.is_some() {
+            let ratio = run.seconds / seconds.max(1e-9);
+            writeln!(
+                out,
+                "  computation alone  {seconds:.2} s, off-line on the same pictures: 1 : {ratio:.0}"
+            )?;
+        }
+        eprintln!("{:.1} s", self.wall_seconds);
+        Ok(())
+    }
+
+    pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let run = self.run;
+        let divergence = run.divergence().map(|divergence| divergence.to_string());
+        let line = Line {
+            schema: 1,
+            plan: self.world.name.clone(),
+            start: self.world.start_text(self.facing),
+            seed: self.seed,
+            moves: run.exploration.moves(),
+            edges: self.world.graph.edge_count(),
+            explore_moves: run.explore_moves,
+            isomorphic: run.isomorphic(),
+            pose_true: run.pose_true(),
+            conforms: divergence.is_none(),
+            divergence,
+            error: run.error.as_ref().map(ToString::to_string),
+            simulated_seconds: run.seconds,
+            compute_seconds: self.compute_seconds,
+            frames: run.pictures,
+        };
+        print_object(out, &line)
+    }
+}

@@ -1,0 +1,92 @@
+//! What a robot cannot do, said before it begins.
+
+use std::path::Path;
+
+use toposlam_model::{
+    driving::scene::Scene,
+    embedded_graph::Dart,
+    floor_plan::{FloorPlan, JunctionKind},
+    format::named_world::NamedWorld,
+    percept::Door,
+};
+use toposlam_robot::{
+    evaluation::{Eyes, runs::starts_of},
+    simulator::{Building, Effects, Look, Pose, render},
+    superscout::{CLEARANCE, RADIUS},
+    truth::angle,
+};
+
+use super::Failure;
+
+/// Beside what it must keep free the robot needs so much room in a hallway, in metres.
+const ROOM: f64 = 0.40;
+/// Of wider hallways sensing does not see both walls, in metres.
+const WIDEST: f64 = 2.3;
+/// The marker is looked at from so far before the middle of its junction, in metres.
+const BEFORE: f64 = 0.5;
+
+/// Refuses a plan in which the robot cannot drive, and a start at which it cannot put its marker down.
+pub(super) fn check(
+    path: &Path,
+    world: &NamedWorld,
+    plan: &FloorPlan,
+    facing: Dart,
+) -> Result<(), Failure> {
+    let width = plan.hallway_width();
+    let least = 2.0 * (RADIUS + CLEARANCE) + ROOM;
+    if width < least {
+        let cause = format!(
+            "its hallways are {width} m wide; the robot, {:.2} m across, needs {least:.2} m",
+            2.0 * RADIUS
+        );
+        return Err(Failure::in_file(path, cause));
+    }
+    if width > WIDEST {
+        let cause = format!("its hallways are {width} m wide; sensing sees up to {WIDEST} m");
+        return Err(Failure::in_file(path, cause));
+    }
+    let junction = plan.junction(plan.graph().vertex(facing));
+    let kind = match junction.kind {
+        JunctionKind::L => return Ok(()),
+        JunctionKind::DeadEnd => "a dead end",
+        JunctionKind::T => "a T",
+    };
+    let instead = match starts_of(plan).first() {
+        Some(&start) => {
+            format!("as in --start {}", world.start_text(start))
+        }
+        None => "and there is none in this plan".to_owned(),
+    };
+    let cause = format!(
+        "the start, {}, is {kind}; the marker is put down at an L, {instead}",
+        junction.name
+    );
+    Err(Failure::in_file(path, cause))
+}
+
+/// Refuses a camera that does not see the marker where it lies, from the other door of its junction,
+/// or colours that do not tell it.
+pub(super) fn check_marker(
+    plan: &FloorPlan,
+    facing: Dart,
+    eyes: &Eyes,
+    look: &'static Look,
+) -> Result<(), Failure> {
+    let effects = Effects { body: 1.0, ..Effects::plain() };
+    let building = Building::new(plan, look, Some(facing), &effects, 0);
+    let onto = plan.direction(plan.graph().behind(facing, Door(1)));
+    let [x, y] = plan.junction(plan.graph().vertex(facing)).position;
+    let [east, north] = onto.vector();
+    let position = [x + BEFORE * east, y + BEFORE * north];
+    let pose = Pose { position, heading: angle(onto.reversed()) };
+    let image = render(eyes.rig(), &building, pose, &effects, 0);
+    match eyes.sensor(look).sense(&image) {
+        Ok(Scene { marker: Some(_), .. }) => Ok(()),
+        Ok(_) => {
+            let cause =
+                format!("with this camera and these colours, it is not seen from {BEFORE} m");
+            Err(Failure::at("the marker", cause))
+        }
+        Err(error) => Err(Failure::at("the camera", error)),
+    }
+}
