@@ -1,63 +1,21 @@
-//! A page on which a reader walks two worlds at once: a robot in each, both sent through the same
-//! doors, and what each of them perceives. Section 2.2, Figure 1.
+//! Pages for a browser: a walk in two worlds at once ([`page`]), and the run of a simulated robot
+//! ([`run_page`]).
 //!
-//! One self-contained HTML document that asks nothing of the network. What happens in the browser is
-//! in `browser/`.
+//! Each is one self-contained HTML document that asks nothing of the network. What happens in the
+//! browser is in `browser/`.
 
-mod data;
-mod side;
+mod run;
+mod walk;
 
-use crate::{
-    model::{ambiguity::Comparison, embedded_graph::Dart, format::named_world::NamedWorld},
-    picture::escaped,
-};
-use side::Side;
+use serde_json::Value;
 
-/// What the page shows.
-#[derive(Clone, Copy)]
-pub struct WalkPage<'a> {
-    /// The heading, such as "figure-1a and figure-1b, undirected marker".
-    pub title: &'a str,
-    /// A sentence or two beneath it; may be empty.
-    pub about: &'a str,
-    /// The two worlds.
-    pub worlds: [&'a NamedWorld; 2],
-    /// The comparison of these two worlds.
-    pub comparison: &'a Comparison<'a>,
-    /// Where the two robots begin: the darts by which they have come in.
-    pub poses: [Dart; 2],
-}
+pub use run::run_page;
+pub use walk::{WalkPage, page};
 
-const PAGE: &str = include_str!("browser/walk.html");
-const STYLE: &str = include_str!("browser/walk.css");
-/// In the order in which they build on each other; they share one scope.
-const SCRIPT: [&str; 4] = [
-    include_str!("browser/panel.js"),
-    include_str!("browser/percepts.js"),
-    include_str!("browser/relation.js"),
-    include_str!("browser/walk.js"),
-];
-
-/// The page as an HTML document. The same worlds give the same bytes.
-#[must_use]
-pub fn page(page: &WalkPage) -> String {
-    let robots = page.comparison.starts(page.poses);
-    let [one, other] = [0, 1].map(|at| Side::new(page.worlds[at], &robots[at]));
-    filled(PAGE, |place| match place {
-        "title" => escaped(page.title),
-        "about" => escaped(page.about),
-        "style" => STYLE.to_owned(),
-        "name of A" => escaped(&page.worlds[0].name),
-        "name of B" => escaped(&page.worlds[1].name),
-        "marker of A" => escaped(&one.where_the_marker_is()),
-        "marker of B" => escaped(&other.where_the_marker_is()),
-        "picture of A" => one.picture(),
-        "picture of B" => other.picture(),
-        "data" => data::json(page, [&one, &other]),
-        "script" => SCRIPT.concat(),
-        _ => String::new(),
-    })
-}
+/// How all pages look.
+const PAGE_STYLE: &str = include_str!("browser/page.css");
+/// What the scripts of all pages begin with.
+const PAGE_SCRIPT: &str = include_str!("browser/page.js");
 
 /// The template with each `{{place}}` filled. What is put in is not searched for places again.
 fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
@@ -71,99 +29,7 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     filled
 }
 
-#[cfg(test)]
-mod tests {
-    use serde_json::{Value, json};
-
-    use super::*;
-    use crate::model::{
-        embedded_graph::EmbeddedGraph,
-        marker::{self, Marker},
-    };
-
-    /// A chain of so many edges, begun at one end.
-    fn chain(name: &str, edges: usize) -> NamedWorld {
-        let vertex = |n: usize| {
-            let neighbours = [n.checked_sub(1), Some(n + 1).filter(|&next| next <= edges)];
-            (n.to_string(), neighbours.into_iter().flatten().map(|n| n.to_string()).collect())
-        };
-        let lists: Vec<(String, Vec<String>)> = (0..=edges).map(vertex).collect();
-        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
-        NamedWorld::numbered(name, "", graph, Some(Dart(0)))
-    }
-
-    fn document(marker: &'static dyn Marker, worlds: [&NamedWorld; 2], title: &str) -> String {
-        let placed = worlds.map(|world| (&world.graph, Dart(0)));
-        let comparison = Comparison::new(marker, placed[0], placed[1]);
-        let poses = [Dart(0), Dart(0)];
-        page(&WalkPage { title, about: title, worlds, comparison: &comparison, poses })
-    }
-
-    fn data_of(document: &str) -> Value {
-        let (_, from) =
-            document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
-        serde_json::from_str(from.split_once("</script>").unwrap().0).unwrap()
-    }
-
-    #[test]
-    fn names_are_text_wherever_they_stand() {
-        let nasty = "</script><!--<i>&\"{{data}}";
-        let worlds = [chain(nasty, 1), chain("plain", 1)];
-        let document = document(&marker::NoMarker, worlds.each_ref(), nasty);
-        assert!(!document.contains("<i>"));
-        assert!(!document.contains("</script><"));
-        assert_eq!(document.matches("</script>").count(), 2);
-        assert_eq!(document.matches("<!--").count(), 1, "the template's own");
-        // What is put in is not searched for places.
-        assert!(document.contains("{{data}}"));
-        assert_eq!(data_of(&document)["sides"][0]["name"], nasty);
-    }
-
-    #[test]
-    fn every_place_of_the_template_is_filled() {
-        let places = std::cell::RefCell::new(std::collections::BTreeSet::new());
-        filled(PAGE, |place| {
-            places.borrow_mut().insert(place.to_owned());
-            String::new()
-        });
-        let of_sides = ["marker of", "name of", "picture of"];
-        let of_sides = of_sides.into_iter().flat_map(|it| [format!("{it} A"), format!("{it} B")]);
-        let others = ["about", "data", "script", "style", "title"].map(str::to_owned);
-        let known = of_sides.chain(others);
-        assert_eq!(places.into_inner(), known.collect());
-    }
-
-    #[test]
-    fn the_data_tells_where_each_action_leads_and_how_the_worlds_differ() {
-        let worlds = [chain("one", 1), chain("two", 2)];
-        let data = data_of(&document(&marker::Directional, worlds.each_ref(), ""));
-        assert_eq!((&data["relation"], &data["walk"]), (&Value::Null, &json!(["0"])));
-        let far = |degree: u32| {
-            json!({
-                "text": "v1:0",
-                "dart": 1,
-                "vertex": 1,
-                "percept": if degree == 1 { "1 door" } else { "2 doors" },
-                "actions": if degree == 1 { json!([["0", 0]]) } else { json!([["0", 0], ["1", 2]]) },
-                "marker": null,
-            "pointing": 0,
-            })
-        };
-        assert_eq!(data["sides"][0]["states"][1], far(1));
-        assert_eq!(data["sides"][1]["states"][1], far(2));
-    }
-
-    #[test]
-    fn the_data_tells_the_pairs_that_the_robots_can_reach() {
-        let worlds = [chain("one", 1), chain("other", 1)];
-        let data = data_of(&document(&marker::Movable, worlds.each_ref(), ""));
-        assert_eq!(data["walk"], Value::Null);
-        assert_eq!(data["relation"].as_array().unwrap().len(), 6);
-        assert_eq!(data["relation"][0], json!([0, 0]));
-        let carried = &data["sides"][0]["states"][2];
-        assert_eq!(carried["text"], "v0:0+marker");
-        assert_eq!(carried["marker"], "carried");
-        assert_eq!(data["sides"][0]["states"][0]["marker"], 0);
-        assert_eq!(carried["actions"], json!([["0", 3], ["drop", 0]]));
-    }
+/// JSON that can stand inside a `script` element: nothing in it ends the element or begins a comment.
+fn in_script(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
 }

@@ -78,6 +78,37 @@ impl Curve {
         Self { start, pieces, trace, extent }
     }
 
+    /// The same curve from its end to its start.
+    pub(super) fn reversed(&self) -> Self {
+        let mut starts = vec![self.start];
+        starts.extend(self.pieces.iter().map(|piece| piece[2]));
+        let end = starts.pop().unwrap_or(self.start);
+        let pieces = self.pieces.iter().zip(&starts).rev();
+        Self::new(end, pieces.map(|(&[one, two, _], &from)| [two, one, from]).collect())
+    }
+
+    /// The curve's beginning, about as long as given.
+    pub(super) fn beginning(&self, length: f64) -> Self {
+        let mut gone = 0.0;
+        let short = self.trace.windows(2).take_while(|two| {
+            gone += two[0].distance(two[1]);
+            gone <= length
+        });
+        let whole = short.count();
+        let (piece, step) = (whole / STEPS, whole % STEPS);
+        let Some(&[one, two, to]) = self.pieces.get(piece) else {
+            return self.clone();
+        };
+        let mut pieces = self.pieces[..piece].to_vec();
+        let from = pieces.last().map_or(self.start, |piece| piece[2]);
+        // De Casteljau.
+        let between = |a: Point, b: Point| a + (b - a) * (step as f64 / STEPS as f64);
+        let first = [between(from, one), between(one, two), between(two, to)];
+        let second = [between(first[0], first[1]), between(first[1], first[2])];
+        pieces.push([first[0], second[0], between(second[0], second[1])]);
+        Self::new(self.start, pieces)
+    }
+
     pub(super) fn length(&self) -> f64 {
         self.trace.windows(2).map(|two| two[0].distance(two[1])).sum()
     }
@@ -93,5 +124,29 @@ impl Curve {
             left -= step;
         }
         self.trace.last().copied().unwrap_or(self.start)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_can_be_turned_around_and_cut_off() {
+        let door = |x: f64, angle| Door::new(Point::new(x, 0.0), 1.0, angle);
+        let way = [Point::new(3.0, 4.0), Point::new(9.0, -2.0)];
+        let curve = Curve::by_way_of(door(0.0, 0.0), &way, door(12.0, 1.0));
+        let back = curve.reversed();
+        let off = curve.trace.iter().zip(back.trace.iter().rev()).map(|(a, b)| a.distance(*b));
+        assert!(off.fold(0.0, f64::max) < 1e-9);
+        for share in [0.1, 0.4, 0.8] {
+            let begun = curve.beginning(share * curve.length());
+            assert!((begun.length() - share * curve.length()).abs() < 0.06 * curve.length());
+            let end = *begun.trace.last().unwrap();
+            let nearest = curve.trace.windows(2).map(|two| end.distance_to_segment(two[0], two[1]));
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-6);
+            assert_eq!(begun.start, curve.start);
+        }
+        assert_eq!(curve.beginning(1e9).trace, curve.trace);
     }
 }

@@ -31,6 +31,10 @@ pub(super) struct Drawing {
     pub(super) inks: Vec<usize>,
     /// The ground, for floor plans.
     pub(super) floor: Option<Floor>,
+    /// So many vertices are known; the others stand for unknown ends of edges.
+    pub(super) known: usize,
+    /// A box that stays free, so that pictures of a series are equally large.
+    pub(super) room: Extent,
 }
 
 /// What the picture shows of the ground.
@@ -47,8 +51,12 @@ pub(super) const INKS: usize = 7;
 
 impl Drawing {
     pub(super) fn of(picture: &Picture) -> Self {
+        Self::sized(picture, Size::of(picture.graph, picture.vertex_names))
+    }
+
+    /// The drawing with discs and names of these sizes.
+    pub(super) fn sized(picture: &Picture, size: Size) -> Self {
         let graph = picture.graph;
-        let size = Size::of(graph, picture.vertex_names);
         let place = picture.place.of_all(graph.vertex_count());
         let mut layout = match place.positions() {
             Some(positions) => layout::given(graph, positions),
@@ -95,6 +103,8 @@ impl Drawing {
                 }
                 Place::Free | Place::At(_) => None,
             },
+            known: graph.vertex_count(),
+            room: Extent::EMPTY,
             size,
         }
     }
@@ -111,7 +121,7 @@ impl Drawing {
 
     /// The box around all that is drawn, but for labels.
     pub(super) fn extent(&self) -> Extent {
-        let mut extent = Extent::EMPTY;
+        let mut extent = self.room;
         for (centre, disc) in self.centres.iter().zip(&self.size.discs) {
             let radius = disc + self.size.knob + 1.0;
             extent.join(Extent::around(*centre, radius, radius));

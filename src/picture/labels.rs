@@ -59,7 +59,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture, signs: &[Sign]) -> Ve
     let mut labels = Vec::new();
     let size = &drawing.size;
     let named = drawing.centres.iter().zip(picture.vertex_names).enumerate();
-    for (vertex, (&centre, name)) in named {
+    for (vertex, (&centre, name)) in named.filter(|(_, (_, name))| !name.is_empty()) {
         match size.names {
             Names::Nowhere => {}
             Names::Inside | Names::Broken => {

@@ -4,8 +4,9 @@
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
 //! picture, even where edges have to cross. From the ground up: `geometry`, `text`, `doors` and
 //! `size`; the `layout` of the vertices and its `scale`; the `curves`, the `ways` that an edge may
-//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together, the `signs` of the marker come upon it, and `svg` and
-//! `png` write it.
+//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together,
+//! the `signs` of the marker come upon it, and `svg` and `png` write it. `growth` draws a map while it is
+//! built, `run` a robot's way through a floor plan.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -16,10 +17,12 @@ mod curves;
 mod doors;
 mod drawing;
 mod geometry;
+mod growth;
 mod labels;
 mod layout;
 mod png;
 mod routes;
+mod run;
 mod scale;
 mod signs;
 mod size;
@@ -36,7 +39,10 @@ use crate::model::{
     marker::{Directional, Look, Marker, Part},
 };
 
+pub(crate) use growth::growth;
 pub use png::{PictureError, png};
+pub use run::run_svg;
+pub(crate) use run::{Drawn, run_drawing};
 pub(crate) use text::escaped;
 
 /// What to draw.
@@ -176,5 +182,5 @@ impl<'a> From<&'a NamedWorld> for Picture<'a> {
 /// The picture as an SVG document. The same picture gives the same bytes.
 #[must_use]
 pub fn svg(picture: &Picture) -> String {
-    svg::document(picture, &drawing::Drawing::of(picture))
+    svg::document(picture, &drawing::Drawing::of(picture), svg::Legend::Below)
 }

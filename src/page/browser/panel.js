@@ -1,13 +1,5 @@
 // One world: its picture, the robot in it, the marker, and the doors as this robot counts them.
 
-/** An SVG element with its attributes and children. */
-function drawn(name, attributes = {}, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children);
-  return element;
-}
-
 const isDoor = (action) => /^\d+$/.test(action);
 const direction = (from, to) => Math.atan2(to.y - from.y, to.x - from.x);
 const distance = (from, to) => Math.hypot(to.x - from.x, to.y - from.y);

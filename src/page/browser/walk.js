@@ -1,6 +1,5 @@
 // The walk: both robots do the same, by hand, at random, or as the walk that tells them apart.
 
-const find = (selector) => document.querySelector(selector);
 const data = JSON.parse(find("#data").textContent);
 for (const { states } of data.sides) {
   for (const state of states) {

@@ -17,7 +17,8 @@ use super::{
 
 use crate::model::marker::Part;
 
-const FLOOR: &str = "#ebe6db";
+/// The colour of the floor.
+pub(in super::super) const FLOOR: &str = "#ebe6db";
 /// Inks of edges: the usual one, and those of edges that cross others.
 const EDGES: [&str; INKS + 1] =
     ["#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c"];
@@ -55,7 +56,7 @@ impl Page {
         self.line("</g>");
     }
 
-    fn rectangle(&mut self, attributes: &str, extent: Extent, shift: Point) {
+    pub(in super::super) fn rectangle(&mut self, attributes: &str, extent: Extent, shift: Point) {
         let corner = extent.least + shift;
         self.line(&format!(
             "<rect {attributes} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
@@ -94,6 +95,16 @@ impl Page {
         for (vertex, (centre, disc)) in drawing.centres.iter().zip(&drawing.size.discs).enumerate()
         {
             let at = *centre + shift;
+            if vertex >= drawing.known {
+                self.line(&format!(
+                    "<circle class=\"unexplored\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{PAPER}\" \
+                     stroke=\"{INK}\" stroke-width=\"1.6\" stroke-dasharray=\"2.4 2\"/>",
+                    short(at.x),
+                    short(at.y),
+                    short(*disc),
+                ));
+                continue;
+            }
             self.line(&format!(
                 "<circle class=\"vertex\" data-vertex=\"{vertex}\" cx=\"{}\" cy=\"{}\" \
                  r=\"{}\" fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"{thick}\"/>",
@@ -104,7 +115,7 @@ impl Page {
         }
     }
 
-    pub(super) fn label(&mut self, label: &Label, shift: Point) {
+    pub(in super::super) fn label(&mut self, label: &Label, shift: Point) {
         let (fill, class) = match label.kind {
             Kind::Inside | Kind::Beside => (INK, "name"),
             Kind::Edge => (FAINT, "edge-name"),
@@ -135,6 +146,9 @@ impl Page {
         let pointing = picture.parts();
         for dart in graph.darts() {
             let vertex = graph.vertex(dart);
+            if vertex.at() >= drawing.known {
+                continue;
+            }
             let rim = Point::polar(drawing.doors[dart.at()], drawing.size.discs[vertex.at()]);
             let at = drawing.centres[vertex.at()] + rim + shift;
             let facing = pointing.contains(&Part::Pointing(dart));

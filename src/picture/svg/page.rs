@@ -7,31 +7,38 @@ use super::super::{
 };
 use crate::model::marker::Look;
 
-pub(super) const PAPER: &str = "#fdfcf9";
-pub(super) const INK: &str = "#2b3440";
-pub(super) const FAINT: &str = "#6b7280";
+pub(in super::super) const PAPER: &str = "#fdfcf9";
+pub(in super::super) const INK: &str = "#2b3440";
+pub(in super::super) const FAINT: &str = "#6b7280";
 /// The colour of the marker and of the door that it points along.
-pub(super) const MARKER: &str = "#c8281e";
+pub(in super::super) const MARKER: &str = "#c8281e";
 
 /// A number without needless digits: tenths.
-pub(super) fn short(number: f64) -> String {
+pub(in super::super) fn short(number: f64) -> String {
     let tenths = (number * 10.0).round() / 10.0;
     // No negative zero.
     format!("{}", tenths + 0.0)
 }
 
 /// The document as far as it is written.
-pub(super) struct Page(pub(super) String);
+pub(in super::super) struct Page(pub(in super::super) String);
 
 impl Page {
     /// A line of the document's text.
-    pub(super) fn line(&mut self, line: &str) {
+    pub(in super::super) fn line(&mut self, line: &str) {
         self.0.push_str(line);
         self.0.push('\n');
     }
 
     /// Words in one line, their middle at `at`.
-    pub(super) fn text(&mut self, text: &str, at: Point, size: f64, fill: &str, class: &str) {
+    pub(in super::super) fn text(
+        &mut self,
+        text: &str,
+        at: Point,
+        size: f64,
+        fill: &str,
+        class: &str,
+    ) {
         self.line(&format!(
             "<text class=\"{class}\" x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{fill}\" \
              text-anchor=\"middle\">{}</text>",
@@ -43,7 +50,7 @@ impl Page {
     }
 
     /// A sign of the marker.
-    pub(super) fn sign(&mut self, sign: &Sign) {
+    pub(in super::super) fn sign(&mut self, sign: &Sign) {
         match *sign {
             Sign::Ring { centre, radius, look } => {
                 let dashes = match look {
@@ -77,7 +84,7 @@ impl Page {
     }
 
     /// A shape in the marker's colour, by its corners.
-    fn marker(&mut self, corners: &[Point]) {
+    pub(in super::super) fn marker(&mut self, corners: &[Point]) {
         let corners: Vec<_> =
             corners.iter().map(|at| format!("{} {}", short(at.x), short(at.y))).collect();
         self.line(&format!(

@@ -3,14 +3,16 @@
 use serde_json::{Value, json};
 
 use super::{WalkPage, side::Side};
-use crate::model::{
-    ambiguity::PlacedRobot,
-    marker::{Marker, Part},
-    world::Action,
+use crate::{
+    model::{
+        ambiguity::PlacedRobot,
+        marker::{Marker, Part},
+        world::Action,
+    },
+    page::in_script,
 };
 
-/// The data as JSON that can stand inside a `script` element: nothing in it ends the element or
-/// begins a comment.
+/// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(page: &WalkPage, [one, other]: [&Side; 2]) -> String {
     let relation = page.comparison.relation(page.poses).map(|relation| {
         let places = |&(here, there): &_| [one.place(here), other.place(there)];
@@ -23,7 +25,7 @@ pub(super) fn json(page: &WalkPage, [one, other]: [&Side; 2]) -> String {
         "relation": relation,
         "walk": walk,
     });
-    data.to_string().replace('<', "\\u003c")
+    in_script(&data)
 }
 
 fn side(side: &Side) -> Value {

@@ -1,0 +1,55 @@
+// The floor: where the robot is, and of the drawing of the whole run what has happened so far.
+
+class Floor {
+  /** `rounds`: where each picture was taken. `body`: the robot's radius, in units of the drawing. */
+  constructor(figure, rounds, body) {
+    this.svg = figure.querySelector("svg");
+    this.rounds = rounds;
+    this.body = body;
+    this.svg.setAttribute("aria-label", "The floor plan, and the robot's way so far");
+    this.svg.querySelector("title")?.remove();
+    const all = (selector) => [...this.svg.querySelectorAll(selector)];
+    this.lines = all(".trajectory").map((line) => {
+      const [first, last] = line.dataset.rounds.split(" ").map(Number);
+      return { line, first, last, points: line.getAttribute("points").split(" ") };
+    });
+    this.calls = all(".call, .badge").map((sign) => [sign, Number(sign.dataset.rounds)]);
+    this.passes = all("[data-moves]").map((number) => [number, Number(number.dataset.moves)]);
+    // The shortest turns, so that the robot does not spin around where its heading jumps by 360.
+    let turn = 0;
+    this.turns = rounds.map((round) => {
+      turn += ((((round.turn - turn) % 360) + 540) % 360) - 180;
+      return turn;
+    });
+    this.robot = drawn("g", { class: "robot" });
+    this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
+    this.svg.append(this.robot);
+    new ResizeObserver(() => this.place()).observe(this.svg);
+  }
+
+  /** Shows the run as it was at a picture; with a `duration`, in milliseconds, the robot travels there. */
+  show(at, duration = 0) {
+    const late = (sign, is) => sign.classList.toggle("later", is);
+    this.at = at;
+    this.svg.style.setProperty("--travel", `${duration}ms`);
+    for (const { line, first, last, points } of this.lines) {
+      late(line, first >= at);
+      const there = last <= at ? points : points.slice(0, at - first + 1);
+      line.setAttribute("points", there.join(" "));
+    }
+    for (const [sign, rounds] of this.calls) late(sign, rounds > at + 1);
+    for (const [number, moves] of this.passes) late(number, moves > this.rounds[at].moves);
+    this.place();
+  }
+
+  place() {
+    if (this.at === undefined) return;
+    // How many units of the drawing a pixel of the screen is.
+    const pixel = 1 / (this.svg.getScreenCTM()?.a || 1);
+    this.svg.style.setProperty("--pixel", pixel);
+    const { x, y } = this.rounds[this.at];
+    const size = Math.max(this.body, 7 * pixel);
+    const turn = this.turns[this.at];
+    this.robot.style.transform = `translate(${x}px, ${y}px) rotate(${turn}deg) scale(${size})`;
+  }
+}

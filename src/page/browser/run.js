@@ -1,0 +1,167 @@
+// The run: the slider, the buttons and the keys choose a picture, and all else shows how things were
+// when it was taken.
+
+const data = JSON.parse(find("#data").textContent);
+const { rounds, calls, story, pictures } = data;
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+const slider = find("#round");
+const last = rounds.length - 1;
+
+const floor = new Floor(find(".floor"), rounds, data.body);
+const stages = [...document.querySelectorAll(".map .stage")];
+const called = new Map(calls.map((call) => [call.rounds - 1, call]));
+
+const lines = story.map((line) => {
+  const item = document.createElement("li");
+  item.textContent = line;
+  return item;
+});
+find(".story").append(...lines);
+
+/** Where the lines begin that were told last. */
+const toldFrom = [];
+for (const [at, { story: told }] of rounds.entries()) {
+  const before = rounds[at - 1]?.story ?? 0;
+  toldFrom.push(told > before ? before : (toldFrom.at(-1) ?? 0));
+}
+
+let at = 0;
+let timer = null;
+
+const write = (selector, text) => {
+  find(selector).textContent = text;
+};
+
+function showCamera({ picture }) {
+  const image = find(".camera img");
+  const kept = picture !== null;
+  image.hidden = !kept;
+  find(".no-picture").hidden = kept;
+  if (kept && image.src !== pictures[picture]) image.src = pictures[picture];
+  image.alt = kept ? `What the camera saw at picture ${at + 1}` : "";
+}
+
+function showFacts(round) {
+  write(".time", `${round.time} min`);
+  write(".move", `${round.moves} of ${rounds[last].moves}`);
+  write(".state", round.state);
+  write(".scene", round.scene);
+  write(".command", round.command);
+  const call = called.get(at);
+  find(".called").hidden = !call;
+  if (!call) return;
+  write(".call", `${call.percept}: ${call.conforms ? "as" : "not as"} the specification says`);
+  find(".facts .call").classList.toggle("wrong", !call.conforms);
+}
+
+function showMap({ maps }) {
+  for (const [stage, element] of stages.entries()) element.hidden = stage !== maps - 1;
+  find(".no-map").hidden = maps > 0;
+  write(".grown", `${maps} of ${stages.length}`);
+}
+
+function showStory({ story: told }) {
+  for (const [number, line] of lines.entries()) {
+    line.hidden = number >= told;
+    line.classList.toggle("latest", number >= toldFrom[at] && number < told);
+  }
+  const box = find(".told .scroll");
+  box.scrollTop = box.scrollHeight;
+}
+
+/** Shows a picture, by its number; with a `duration`, in milliseconds, the robot travels there. */
+function show(number, duration = 0) {
+  at = Math.min(Math.max(number, 0), last);
+  const round = rounds[at];
+  floor.show(at, still.matches ? 0 : duration);
+  showCamera(round);
+  showFacts(round);
+  showMap(round);
+  showStory(round);
+  const now = `${round.time} min, move ${round.moves}`;
+  slider.value = at;
+  slider.setAttribute("aria-valuetext", `picture ${at + 1} of ${rounds.length}, ${now}`);
+  write(".number", `picture ${at + 1} of ${rounds.length}`);
+  write(".now", now);
+  // Who cannot see the page hears where the run stands, but not while it plays.
+  if (timer === null) write("[role=status]", `${now}, ${round.state}: ${round.scene}`);
+}
+
+// Playing.
+
+function pause() {
+  clearTimeout(timer);
+  timer = null;
+  write("#play", "Play");
+}
+
+function play() {
+  if (at === last) show(0);
+  write("#play", "Pause");
+  const pace = 1000 / Number(find("#speed").value);
+  timer = setTimeout(step, pace);
+}
+
+function step() {
+  const pace = 1000 / Number(find("#speed").value);
+  show(at + 1, pace);
+  if (at < last) timer = setTimeout(step, pace);
+  else pause();
+}
+
+function go(number) {
+  pause();
+  show(number);
+}
+
+/** The picture at which the robot knew a junction, next in a direction. */
+function junction(direction) {
+  const places = [0, ...called.keys(), last].filter((place) => (place - at) * direction > 0);
+  return direction > 0 ? Math.min(last, ...places) : Math.max(0, ...places);
+}
+
+// Buttons and keys.
+
+const deeds = {
+  play: () => (timer === null ? play() : pause()),
+  back: () => go(at - 1),
+  on: () => go(at + 1),
+  "junction-back": () => go(junction(-1)),
+  "junction-on": () => go(junction(1)),
+};
+
+function keyed({ key, shiftKey }) {
+  if (key === " ") return deeds.play;
+  if (key === "ArrowLeft") return shiftKey ? deeds["junction-back"] : deeds.back;
+  if (key === "ArrowRight") return shiftKey ? deeds["junction-on"] : deeds.on;
+  if (key === "Home") return () => go(0);
+  if (key === "End") return () => go(last);
+  return null;
+}
+
+if (last >= 0) {
+  slider.max = last;
+  slider.addEventListener("input", () => go(Number(slider.value)));
+  for (const [id, deed] of Object.entries(deeds)) find(`#${id}`).addEventListener("click", deed);
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // Space presses a button that has the focus, as everywhere, and a list has keys of its own.
+    if (event.target.closest("select") || (event.key === " " && event.target.closest("button"))) return;
+    const deed = keyed(event);
+    if (!deed) return;
+    deed();
+    event.preventDefault();
+  });
+
+  const marks = find(".marks");
+  marks.setAttribute("viewBox", `0 0 ${Math.max(last, 1)} 1`);
+  for (const [place, { conforms }] of called) {
+    marks.append(drawn("path", { d: `M${place} 0V1`, class: conforms ? "" : "wrong" }));
+  }
+  show(0);
+} else {
+  for (const control of document.querySelectorAll(".controls button, .controls input, select")) {
+    control.disabled = true;
+  }
+  write(".now", "no picture was taken");
+}

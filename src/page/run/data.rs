@@ -1,0 +1,77 @@
+//! What the page is told, as the JSON that its script reads.
+
+use std::collections::HashMap;
+
+use base64::{Engine, engine::general_purpose::STANDARD};
+use serde_json::{Value, json};
+
+use super::words;
+use crate::{
+    journal::{Call, Journal, Round},
+    page::in_script,
+    picture::Drawn,
+};
+
+/// The radius of the robot's body, in metres.
+const BODY: f64 = 0.41 / 2.0;
+
+/// The data as JSON that can stand inside a `script` element.
+pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
+    let mut album = Album::default();
+    let rounds = journal.rounds.iter().zip(&drawn.places);
+    let rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
+    in_script(&json!({
+        "rounds": rounds,
+        "calls": journal.calls.iter().map(call).collect::<Vec<_>>(),
+        "story": journal.story,
+        "pictures": album.pictures,
+        "body": rounded(BODY * drawn.metre),
+    }))
+}
+
+/// Every picture that is different from the others, as the address of an image.
+#[derive(Default)]
+struct Album<'a> {
+    pictures: Vec<String>,
+    place: HashMap<&'a [u8], usize>,
+}
+
+impl<'a> Album<'a> {
+    /// The place of a picture, which is put in if it is not there yet.
+    fn place(&mut self, jpeg: &'a [u8]) -> usize {
+        *self.place.entry(jpeg).or_insert_with(|| {
+            self.pictures.push(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)));
+            self.pictures.len() - 1
+        })
+    }
+}
+
+fn round<'a>(round: &'a Round, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
+    json!({
+        "time": words::clock(round.time),
+        "x": rounded(x),
+        "y": rounded(y),
+        // Clockwise on the screen, in degrees.
+        "turn": rounded(-round.pose.heading.to_degrees()),
+        "moves": round.moves,
+        "state": words::state(round.state),
+        "scene": round.scene,
+        "command": words::command(round.command),
+        "picture": round.picture.as_ref().map(|jpeg| album.place(jpeg)),
+        "story": round.story,
+        "maps": round.maps,
+    })
+}
+
+fn call(call: &Call) -> Value {
+    json!({
+        "rounds": call.rounds,
+        "percept": call.percept.to_string(),
+        "conforms": call.conforms,
+    })
+}
+
+/// In tenths.
+fn rounded(number: f64) -> f64 {
+    (number * 10.0).round() / 10.0 + 0.0
+}

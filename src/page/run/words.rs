@@ -1,0 +1,72 @@
+//! What the page says of a run, in words.
+
+use crate::{
+    journal::Journal,
+    model::driving::algorithm2::{Command, State},
+};
+
+/// How the run ended, and how long it was.
+pub(super) fn about(journal: &Journal) -> String {
+    let counted = |count: u64, what| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let pictures = counted(journal.rounds.len() as u64, "picture");
+    let Some(last) = journal.rounds.last() else {
+        return format!("{}. {pictures}.", journal.ending);
+    };
+    let (moves, time) = (counted(last.moves, "move"), clock(last.time));
+    format!("{}. {moves}, {pictures}, {time} minutes of simulated time.", journal.ending)
+}
+
+/// Minutes and seconds.
+pub(super) fn clock(seconds: f64) -> String {
+    let tenths = (seconds * 10.0).round().max(0.0) as u64;
+    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+}
+
+pub(super) fn state(state: State) -> &'static str {
+    match state {
+        State::Leaving => "leaving a junction",
+        State::Hallway => "in a hallway",
+        State::Junction => "at a junction",
+        State::Unknown => "it does not know where it is",
+    }
+}
+
+/// What the robot is told to do.
+pub(super) fn command(command: Option<Command>) -> String {
+    let Some(Command { turn, forward }) = command else {
+        return "nothing more: the path ends".to_owned();
+    };
+    let degrees = turn.to_degrees().round();
+    let side = if degrees > 0.0 { "left" } else { "right" };
+    let turning = format!("turn {}\u{b0} to the {side}", degrees.abs());
+    let going = format!("go {forward:.2} m ahead");
+    match (degrees != 0.0, forward >= 0.005) {
+        (true, true) => format!("{turning}, {going}"),
+        (true, false) => turning,
+        (false, true) => going,
+        (false, false) => "take another picture".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_are_told_in_degrees_and_metres() {
+        let told = |turn: f64, forward| command(Some(Command { turn, forward }));
+        assert_eq!(told(0.5, 0.5), "turn 29\u{b0} to the left, go 0.50 m ahead");
+        assert_eq!(told(-0.5, 0.0), "turn 29\u{b0} to the right");
+        assert_eq!(told(0.001, 0.25), "go 0.25 m ahead");
+        assert_eq!(told(0.0, 0.0), "take another picture");
+        assert_eq!(command(None), "nothing more: the path ends");
+    }
+
+    #[test]
+    fn times_are_told_in_minutes() {
+        assert_eq!(
+            [0.0, 59.96, 61.25, 754.3].map(clock),
+            ["0:00.0", "1:00.0", "1:01.3", "12:34.3"]
+        );
+    }
+}

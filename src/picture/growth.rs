@@ -1,0 +1,193 @@
+//! The map as it grows. Section 2.3, Algorithm 1.
+//!
+//! Every stage is drawn where the last one puts it, so that a reader sees the map grow in its place.
+//! An unexplored dart is the beginning of an edge that ends in a small open circle.
+
+use crate::model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    mapping::{FACING, PartialMap},
+    marker::Directional,
+};
+
+use super::{Picture, Place, curves::Curve, drawing::Drawing, geometry::Extent, size::Size, svg};
+
+/// The radius of the circle in which an unexplored edge ends.
+const OPEN: f64 = 5.0;
+/// How much of an unexplored edge is drawn, at most: in usual discs, and as a share of the whole edge.
+const STUB: [f64; 2] = [1.3, 0.36];
+
+/// A picture of each of these maps, which are the stages of one; none of a map that knows nothing.
+pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
+    let last = maps.last().and_then(Whole::new);
+    let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
+    let mut room = Extent::EMPTY;
+    for (_, drawing) in stages.iter().flatten() {
+        room.join(drawing.extent());
+    }
+    let svg = |stage: &mut Option<(EmbeddedGraph, Drawing)>| {
+        let Some((graph, drawing)) = stage else {
+            return String::new();
+        };
+        drawing.room = room;
+        svg::document(
+            &picture(graph, &names(graph, drawing.known)),
+            drawing,
+            svg::Legend::Elsewhere,
+        )
+    };
+    stages.iter_mut().map(svg).collect()
+}
+
+/// A map whose unexplored darts lead to vertices of their own, and how it is drawn.
+struct Whole<'a> {
+    map: &'a PartialMap,
+    drawing: Drawing,
+    /// The place of each dart's edge in the drawing.
+    edge: Vec<usize>,
+}
+
+impl<'a> Whole<'a> {
+    fn new(map: &'a PartialMap) -> Option<Self> {
+        let graph = with_open_ends(map)?;
+        let names = names(&graph, map.vertex_count());
+        let mut size = Size::of(&graph, &names);
+        size.discs[map.vertex_count()..].fill(OPEN);
+        let drawing = Drawing::sized(&picture(&graph, &names), size);
+        let mut edge = vec![0; graph.dart_count()];
+        for (number, &(one, other, _)) in drawing.edges.iter().enumerate() {
+            edge[one.at()] = number;
+            edge[other.at()] = number;
+        }
+        Some(Self { map, drawing, edge })
+    }
+
+    /// Whether the map is an earlier stage of this one.
+    fn grew_from(&self, map: &PartialMap) -> bool {
+        map.vertex_count() <= self.map.vertex_count()
+            && map.vertices().all(|vertex| {
+                map.degree(vertex) == self.map.degree(vertex)
+                    && map.darts_of(vertex).all(|dart| {
+                        map.is_unexplored(dart) || map.opposite(dart) == self.map.opposite(dart)
+                    })
+            })
+    }
+
+    /// The curve of a dart's edge, from that dart.
+    fn curve(&self, dart: Dart) -> Curve {
+        let (one, _, curve) = &self.drawing.edges[self.edge[dart.at()]];
+        if *one == dart { curve.clone() } else { curve.reversed() }
+    }
+}
+
+/// A map with its open ends, drawn as a stage of the last one; by itself, if it is none.
+fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
+    let alone;
+    let whole = match last.filter(|last| last.grew_from(map)) {
+        Some(last) => last,
+        None => {
+            alone = Whole::new(map)?;
+            &alone
+        }
+    };
+    let graph = with_open_ends(map)?;
+    let known = map.vertex_count();
+    let mut size = whole.drawing.size.clone();
+    let mut centres = whole.drawing.centres[..known].to_vec();
+    let mut doors = whole.drawing.doors[..map.dart_count()].to_vec();
+    size.discs.truncate(known);
+    let mut edges = Vec::new();
+    for (dart, other) in graph.edges() {
+        let mut curve = whole.curve(dart);
+        if other.at() >= map.dart_count() {
+            curve = curve.beginning((STUB[0] * size.base).min(STUB[1] * curve.length()));
+            let end = |back: usize| curve.trace[curve.trace.len() - back];
+            let onwards = (end(1) - end(2)).direction();
+            centres.push(end(1) + onwards * OPEN);
+            doors.push((onwards * -1.0).angle());
+            size.discs.push(OPEN);
+        }
+        edges.push((dart, other, curve));
+    }
+    let ends = |&(dart, other, _): &_| [dart, other].map(|end| graph.vertex(end).at());
+    let ink = |&(dart, ..): &(Dart, Dart, Curve)| whole.drawing.inks[whole.edge[dart.at()]];
+    let drawing = Drawing {
+        ends: edges.iter().map(ends).collect(),
+        inks: edges.iter().map(ink).collect(),
+        edges,
+        size,
+        centres,
+        doors,
+        floor: None,
+        known,
+        room: Extent::EMPTY,
+    };
+    Some((graph, drawing))
+}
+
+/// The map with a vertex for each unexplored dart, to which it leads. Known vertices and darts keep
+/// their numbers, the others follow in the order of their darts.
+fn with_open_ends(map: &PartialMap) -> Option<EmbeddedGraph> {
+    let mut opposite = Vec::new();
+    let mut clockwise = Vec::new();
+    for vertex in map.vertices() {
+        let first = map.dart(vertex, 0).map(|dart| dart.0);
+        clockwise.extend(map.darts_of(vertex).skip(1).map(|dart| dart.0).chain(first));
+        opposite.extend(map.darts_of(vertex).map(|dart| map.opposite(dart)));
+    }
+    let mut joined = Vec::new();
+    let mut ends = Vec::new();
+    for (dart, other) in opposite.iter().enumerate() {
+        joined.push(other.map_or((map.dart_count() + ends.len()) as u32, |other| other.0));
+        if other.is_none() {
+            ends.push(dart as u32);
+        }
+    }
+    clockwise.extend((0..ends.len()).map(|end| (map.dart_count() + end) as u32));
+    joined.extend(ends);
+    EmbeddedGraph::from_permutations(&joined, &clockwise).ok().map(|(graph, _)| graph)
+}
+
+/// The names of the known vertices, and none for the others.
+fn names(graph: &EmbeddedGraph, known: usize) -> Vec<String> {
+    let name = |vertex| if vertex < known { format!("v{vertex}") } else { String::new() };
+    (0..graph.vertex_count()).map(name).collect()
+}
+
+fn picture<'a>(graph: &'a EmbeddedGraph, vertex_names: &'a [String]) -> Picture<'a> {
+    Picture {
+        graph,
+        vertex_names,
+        edge_names: None,
+        start: Some(FACING),
+        marker: &Directional,
+        place: Place::Free,
+        title: "",
+        caption: "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use resvg::usvg::roxmltree::Document;
+
+    use super::*;
+    use crate::model::{
+        mapping::{Event, Exploration, Journey, Nearest, map_world},
+        world::GraphWorld,
+    };
+
+    /// The stages of a map: whenever it grows.
+    fn stages(graph: &EmbeddedGraph) -> Vec<PartialMap> {
+        let mut maps = Vec::new();
+        let mut watch = |journey: &Journey, event: Event| {
+            let grown =
+                [Event::Started { .. }, Event::LoopClosed { .. }, Event::VertexAdded { .. }];
+            if grown.contains(&event) {
+                maps.push(journey.map().clone())
+            }
+        };
+        let mut world = GraphWorld::new(graph, Dart(0));
+        map_world(&mut world, &mut Nearest, &mut Exploration::new(100), &mut watch).unwrap();
+        maps
+    }
+}
