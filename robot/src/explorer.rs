@@ -16,7 +16,10 @@ use toposlam_vision::{
     sensing::{Sensor, WrongSize},
 };
 
-use crate::robot::{Picture, Robot, RobotError};
+use crate::{
+    robot::{Picture, Robot, RobotError},
+    simulator::ToldScene,
+};
 
 /// What makes a scene of what a camera gives.
 pub trait Eye<V> {
@@ -50,9 +53,9 @@ impl Eye<Vec<u8>> for Sensor {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told;
 
-impl Eye<Scene> for Told {
-    fn scene(&mut self, view: &Scene) -> Result<Scene, Unreadable> {
-        Ok(view.clone())
+impl Eye<ToldScene> for Told {
+    fn scene(&mut self, view: &ToldScene) -> Result<Scene, Unreadable> {
+        Ok(view.scene.clone())
     }
 }
 
@@ -197,8 +200,8 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
             if self.observer.stop() {
                 return Err(ExplorerError::Stopped { moves });
             }
-            let (picture, scene) = self.look()?;
             let odometry = self.robot.odometry().odometry;
+            let (picture, scene) = self.look()?;
             let step = path.round(&scene, odometry);
             let round = Round {
                 moves,

@@ -187,3 +187,70 @@ pub fn offline<V: Clone + PartialEq>(
     map_world(&mut explorer, &mut Nearest, &mut exploration, &mut ())?;
     Ok(exploration)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        evaluation::{plans, runs::starts_of},
+        explorer::Told,
+        simulator::{Fault, FaultKind, Setting},
+    };
+
+    const DARTS: usize = 200;
+
+    #[test]
+    fn each_plan_is_mapped_with_the_moves_of_the_specification() {
+        for (name, plan) in plans().unwrap() {
+            for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
+                let robot = Setting::at_start(plan.clone(), facing, seed as u64).by_scene();
+                let (run, ..) = run(&plan, facing, robot, Told, (), &mut (), DARTS);
+                assert_eq!(run.ending(), Ending::Right, "{name} from {facing:?}");
+                assert!(run.isomorphic() && run.pose_true());
+                let arrivals = run.specification.arrivals().len() as u64;
+                assert_eq!(arrivals, run.explore_moves + 1, "{name} from {facing:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_recorded_gives_the_same_map_without_a_robot_that_moves() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let robot = Setting::at_start(plan.clone(), facing, 5).by_scene();
+        let (run, robot, recording) =
+            run(&plan, facing, robot, Told, Recording::default(), &mut (), DARTS);
+        assert_eq!(recording.len() as u64, robot.pictures());
+        let again = offline(&recording, Told, DARTS).unwrap();
+        assert_eq!(again.map(), run.exploration.map());
+        assert_eq!(again.moves(), run.exploration.moves());
+    }
+
+    #[test]
+    fn a_robot_that_loses_its_way_says_so() {
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let mut setting = Setting::at_start(plan.clone(), facing, 5);
+        let told = |setting: &Setting| {
+            let robot = setting.by_scene();
+            run(&plan, facing, robot, Told, (), &mut (), DARTS).0.ending().to_string()
+        };
+        for (kind, why) in [
+            (FaultKind::LightsOut, "7 pictures in a row do not tell where the robot is"),
+            (FaultKind::Blocked, "3 commands in a row were not carried out"),
+        ] {
+            setting.faults = vec![Fault::at(kind, 20)];
+            let told = told(&setting);
+            assert!(
+                told.contains(why) && told.starts_with("the robot gave up: on move "),
+                "{told}"
+            );
+        }
+        setting.faults = vec![Fault { lasting: 100, ..Fault::at(FaultKind::Dropped, 20) }];
+        assert!(told(&setting).contains("the camera gives no picture"));
+        for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
+            setting.faults = vec![Fault::at(kind, 20)];
+            assert_eq!(told(&setting), Ending::Right.to_string(), "{}", kind.name());
+        }
+    }
+}

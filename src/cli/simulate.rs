@@ -33,6 +33,7 @@ use super::{
     input, noise, output,
     progress::Progress,
     render::Size,
+    words::capital,
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
 use ending::Ending;
@@ -193,7 +194,7 @@ impl Arguments {
         let chronicle = Rc::new(RefCell::new(Chronicle::default()));
         let progress = Progress::new("exploring", "pictures")?;
         let watching = Watching::new(chronicle.clone(), pictures, progress);
-        let shown = (!self.json).then_some(&mut *out);
+        let shown: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let mut lines = Lines::new(shown, chronicle.clone());
         let detail = Detail { every_hypothesis: false, doors: false };
         let story = Story::new(&mut lines, world, *facing, detail);
@@ -240,7 +241,7 @@ impl Arguments {
         }
         let Simulation { world, plan, facing, .. } = simulation;
         let journal: Journal =
-            chronicle.journal(&world.name, plan.clone(), *facing, run, ending.in_words());
+            chronicle.journal(&world.name, plan.clone(), *facing, run, capital(&ending.in_words()));
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
         if let Some(path) = &self.svg {
             write(path, picture::run_svg(&journal))?;

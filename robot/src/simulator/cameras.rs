@@ -131,6 +131,15 @@ impl Camera for RenderingCamera {
     }
 }
 
+/// What a camera gives that tells scenes itself. No two are the same, as no two photographs are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToldScene {
+    /// The number of the picture that it stands for.
+    pub picture: u64,
+    /// What sensing tells of it.
+    pub scene: Scene,
+}
+
 /// A camera and sensing in one, without pictures: it tells scenes as often right, and as exactly, as
 /// sensing was measured to do.
 #[derive(Clone, Debug)]
@@ -286,22 +295,26 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
 }
 
 impl Camera for SceneCamera {
-    type View = Scene;
+    type View = ToldScene;
 
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Scene {
+    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> ToldScene {
         let numbers = stream(self.seed, For::Scenes, number as usize);
         let mut chance = Chance { numbers, noise: self.noise };
-        let dark = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
         // Sensing does not know the light of a picture that is burnt out.
-        let Some(truth) = Truth::at(&self.plan, pose).filter(|_| stops < 1.0) else { return dark };
-        Scene {
-            place: self.place(&truth, &mut chance),
-            marker: self.marker(pose, &truth, &mut chance),
-        }
+        let truth = Truth::at(&self.plan, pose).filter(|_| stops < 1.0);
+        let scene = match truth {
+            Some(truth) => Scene {
+                place: self.place(&truth, &mut chance),
+                marker: self.marker(pose, &truth, &mut chance),
+            },
+            None => Scene { place: Place::Unknown(Reason::NoFloor), marker: None },
+        };
+        ToldScene { picture: number, scene }
     }
 
-    fn corrupt(_: Scene, _: u64) -> Scene {
-        Scene { place: Place::Unknown(Reason::NothingFits), marker: None }
+    fn corrupt(view: ToldScene, _: u64) -> ToldScene {
+        let scene = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
+        ToldScene { scene, ..view }
     }
 
     fn lights_out(&mut self) {

@@ -32,7 +32,7 @@ mod walls;
 
 pub use crate::pose::Pose;
 pub use building::Building;
-pub use cameras::{Camera, RenderingCamera, SceneCamera};
+pub use cameras::{Camera, RenderingCamera, SceneCamera, ToldScene};
 pub use effects::{Effects, KNOBS, Knob, KnobError, Of};
 pub use faults::{FAULTS, Fault, FaultKind, NoFault};
 pub use labels::{label_mask, labels};

@@ -27,7 +27,7 @@ use toposlam_robot::{
     pose::Pose,
     recording::Recording,
     run::Run,
-    simulator::{Camera, SimulatedRobot},
+    simulator::{Camera, SimulatedRobot, ToldScene},
 };
 use toposlam_vision::{annotate, camera, image_file::ImageFile};
 
@@ -102,7 +102,7 @@ impl Shown for Vec<u8> {
     }
 }
 
-impl Shown for Scene {
+impl Shown for ToldScene {
     fn annotated(&self, _: &camera::Camera, _: &Scene) -> Option<RgbImage> {
         None
     }

@@ -71,21 +71,21 @@ impl Ending<'_> {
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
-    /// In a sentence.
+    /// In words.
     pub(super) fn in_words(&self) -> String {
         let moves = self.run.exploration.moves();
         match self.run.ending() {
             run::Ending::Right => {
-                format!("The map is right, made in {moves} moves, as the specification makes them.")
+                format!("the map is right, made in {moves} moves, as the specification makes them")
             }
-            ending => sentence(&ending.to_string()),
+            ending => ending.to_string(),
         }
     }
 
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
         let edges = self.world.graph.edge_count();
-        writeln!(out, "\n{}", self.in_words())?;
+        writeln!(out, "\n{}", sentence(&self.in_words()))?;
         if let (Some(divergence), Some(_)) = (run.divergence(), &run.error) {
             writeln!(out, "{}", sentence(&divergence.to_string()))?;
         }
