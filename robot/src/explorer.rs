@@ -283,6 +283,7 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
         Ok(self.standing()?.percept)
     }
 
+    // paper: validation.traverse, validation.motion, drive.path
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
         let from = self.standing()?;
         self.moves += 1;
@@ -293,5 +294,76 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
         self.standing = Some(standing);
         self.observer.arrived(&self.robot, Some(door), &standing);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use toposlam_model::driving::scene::{CentreLine, JunctionView, Place};
+
+    use super::*;
+    use crate::robot::Reckoned;
+
+    /// A robot at the turning point of an L, whose camera gives what the test says.
+    struct Still {
+        /// When each picture was taken, or that it does not come; the last again and again.
+        pictures: Vec<Option<f64>>,
+        asked: usize,
+    }
+
+    impl Robot for Still {
+        type View = ToldScene;
+
+        fn capture(&mut self) -> Result<Picture<ToldScene>, RobotError> {
+            let taken = self.pictures[self.asked.min(self.pictures.len() - 1)];
+            self.asked += 1;
+            let line = |direction| CentreLine { through: [0.0; 2], direction };
+            let doors = vec![line(PI), line(FRAC_PI_2)];
+            let junction = JunctionView { doors, turning_point: [0.0; 2], confidence: 1.0 };
+            let scene = Scene { place: Place::Junction(junction), marker: None };
+            let view = ToldScene { picture: self.asked as u64, scene };
+            taken.map(|taken| Picture { taken, view }).ok_or(RobotError::NoPicture)
+        }
+
+        fn turn(&mut self, _: f64) -> Result<(), RobotError> {
+            Ok(())
+        }
+
+        fn forward(&mut self, _: f64) -> Result<(), RobotError> {
+            Ok(())
+        }
+
+        fn odometry(&self) -> Reckoned {
+            Reckoned { time: 2.0, odometry: Odometry::default() }
+        }
+    }
+
+    fn percept(pictures: &[Option<f64>]) -> (Result<Percept, ExplorerError>, usize) {
+        let robot = Still { pictures: pictures.to_vec(), asked: 0 };
+        let mut explorer = Explorer::new(robot, Told, ());
+        let percept = explorer.percept();
+        (percept, explorer.robot().asked)
+    }
+
+    // paper: hardware.capture
+    // paper: alg2.4
+    // paper: alg2.5
+    #[test]
+    fn a_picture_that_is_older_than_the_last_motion_is_not_used() {
+        let (percept, asked) = percept(&[Some(1.9), Some(1.9), Some(2.0), Some(2.5)]);
+        // Two pictures decide the start, and there the marker lies along the entry.
+        assert_eq!(percept.unwrap().to_string(), "2 doors, marker along door 0");
+        assert_eq!(asked, 4);
+    }
+
+    #[test]
+    fn pictures_that_do_not_come_are_asked_for_again_but_not_for_ever() {
+        assert!(percept(&[None, None, None, None, None, Some(3.0)]).0.is_ok());
+        let (percept, asked) = percept(&[None]);
+        let told = percept.unwrap_err().to_string();
+        let cause = "6 pictures in a row cannot be used: the camera gives no picture";
+        assert_eq!((told, asked), (format!("on move 0, at the start: {cause}"), 6));
     }
 }

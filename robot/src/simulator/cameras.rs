@@ -321,3 +321,80 @@ impl Camera for SceneCamera {
         self.dark = true;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toposlam_model::driving::visit::Form;
+    use toposlam_vision::camera;
+
+    use super::*;
+    use crate::{
+        evaluation::{class::Class, plans, runs::starts_of},
+        simulator::{LOOKS, start_pose},
+    };
+
+    fn shape_6() -> Arc<FloorPlan> {
+        plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap().1
+    }
+
+    #[test]
+    fn scenes_are_told_right_but_for_the_share_that_was_measured() {
+        let plan = shape_6();
+        let facing = starts_of(&plan)[0];
+        // At the start, of an L whose other door is to the left.
+        let pose = start_pose(&plan, facing);
+        let junction = JunctionTruth::of(&plan, plan.graph().vertex(facing), pose);
+        let right = Class::Junction(junction.form.unwrap());
+        let count = |noise: f64| {
+            let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
+            let told: Vec<_> =
+                (0..20_000).map(|n| Class::of(&camera.picture(pose, n, 0.0).scene)).collect();
+            let unknown = told.iter().filter(|&&class| class == Class::Unknown).count();
+            let wrong = told.iter().filter(|&&class| class != Class::Unknown && class != right);
+            (unknown, wrong.count())
+        };
+        assert_eq!(count(0.0), (0, 0));
+        let (unknown, wrong) = count(1.0);
+        // 25.7 and 2 are to be expected.
+        assert!((10..45).contains(&unknown) && wrong < 9, "{unknown} {wrong}");
+        let (unknown, wrong) = count(20.0);
+        assert!((400..640).contains(&unknown) && (15..70).contains(&wrong), "{unknown} {wrong}");
+    }
+
+    #[test]
+    fn a_mistaken_junction_is_another_one_from_the_same_entry() {
+        let mut numbers = stream(1, For::Scenes, 0);
+        for doors in [vec![PI], vec![PI, FRAC_PI_2], vec![PI, 0.0, -FRAC_PI_2]] {
+            for _ in 0..20 {
+                let mut other = doors.clone();
+                mistaken(&mut other, &mut numbers);
+                let view = |doors: &[f64]| {
+                    let line = |&direction: &f64| CentreLine { through: [0.0; 2], direction };
+                    let doors = doors.iter().map(line).collect();
+                    Form::of(&JunctionView { doors, turning_point: [0.0; 2], confidence: 1.0 })
+                };
+                assert!((1..=3).contains(&other.len()) && other[0] == PI, "{other:?}");
+                assert_ne!(view(&other).unwrap(), view(&doors).unwrap());
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_picture_that_is_burnt_out_the_next_is_exposed_less() {
+        let plan = shape_6();
+        let facing = starts_of(&plan)[0];
+        let pose = start_pose(&plan, facing);
+        let rig = Arc::new(Rig::new(&camera::Camera::superscout().sized([320, 240])));
+        let burnt = |exposure: f64, pictures: u64| {
+            let effects = Effects { exposure, ..Effects::plain() };
+            let building = Building::new(&plan, &LOOKS[0], None, &effects, 1);
+            let mut camera = RenderingCamera::new(rig.clone(), building, effects, 1);
+            let file = (0..pictures).map(|n| camera.picture(pose, n, 0.0)).last().unwrap();
+            let image = image::load_from_memory(&file).unwrap().into_rgb8();
+            image.pixels().filter(|pixel| pixel.0.contains(&255)).count()
+        };
+        let [first, last] = [1, 12].map(|pictures| burnt(3.0, pictures));
+        assert!(2 * last < first, "{last} {first}");
+        assert_eq!(burnt(0.0, 1), burnt(0.0, 5), "nothing is burnt out");
+    }
+}

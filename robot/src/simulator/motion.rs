@@ -207,3 +207,103 @@ impl Base for SimulatedBase {
 fn standard(chance: &mut Xoshiro256PlusPlus) -> f64 {
     StandardNormal.sample(chance)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use toposlam_model::driving::scene::wrapped;
+
+    use super::*;
+    use crate::superscout::{CLEARANCE, COMMAND, Drive, RADIUS};
+
+    /// One hallway to the east, 2 m wide; its dead ends' walls are at x = -1 and x = 7.
+    fn base(noise: &MotionNoise, seed: u64) -> SimulatedBase {
+        let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [6.0, 0.0])];
+        let plan = FloorPlan::new(2.0, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
+        SimulatedBase::new(&plan, Pose { position: [0.0; 2], heading: 0.0 }, noise, seed)
+    }
+
+    // paper: hardware.drive
+    #[test]
+    fn an_ideal_base_does_what_it_is_told_and_no_faster_than_it_may() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        Drive(&mut base).forward(0.4).unwrap();
+        assert!((base.pose().position[0] - 0.4).abs() < 0.005, "{:?}", base.pose());
+        assert!(base.time() >= 0.4 / 0.2, "{} s", base.time());
+        let begun = base.time();
+        Drive(&mut base).turn(FRAC_PI_2).unwrap();
+        assert!((base.pose().heading - FRAC_PI_2).abs() < 0.005, "{:?}", base.pose());
+        assert!(base.time() - begun >= 4.5, "a quarter turn takes 4.5 s at 20 degrees a second");
+        let told = base.reading().odometry;
+        assert!(
+            told.distance(&Odometry::default()) > 0.39 && (told.heading - FRAC_PI_2).abs() < 0.005
+        );
+    }
+
+    #[test]
+    fn no_command_takes_it_farther_than_half_a_metre() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        Drive(&mut base).forward(9.0).unwrap();
+        assert!((base.pose().position[0] - COMMAND).abs() < 0.005);
+    }
+
+    // paper: hardware.sonar
+    #[test]
+    fn its_sonars_stop_it_short_of_a_wall() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        for _ in 0..20 {
+            Drive(&mut base).forward(0.5).unwrap();
+        }
+        let free = 7.0 - base.pose().position[0] - RADIUS;
+        assert!((CLEARANCE..CLEARANCE + 0.02).contains(&free), "{free} m");
+    }
+
+    #[test]
+    fn the_watchdog_stops_it_when_commands_cease() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
+        base.wait(10.0);
+        // One period of the command, and one more before the watchdog.
+        assert!((base.pose().position[0] - 0.2 * WATCHDOG).abs() < 1e-9, "{:?}", base.pose());
+    }
+
+    #[test]
+    fn walls_stop_it_and_its_wheels_turn_on() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        for _ in 0..400 {
+            base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
+        }
+        assert!(base.pose().position[0] <= 7.0 - RADIUS);
+        assert!(base.reading().odometry.position[0] > 19.0);
+    }
+
+    #[test]
+    fn a_command_that_is_not_carried_out_takes_time_and_nothing_else() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        base.ignore(1);
+        assert!(!base.begin() && base.begin());
+        assert_eq!((base.pose().position, base.time()), ([0.0; 2], PERIOD));
+    }
+
+    #[test]
+    fn noise_is_that_of_the_seed_and_grows_with_its_factor() {
+        let off = |factor: f64| {
+            let end = |seed| {
+                let mut base = base(&MotionNoise::DEFAULT.times(factor), seed);
+                base.begin();
+                Drive(&mut base).forward(0.5).unwrap();
+                base.begin();
+                Drive(&mut base).turn(FRAC_PI_2).unwrap();
+                base.pose()
+            };
+            assert_eq!(end(3), end(3));
+            (0..50).map(|seed| wrapped(end(seed).heading - FRAC_PI_2).abs()).sum::<f64>() / 50.0
+        };
+        let [none, default, more] = [off(0.0), off(1.0), off(4.0)];
+        assert!(
+            none < 0.004 && default > 3.0 * none && more > 2.0 * default,
+            "{none} {default} {more}"
+        );
+    }
+}

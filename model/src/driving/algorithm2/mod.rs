@@ -162,7 +162,7 @@ impl<'a> PathExecution<'a> {
     // paper: alg2.3, alg2.4, alg2.5, alg2.6, alg2.7, alg2.8, alg2.9, alg2.10, alg2.11, alg2.12
     // paper: alg2.13, alg2.14, alg2.15, alg2.16, alg2.17, alg2.18, alg2.19, alg2.20, alg2.21
     // paper: alg2.22, alg2.23, alg2.24, alg2.25, alg2.26, alg2.27, alg2.28, alg2.29, alg2.30
-    // paper: alg2.31, alg2.32
+    // paper: alg2.31, alg2.32, drive.clear, drive.unclear
     pub fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost> {
         self.reckoning.begin(odometry).map_err(|why| self.lost(why))?;
         // 4, 5, 6: the caller's; type and status are the scene's.
@@ -224,6 +224,7 @@ impl<'a> PathExecution<'a> {
     }
 
     /// Lines 20 to 26: the red line is reached or passed.
+    // paper: drive.turn
     fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, Why> {
         // A visit is decided by two pictures, and doors are counted in one that agrees with them: else
         // another one, from the same place.
