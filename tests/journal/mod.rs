@@ -5,7 +5,10 @@ use std::{cell::RefCell, fs, path::Path, rc::Rc, sync::Arc};
 
 use toposlam::journal::{Call, Journal, Round};
 use toposlam_model::{
-    driving::algorithm2::{Standing, Step},
+    driving::{
+        algorithm2::{Standing, Step},
+        scene::Place,
+    },
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
@@ -36,7 +39,7 @@ impl<C: Camera> Observer<SimulatedRobot<C>> for Keeper {
             pose: robot.pose(),
             moves: round.moves,
             state: round.state,
-            scene: format!("{:?}", round.scene.place),
+            scene: in_words(&round.scene.place),
             command: match round.step {
                 Ok(Step::Go(command)) => Some(*command),
                 _ => None,
@@ -57,6 +60,25 @@ impl<C: Camera> Observer<SimulatedRobot<C>> for Keeper {
             conforms: true,
         };
         journal.calls.push(call);
+    }
+}
+
+fn in_words(place: &Place) -> String {
+    match place {
+        Place::Hallway(hallway) => {
+            format!(
+                "a hallway, {:.2} m to the left, {:.2} m to the right",
+                hallway.left, hallway.right
+            )
+        }
+        Place::Junction(junction) => {
+            format!(
+                "a junction with {} doors, {:.2} m ahead",
+                junction.doors.len(),
+                junction.distance()
+            )
+        }
+        Place::Unknown(reason) => format!("nothing that can be made out: {reason}"),
     }
 }
 

@@ -9,11 +9,12 @@ use crate::{
 pub(super) fn about(journal: &Journal) -> String {
     let counted = |count: u64, what| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let pictures = counted(journal.rounds.len() as u64, "picture");
+    let ending = journal.ending.trim_end_matches('.');
     let Some(last) = journal.rounds.last() else {
-        return format!("{}. {pictures}.", journal.ending);
+        return format!("{ending}. {pictures}.");
     };
     let (moves, time) = (counted(last.moves, "move"), clock(last.time));
-    format!("{}. {moves}, {pictures}, {time} minutes of simulated time.", journal.ending)
+    format!("{ending}. {moves}, {pictures}, {time} min of simulated time.")
 }
 
 /// Minutes and seconds.
