@@ -82,12 +82,11 @@ impl<'a> Whole<'a> {
 /// A map with its open ends, drawn as a stage of the last one; by itself, if it is none.
 fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
     let alone;
-    let whole = match last.filter(|last| last.grew_from(map)) {
-        Some(last) => last,
-        None => {
-            alone = Whole::new(map)?;
-            &alone
-        }
+    let whole = if let Some(last) = last.filter(|last| last.grew_from(map)) {
+        last
+    } else {
+        alone = Whole::new(map)?;
+        &alone
     };
     let graph = with_open_ends(map)?;
     let known = map.vertex_count();

@@ -1,5 +1,8 @@
 // The floor: where the robot is, and of the drawing of the whole run what has happened so far.
 
+/** The largest font size of a name, in units of the drawing: it is not to cover what is beside it. */
+const LARGEST = 22;
+
 class Floor {
   /** `rounds`: where each picture was taken. `body`: the robot's radius, in units of the drawing. */
   constructor(figure, rounds, body) {
@@ -24,7 +27,8 @@ class Floor {
     this.names = all(".names text").map((name) => [name, Number(name.getAttribute("font-size"))]);
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
-    this.svg.append(this.robot);
+    // Below the signs of calls: a cross where it stands is seen.
+    this.svg.insertBefore(this.robot, this.svg.querySelector(":scope > .call"));
     new ResizeObserver(() => this.scale()).observe(this.svg);
     this.scale();
   }
@@ -36,7 +40,7 @@ class Floor {
     this.svg.style.setProperty("--pixel", this.pixel);
     this.svg.classList.toggle("small", this.pixel > 1.6);
     for (const [name, size] of this.names) {
-      const wish = Math.min(9.5 * this.pixel, 1.35 * size);
+      const wish = Math.min(9.5 * this.pixel, LARGEST);
       name.setAttribute("font-size", Math.max(size, wish));
     }
     this.place();

@@ -125,7 +125,6 @@ impl<'a> Ground<'a> {
     }
 
     /// The marker: a rectangle that is centred on the turning point and points along a hallway.
-    // paper: hardware.marker
     pub(super) fn write_marker(&self, page: &mut Page, facing: Dart, shift: Point) {
         let ahead = along(self.plan.direction(facing));
         let middle = self.turning_point(self.plan.graph().vertex(facing)) + shift;
