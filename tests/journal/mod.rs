@@ -17,8 +17,8 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::{self, Observer, Told},
-    run::{run, start_pose},
-    simulator::{Camera, MotionNoise, SceneCamera, SimulatedRobot},
+    run::run,
+    simulator::{Camera, Setting, SimulatedRobot},
 };
 
 /// Keeps what a robot does.
@@ -99,9 +99,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         maps: Vec::new(),
         ending: String::new(),
     }));
-    let camera = SceneCamera::new(plan.clone(), Some(facing), 1.0, 1);
-    let pose = start_pose(&plan, facing);
-    let robot = SimulatedRobot::new(plan.clone(), pose, camera, &MotionNoise::DEFAULT, 0.3, 1);
+    let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
     let mut story = |journey: &Journey, event: Event| {
         let mut journal = journal.borrow_mut();
         journal.story.push(format!("{event:?}"));
