@@ -7,14 +7,15 @@ use crate::{
 
 /// How the run ended, and how long it was.
 pub(super) fn about(journal: &Journal) -> String {
-    let counted = |count: u64, what| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let pictures = counted(journal.rounds.len() as u64, "picture");
     let ending = journal.ending.trim_end_matches('.');
+    let pictures = match journal.rounds.len() {
+        1 => "1 picture".to_owned(),
+        count => format!("{count} pictures"),
+    };
     let Some(last) = journal.rounds.last() else {
         return format!("{ending}. {pictures}.");
     };
-    let (moves, time) = (counted(last.moves, "move"), clock(last.time));
-    format!("{ending}. {moves}, {pictures}, {time} min of simulated time.")
+    format!("{ending}. {pictures}, {} min of simulated time.", clock(last.time))
 }
 
 /// Minutes and seconds.
