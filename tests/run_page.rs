@@ -1,34 +1,63 @@
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-//! x
-mod journal;
-#[test]
-fn look() {
-    for world in ["shape-6", "shape-8", "building-12", "building-25"] {
-        let journal = journal::journal(world, pictures());
-        let svg = toposlam::picture::run_svg(&journal);
-        println!(
-            "{world}: rounds {} calls {} maps {} story {} svg {} {:?}",
-            journal.rounds.len(),
-            journal.calls.len(),
-            journal.maps.len(),
-            journal.story.len(),
-            svg.len(),
-            journal.ending
-        );
-        std::fs::write(format!("/tmp/page-{world}.html"), toposlam::page::run_page(&journal))
-            .unwrap();
-        std::fs::write(format!("/tmp/page-{world}.png"), toposlam::picture::png(&svg).unwrap())
-            .unwrap();
-    }
-}
+//! The picture and the page of a run, as a simulated robot makes it. Section 6, Figure 11.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod browser;
+mod journal;
+
+use std::{fs, io::Cursor, path::Path};
+
+use toposlam::{
+    page::run_page,
+    picture::{png, run_svg},
+};
+
+/// A few small pictures.
 fn pictures() -> Vec<Vec<u8>> {
     let jpeg = |shade: u8| {
-        let image =
-            image::RgbImage::from_fn(64, 48, |x, y| image::Rgb([shade, 4 * x as u8, 5 * y as u8]));
-        let mut file = std::io::Cursor::new(Vec::new());
+        let pixel = |x, y| image::Rgb([shade, 4 * x as u8, 5 * y as u8]);
+        let mut file = Cursor::new(Vec::new());
+        let image = image::RgbImage::from_fn(64, 48, pixel);
         image.write_to(&mut file, image::ImageFormat::Jpeg).unwrap();
         file.into_inner()
     };
     [60, 120, 200].map(jpeg).to_vec()
+}
+
+#[test]
+fn the_picture_of_a_run_has_its_whole_way_and_every_call() {
+    let journal = journal::journal("shape-6", Vec::new());
+    assert_eq!(journal.ending, "the map is right");
+    let svg = run_svg(&journal);
+    let lists = svg.split(" points=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    let points: Vec<_> = lists.map(|list| list.split(' ').count()).collect();
+    // Two pieces of the way share a point.
+    assert_eq!(points.iter().sum::<usize>(), journal.rounds.len() + points.len() - 1);
+    assert_eq!(svg.matches("class=\"call\"").count(), journal.calls.len());
+    assert_eq!(svg.matches("class=\"call wrong\"").count(), 0);
+    for junction in journal.plan.junctions() {
+        assert!(svg.contains(&format!(">{}</text>", junction.name)));
+    }
+    assert!(svg.contains(">the map is right</text>"));
+    assert_eq!(svg, run_svg(&journal::journal("shape-6", Vec::new())), "the same seed");
+    assert!(png(&svg).is_ok());
+}
+
+#[test]
+fn the_page_of_a_run_follows_it_to_its_end() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let write = |name: &str, page: &str| {
+        let file = folder.join(format!("run-{name}.html"));
+        fs::write(&file, page).unwrap();
+        file
+    };
+    let run = journal::journal("shape-6", pictures());
+    let mut wrong = run.clone();
+    wrong.calls[3].conforms = false;
+    let mut empty = run.clone();
+    empty.rounds.clear();
+    empty.calls.clear();
+    let pages = [("right", run), ("wrong", wrong), ("empty", empty)]
+        .map(|(name, journal)| format!("{name}={}", write(name, &run_page(&journal)).display()));
+    browser::open("run_page.mjs", &pages);
 }

@@ -82,12 +82,11 @@ impl<'a> Whole<'a> {
 /// A map with its open ends, drawn as a stage of the last one; by itself, if it is none.
 fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
     let alone;
-    let whole = match last.filter(|last| last.grew_from(map)) {
-        Some(last) => last,
-        None => {
-            alone = Whole::new(map)?;
-            &alone
-        }
+    let whole = if let Some(last) = last.filter(|last| last.grew_from(map)) {
+        last
+    } else {
+        alone = Whole::new(map)?;
+        &alone
     };
     let graph = with_open_ends(map)?;
     let known = map.vertex_count();
@@ -168,26 +167,96 @@ fn picture<'a>(graph: &'a EmbeddedGraph, vertex_names: &'a [String]) -> Picture<
 
 #[cfg(test)]
 mod tests {
-    use resvg::usvg::roxmltree::Document;
+    use std::{collections::HashMap, f64::consts::TAU, fs};
 
-    use super::*;
-    use crate::model::{
-        mapping::{Event, Exploration, Journey, Nearest, map_world},
-        world::GraphWorld,
-    };
+    use resvg::usvg::roxmltree::{Document, Node};
 
-    /// The stages of a map: whenever it grows.
-    fn stages(graph: &EmbeddedGraph) -> Vec<PartialMap> {
-        let mut maps = Vec::new();
-        let mut watch = |journey: &Journey, event: Event| {
-            let grown =
-                [Event::Started { .. }, Event::LoopClosed { .. }, Event::VertexAdded { .. }];
-            if grown.contains(&event) {
-                maps.push(journey.map().clone())
+    use super::{super::example, *};
+    use crate::model::format::world_file;
+
+    /// The stages of the map of a world of this repository.
+    fn stages(world: &str) -> Vec<PartialMap> {
+        let path = format!("{}/worlds/{world}.toml", env!("CARGO_MANIFEST_DIR"));
+        let world = world_file::read(&fs::read(path).unwrap()).unwrap();
+        example::maps(&world.plan.unwrap(), world.start.unwrap())
+    }
+
+    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
+        let is = |node: &Node| node.attribute("class") == Some(class);
+        document.descendants().filter(is).collect()
+    }
+
+    fn attributes<const N: usize>(node: Node, names: [&str; N]) -> [f64; N] {
+        names.map(|name| node.attribute(name).unwrap().parse().unwrap())
+    }
+
+    #[test]
+    fn every_unexplored_dart_ends_in_an_open_circle() {
+        for world in ["shape-6", "shape-8", "building-12"] {
+            let maps = stages(world);
+            assert!(maps.last().unwrap().complete().is_some());
+            for (map, svg) in maps.iter().zip(growth(&maps)) {
+                let document = Document::parse(&svg).unwrap();
+                let count = |class| of_class(&document, class).len();
+                assert_eq!(count("unexplored"), map.unexplored_count() as usize);
+                assert_eq!(count("vertex"), map.vertex_count());
+                assert_eq!(count("door"), map.dart_count());
+                assert_eq!(count("name"), map.vertex_count());
             }
-        };
-        let mut world = GraphWorld::new(graph, Dart(0));
-        map_world(&mut world, &mut Nearest, &mut Exploration::new(100), &mut watch).unwrap();
-        maps
+        }
+    }
+
+    #[test]
+    fn the_doors_of_every_stage_stand_in_clockwise_order() {
+        let maps = stages("building-12");
+        for (map, svg) in maps.iter().zip(growth(&maps)) {
+            let document = Document::parse(&svg).unwrap();
+            let centres: Vec<_> = of_class(&document, "vertex")
+                .into_iter()
+                .map(|disc| attributes(disc, ["cx", "cy"]))
+                .collect();
+            let doors: HashMap<_, _> = of_class(&document, "door")
+                .into_iter()
+                .map(|door| (door.attribute("data-dart").unwrap(), attributes(door, ["cx", "cy"])))
+                .collect();
+            for vertex in map.vertices() {
+                let [x, y] = centres[vertex.at()];
+                let angle = |dart: Dart| {
+                    let [door_x, door_y] = doors[dart.0.to_string().as_str()];
+                    (door_y - y).atan2(door_x - x)
+                };
+                let angles: Vec<_> = map.darts_of(vertex).map(angle).collect();
+                let next = angles.iter().cycle().skip(1);
+                let whole: f64 =
+                    angles.iter().zip(next).map(|(a, b)| (b - a).rem_euclid(TAU)).sum();
+                assert!(angles.len() < 2 || (whole - TAU).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_known_stays_where_it_is() {
+        let mut first = HashMap::new();
+        let pictures = growth(&stages("shape-8"));
+        for svg in &pictures {
+            let document = Document::parse(svg).unwrap();
+            let box_of =
+                |svg: &Document| svg.root_element().attribute("viewBox").map(str::to_owned);
+            assert_eq!(box_of(&document), box_of(&Document::parse(&pictures[0]).unwrap()));
+            for disc in of_class(&document, "vertex") {
+                let [vertex, x, y] = attributes(disc, ["data-vertex", "cx", "cy"]);
+                let place = (x.to_bits(), y.to_bits());
+                assert_eq!(*first.entry(vertex.to_bits()).or_insert(place), place);
+            }
+        }
+        assert_eq!(first.len(), 6);
+    }
+
+    #[test]
+    fn a_map_that_did_not_grow_into_the_last_one_is_drawn_by_itself() {
+        let (other, mut maps) = (stages("shape-8"), stages("shape-6"));
+        maps.insert(0, other[3].clone());
+        let alone = Document::parse(&growth(&maps)[0]).map(|it| of_class(&it, "vertex").len());
+        assert_eq!(alone, Ok(other[3].vertex_count()));
     }
 }

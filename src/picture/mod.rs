@@ -41,6 +41,8 @@ use crate::model::{
 
 pub(crate) use growth::growth;
 pub use png::{PictureError, png};
+#[cfg(test)]
+pub(crate) use run::example;
 pub use run::run_svg;
 pub(crate) use run::{Drawn, run_drawing};
 pub(crate) use text::escaped;

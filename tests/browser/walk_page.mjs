@@ -4,17 +4,12 @@
 //   node walk_page.mjs CHROMIUM alike=FILE apart=FILE ...
 //
 // alike: no walk tells the two worlds of this page apart; apart: the page knows one that does. How
-// the pages were made does not matter. With the variable PICTURES, screenshots go to that folder.
+// the pages were made does not matter.
 
 import assert from "node:assert/strict";
-import { basename, join } from "node:path";
-import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
 
-const [executablePath, ...pages] = process.argv.slice(2);
 const DOORS = 50;
-const PHONE = { width: 360, height: 740 };
-const DESK = { width: 1280, height: 900 };
 
 /** Numbers below `bound` that are the same in every run. */
 function seeded(seed) {
@@ -161,9 +156,7 @@ async function tellApart(page) {
 
 /** Nothing to scroll sideways on a phone, and doors that a finger hits. */
 async function holdAsPhone(page) {
-  await page.setViewportSize(PHONE);
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  assert.ok(wide <= PHONE.width, `the page is ${wide} wide on a phone of ${PHONE.width}`);
+  await assertFitsPhone(page);
   const widths = await page.evaluate(async () => {
     // The doors are drawn anew once the pictures have their new size.
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -174,27 +167,7 @@ async function holdAsPhone(page) {
   for (const width of widths) assert.ok(width >= 40, `a door is only ${width} pixels wide on a phone`);
 }
 
-async function photograph(page, file, name) {
-  if (!process.env.PICTURES) return;
-  const path = join(process.env.PICTURES, `${basename(file, ".html")}-${name}.png`);
-  await page.screenshot({ path });
-}
-
-async function visit(browser, kind, file) {
-  const context = await browser.newContext({ viewport: DESK, reducedMotion: "reduce" });
-  const page = await context.newPage();
-  const faults = [];
-  const url = pathToFileURL(file).href;
-  page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) faults.push(`console: ${message.text()}`);
-  });
-  page.on("pageerror", (error) => faults.push(`script: ${error.message}`));
-  page.on("request", (request) => {
-    if (request.url() !== url && !request.url().startsWith("data:")) {
-      faults.push(`request: ${request.url()}`);
-    }
-  });
-  await page.goto(url);
+async function visit(page, kind, file) {
   await photograph(page, file, "start");
   const found = kind === "alike" ? await walkAlike(page) : await tellApart(page);
   await photograph(page, file, "light");
@@ -206,25 +179,7 @@ async function visit(browser, kind, file) {
   await page.setViewportSize(DESK);
   await page.emulateMedia({ reducedMotion: "no-preference" });
   if (kind === "alike") await walkByKeyboard(page);
-  assert.deepEqual(faults, []);
-  await context.close();
   return found;
 }
 
-const browser = await chromium.launch({
-  executablePath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync"],
-});
-try {
-  for (const argument of pages) {
-    const [, kind, file] = argument.match(/^(alike|apart)=(.+)$/) ?? assert.fail(argument);
-    try {
-      console.log(`${argument}: ${JSON.stringify(await visit(browser, kind, file))}`);
-    } catch (error) {
-      console.error(`${argument}: ${error.stack}`);
-      process.exitCode = 1;
-    }
-  }
-} finally {
-  await browser.close();
-}
+await visitAll(["alike", "apart"], visit);

@@ -5,7 +5,10 @@ use std::{cell::RefCell, fs, path::Path, rc::Rc, sync::Arc};
 
 use toposlam::journal::{Call, Journal, Round};
 use toposlam_model::{
-    driving::algorithm2::{Standing, Step},
+    driving::{
+        algorithm2::{Standing, Step},
+        scene::Place,
+    },
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
@@ -14,8 +17,8 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::{self, Observer, Told},
-    run::{run, start_pose},
-    simulator::{Camera, MotionNoise, SceneCamera, SimulatedRobot},
+    run::run,
+    simulator::{Camera, Setting, SimulatedRobot},
 };
 
 /// Keeps what a robot does.
@@ -36,7 +39,7 @@ impl<C: Camera> Observer<SimulatedRobot<C>> for Keeper {
             pose: robot.pose(),
             moves: round.moves,
             state: round.state,
-            scene: format!("{:?}", round.scene.place),
+            scene: in_words(&round.scene.place),
             command: match round.step {
                 Ok(Step::Go(command)) => Some(*command),
                 _ => None,
@@ -60,6 +63,25 @@ impl<C: Camera> Observer<SimulatedRobot<C>> for Keeper {
     }
 }
 
+fn in_words(place: &Place) -> String {
+    match place {
+        Place::Hallway(hallway) => {
+            format!(
+                "a hallway, {:.2} m to the left, {:.2} m to the right",
+                hallway.left, hallway.right
+            )
+        }
+        Place::Junction(junction) => {
+            format!(
+                "a junction with {} doors, {:.2} m ahead",
+                junction.doors.len(),
+                junction.distance()
+            )
+        }
+        Place::Unknown(reason) => format!("nothing that can be made out: {reason}"),
+    }
+}
+
 /// The journal of a run in one of the worlds of this repository, with these pictures.
 pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("worlds").join(format!("{world}.toml"));
@@ -77,9 +99,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         maps: Vec::new(),
         ending: String::new(),
     }));
-    let camera = SceneCamera::new(plan.clone(), Some(facing), 1.0, 1);
-    let pose = start_pose(&plan, facing);
-    let robot = SimulatedRobot::new(plan.clone(), pose, camera, &MotionNoise::DEFAULT, 0.3, 1);
+    let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
     let mut story = |journey: &Journey, event: Event| {
         let mut journal = journal.borrow_mut();
         journal.story.push(format!("{event:?}"));

@@ -1,5 +1,8 @@
 // The floor: where the robot is, and of the drawing of the whole run what has happened so far.
 
+/** The largest font size of a name, in units of the drawing: it is not to cover what is beside it. */
+const LARGEST = 22;
+
 class Floor {
   /** `rounds`: where each picture was taken. `body`: the robot's radius, in units of the drawing. */
   constructor(figure, rounds, body) {
@@ -21,10 +24,26 @@ class Floor {
       turn += ((((round.turn - turn) % 360) + 540) % 360) - 180;
       return turn;
     });
+    this.names = all(".names text").map((name) => [name, Number(name.getAttribute("font-size"))]);
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
-    this.svg.append(this.robot);
-    new ResizeObserver(() => this.place()).observe(this.svg);
+    // Below the signs of calls: a cross where it stands is seen.
+    this.svg.insertBefore(this.robot, this.svg.querySelector(":scope > .call"));
+    new ResizeObserver(() => this.scale()).observe(this.svg);
+    this.scale();
+  }
+
+  /** What has to be seen is not drawn smaller than a reader can. */
+  scale() {
+    // How many units of the drawing a pixel of the screen is.
+    this.pixel = 1 / (this.svg.getScreenCTM()?.a || 1);
+    this.svg.style.setProperty("--pixel", this.pixel);
+    this.svg.classList.toggle("small", this.pixel > 1.6);
+    for (const [name, size] of this.names) {
+      const wish = Math.min(9.5 * this.pixel, LARGEST);
+      name.setAttribute("font-size", Math.max(size, wish));
+    }
+    this.place();
   }
 
   /** Shows the run as it was at a picture; with a `duration`, in milliseconds, the robot travels there. */
@@ -44,11 +63,8 @@ class Floor {
 
   place() {
     if (this.at === undefined) return;
-    // How many units of the drawing a pixel of the screen is.
-    const pixel = 1 / (this.svg.getScreenCTM()?.a || 1);
-    this.svg.style.setProperty("--pixel", pixel);
     const { x, y } = this.rounds[this.at];
-    const size = Math.max(this.body, 7 * pixel);
+    const size = Math.max(this.body, 7 * this.pixel);
     const turn = this.turns[this.at];
     this.robot.style.transform = `translate(${x}px, ${y}px) rotate(${turn}deg) scale(${size})`;
   }

@@ -3,6 +3,9 @@
 
 const data = JSON.parse(find("#data").textContent);
 const { rounds, calls, story, pictures } = data;
+/** More junctions than this are not marked along the slider one by one. */
+const MARKS = 150;
+
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const slider = find("#round");
 const last = rounds.length - 1;
@@ -48,10 +51,10 @@ function showFacts(round) {
   write(".scene", round.scene);
   write(".command", round.command);
   const call = called.get(at);
-  find(".called").hidden = !call;
-  if (!call) return;
-  write(".call", `${call.percept}: ${call.conforms ? "as" : "not as"} the specification says`);
-  find(".facts .call").classList.toggle("wrong", !call.conforms);
+  const judged = call?.conforms ? "as specified" : "not as specified";
+  find(".called").classList.toggle("later", !call);
+  find(".facts .call").classList.toggle("wrong", call?.conforms === false);
+  write(".facts .call", call ? `${call.percept}: ${judged}` : "");
 }
 
 function showMap({ maps }) {
@@ -122,6 +125,12 @@ function junction(direction) {
 
 // Buttons and keys.
 
+/** The floor above the camera and as large as the screen allows, or beside it. */
+function enlarge() {
+  const large = find(".views").classList.toggle("large");
+  find("#larger").setAttribute("aria-pressed", String(large));
+}
+
 const deeds = {
   play: () => (timer === null ? play() : pause()),
   back: () => go(at - 1),
@@ -139,6 +148,7 @@ function keyed({ key, shiftKey }) {
   return null;
 }
 
+find("#larger").addEventListener("click", enlarge);
 if (last >= 0) {
   slider.max = last;
   slider.addEventListener("input", () => go(Number(slider.value)));
@@ -156,6 +166,8 @@ if (last >= 0) {
   const marks = find(".marks");
   marks.setAttribute("viewBox", `0 0 ${Math.max(last, 1)} 1`);
   for (const [place, { conforms }] of called) {
+    // Too many would be a grey bar; those that matter stay.
+    if (conforms && called.size > MARKS) continue;
     marks.append(drawn("path", { d: `M${place} 0V1`, class: conforms ? "" : "wrong" }));
   }
   show(0);

@@ -19,7 +19,12 @@ const BODY: f64 = 0.41 / 2.0;
 pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
     let mut album = Album::default();
     let rounds = journal.rounds.iter().zip(&drawn.places);
-    let rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
+    let mut rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
+    if let Some(last) = rounds.last_mut() {
+        // What came after the last picture is the end of the run.
+        last["story"] = json!(journal.story.len());
+        last["maps"] = json!(journal.maps.len());
+    }
     in_script(&json!({
         "rounds": rounds,
         "calls": journal.calls.iter().map(call).collect::<Vec<_>>(),

@@ -37,3 +37,88 @@ fn maps(journal: &Journal) -> String {
     let of = |svg: &String| format!("<div class=\"stage\" hidden>\n{svg}</div>\n");
     growth(&journal.maps).iter().map(of).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::{cell::RefCell, collections::BTreeSet};
+
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::picture::example;
+
+    fn data_of(document: &str) -> Value {
+        let (_, from) =
+            document.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
+        serde_json::from_str(from.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    #[test]
+    fn every_place_of_the_template_is_filled() {
+        let places = RefCell::new(BTreeSet::new());
+        filled(PAGE, |place| {
+            places.borrow_mut().insert(place.to_owned());
+            String::new()
+        });
+        let known = ["about", "data", "maps", "plan", "script", "style", "title"];
+        assert_eq!(places.into_inner(), known.map(str::to_owned).into());
+    }
+
+    #[test]
+    fn names_are_text_wherever_they_stand() {
+        let nasty = "</script><!--<i>&\"{{data}}";
+        let mut journal = example::journal();
+        for text in [&mut journal.name, &mut journal.ending] {
+            nasty.clone_into(text);
+        }
+        journal.story = vec![nasty.to_owned(); 4];
+        journal.rounds.iter_mut().for_each(|round| nasty.clone_into(&mut round.scene));
+        let document = run_page(&journal);
+        assert!(!document.contains("<i>"));
+        assert!(!document.contains("</script><"));
+        assert_eq!(document.matches("</script>").count(), 2);
+        assert_eq!(document.matches("<!--").count(), 1, "the template's own");
+        // What is put in is not searched for places.
+        assert!(document.contains("{{data}}"));
+        let data = data_of(&document);
+        assert_eq!(
+            (&data["story"][0], &data["rounds"][0]["scene"]),
+            (&nasty.into(), &nasty.into())
+        );
+    }
+
+    #[test]
+    fn a_picture_that_stays_the_same_is_stored_once() {
+        let document = run_page(&example::journal());
+        let data = data_of(&document);
+        let shown: Vec<_> = (0..7).map(|at| data["rounds"][at]["picture"].clone()).collect();
+        assert_eq!(Value::from(shown), json!([null, 0, 1, 2, 3, 3, 3]));
+        assert_eq!(data["pictures"][3], "data:image/jpeg;base64,BAQE");
+        assert_eq!(document.matches("image/jpeg").count(), 4);
+    }
+
+    #[test]
+    fn the_data_tells_each_round() {
+        let journal = example::journal();
+        let data = data_of(&run_page(&journal));
+        let round = &data["rounds"][1];
+        let told = |key: &str| round[key].clone();
+        assert_eq!(told("time"), "0:02.5");
+        assert_eq!(told("turn"), -90.0);
+        assert_eq!(told("state"), "in a hallway");
+        assert_eq!(told("command"), "go 0.50 m ahead");
+        assert_eq!((told("moves"), told("story"), told("maps")), (json!(1), json!(0), json!(1)));
+        assert_eq!(data["calls"][2], json!({"rounds": 7, "percept": "3 doors", "conforms": false}));
+        // All is told at the end, also what came after the last picture.
+        assert_eq!(data["rounds"][6]["story"], journal.story.len());
+        assert_eq!(data["rounds"][6]["maps"], journal.maps.len());
+    }
+
+    #[test]
+    fn the_same_run_gives_the_same_page_with_all_its_maps() {
+        let journal = example::journal();
+        let document = run_page(&journal);
+        assert_eq!(document, run_page(&journal));
+        assert_eq!(document.matches("class=\"stage\"").count(), journal.maps.len());
+    }
+}

@@ -7,13 +7,15 @@ use crate::{
 
 /// How the run ended, and how long it was.
 pub(super) fn about(journal: &Journal) -> String {
-    let counted = |count: u64, what| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let pictures = counted(journal.rounds.len() as u64, "picture");
-    let Some(last) = journal.rounds.last() else {
-        return format!("{}. {pictures}.", journal.ending);
+    let ending = journal.ending.trim_end_matches('.');
+    let pictures = match journal.rounds.len() {
+        1 => "1 picture".to_owned(),
+        count => format!("{count} pictures"),
     };
-    let (moves, time) = (counted(last.moves, "move"), clock(last.time));
-    format!("{}. {moves}, {pictures}, {time} minutes of simulated time.", journal.ending)
+    let Some(last) = journal.rounds.last() else {
+        return format!("{ending}. {pictures}.");
+    };
+    format!("{ending}. {pictures}, {} min of simulated time.", clock(last.time))
 }
 
 /// Minutes and seconds.

@@ -93,7 +93,7 @@ static GALLERY: LazyLock<Vec<Drawn>> = LazyLock::new(|| {
     let draw = |world: NamedWorld| {
         let picture = Picture::from(&world);
         let drawing = Drawing::of(&picture);
-        let svg = svg::document(&picture, &drawing);
+        let svg = svg::document(&picture, &drawing, svg::Legend::Below);
         Drawn { world, drawing, svg }
     };
     worlds::gallery().into_iter().map(draw).collect()

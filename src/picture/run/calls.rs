@@ -50,12 +50,8 @@ impl Badges {
         Self(badges)
     }
 
-    pub(super) fn extent(&self) -> Extent {
-        let mut extent = Extent::EMPTY;
-        for badge in &self.0 {
-            extent.join(Extent::around(badge.at, BADGE + 1.0, BADGE + 1.0));
-        }
-        extent
+    pub(super) fn extents(&self) -> impl Iterator<Item = Extent> + '_ {
+        self.0.iter().map(|badge| Extent::around(badge.at, BADGE + 1.0, BADGE + 1.0))
     }
 
     pub(super) fn write(&self, page: &mut Page, shift: Point) {

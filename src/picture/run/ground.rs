@@ -5,9 +5,9 @@ use toposlam_vision::marker;
 
 use super::super::{
     geometry::{Extent, Point},
-    labels::{Kind, Label},
     signs::{ARROW, Sign},
     svg::{FLOOR, INK, Page, short},
+    text,
 };
 use crate::model::{
     embedded_graph::{Dart, Vertex},
@@ -17,8 +17,8 @@ use crate::model::{
 /// The longer side that a plan is given, in units, and the bounds of a metre.
 const SIDE: f64 = 620.0;
 const METRE: [f64; 2] = [36.0, 70.0];
-/// The font size of names, and how far from the wall they stand.
-const NAME: f64 = 11.0;
+/// The bounds of the font size of names, and how far from the wall they stand.
+const NAME: [f64; 2] = [11.0, 16.0];
 const AWAY: f64 = 5.0;
 
 /// A floor plan at a scale.
@@ -67,30 +67,36 @@ impl<'a> Ground<'a> {
     }
 
     /// The name of each junction: outside, at a side without a door, above or below if there is such.
-    fn names(&self) -> impl Iterator<Item = Label> + '_ {
-        self.plan.graph().vertices().filter_map(|vertex| {
+    fn names(&self) -> impl Iterator<Item = Name<'_>> {
+        // So that it can be read when the whole of a large picture is seen.
+        let size = (self.floor().size().x / 90.0).clamp(NAME[0], NAME[1]);
+        self.plan.graph().vertices().filter_map(move |vertex| {
             let rank = |side: &Direction| match side {
                 Direction::North => 0,
                 Direction::South => 1,
                 Direction::East => 2,
                 Direction::West => 3,
             };
-            let side = self.closed(vertex).min_by_key(rank)?;
-            let lines = vec![self.plan.junction(vertex).name.clone()];
-            let centre = self.turning_point(vertex);
-            let mut label = Label { lines, centre, size: NAME, kind: Kind::Inside };
-            let text = label.extent().size() * 0.5;
-            let out = along(side);
-            let away = self.half() + AWAY + (out.x * text.x).abs() + (out.y * text.y).abs();
-            label.centre = centre + out * away;
-            Some(label)
+            let out = along(self.closed(vertex).min_by_key(rank)?);
+            let text = self.plan.junction(vertex).name.as_str();
+            let at = self.turning_point(vertex) + out * (self.half() + AWAY);
+            Some(Name { text, at, out, size })
         })
     }
 
-    pub(super) fn extent(&self) -> Extent {
+    /// The box around all floor.
+    fn floor(&self) -> Extent {
         let mut extent = Extent::EMPTY;
-        for part in self.hallways().chain(self.names().map(|name| name.extent())) {
-            extent.join(part);
+        for hallway in self.hallways() {
+            extent.join(hallway);
+        }
+        extent
+    }
+
+    pub(super) fn extent(&self) -> Extent {
+        let mut extent = self.floor();
+        for name in self.names() {
+            extent.join(name.extent());
         }
         extent.widened(2.0)
     }
@@ -113,13 +119,12 @@ impl<'a> Ground<'a> {
         ));
         page.line("<g class=\"names\">");
         for name in self.names() {
-            page.label(&name, shift);
+            name.write(page, shift);
         }
         page.line("</g>");
     }
 
     /// The marker: a rectangle that is centred on the turning point and points along a hallway.
-    // paper: hardware.marker
     pub(super) fn write_marker(&self, page: &mut Page, facing: Dart, shift: Point) {
         let ahead = along(self.plan.direction(facing));
         let middle = self.turning_point(self.plan.graph().vertex(facing)) + shift;
@@ -137,6 +142,41 @@ impl<'a> Ground<'a> {
             scale: 0.26 * self.metre / ARROW,
         };
         page.sign(&arrow);
+    }
+}
+
+/// A junction's name, beside its wall.
+struct Name<'a> {
+    text: &'a str,
+    /// Where it begins, away from the wall.
+    at: Point,
+    /// Away from the wall, of length 1.
+    out: Point,
+    size: f64,
+}
+
+impl Name<'_> {
+    fn extent(&self) -> Extent {
+        let half = Point::new(text::width(self.text, self.size) / 2.0, self.size * 0.6);
+        let away = Point::new(self.out.x * half.x, self.out.y * half.y);
+        Extent::around(self.at + away, half.x, half.y)
+    }
+
+    fn write(&self, page: &mut Page, shift: Point) {
+        let anchor = match self.out.x {
+            x if x > 0.5 => "start",
+            x if x < -0.5 => "end",
+            _ => "middle",
+        };
+        let baseline = self.at.y + self.size * (0.36 + 0.5 * self.out.y);
+        page.line(&format!(
+            "<text class=\"name\" x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{INK}\" \
+             text-anchor=\"{anchor}\">{}</text>",
+            short(self.at.x + shift.x),
+            short(baseline + shift.y),
+            short(self.size),
+            text::escaped(self.text),
+        ));
     }
 }
 

@@ -5,6 +5,8 @@
 //! can show the drawing as it was at any time.
 
 mod calls;
+#[cfg(test)]
+pub(crate) mod example;
 mod ground;
 mod passes;
 mod trajectory;
@@ -70,7 +72,9 @@ impl<'a> RunDrawing<'a> {
 
     fn extent(&self) -> Extent {
         let mut extent = self.ground.extent();
-        extent.join(self.badges.extent());
+        for badge in self.badges.extents() {
+            extent.join(badge);
+        }
         for round in &self.journal.rounds {
             extent.include(self.ground.at(round.pose.position));
         }
@@ -99,4 +103,127 @@ fn says(journal: &Journal) -> Vec<String> {
         says.push("a red cross: not as the specification says".to_owned());
     }
     says
+}
+
+#[cfg(test)]
+mod tests {
+    use resvg::usvg::roxmltree::{Document, Node};
+
+    use super::*;
+    use crate::model::embedded_graph::Dart;
+
+    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
+        let is = |node: &Node| node.attribute("class") == Some(class);
+        document.descendants().filter(is).collect()
+    }
+
+    /// The points of a list such as `1,2 3,4`, or of path data such as `M1 2L3 4Z`.
+    fn points(list: &str) -> Vec<Point> {
+        let numbers: Vec<f64> = list
+            .split(|letter: char| letter.is_alphabetic() || [' ', ','].contains(&letter))
+            .filter(|number| !number.is_empty())
+            .map(|number| number.parse().unwrap())
+            .collect();
+        numbers.chunks(2).map(|two| Point::new(two[0], two[1])).collect()
+    }
+
+    #[test]
+    fn the_line_goes_through_the_place_of_every_picture() {
+        let journal = example::journal();
+        let drawn = run_drawing(&journal);
+        let document = Document::parse(&drawn.svg).unwrap();
+        let mut way = Vec::new();
+        for line in of_class(&document, "trajectory") {
+            let piece = points(line.attribute("points").unwrap());
+            // Each piece begins where the last one ends.
+            assert!(way.pop().is_none_or(|end| end == piece[0]));
+            way.extend(piece);
+        }
+        assert_eq!(way.len(), journal.rounds.len());
+        for (on_line, [x, y]) in way.iter().zip(&drawn.places) {
+            assert!(on_line.distance(Point::new(*x, *y)) < 0.1);
+        }
+        let metres = (way[0] - way[3]) * (1.0 / drawn.metre);
+        assert!(metres.distance(Point::new(0.0, 4.0)) < 0.01, "the first move went 4 m north");
+    }
+
+    #[test]
+    fn every_call_is_marked_and_the_wrong_ones_with_a_cross() {
+        let svg = run_svg(&example::journal());
+        let document = Document::parse(&svg).unwrap();
+        let rounds = |class| {
+            let signs = of_class(&document, class);
+            signs.iter().map(|sign| sign.attribute("data-rounds").unwrap()).collect::<Vec<_>>()
+        };
+        assert_eq!(rounds("call"), ["1", "4"]);
+        assert_eq!(rounds("call wrong"), ["7"]);
+        let degrees = of_class(&document, "degree");
+        let degrees: Vec<_> = degrees.iter().filter_map(Node::text).collect();
+        assert_eq!(degrees, ["2", "3", "1"], "at the corner twice, rightly and wrongly");
+        assert!(svg.contains("a red cross"));
+        let mut right = example::journal();
+        right.calls.iter_mut().for_each(|call| call.conforms = true);
+        assert!(!run_svg(&right).contains("a red cross"));
+    }
+
+    #[test]
+    fn the_marker_lies_on_the_turning_point_and_points_along_its_hallway() {
+        for (facing, ahead) in [(Dart(0), Point::new(0.0, -1.0)), (Dart(1), Point::new(1.0, 0.0))] {
+            let journal = Journal { facing, ..example::journal() };
+            let drawn = run_drawing(&journal);
+            let document = Document::parse(&drawn.svg).unwrap();
+            let signs = of_class(&document, "marker");
+            let shape = |sign: usize| points(signs[sign].attribute("d").unwrap());
+            let [x, y] = drawn.places[0];
+            let corners = Extent::of(shape(0));
+            assert!(corners.centre().distance(Point::new(x, y)) < 0.1);
+            let long = Point::new(ahead.x.abs(), ahead.y.abs());
+            assert!((corners.size().dot(long) - 0.60 * drawn.metre).abs() < 0.2);
+            let wide = Point::new(long.y, long.x);
+            assert!((corners.size().dot(wide) - 0.18 * drawn.metre).abs() < 0.2);
+            let tip = shape(1)[0] - Point::new(x, y);
+            assert!(tip.dot(ahead) > 0.5 * drawn.metre && tip.cross(ahead).abs() < 0.1);
+        }
+    }
+
+    #[test]
+    fn the_numbers_of_moves_stand_on_the_right_of_their_way() {
+        let drawn = run_drawing(&example::journal());
+        let document = Document::parse(&drawn.svg).unwrap();
+        let east_of_hallway =
+            |text: &Node| text.attribute("x").unwrap().parse::<f64>().unwrap() > drawn.places[0][0];
+        let passes = of_class(&document, "passes");
+        let told: Vec<_> = passes
+            .iter()
+            .map(|text| (text.first_element_child().unwrap().text(), east_of_hallway(text)))
+            .collect();
+        assert_eq!(told, [(Some("1"), true), (Some("2"), false)]);
+    }
+
+    #[test]
+    fn the_same_run_gives_the_same_bytes_and_any_name_is_text() {
+        let nasty = "<i>&\"";
+        let journal =
+            Journal { name: nasty.to_owned(), ending: nasty.to_owned(), ..example::journal() };
+        let svg = run_svg(&journal);
+        assert_eq!(svg, run_svg(&journal.clone()));
+        let document = Document::parse(&svg).unwrap();
+        for class in ["title", "caption"] {
+            assert_eq!(of_class(&document, class)[0].text(), Some(nasty));
+        }
+    }
+
+    #[test]
+    fn a_run_that_never_began_is_drawn() {
+        let journal = Journal {
+            rounds: Vec::new(),
+            calls: Vec::new(),
+            story: Vec::new(),
+            maps: Vec::new(),
+            ..example::journal()
+        };
+        let svg = run_svg(&journal);
+        assert!(Document::parse(&svg).is_ok());
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
 }

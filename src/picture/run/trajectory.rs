@@ -49,9 +49,10 @@ fn pieces(points: usize) -> impl Iterator<Item = (usize, usize, f64)> {
 }
 
 fn colour(share: f64) -> String {
-    let (from, to, share) = match share < 0.5 {
-        true => (RAMP[0], RAMP[1], 2.0 * share),
-        false => (RAMP[1], RAMP[2], 2.0 * share - 1.0),
+    let (from, to, share) = if share < 0.5 {
+        (RAMP[0], RAMP[1], 2.0 * share)
+    } else {
+        (RAMP[1], RAMP[2], 2.0 * share - 1.0)
     };
     let mix = |part: usize| (from[part] + (to[part] - from[part]) * share).round() as u8;
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))

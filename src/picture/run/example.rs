@@ -1,0 +1,72 @@
+//! A small run, for tests: two hallways that meet at an L, of which the robot takes the northern one, and
+//! comes back.
+
+use std::sync::Arc;
+
+use toposlam_robot::pose::Pose;
+
+use crate::{
+    journal::{Call, Journal, Round},
+    model::{
+        driving::algorithm2::{Command, State},
+        embedded_graph::Dart,
+        floor_plan::FloorPlan,
+        mapping::{Event, Exploration, Journey, Nearest, PartialMap, map_world},
+        percept::{Percept, Sighting},
+        world::GraphWorld,
+    },
+};
+
+/// Seven pictures, of which the last three are the same; the third call is wrong.
+pub(crate) fn journal() -> Journal {
+    let places = [("corner", [0.0, 0.0]), ("north", [0.0, 4.0]), ("east", [4.0, 0.0])];
+    let places = places.map(|(name, place)| (name.to_owned(), place));
+    let hallways = [("corner", "north"), ("corner", "east")];
+    let hallways = hallways.map(|(from, to)| (from.to_owned(), to.to_owned()));
+    let plan = Arc::new(FloorPlan::new(1.6, &places, &hallways).unwrap());
+    let facing = Dart(0);
+    let maps = maps(&plan, facing);
+    let round = |(number, y): (usize, f64)| Round {
+        time: 2.5 * number as f64,
+        pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
+        moves: number.div_ceil(3) as u64,
+        state: State::Hallway,
+        scene: format!("scene {number}"),
+        command: Some(Command { turn: 0.0, forward: 0.5 }),
+        picture: (number > 0).then(|| vec![number.min(4) as u8; 3]),
+        story: number / 2,
+        maps: 1.min(number),
+    };
+    let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
+    let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
+    let call = |(pictures, degree): (usize, u32)| Call {
+        rounds: pictures,
+        pose: rounds[pictures - 1].pose,
+        percept: Percept { degree, sighting: Sighting::Nothing },
+        conforms: pictures < 7,
+    };
+    Journal {
+        name: "two hallways".to_owned(),
+        calls: [(1, 2), (4, 1), (7, 3)].map(call).to_vec(),
+        plan,
+        facing,
+        rounds,
+        story: ["one", "two", "three", "four"].map(str::to_owned).to_vec(),
+        maps,
+        ending: "the robot gave up".to_owned(),
+    }
+}
+
+/// The map of a plan whenever Algorithm 1 adds to it.
+pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
+    let mut maps = Vec::new();
+    let mut watch = |journey: &Journey, event: Event| match event {
+        Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. } => {
+            maps.push(journey.map().clone());
+        }
+        _ => {}
+    };
+    let mut world = GraphWorld::new(plan.graph(), facing);
+    map_world(&mut world, &mut Nearest, &mut Exploration::new(1000), &mut watch).unwrap();
+    maps
+}

@@ -1,0 +1,213 @@
+// Follows the pages of runs.
+//
+//   node run_page.mjs CHROMIUM right=FILE wrong=FILE empty=FILE
+//
+// right: every call conforms; wrong: one does not; empty: no picture was taken.
+
+import assert from "node:assert/strict";
+import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+
+/** What the page shows now. */
+function shown(page) {
+  return page.evaluate(() => {
+    const text = (selector) => document.querySelector(selector).textContent;
+    const visible = (selector) =>
+      [...document.querySelectorAll(selector)].filter(
+        (element) => element.checkVisibility({ checkVisibilityCSS: true }),
+      );
+    const robot = document.querySelector(".robot circle").getBoundingClientRect();
+    const way = visible(".trajectory").flatMap((line) => line.getAttribute("points").split(" "));
+    const stages = [...document.querySelectorAll(".stage")];
+    return {
+      slider: Number(document.querySelector("#round").value),
+      said: document.querySelector("#round").getAttribute("aria-valuetext"),
+      robot: { x: robot.x + robot.width / 2, y: robot.y + robot.height / 2 },
+      way: new Set(way).size,
+      calls: visible(".floor .call").length,
+      time: text(".time"),
+      move: text(".move"),
+      state: text(".state"),
+      scene: text(".scene"),
+      command: text(".command"),
+      called: visible(".facts .call").map((fact) => [fact.textContent, fact.classList.contains("wrong")]),
+      image: visible(".camera img")[0]?.src ?? null,
+      noPicture: visible(".no-picture").length,
+      stage: stages.findIndex((stage) => stage.checkVisibility()),
+      story: visible(".story li").map((line) => line.textContent),
+      latest: visible(".story .latest").map((line) => line.textContent),
+      button: text("#play"),
+    };
+  });
+}
+
+const readData = (page) => page.evaluate(() => JSON.parse(document.querySelector("#data").textContent));
+
+/** Where a picture was taken, on the screen. */
+function onScreen(page, { x, y }) {
+  return page.evaluate(([x, y]) => {
+    const matrix = document.querySelector(".floor svg").getScreenCTM();
+    const at = new DOMPoint(x, y).matrixTransform(matrix);
+    return { x: at.x, y: at.y };
+  }, [x, y]);
+}
+
+/** All that the page shows is what the data says of this picture. */
+async function assertShows(page, data, at) {
+  const now = await shown(page);
+  const round = data.rounds[at];
+  assert.equal(now.slider, at);
+  const there = await onScreen(page, round);
+  const off = Math.hypot(now.robot.x - there.x, now.robot.y - there.y);
+  assert.ok(off < 1.5, `the robot is ${off} pixels from where picture ${at} was taken`);
+  const places = data.rounds.slice(0, at + 1).map(({ x, y }) => `${x},${y}`);
+  assert.equal(now.way, at === 0 ? 0 : new Set(places).size);
+  assert.equal(now.calls, data.calls.filter(({ rounds }) => rounds <= at + 1).length);
+  assert.equal(now.time, `${round.time} min`);
+  assert.equal(now.move, `${round.moves} of ${data.rounds.at(-1).moves}`);
+  assert.equal(now.state, round.state);
+  assert.equal(now.scene, round.scene);
+  assert.equal(now.command, round.command);
+  assert.equal(now.stage, round.maps - 1);
+  assert.deepEqual(now.story, data.story.slice(0, round.story));
+  const before = data.rounds.slice(0, at).map(({ story }) => story).filter((told) => told < round.story);
+  assert.deepEqual(now.latest, now.story.slice(Math.max(0, ...before)));
+  assert.equal(now.image, round.picture === null ? null : data.pictures[round.picture]);
+  assert.equal(now.noPicture, round.picture === null ? 1 : 0);
+  const call = data.calls.find(({ rounds }) => rounds === at + 1);
+  const judged = call?.conforms ? "as specified" : "not as specified";
+  assert.deepEqual(now.called, call ? [[`${call.percept}: ${judged}`, !call.conforms]] : []);
+  assert.match(now.said, new RegExp(`^picture ${at + 1} of ${data.rounds.length}, `));
+  return now;
+}
+
+async function followBySlider(page, data) {
+  const last = data.rounds.length - 1;
+  let told = -1;
+  let robot = null;
+  for (const at of [0, 1, Math.floor(last / 3), Math.floor(last / 2), last - 1, last]) {
+    await page.locator("#round").fill(String(at));
+    const now = await assertShows(page, data, at);
+    assert.ok(now.story.length >= told, "the story shrinks");
+    told = now.story.length;
+    if (at > 1) assert.notDeepEqual(now.robot, robot, "the robot does not move");
+    robot = now.robot;
+  }
+  assert.equal(told, data.story.length, "the story is not told to its end");
+}
+
+async function followByKeysAndButtons(page, data) {
+  const last = data.rounds.length - 1;
+  const press = async (key, at) => {
+    await page.keyboard.press(key);
+    await assertShows(page, data, at);
+  };
+  await page.locator("h1").click();
+  await press("Home", 0);
+  await press("ArrowLeft", 0);
+  await press("ArrowRight", 1);
+  await press("ArrowRight", 2);
+  await press("ArrowLeft", 1);
+  const junctions = data.calls.map(({ rounds }) => rounds - 1).filter((at) => at > 1);
+  await press("Shift+ArrowRight", junctions[0]);
+  await press("Shift+ArrowRight", junctions[1]);
+  await press("Shift+ArrowLeft", junctions[0]);
+  await press("End", last);
+  await press("ArrowRight", last);
+  const click = async (name, at) => {
+    await page.getByRole("button", { name, exact: true }).click();
+    await assertShows(page, data, at);
+  };
+  await click("One picture back", last - 1);
+  await click("One picture on", last);
+  await click("To the junction before", junctions.filter((at) => at < last).at(-1));
+  await click("To the next junction", junctions.filter((at) => at < last).length < junctions.length ? junctions.at(-1) : last);
+  // With the focus on the slider, an arrow is still one picture.
+  await page.locator("#round").focus();
+  await press("Home", 0);
+  await press("ArrowRight", 1);
+}
+
+async function play(page, data) {
+  const last = data.rounds.length - 1;
+  await page.locator("#speed").selectOption("60");
+  await page.locator("h1").click();
+  await page.keyboard.press("Home");
+  await page.keyboard.press("Space");
+  assert.equal((await shown(page)).button, "Pause");
+  await page.waitForFunction(() => Number(document.querySelector("#round").value) > 3);
+  await page.keyboard.press("Space");
+  const paused = await shown(page);
+  assert.equal(paused.button, "Play");
+  await page.waitForTimeout(150);
+  await assertShows(page, data, paused.slider);
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction(
+    (last) => Number(document.querySelector("#round").value) === last,
+    last,
+    { timeout: 5000 + 100 * last },
+  );
+  const ended = await assertShows(page, data, last);
+  assert.equal(ended.button, "Play");
+  assert.deepEqual(ended.story, data.story);
+  // From its end, a run plays from its beginning.
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction((last) => Number(document.querySelector("#round").value) < last, last);
+  await page.keyboard.press("End");
+}
+
+async function enlarge(page) {
+  const wide = () => page.locator(".floor svg").evaluate((svg) => svg.getBoundingClientRect().height);
+  const before = await wide();
+  const button = page.getByRole("button", { name: "Larger" });
+  await button.click();
+  assert.ok((await wide()) > 1.2 * before, "the floor is not larger");
+  assert.equal(await button.getAttribute("aria-pressed"), "true");
+  await button.click();
+  assert.equal(await wide(), before);
+}
+
+async function visitEmpty(page, file) {
+  assert.equal(await page.locator("#play").isDisabled(), true);
+  assert.equal(await page.locator("#round").isDisabled(), true);
+  await page.keyboard.press("Space");
+  assert.equal(await page.locator(".now").textContent(), "no picture was taken");
+  await photograph(page, file, "light");
+  return {};
+}
+
+async function visit(page, kind, file) {
+  if (kind === "empty") return visitEmpty(page, file);
+  const data = await readData(page);
+  await assertShows(page, data, 0);
+  await followBySlider(page, data);
+  await followByKeysAndButtons(page, data);
+  const crosses = await page.locator(".floor .call.wrong").count();
+  assert.equal(crosses, kind === "wrong" ? 1 : 0);
+  assert.equal(await page.locator(".marks .wrong").count(), crosses);
+  const middle = data.calls[3].rounds - 1;
+  await page.locator("#round").fill(String(middle));
+  await photograph(page, file, "light");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await photograph(page, file, "dark");
+  await page.emulateMedia({ colorScheme: "light" });
+  await enlarge(page);
+  await assertFitsPhone(page);
+  const buttons = await page.locator(".controls button").all();
+  for (const button of buttons) {
+    const { width, height } = await button.boundingBox();
+    assert.ok(width >= 40 && height >= 40, `a button is ${width} by ${height} pixels on a phone`);
+  }
+  await photograph(page, file, "phone");
+  await page.setViewportSize(DESK);
+  await play(page, data);
+  await page.emulateMedia({ reducedMotion: "no-preference" });
+  await page.keyboard.press("Home");
+  await page.locator("#speed").selectOption("25");
+  await page.locator("h1").click();
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => Number(document.querySelector("#round").value) > 5);
+  await page.keyboard.press("Space");
+  return { pictures: data.rounds.length, story: data.story.length };
+}
+
+await visitAll(["right", "wrong", "empty"], visit);
