@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::*;
-use crate::driving::scene::{Reason, Unclear};
+use crate::driving::scene::{MarkerView, Reason, Unclear};
 use crate::percept::Sighting;
 
 /// The doors of the six forms, as a robot sees them that looks away from the entry door.
@@ -259,6 +259,29 @@ fn with_a_door_left_it_turns_to_it_and_goes_half_a_metre_out_of_the_junction() {
 }
 
 #[test]
+fn each_junction_takes_the_next_door() {
+    let mut robot = Robot::come_to(L_LEFT, &[Door(2), Door(1), Door(0)]);
+    robot.sees(&junction(L_LEFT, 0.0, 0.0));
+    robot.sees(&junction(L_LEFT, 0.0, FRAC_PI_2));
+    assert_eq!(robot.sees(&hallway(0.0)), ahead(0.5));
+    assert_eq!(robot.path.queue(), [Door(0)]);
+    robot.sees(&junction(T_LEFT, 0.25, 0.0));
+    let turn = robot.sees(&junction(T_LEFT, 0.0, 0.0)).turn;
+    assert_near(turn.abs(), PI);
+    assert_eq!(robot.path.queue(), []);
+}
+
+#[test]
+fn while_it_turns_to_a_door_the_turning_point_does_not_matter() {
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_STEM, 0.0, 0.0));
+    let mut view = view(T_STEM, 0.0, FRAC_PI_2);
+    view.turning_point = [0.2, 0.2];
+    assert_eq!(view.turning(), Turning::Before);
+    assert_eq!(robot.sees(&scene(Place::Junction(view))), ahead(0.5));
+}
+
+#[test]
 fn a_door_straight_ahead_takes_no_turn() {
     let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
     let Command { turn, forward } = robot.sees(&junction(T_RIGHT, 0.0, 0.1));
@@ -321,6 +344,19 @@ fn the_entry_door_is_the_one_behind_on_arrival() {
         assert_eq!(standing.form, Form([true, true, false, true]));
         assert_near(standing.entry.abs(), PI);
     }
+    // Pictures tell its direction better than odometry.
+    let standing = Robot::before(T_STEM, &[Door(2)]).arrives(&junction(T_STEM, 0.05, 0.2));
+    assert_near(standing.entry, PI - 0.2);
+}
+
+#[test]
+fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let marker = Some(MarkerView { position: [0.6, 0.0], axis: 0.0, door: None });
+    robot.sees(&Scene { marker, ..hallway(0.0) });
+    robot.sees(&junction(L_LEFT, 0.1, 0.0));
+    let Standing { percept, .. } = robot.arrives(&junction(L_LEFT, 0.1, 0.0));
+    assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
 }
 
 #[test]
