@@ -85,7 +85,7 @@ impl<'a> Robot<'a> {
 
     /// Drives on by the same scene until it gives up: after so many commands, and why.
     fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, Why) {
-        for commands in 0.. {
+        for commands in 0..1000 {
             match self.round(scene) {
                 Ok(Step::Go(Command { turn, forward })) => {
                     self.odometry = self.odometry.moved(turn * share, forward * share);
@@ -94,7 +94,7 @@ impl<'a> Robot<'a> {
                 Err(Lost { why, .. }) => return (commands, why),
             }
         }
-        panic!("it arrives");
+        panic!("it does not give up");
     }
 }
 
