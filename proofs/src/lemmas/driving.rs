@@ -239,6 +239,8 @@ fn the_first_door<C: Choose, D: Driver, const TURNS: u8>(choose: &mut C) -> Case
     let seen = FORMS[usize::from(choose.below(6))];
     let turned = f64::from(choose.below(TURNS)) / f64::from(TURNS) * 2.0 * PI;
     let Place::Junction(view) = junction(seen, 0.0, turned) else { unreachable!() };
+    choose.show(|| Exhibit::Value { name: "known", value: format!("{form:?}, path {queue:?}") });
+    choose.show(|| Exhibit::Value { name: "picture", value: format!("{view:?}") });
     let exit = view.doors.get(usize::from(door)).map_or(0.0, |line| line.direction);
     // Odometry knows that the robot has turned.
     let odometry = Odometry { position: [0.0; 2], heading: wrapped(turned) };
@@ -283,6 +285,7 @@ fn driven<C: Choose, D: Driver>(
     drive: &mut Drive,
     queue: &'static [Door],
 ) -> Result<End, Stop> {
+    choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?} {drive:?}") });
     let mut driver = D::begin(queue, &drive.junction(0).standing(), LEG);
     // How many doors the robot has left by, and whether it has taken one more.
     let (mut left_by, mut takes) = (0, false);
@@ -360,7 +363,6 @@ fn doors_in_order<C: Choose, D: Driver, const SURPRISES: u8, const MISTAKES: u8>
     let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
     let mut drive = Drive::new(FORMS[first], &legs, SIGHTS[0], budget);
     let queue = TWO_DOORS[door as usize][then as usize];
-    choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?}, {legs:?}") });
     driven::<_, D>(choose, &mut drive, queue).map(|_| ())
 }
 

@@ -276,7 +276,7 @@ fn while_it_turns_to_a_door_the_turning_point_does_not_matter() {
     let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
     robot.sees(&junction(T_STEM, 0.0, 0.0));
     let mut view = view(T_STEM, 0.0, FRAC_PI_2);
-    view.turning_point = [0.2, 0.2];
+    view.turning_point = [0.0, -0.2];
     assert_eq!(view.turning(), Turning::Before);
     assert_eq!(robot.sees(&scene(Place::Junction(view))), ahead(0.5));
 }
@@ -424,6 +424,16 @@ fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
         assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
         assert_eq!(robot.path.state(), State::Leaving);
     }
+}
+
+#[test]
+fn a_junction_that_the_robot_could_not_leave_is_no_arrival() {
+    let mut robot = Robot::at(T_LEFT, &[Door(2)]);
+    robot.sees_and_does(0.0, &junction(T_LEFT, 0.0, 0.0));
+    // A picture is mistaken for one of a hallway.
+    robot.sees_and_does(0.0, &hallway(0.0));
+    assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT / 2.0));
+    assert_eq!(robot.path.state(), State::Leaving);
 }
 
 #[test]
