@@ -12,6 +12,7 @@
 //! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: who chooses;
 //! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
 //! * [`definition`]: what is meant by a graph, an isomorphism, a bisimulation;
+//! * [`hallways`]: where a robot drives, what it sees there, rightly or not, and where it gets;
 //! * [`lemma`]: what there is to know about a lemma, and how it is declared;
 //! * [`lemmas`]: the lemmas, a file for each theme;
 //! * [`fuzz`]: what fuzzers try to break, on bytes of their own.
@@ -23,6 +24,7 @@ pub mod choose;
 pub mod definition;
 pub mod draw;
 pub mod fuzz;
+pub mod hallways;
 pub mod lemma;
 pub mod lemmas;
 pub mod odometer;

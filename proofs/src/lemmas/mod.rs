@@ -6,6 +6,7 @@ mod arithmetic;
 mod certificates;
 mod codes;
 mod decoders;
+mod driving;
 mod embedded_graph;
 mod figure_1;
 mod mapping;
@@ -30,6 +31,7 @@ const THEMES: &[&[Lemma]] = &[
     mapping::LEMMAS,
     figure_1::LEMMAS,
     certificates::LEMMAS,
+    driving::LEMMAS,
 ];
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ const STRAIGHT: f64 = 10.0 / 180.0 * PI;
 const AHEAD: f64 = FRAC_PI_4;
 /// Arrival takes a hallway in between, or so many metres since the turn.
 const ARRIVAL: f64 = 1.2;
-/// A junction behind the robot is the one just left if odometry puts it there to so many metres.
+/// A junction is the one just left if that is behind the robot, by odometry, to so many metres.
 const SAME: f64 = 0.6;
 
 /// What the robot is about.
@@ -315,9 +315,9 @@ impl<'a> PathExecution<'a> {
         let [x, y] = junction.turning_point;
         let direction = self.reckoning.ahead();
         let ahead = x * direction.cos() + y * direction.sin();
-        let behind = ahead < 0.0 && (since + ahead).abs() < SAME;
+        let is_behind = (since + ahead).abs() < SAME;
         let is_early = self.state == State::Leaving && since < ARRIVAL;
-        behind || is_early
+        is_behind || is_early
     }
 
     /// Whether the turning point is still ahead. Once the robot turns to a door it no longer matters.

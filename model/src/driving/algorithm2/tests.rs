@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::*;
-use crate::driving::scene::{Reason, Unclear};
+use crate::driving::scene::{MarkerView, Reason, Unclear};
 use crate::percept::Sighting;
 
 /// The doors of the six forms, as a robot sees them that looks away from the entry door.
@@ -85,7 +85,7 @@ impl<'a> Robot<'a> {
 
     /// Drives on by the same scene until it gives up: after so many commands, and why.
     fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, Why) {
-        for commands in 0.. {
+        for commands in 0..1000 {
             match self.round(scene) {
                 Ok(Step::Go(Command { turn, forward })) => {
                     self.odometry = self.odometry.moved(turn * share, forward * share);
@@ -94,7 +94,7 @@ impl<'a> Robot<'a> {
                 Err(Lost { why, .. }) => return (commands, why),
             }
         }
-        panic!("it arrives");
+        panic!("it does not give up");
     }
 }
 
@@ -259,6 +259,29 @@ fn with_a_door_left_it_turns_to_it_and_goes_half_a_metre_out_of_the_junction() {
 }
 
 #[test]
+fn each_junction_takes_the_next_door() {
+    let mut robot = Robot::come_to(L_LEFT, &[Door(2), Door(1), Door(0)]);
+    robot.sees(&junction(L_LEFT, 0.0, 0.0));
+    robot.sees(&junction(L_LEFT, 0.0, FRAC_PI_2));
+    assert_eq!(robot.sees(&hallway(0.0)), ahead(0.5));
+    assert_eq!(robot.path.queue(), [Door(0)]);
+    robot.sees(&junction(T_LEFT, 0.25, 0.0));
+    let turn = robot.sees(&junction(T_LEFT, 0.0, 0.0)).turn;
+    assert_near(turn.abs(), PI);
+    assert_eq!(robot.path.queue(), []);
+}
+
+#[test]
+fn while_it_turns_to_a_door_the_turning_point_does_not_matter() {
+    let mut robot = Robot::come_to(T_STEM, &[Door(2), Door(1)]);
+    robot.sees(&junction(T_STEM, 0.0, 0.0));
+    let mut view = view(T_STEM, 0.0, FRAC_PI_2);
+    view.turning_point = [0.0, -0.2];
+    assert_eq!(view.turning(), Turning::Before);
+    assert_eq!(robot.sees(&scene(Place::Junction(view))), ahead(0.5));
+}
+
+#[test]
 fn a_door_straight_ahead_takes_no_turn() {
     let mut robot = Robot::come_to(T_RIGHT, &[Door(2), Door(1)]);
     let Command { turn, forward } = robot.sees(&junction(T_RIGHT, 0.0, 0.1));
@@ -321,6 +344,19 @@ fn the_entry_door_is_the_one_behind_on_arrival() {
         assert_eq!(standing.form, Form([true, true, false, true]));
         assert_near(standing.entry.abs(), PI);
     }
+    // Pictures tell its direction better than odometry.
+    let standing = Robot::before(T_STEM, &[Door(2)]).arrives(&junction(T_STEM, 0.05, 0.2));
+    assert_near(standing.entry, PI - 0.2);
+}
+
+#[test]
+fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
+    let mut robot = Robot::in_hallway(&[Door(2)]);
+    let marker = Some(MarkerView { position: [0.6, 0.0], axis: 0.0, door: None });
+    robot.sees(&Scene { marker, ..hallway(0.0) });
+    robot.sees(&junction(L_LEFT, 0.1, 0.0));
+    let Standing { percept, .. } = robot.arrives(&junction(L_LEFT, 0.1, 0.0));
+    assert_eq!(percept, Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) });
 }
 
 #[test]
@@ -388,6 +424,16 @@ fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
         assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
         assert_eq!(robot.path.state(), State::Leaving);
     }
+}
+
+#[test]
+fn a_junction_that_the_robot_could_not_leave_is_no_arrival() {
+    let mut robot = Robot::at(T_LEFT, &[Door(2)]);
+    robot.sees_and_does(0.0, &junction(T_LEFT, 0.0, 0.0));
+    // A picture is mistaken for one of a hallway.
+    robot.sees_and_does(0.0, &hallway(0.0));
+    assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT / 2.0));
+    assert_eq!(robot.path.state(), State::Leaving);
 }
 
 #[test]

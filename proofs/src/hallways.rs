@@ -1,0 +1,353 @@
+//! A plan of hallways without images: what the pictures of a robot tell there, rightly or not, and
+//! where its motions take it. Sections 3 and 4.
+//!
+//! Angles and distances are made of a few small numbers. What is surprising (a picture that tells
+//! nothing, or that is wrong; a motion that is not carried out) is a choice, and costs from a
+//! [`Budget`]: so the cases are finite, and they are all cases with no more surprises.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::{
+    driving::{
+        algorithm2::{Command, Lost, PathExecution, Standing, Step},
+        odometry::Odometry,
+        scene::{
+            CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear,
+            undirected, wrapped,
+        },
+        visit::Form,
+    },
+    percept::{Door, Percept, Sighting},
+};
+
+use crate::choose::{Choose, Exhibit};
+
+/// The six forms: a dead end, an L to the left and to the right, a T by its stem, and by an arm with
+/// the stem to the left and to the right.
+pub const FORMS: [Form; 6] = [
+    Form([true, false, false, false]),
+    Form([true, true, false, false]),
+    Form([true, false, false, true]),
+    Form([true, true, false, true]),
+    Form([true, true, true, false]),
+    Form([true, false, true, true]),
+];
+
+/// From the middle of a hallway to its walls, in metres.
+pub const HALF_WIDTH: f64 = 0.8;
+/// How far from the middle the robot can be.
+const FREE: f64 = 0.5;
+/// What rounding may add to a distance.
+const TIE: f64 = 1e-6;
+/// So near in metres or radians is the same place or direction.
+const NEAR: f64 = 0.1;
+/// Nearer to a junction a picture of a hallway is a mistake,
+const SURELY: f64 = 0.7;
+/// and farther from it one of a junction.
+const HARDLY: f64 = 1.6;
+
+/// Who drives: Algorithm 2, or something like it that is broken.
+pub trait Driver {
+    /// Begins a path from where the last one ended, and gives up after so many metres without a
+    /// junction.
+    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self;
+
+    /// One round: a scene in, a command out.
+    ///
+    /// # Errors
+    /// Where it gives up.
+    fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost>;
+
+    /// The doors that have not been taken.
+    fn queue(&self) -> &[Door];
+}
+
+impl Driver for PathExecution<'static> {
+    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
+        Self::new(queue, from).with_leg_bound(leg)
+    }
+
+    fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost> {
+        self.round(scene, odometry)
+    }
+
+    fn queue(&self) -> &[Door] {
+        self.queue()
+    }
+}
+
+/// A junction of the plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Junction {
+    /// What it looks like from the door by which the path comes in.
+    pub form: Form,
+    /// Its turning point.
+    at: [f64; 2],
+    /// The direction of that door.
+    entry: f64,
+}
+
+impl Junction {
+    /// The directions of its doors, clockwise from the entry door.
+    fn doors(&self) -> impl Iterator<Item = f64> + '_ {
+        let quarters = (0..4).filter(|&quarter| self.form.0[quarter]);
+        quarters.map(|quarter| wrapped(self.entry - quarter as f64 * FRAC_PI_2))
+    }
+
+    /// The direction of a door that it has.
+    #[must_use]
+    pub fn direction(&self, door: Door) -> f64 {
+        self.doors().nth(door.0 as usize).unwrap_or(self.entry)
+    }
+
+    /// How far its turning point is from the robot.
+    #[must_use]
+    pub fn distance(&self, robot: &Odometry) -> f64 {
+        Odometry { position: self.at, heading: 0.0 }.distance(robot)
+    }
+
+    /// What a robot sees of it, from a door behind.
+    fn seen(&self, robot: &Odometry) -> JunctionView {
+        let [x, y] = [0, 1].map(|axis| self.at[axis] - robot.position[axis]);
+        let (sine, cosine) = robot.heading.sin_cos();
+        let through = [x * cosine + y * sine, y * cosine - x * sine];
+        let doors = self.doors();
+        let line = |door| CentreLine { through, direction: robot.seen(door) };
+        let doors = doors.map(line).collect();
+        JunctionView { doors, turning_point: through, confidence: 1.0 }.entered_from(PI)
+    }
+
+    /// What it looks like from a door of which this is the direction.
+    fn form_from(&self, entry: f64) -> Form {
+        let is_door = |quarter| {
+            let direction = entry - f64::from(quarter) * FRAC_PI_2;
+            self.doors().any(|door| wrapped(door - direction).abs() < NEAR)
+        };
+        Form([0, 1, 2, 3].map(is_door))
+    }
+
+    /// What a robot knows that stands there.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        let percept = Percept { degree: self.form.degree(), sighting: Sighting::Nothing };
+        Standing { form: self.form, percept, entry: self.entry }
+    }
+}
+
+/// How much may surprise the robot.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// In all.
+    pub surprises: u8,
+    /// Among these, pictures that are wrong,
+    pub mistakes: u8,
+    /// and motions of which the half is carried out, or nothing.
+    pub failures: u8,
+}
+
+/// What a picture told of the junction to come to, or at which the robot stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// Nothing of a form.
+    Nothing,
+    /// The form of a junction that is there.
+    Truth,
+    /// Another form, or one where there is no junction.
+    Mistake(Form),
+}
+
+/// A robot on its way along some junctions.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// The junctions of its path, in their order.
+    junctions: Vec<Junction>,
+    /// Where the robot is, and where odometry says that it is.
+    pub robot: Odometry,
+    /// How near to a junction the robot mostly sees it.
+    sight: f64,
+    budget: Budget,
+}
+
+impl Drive {
+    /// A robot at the turning point of the first of some junctions, with the doors that lead from each
+    /// to the next, the length of these hallways, and the forms of the junctions there, but for one to
+    /// which the path comes back.
+    #[must_use]
+    pub fn new(first: Form, legs: &[(Door, f64, Form)], sight: f64, budget: Budget) -> Self {
+        let mut junctions = vec![Junction { form: first, at: [0.0; 2], entry: PI }];
+        for &(door, length, form) in legs {
+            let last = junctions[junctions.len() - 1];
+            let direction = last.direction(door);
+            let there = Odometry { position: last.at, heading: direction }.moved(0.0, length);
+            let entry = wrapped(direction + PI);
+            let known = junctions.iter().find(|junction| junction.distance(&there) < NEAR);
+            let form = known.map_or(form, |junction| junction.form_from(entry));
+            junctions.push(Junction { form, at: there.position, entry });
+        }
+        Self { junctions, robot: Odometry::default(), sight, budget }
+    }
+
+    /// A junction of the path, by its place on it.
+    #[must_use]
+    pub fn junction(&self, place: usize) -> &Junction {
+        &self.junctions[place]
+    }
+
+    /// The junction that is nearest to the robot; of one that stands twice on the path, the latter.
+    #[must_use]
+    pub fn nearest(&self) -> &Junction {
+        let distance = |junction: &Junction| junction.distance(&self.robot);
+        let mut nearest = &self.junctions[0];
+        for junction in &self.junctions[1..] {
+            if distance(junction) < distance(nearest) + TIE {
+                nearest = junction;
+            }
+        }
+        nearest
+    }
+
+    /// Takes one of so many chances to surprise the robot, if one is left; 0 is none.
+    fn surprise(&mut self, choose: &mut impl Choose, ways: u8) -> u8 {
+        let ways = if self.budget.surprises == 0 { 0 } else { ways };
+        let surprise = if ways == 0 { 0 } else { choose.below(1 + ways) };
+        self.budget.surprises -= u8::from(surprise > 0);
+        surprise
+    }
+
+    /// The scene of a picture, and what it told.
+    pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, Told) {
+        let junction = *self.nearest();
+        let distance = junction.distance(&self.robot);
+        let (place, told) = if distance <= self.sight {
+            self.at_junction(choose, junction, distance)
+        } else {
+            self.in_hallway(choose, junction, distance)
+        };
+        choose.show(|| Exhibit::Value { name: "picture", value: format!("{told:?}: {place:?}") });
+        (Scene { place, marker: None }, told)
+    }
+
+    fn at_junction(
+        &mut self,
+        choose: &mut impl Choose,
+        junction: Junction,
+        distance: f64,
+    ) -> (Place, Told) {
+        let mistakes = if self.budget.mistakes == 0 { 0 } else { FORMS.len() as u8 - 1 };
+        let hallway = u8::from(distance > SURELY || mistakes > 0);
+        match self.surprise(choose, 1 + hallway + mistakes) {
+            0 => (Place::Junction(junction.seen(&self.robot)), Told::Truth),
+            1 => (Place::Unknown(Reason::NothingFits), Told::Nothing),
+            2 => {
+                self.budget.mistakes -= u8::from(distance <= SURELY);
+                (Place::Hallway(self.hallway(Status::Clear)), Told::Nothing)
+            }
+            other => {
+                self.budget.mistakes -= 1;
+                let mut others = FORMS.into_iter().filter(|&form| form != junction.form);
+                let form = others.nth(usize::from(other) - 3).unwrap_or(FORMS[0]);
+                let mistaken = Junction { form, ..junction };
+                (Place::Junction(mistaken.seen(&self.robot)), Told::Mistake(form))
+            }
+        }
+    }
+
+    fn in_hallway(
+        &mut self,
+        choose: &mut impl Choose,
+        junction: Junction,
+        distance: f64,
+    ) -> (Place, Told) {
+        let mistakes = if self.budget.mistakes == 0 { 0 } else { 2 * FORMS.len() as u8 };
+        let near = u8::from(distance <= HARDLY);
+        match self.surprise(choose, 2 + near + mistakes) {
+            0 => (Place::Hallway(self.hallway(Status::Clear)), Told::Nothing),
+            1 => (Place::Unknown(Reason::NothingFits), Told::Nothing),
+            2 => {
+                let unclear = Status::Unclear(Unclear::ClustersAhead);
+                (Place::Hallway(self.hallway(unclear)), Told::Nothing)
+            }
+            3 if near > 0 => (Place::Junction(junction.seen(&self.robot)), Told::Truth),
+            other => {
+                self.budget.mistakes -= 1;
+                let other = usize::from(other - 3 - near);
+                let form = FORMS[other % FORMS.len()];
+                // Where the robot is, or a little ahead.
+                let ahead = if other < FORMS.len() { 0.6 } else { 0.0 };
+                let onwards = self.onwards();
+                let there = Odometry { heading: onwards, ..self.robot }.moved(0.0, ahead);
+                let entry = wrapped(onwards + PI);
+                let mistaken = Junction { form, at: there.position, entry };
+                (Place::Junction(mistaken.seen(&self.robot)), Told::Mistake(form))
+            }
+        }
+    }
+
+    /// The hallways: from where, to which direction, how long.
+    fn hallways(&self) -> impl Iterator<Item = ([f64; 2], f64, f64)> + '_ {
+        let length = |junction: &Junction, door: f64| {
+            let leads_to = |other: &&Junction| {
+                let [x, y] = [0, 1].map(|axis| other.at[axis] - junction.at[axis]);
+                x.hypot(y) > NEAR && wrapped(y.atan2(x) - door).abs() < NEAR
+            };
+            let far = |other: &Junction| Odometry { position: other.at, heading: 0.0 };
+            let next = self.junctions.iter().find(leads_to);
+            next.map_or(2.0 * HALF_WIDTH, |next| junction.distance(&far(next)))
+        };
+        self.junctions.iter().flat_map(move |junction| {
+            junction.doors().map(move |door| (junction.at, door, length(junction, door)))
+        })
+    }
+
+    /// How far the robot is along a hallway, and to the left of its middle.
+    fn along(&self, from: [f64; 2], direction: f64) -> (f64, f64) {
+        let [x, y] = [0, 1].map(|axis| self.robot.position[axis] - from[axis]);
+        let (sine, cosine) = direction.sin_cos();
+        (x * cosine + y * sine, y * cosine - x * sine)
+    }
+
+    /// How far the robot is to the left of the middle of the hallway in which it is, and that hallway's
+    /// direction out of a junction.
+    fn lane(&self) -> (f64, f64) {
+        let mut lane = (f64::INFINITY, 0.0);
+        for (from, direction, length) in self.hallways() {
+            let (way, left) = self.along(from, direction);
+            if (-FREE..=length + FREE).contains(&way) && left.abs() < lane.0.abs() {
+                lane = (left, direction);
+            }
+        }
+        lane
+    }
+
+    /// Where a robot that looks nearly along its hallway goes.
+    fn onwards(&self) -> f64 {
+        let (_, direction) = self.lane();
+        let looks_back = self.robot.seen(direction).abs() > FRAC_PI_2;
+        wrapped(direction + if looks_back { PI } else { 0.0 })
+    }
+
+    fn hallway(&self, status: Status) -> HallwayView {
+        let (left, direction) = self.lane();
+        let heading = undirected(self.robot.seen(direction));
+        let is_back = wrapped(heading - self.robot.seen(direction)).abs() > FRAC_PI_2;
+        let left = if is_back { -left } else { left };
+        let (left, right) = (HALF_WIDTH - left, HALF_WIDTH + left);
+        HallwayView { heading, left, right, status, confidence: 1.0 }
+    }
+
+    /// The robot carries out a command: wholly, or by choice the half of it, or nothing. Walls are in
+    /// its way.
+    pub fn carry_out(&mut self, choose: &mut impl Choose, command: Command) {
+        let ways = if self.budget.failures == 0 { 0 } else { 2 };
+        let surprise = self.surprise(choose, ways);
+        self.budget.failures -= u8::from(surprise > 0);
+        let share = [1.0, 0.5, 0.0][usize::from(surprise)];
+        choose
+            .show(|| Exhibit::Value { name: "command", value: format!("{share} of {command:?}") });
+        let before = self.robot.moved(command.turn * share, 0.0);
+        self.robot = before.moved(0.0, command.forward * share);
+        if self.lane().0.abs() > FREE {
+            self.robot = before;
+        }
+    }
+}

@@ -1,0 +1,443 @@
+//! Algorithm 2: what it never does, and where it gets. Section 4.3.
+//!
+//! In a [`Drive`] pictures and motions may surprise the robot, within a budget. Where scenes are
+//! arbitrary, they come from [`SCENES`], in any order.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::{
+    driving::{
+        algorithm2::{
+            Command, IDLE, LEAST_FORWARD, LEAST_TURN, LEG, PathExecution, Standing, Step, UNIT,
+        },
+        odometry::Odometry,
+        scene::{
+            CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear, wrapped,
+        },
+        visit::Form,
+    },
+    percept::{Door, Percept, Sighting},
+};
+
+use crate::{
+    choose::{Case, Choose, Exhibit, Stop, claim},
+    hallways::{Budget, Drive, Driver, FORMS, HALF_WIDTH, Told},
+    lemma::declare,
+};
+
+#[cfg(test)]
+mod broken;
+
+/// Algorithm 2 itself.
+type Algorithm2 = PathExecution<'static>;
+
+declare! {
+    no_command_exceeds_a_unit {
+        "Whatever scenes came before, a command turns the robot by an angle in (-pi, pi] and takes \
+         it ahead by at most 0.5 m, and by nothing that is too little to be done.",
+        paper "4.1, 4.2; Algorithm 2, lines 2, 12, 14, 19, 25, 29, 31",
+        exhaustive "a path of 2 doors, up to 2 scenes of 8, carried out wholly, in part or not, then \
+                    any of 1417 scenes", 851_617 cases:
+            no_command_exceeds_a_unit::<_, Algorithm2, 2>;
+        sampled "up to 20 scenes before it": no_command_exceeds_a_unit::<_, Algorithm2, 20>;
+    }
+    the_first_picture_takes_the_first_door {
+        "At a junction that the robot knows, a picture of it takes the first door of the path and \
+         no other, and turns the robot to it, or ends a path without doors; no other picture does.",
+        paper "4.2; Algorithm 2, lines 20 to 26",
+        exhaustive "paths of up to 2 doors at every form, pictures of every form, turned by any \
+                    multiple of 15 degrees", 6048 cases:
+            the_first_door::<_, Algorithm2, 24>;
+        kani "the same, turned by multiples of 90 degrees", unwind 10:
+            the_first_door::<_, Algorithm2, 4>;
+    }
+    doors_are_taken_in_the_order_of_the_path {
+        "No door of a path is taken twice and none is left out: each is taken at the junction where \
+         it is due, when two pictures agree on it, and the robot leaves by it when a picture shows \
+         the doors turned.",
+        paper "4.3; Algorithm 2, lines 20 to 26",
+        exhaustive "every path of two doors, over 3.2 m of hallway each; a picture or a motion that \
+                    goes wrong", 46_144 cases:
+            doors_in_order::<_, Algorithm2, 1, 1>;
+        sampled "six surprises, of which one picture is a mistake":
+            doors_in_order::<_, Algorithm2, 6, 1>;
+    }
+    driving_always_ends {
+        "Whatever scenes follow each other, and however little is carried out: of 17 rounds in a \
+         row one ends the path, takes a door or gets the robot ahead by 15 mm, and it never gets \
+         farther than the bound without a door. So it arrives or gives up.",
+        paper "4.3; Algorithm 2, lines 3 to 32",
+        exhaustive "up to 1 scene of 8, carried out wholly, in part or not, then up to 3 such for \
+                    ever; paths of up to 2 doors, 2 m from door to door", 1_081_800 cases:
+            always_ends::<_, Algorithm2, 1, 3>;
+        sampled "up to 40 scenes, then up to 8 for ever": always_ends::<_, Algorithm2, 40, 8>;
+    }
+    driving_arrives_at_the_next_junction {
+        "Where no picture is a mistake and all is carried out, the robot arrives at the next \
+         junction, not at the one that it left, and knows its form, its degree and its entry door.",
+        paper "4.3; Algorithm 2",
+        exhaustive "every door of every form to every form, over 3.2 and 4.1 m of hallway; three \
+                    ranges of sight; two pictures that are unclear, unknown or of hallway or \
+                    junction", 122_112 cases:
+            arrives::<_, Algorithm2, 2>;
+        sampled "five such pictures": arrives::<_, Algorithm2, 5>;
+    }
+    one_mistake_makes_no_false_arrival {
+        "The robot arrives at the next junction with its true form, or gives up, unless two \
+         pictures were mistaken and agreed.",
+        paper "4.3; Algorithm 2",
+        exhaustive "a door of every form to every form, over 3.2 m of hallway; three ranges of \
+                    sight; two surprises, wrong pictures and motions in part or not at all among \
+                    them", 793_596 cases:
+            no_false_arrival::<_, Algorithm2, 2, 2>;
+        sampled "eight surprises, of which three pictures are mistakes":
+            no_false_arrival::<_, Algorithm2, 8, 3>;
+    }
+}
+
+/// Each form with each of its doors.
+const EXITS: [(usize, u32); 14] = [
+    (0, 0),
+    (1, 1),
+    (2, 1),
+    (3, 2),
+    (4, 2),
+    (5, 1),
+    (1, 0),
+    (2, 0),
+    (3, 0),
+    (3, 1),
+    (4, 0),
+    (4, 1),
+    (5, 0),
+    (5, 2),
+];
+
+/// The paths of one door and of two, by their numbers.
+const ONE_DOOR: [&[Door]; 3] = [&[Door(0)], &[Door(1)], &[Door(2)]];
+const TWO_DOORS: [[&[Door]; 3]; 3] = [
+    [&[Door(0), Door(0)], &[Door(0), Door(1)], &[Door(0), Door(2)]],
+    [&[Door(1), Door(0)], &[Door(1), Door(1)], &[Door(1), Door(2)]],
+    [&[Door(2), Door(0)], &[Door(2), Door(1)], &[Door(2), Door(2)]],
+];
+
+/// How near to a junction it is mostly seen.
+const SIGHTS: [f64; 3] = [1.1, 0.75, 1.6];
+
+/// No drive on these plans takes so many rounds.
+const ROUNDS: u32 = 200;
+
+/// A picture of a junction whose turning point is so far ahead of a robot that then has turned.
+fn junction(form: Form, ahead: f64, turned: f64) -> Place {
+    let through =
+        if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
+    let mut doors = Vec::with_capacity(4);
+    let mut quarter = 0;
+    while quarter < 4 {
+        if form.0[quarter] {
+            let direction = wrapped(PI - quarter as f64 * FRAC_PI_2 - turned);
+            doors.push(CentreLine { through, direction });
+        }
+        quarter += 1;
+    }
+    Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
+}
+
+fn hallway(heading: f64, left: f64, right: f64, status: Status) -> Place {
+    Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 })
+}
+
+/// How many scenes [`any_scene`] has.
+const SCENES: u8 = 8;
+
+/// One of a few scenes.
+fn any_scene(choose: &mut impl Choose) -> Place {
+    match choose.below(SCENES) {
+        0 => Place::Unknown(Reason::NothingFits),
+        1 => hallway(0.0, 0.8, 0.8, Status::Clear),
+        2 => hallway(0.7, 1.2, 0.4, Status::Unclear(Unclear::SizesDiffer)),
+        3 => junction(FORMS[1], 0.6, 0.0),
+        4 => junction(FORMS[1], 0.0, 0.0),
+        5 => junction(FORMS[1], 0.0, FRAC_PI_2),
+        6 => junction(FORMS[4], -0.5, 0.0),
+        _ => junction(FORMS[0], 0.04, 0.0),
+    }
+}
+
+/// How much of a command is carried out: all, or so little that it just counts, or nothing.
+fn any_share(choose: &mut impl Choose) -> f64 {
+    [1.0, 0.5, 0.0][usize::from(choose.below(3))]
+}
+
+/// Any of many scenes.
+fn wide_scene(choose: &mut impl Choose) -> Place {
+    match choose.below(3) {
+        0 => Place::Unknown(Reason::NothingFits),
+        1 => {
+            let heading = (f64::from(choose.below(12)) - 5.0) / 12.0 * PI;
+            let left = [0.8, 0.2, 2.0][usize::from(choose.below(3))];
+            let right = [0.8, 0.2, 2.0][usize::from(choose.below(3))];
+            let statuses = [Status::Clear, Status::Unclear(Unclear::ClusterBehind)];
+            hallway(heading, left, right, statuses[usize::from(choose.below(2))])
+        }
+        _ => {
+            let form = FORMS[usize::from(choose.below(6))];
+            let turned = f64::from(choose.below(8)) / 4.0 * PI;
+            let Place::Junction(mut view) = junction(form, 0.0, turned) else { unreachable!() };
+            let aside = [0.0, 0.02, -0.02, 2.0, -2.0];
+            for axis in 0..2 {
+                view.turning_point[axis] = aside[usize::from(choose.below(5))];
+            }
+            Place::Junction(view)
+        }
+    }
+}
+
+fn limits(Command { turn, forward }: Command) -> Case {
+    claim("it turns by an angle in (-pi, pi]", -PI < turn && turn <= PI)?;
+    claim("it goes ahead by at most a unit", (0.0..=UNIT).contains(&forward) && UNIT <= 0.5)?;
+    claim("no turn is too little to be done", turn == 0.0 || turn.abs() >= LEAST_TURN)?;
+    claim("no way is too little to be done", forward == 0.0 || forward >= LEAST_FORWARD)
+}
+
+/// A robot at the turning point of a junction with this form.
+fn stands(form: Form) -> Standing {
+    let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
+    Standing { form, percept, entry: PI }
+}
+
+// paper: alg2.2, drive.clear, drive.unclear
+fn no_command_exceeds_a_unit<C: Choose, D: Driver, const BEFORE: u8>(choose: &mut C) -> Case {
+    let mut driver = D::begin(TWO_DOORS[1][0], &stands(FORMS[1]), LEG);
+    let mut odometry = Odometry::default();
+    let before = choose.below(1 + BEFORE);
+    for round in 0..=before {
+        let place = if round < before { any_scene(choose) } else { wide_scene(choose) };
+        choose.show(|| Exhibit::Value { name: "picture", value: format!("{place:?}") });
+        let Ok(Step::Go(command)) = driver.round(&Scene { place, marker: None }, odometry) else {
+            return Ok(());
+        };
+        choose.show(|| Exhibit::Value { name: "command", value: format!("{command:?}") });
+        limits(command)?;
+        if round < before {
+            let share = any_share(choose);
+            odometry = odometry.moved(command.turn * share, command.forward * share);
+        }
+    }
+    Ok(())
+}
+
+// paper: alg2.20, alg2.21, alg2.22, alg2.23, alg2.24
+fn the_first_door<C: Choose, D: Driver, const TURNS: u8>(choose: &mut C) -> Case {
+    let form = FORMS[usize::from(choose.below(6))];
+    let door = choose.below(form.degree() as u8);
+    let queue = match choose.below(3) {
+        0 => &[],
+        1 => ONE_DOOR[usize::from(door)],
+        _ => TWO_DOORS[usize::from(door)][0],
+    };
+    let seen = FORMS[usize::from(choose.below(6))];
+    let turned = f64::from(choose.below(TURNS)) / f64::from(TURNS) * 2.0 * PI;
+    let Place::Junction(view) = junction(seen, 0.0, turned) else { unreachable!() };
+    choose.show(|| Exhibit::Value { name: "known", value: format!("{form:?}, path {queue:?}") });
+    choose.show(|| Exhibit::Value { name: "picture", value: format!("{view:?}") });
+    let exit = view.doors.get(usize::from(door)).map_or(0.0, |line| line.direction);
+    // Odometry knows that the robot has turned.
+    let odometry = Odometry { position: [0.0; 2], heading: wrapped(turned) };
+    let mut driver = D::begin(queue, &stands(form), LEG);
+    let step = driver.round(&Scene { place: Place::Junction(view), marker: None }, odometry);
+    let left = driver.queue().len();
+    match step {
+        Err(_) => claim("it does not give up", false),
+        Ok(Step::Arrived(standing)) => {
+            claim("a path without doors is done", queue.is_empty() && seen == form)?;
+            claim("the junction is the one known", standing.form == form)
+        }
+        Ok(Step::Go(command)) if seen == form => {
+            limits(command)?;
+            claim("one door is taken", left + 1 == queue.len())?;
+            let turn = wrapped(exit - command.turn).abs();
+            claim("it turns to the door", turn < LEAST_TURN)?;
+            let is_turned = exit.abs() < 11.0 / 180.0 * PI;
+            claim("it leaves only if it looks there", command.forward == 0.0 || is_turned)
+        }
+        Ok(Step::Go(command)) => {
+            limits(command)?;
+            claim("another junction takes no door", left == queue.len())?;
+            claim("and does not move the robot", command.forward == 0.0)
+        }
+    }
+}
+
+/// Where a drive has come to.
+struct End {
+    /// What the robot believes; `None` if it gave up.
+    standing: Option<Standing>,
+    /// The pictures since the last door that were mistaken, by their forms.
+    mistaken: Vec<Form>,
+    /// Whether a picture showed the junction from where a marker would be seen.
+    looked: bool,
+}
+
+/// Drives a path to its end, and looks that its doors are taken as they must be.
+fn driven<C: Choose, D: Driver>(
+    choose: &mut C,
+    drive: &mut Drive,
+    queue: &'static [Door],
+) -> Result<End, Stop> {
+    choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?} {drive:?}") });
+    let mut driver = D::begin(queue, &drive.junction(0).standing(), LEG);
+    // How many doors the robot has left by, and whether it has taken one more.
+    let (mut left_by, mut takes) = (0, false);
+    // The forms of which pictures told since then, and those by mistake.
+    let (mut told_of, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
+    let mut looked = true;
+    for _ in 0..ROUNDS {
+        let (scene, told) = drive.picture(choose);
+        // The junction to come to, or at which the robot stands.
+        let here = *drive.junction(left_by);
+        match (told, &scene.place) {
+            (Told::Mistake(form), _) => {
+                told_of.push(form);
+                mistaken.push(form);
+            }
+            (Told::Truth, Place::Junction(view)) if here.distance(&drive.robot) < HALFWAY => {
+                told_of.push(here.form);
+                looked |= (0.2..=0.8).contains(&view.distance());
+            }
+            _ => {}
+        }
+        let open = driver.queue().len();
+        let step = driver.round(&scene, drive.robot);
+        claim("the doors left are the last", queue.ends_with(driver.queue()))?;
+        let due = queue.len() - left_by - usize::from(takes);
+        claim("a door stays taken", open == due)?;
+        if driver.queue().len() < open {
+            claim("one door is taken at a time", driver.queue().len() + 1 == open && !takes)?;
+            claim(
+                "two pictures agree",
+                FORMS.into_iter().any(|form| agreeing(&told_of, form) > 1),
+            )?;
+            takes = true;
+        }
+        let command = match step {
+            Err(_) => return Ok(End { standing: None, mistaken, looked }),
+            Ok(Step::Arrived(standing)) => {
+                claim("every door was taken", left_by == queue.len() && !takes)?;
+                claim("two pictures agree", agreeing(&told_of, standing.form) > 1)?;
+                return Ok(End { standing: Some(standing), mistaken, looked });
+            }
+            Ok(Step::Go(command)) => command,
+        };
+        limits(command)?;
+        if takes && command.forward > 0.0 && mistaken.len() < 2 {
+            let direction = here.direction(queue[left_by]);
+            let aside = drive.robot.seen(direction).abs();
+            claim("it leaves when it looks to the door", aside < 11.0 / 180.0 * PI)?;
+            claim("it leaves where the door is", here.distance(&drive.robot) < HALFWAY)?;
+        }
+        if takes && command.forward > 0.0 {
+            (left_by, takes) = (left_by + 1, false);
+            (told_of, mistaken, looked) = (Vec::new(), Vec::new(), false);
+        }
+        drive.carry_out(choose, command);
+    }
+    Err(Stop::Fails("it ends"))
+}
+
+/// So many of these are of this form.
+fn agreeing(forms: &[Form], form: Form) -> usize {
+    forms.iter().filter(|&&other| other == form).count()
+}
+
+/// Nearer than this to a junction the robot is not at another one, in metres.
+const HALFWAY: f64 = 1.6;
+
+// paper: alg2.23, alg2.25, drive.turn, drive.path
+fn doors_in_order<C: Choose, D: Driver, const SURPRISES: u8, const MISTAKES: u8>(
+    choose: &mut C,
+) -> Case {
+    let (first, door) = EXITS[usize::from(choose.below(14))];
+    let (second, then) = EXITS[usize::from(choose.below(14))];
+    let legs = [(Door(door), 3.2, FORMS[second]), (Door(then), 3.2, FORMS[3])];
+    let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
+    let mut drive = Drive::new(FORMS[first], &legs, SIGHTS[0], budget);
+    let queue = TWO_DOORS[door as usize][then as usize];
+    driven::<_, D>(choose, &mut drive, queue).map(|_| ())
+}
+
+// paper: alg2.3
+fn always_ends<C: Choose, D: Driver, const BEFORE: u8, const PERIOD: u8>(choose: &mut C) -> Case {
+    const FAR: f64 = 2.0;
+    let queue: &'static [Door] = [&[], ONE_DOOR[2], TWO_DOORS[1][0]][usize::from(choose.below(3))];
+    let form = FORMS[if queue.len() == 1 { 4 } else { 1 }];
+    let mut driver = D::begin(queue, &stands(form), FAR);
+    let before = usize::from(choose.below(1 + BEFORE));
+    let period = 1 + usize::from(choose.below(PERIOD));
+    let mut moments = Vec::with_capacity(before + period);
+    for _ in 0..before + period {
+        moments.push((Scene { place: any_scene(choose), marker: None }, any_share(choose)));
+    }
+    choose.show(|| Exhibit::Value { name: "for ever", value: format!("{:?}", &moments[before..]) });
+    let mut odometry = Odometry::default();
+    // Rounds in a row without getting anywhere, and metres in a row without a door.
+    let (mut idle, mut way) = (0, 0.0);
+    let mut round = 0;
+    loop {
+        let at = if round < before { round } else { before + (round - before) % period };
+        let (scene, share) = &moments[at];
+        let open = driver.queue().len();
+        let Ok(Step::Go(command)) = driver.round(scene, odometry) else { return Ok(()) };
+        limits(command)?;
+        let forward = command.forward * share;
+        odometry = odometry.moved(command.turn * share, forward);
+        let takes = driver.queue().len() < open;
+        way = if takes { 0.0 } else { way + forward };
+        idle = if takes || forward >= LEAST_FORWARD / 2.0 { 0 } else { idle + 1 };
+        claim("it gets somewhere", idle <= IDLE)?;
+        claim("it does not get too far", way <= FAR + 2.0 * UNIT)?;
+        round += 1;
+    }
+}
+
+// paper: alg2.7, alg2.15, alg2.22, drive.path
+fn arrives<C: Choose, D: Driver, const SURPRISES: u8>(choose: &mut C) -> Case {
+    let (first, door) = EXITS[usize::from(choose.below(14))];
+    let form = FORMS[usize::from(choose.below(6))];
+    let length = [3.2, 4.1][usize::from(choose.below(2))];
+    let sight = SIGHTS[usize::from(choose.below(3))];
+    let budget = Budget { surprises: SURPRISES, mistakes: 0, failures: 0 };
+    let mut drive = Drive::new(FORMS[first], &[(Door(door), length, form)], sight, budget);
+    let End { standing, looked, .. } = driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
+    let Some(standing) = standing else {
+        return claim("it gives up only if it could not see a marker", form.is_l() && !looked);
+    };
+    let there = drive.junction(1);
+    claim("it is in the next junction", there.distance(&drive.robot) < HALF_WIDTH)?;
+    let expected = there.standing();
+    claim("it knows its form", standing.form == form && standing.percept == expected.percept)?;
+    let off = wrapped(standing.entry - expected.entry).abs();
+    claim("it knows its entry door", off < 1e-6)
+}
+
+// paper: alg2.15, alg2.27, drive.path
+fn no_false_arrival<C: Choose, D: Driver, const SURPRISES: u8, const MISTAKES: u8>(
+    choose: &mut C,
+) -> Case {
+    let (first, door) = EXITS[usize::from(choose.below(6))];
+    let form = FORMS[usize::from(choose.below(6))];
+    let sight = SIGHTS[usize::from(choose.below(3))];
+    let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
+    let mut drive = Drive::new(FORMS[first], &[(Door(door), 3.2, form)], sight, budget);
+    let End { standing, mistaken, .. } =
+        driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
+    let Some(standing) = standing else { return Ok(()) };
+    if agreeing(&mistaken, standing.form) < 2 {
+        let there = drive.junction(1);
+        claim("its form is the true one", standing.form == form)?;
+        claim("it is at the next junction", there.distance(&drive.robot) < HALFWAY)?;
+        let off = wrapped(standing.entry - there.standing().entry).abs();
+        claim("it knows its entry door", off < PI / 4.0)?;
+    }
+    Ok(())
+}

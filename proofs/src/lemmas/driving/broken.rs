@@ -1,0 +1,126 @@
+//! The lemmas fail on broken variants of Algorithm 2.
+
+use toposlam_model::driving::algorithm2::{Lost, Why};
+
+use super::*;
+use crate::Odometer;
+
+/// Algorithm 2 with something broken.
+#[derive(Clone)]
+struct Broken<const FLAW: u8> {
+    path: Algorithm2,
+    /// The path that it was told, and how many of its doors it has not taken into account.
+    queue: &'static [Door],
+    skipped: usize,
+}
+
+/// A unit is 60 cm.
+const FARTHER: u8 = 0;
+/// One picture decides a visit.
+const ONE_PICTURE: u8 = 1;
+/// The first door is not removed from the queue.
+const KEPT: u8 = 2;
+/// The first door is left out.
+const LEFT_OUT: u8 = 3;
+/// It leaves a junction without a picture of the doors turned.
+const AT_ONCE: u8 = 4;
+/// Pictures that tell nothing are not counted.
+const UNKNOWN_FOR_EVER: u8 = 5;
+/// What is not carried out is tried for ever.
+const STALLED_FOR_EVER: u8 = 6;
+/// Pictures from the same place are not counted.
+const IDLE_FOR_EVER: u8 = 7;
+/// Junctions without a door left are driven through.
+const NO_STOP: u8 = 8;
+
+impl<const FLAW: u8> Driver for Broken<FLAW> {
+    fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
+        let (driven, skipped): (&'static [Door], usize) = match (FLAW, queue) {
+            (KEPT, [first, _]) => (TWO_DOORS[first.0 as usize][first.0 as usize], 0),
+            (LEFT_OUT, [_, second]) => (ONE_DOOR[second.0 as usize], 1),
+            _ => (queue, 0),
+        };
+        Self { path: Algorithm2::begin(driven, from, leg), queue, skipped }
+    }
+
+    fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost> {
+        let before = self.path.clone();
+        let step = self.path.round(scene, odometry);
+        match (FLAW, step) {
+            (FARTHER, Ok(Step::Go(Command { turn, forward }))) => {
+                Ok(Step::Go(Command { turn, forward: 1.2 * forward }))
+            }
+            (ONE_PICTURE, Ok(Step::Go(command))) if command == Command::default() => {
+                self.path.round(scene, odometry)
+            }
+            (AT_ONCE, Ok(Step::Go(Command { turn, .. })))
+                if self.path.queue().len() < before.queue().len() =>
+            {
+                Ok(Step::Go(Command { turn, forward: UNIT }))
+            }
+            (UNKNOWN_FOR_EVER, Err(Lost { why: Why::Unknown { .. }, .. }))
+            | (STALLED_FOR_EVER, Err(Lost { why: Why::Stalled { .. }, .. }))
+            | (IDLE_FOR_EVER, Err(Lost { why: Why::Idle { .. }, .. })) => {
+                self.path = before;
+                Ok(Step::Go(Command { turn: 0.2, forward: 0.0 }))
+            }
+            (NO_STOP, Ok(Step::Arrived(_))) => Ok(Step::Go(Command { turn: 0.0, forward: UNIT })),
+            (_, step) => step,
+        }
+    }
+
+    fn queue(&self) -> &[Door] {
+        let left = self.path.queue().len() + self.skipped;
+        &self.queue[self.queue.len() - left.min(self.queue.len())..]
+    }
+}
+
+/// What it is that does not hold.
+#[track_caller]
+fn fails(lemma: fn(&mut Odometer) -> Case) -> &'static str {
+    Odometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
+}
+
+#[test]
+fn a_unit_of_60_cm_is_noticed() {
+    let claim = "it goes ahead by at most a unit";
+    assert_eq!(fails(no_command_exceeds_a_unit::<_, Broken<FARTHER>, 1>), claim);
+    assert_eq!(fails(arrives::<_, Broken<FARTHER>, 0>), claim);
+}
+
+#[test]
+fn a_visit_decided_by_one_picture_is_noticed() {
+    assert_eq!(fails(no_false_arrival::<_, Broken<ONE_PICTURE>, 1, 1>), "two pictures agree");
+}
+
+#[test]
+fn a_door_that_stays_in_the_queue_is_noticed() {
+    let claim = "it leaves when it looks to the door";
+    assert_eq!(fails(doors_in_order::<_, Broken<KEPT>, 0, 0>), claim);
+}
+
+#[test]
+fn a_door_that_is_left_out_is_noticed() {
+    assert_eq!(fails(doors_in_order::<_, Broken<LEFT_OUT>, 0, 0>), "every door was taken");
+}
+
+#[test]
+fn a_robot_that_leaves_without_a_picture_is_noticed() {
+    let claim = "it leaves only if it looks there";
+    assert_eq!(fails(the_first_door::<_, Broken<AT_ONCE>, 4>), claim);
+    let claim = "it leaves when it looks to the door";
+    assert_eq!(fails(doors_in_order::<_, Broken<AT_ONCE>, 0, 0>), claim);
+}
+
+#[test]
+fn whatever_may_go_on_for_ever_is_noticed() {
+    let claim = "it gets somewhere";
+    assert_eq!(fails(always_ends::<_, Broken<UNKNOWN_FOR_EVER>, 0, 1>), claim);
+    assert_eq!(fails(always_ends::<_, Broken<STALLED_FOR_EVER>, 0, 1>), claim);
+    assert_eq!(fails(always_ends::<_, Broken<IDLE_FOR_EVER>, 0, 1>), claim);
+}
+
+#[test]
+fn a_path_that_does_not_stop_is_noticed() {
+    assert_eq!(fails(arrives::<_, Broken<NO_STOP>, 0>), "it ends");
+}
