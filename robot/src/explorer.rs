@@ -157,6 +157,21 @@ pub struct Explorer<R: Robot, E, O = ()> {
     last: Option<(R::View, Odometry)>,
 }
 
+/// Why a picture cannot be used.
+#[derive(Debug, Error)]
+enum Unusable {
+    #[error("the camera gives no picture")]
+    Missing,
+    #[error("it is older than the end of the last motion")]
+    Stale,
+    #[error("it is the same as before the robot moved")]
+    Same,
+    #[error(transparent)]
+    Unreadable(#[from] Unreadable),
+    #[error(transparent)]
+    Robot(RobotError),
+}
+
 /// So many pictures in a row that cannot be used are too many.
 const RETAKES: u32 = 6;
 
@@ -227,38 +242,39 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         }
     }
 
-    /// A picture that can be used: one that was taken since the robot last moved.
+    /// A picture that can be used.
     // paper: alg2.4, alg2.5
     fn look(&mut self) -> Result<(Picture<R::View>, Scene), ExplorerError> {
-        let at = self.robot.odometry();
-        let mut cause = String::new();
+        let mut last = Unusable::Missing;
         for _ in 0..RETAKES {
-            let picture = match self.robot.capture() {
-                Ok(picture) => picture,
-                Err(error @ RobotError::NoPicture) => {
-                    cause = error.to_string();
-                    continue;
-                }
-                Err(error) => return Err(error.into()),
-            };
-            if picture.taken < at.time {
-                cause = "it is older than the end of the last motion".to_owned();
-                continue;
-            }
-            let same = |(view, odometry): &(R::View, Odometry)| {
-                *odometry != at.odometry && *view == picture.view
-            };
-            if self.last.as_ref().is_some_and(same) {
-                cause = "it is the same as before the robot moved".to_owned();
-                continue;
-            }
-            match self.eye.scene(&picture.view) {
-                Ok(scene) => return Ok((picture, scene)),
-                Err(error) => cause = error.to_string(),
+            match self.picture() {
+                Ok(seen) => return Ok(seen),
+                Err(Unusable::Robot(error)) => return Err(error.into()),
+                Err(unusable) => last = unusable,
             }
         }
-        let (moves, door) = (self.moves, self.door);
+        let (moves, door, cause) = (self.moves, self.door, last.to_string());
         Err(ExplorerError::NoPicture { moves, door, pictures: RETAKES, cause })
+    }
+
+    /// A picture that was taken since the robot last moved, and its scene.
+    fn picture(&mut self) -> Result<(Picture<R::View>, Scene), Unusable> {
+        let at = self.robot.odometry();
+        let picture = self.robot.capture().map_err(|error| match error {
+            RobotError::NoPicture => Unusable::Missing,
+            error @ RobotError::NotRecorded { .. } => Unusable::Robot(error),
+        })?;
+        if picture.taken < at.time {
+            return Err(Unusable::Stale);
+        }
+        let same = |(view, odometry): &(R::View, Odometry)| {
+            *odometry != at.odometry && *view == picture.view
+        };
+        if self.last.as_ref().is_some_and(same) {
+            return Err(Unusable::Same);
+        }
+        let scene = self.eye.scene(&picture.view)?;
+        Ok((picture, scene))
     }
 
     /// Where the robot stands; at the very start it finds out.

@@ -272,12 +272,12 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// What can go wrong, and examples.
 fn after_help() -> String {
-    let mut text =
-        "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
-    for (_, name, lasting, about) in FAULTS {
-        text += &format!("  {name:<14} {lasting}   {about}\n");
-    }
-    text + "\nExamples:
+    let faults = FAULTS
+        .iter()
+        .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
+    let head = "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
+    head + &faults.collect::<String>()
+        + "\nExamples:
   toposlam simulate worlds/shape-6.toml
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
   toposlam simulate worlds/building-12.toml --start north-west:north --seed 3 --json

@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 13] = [
+const VERBS: [(&str, &[&str]); 14] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -21,7 +21,11 @@ const VERBS: [(&str, &[&str]); 13] = [
     ("calibrate", &["--out", "--start", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
-    ("evaluate", &["vision"]),
+    ("evaluate", &["vision", "control", "runs"]),
+    (
+        "simulate",
+        &["--start", "--seed", "--by-scene", "--fault", "--noise", "--html", "--frames", "blocked"],
+    ),
     (
         "render",
         &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],

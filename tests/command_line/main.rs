@@ -14,6 +14,7 @@ mod help;
 mod proofs;
 mod render;
 mod sense;
+mod simulate;
 mod train;
 
 use std::{

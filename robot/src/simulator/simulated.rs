@@ -86,7 +86,9 @@ impl<C: Camera> Robot for SimulatedRobot<C> {
         let number = self.pictures;
         let begin: Vec<Fault> =
             self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
-        begin.iter().for_each(|fault| self.begin(fault));
+        for fault in &begin {
+            self.begin(fault);
+        }
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
         let taken = self.base.time();
         let stops = if spoilt(FaultKind::OverExposed) { BURNT_OUT } else { 0.0 };

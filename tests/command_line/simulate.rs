@@ -1,0 +1,196 @@
+//! `toposlam simulate`, and `toposlam evaluate control` and `runs`: small parts of long measurements.
+
+use std::fs;
+
+use crate::{folder, names_in, objects, read_world, run, said, stderr, stdout};
+
+const SHAPE_6: &str = "worlds/shape-6.toml";
+const SHAPE_8: &str = "worlds/shape-8.toml";
+
+// paper: exp.simulated
+// paper: exp.maps
+#[test]
+fn a_robot_that_sees_only_its_pictures_maps_shape_6() {
+    let folder = folder("simulate");
+    let [map, svg, html, frames] =
+        ["map.toml", "run.svg", "run.html", "frames"].map(|name| folder.join(name));
+    let output = run([
+        "simulate".as_ref(),
+        SHAPE_6.as_ref(),
+        "--seed".as_ref(),
+        "3".as_ref(),
+        "--map".as_ref(),
+        map.as_os_str(),
+        "--svg".as_ref(),
+        svg.as_os_str(),
+        "--html".as_ref(),
+        html.as_os_str(),
+        "--frames".as_ref(),
+        frames.as_os_str(),
+    ]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}{}", stderr(&output));
+    for part in [
+        "shape-6, from corner with its back to the door tee.",
+        "It drops its marker at v0, where it senses 2 doors, marker along door 0.",
+        "so v4.1 and v1.2 are one edge",
+        "The map is right, made in 7 moves, as the specification makes them.",
+        "moves : edges      7 : 6; 7 in the plan's embedded graph",
+        "off-line on the same pictures",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    let (world, map) = (read_world(SHAPE_6.as_ref()), read_world(&map));
+    assert_eq!(map.graph.edge_count(), world.graph.edge_count());
+    let page = fs::read_to_string(&html).unwrap();
+    assert!(page.contains("data:image/jpeg;base64,") && page.contains("so v4.1 and v1.2"));
+    assert!(fs::read_to_string(&svg).unwrap().starts_with("<svg"));
+    let names = names_in(&frames);
+    assert!(names.len() > 60 && names[0] == "00001.jpg", "{names:?}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+// paper: exp.multiplicative
+#[test]
+fn what_a_run_came_to_is_one_object_the_same_each_time() {
+    for (plan, seed, moves, edges) in [(SHAPE_6, "0", 7, 6), (SHAPE_8, "1", 12, 7)] {
+        let told = || {
+            let text = said(["simulate", plan, "--by-scene", "--seed", seed, "--json"]);
+            let mut object = objects(&text).remove(0);
+            // The one thing that is a wall time.
+            assert!(object["compute_seconds"].as_f64().unwrap() > 0.0);
+            object["compute_seconds"] = serde_json::Value::Null;
+            object
+        };
+        let object = told();
+        assert_eq!(object, told());
+        assert_eq!(object["schema"], 1);
+        assert_eq!((&object["moves"], &object["explore_moves"]), (&moves.into(), &moves.into()));
+        assert_eq!(object["edges"], edges);
+        for holds in ["isomorphic", "pose_true", "conforms"] {
+            assert_eq!(object[holds], true, "{object}");
+        }
+        for nothing in ["divergence", "error"] {
+            assert!(object[nothing].is_null(), "{object}");
+        }
+        assert!(object["frames"].as_u64().unwrap() > 60);
+        assert!(object["simulated_seconds"].as_f64().unwrap() > 180.0);
+    }
+}
+
+#[test]
+fn a_robot_that_gives_up_says_where_and_why() {
+    for (fault, why) in [
+        (
+            "blocked@20",
+            "on move 2, by door 1: 3 commands in a row were not carried out; in a hallway",
+        ),
+        ("lights-out@20", "7 pictures in a row do not tell where the robot is"),
+        ("dropped@20:50", "6 pictures in a row cannot be used: the camera gives no picture"),
+    ] {
+        let output = run(["simulate", SHAPE_6, "--by-scene", "--fault", fault]);
+        let text = stdout(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(text.contains("The robot gave up: on move ") && text.contains(why), "{text}");
+        assert!(text.contains("  known              "), "{text}");
+    }
+}
+
+#[test]
+fn a_robot_with_too_few_darts_is_incomplete() {
+    let output = run(["simulate", SHAPE_8, "--by-scene", "--max-darts", "6"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));
+    assert!(stdout(&output).contains("more than 6"), "{}", stdout(&output));
+}
+
+#[test]
+fn control_is_as_specified_on_any_number_of_threads() {
+    let arguments = ["evaluate", "control", "--traversals", "3000", "--plans", "10", "--json"];
+    let text = said(arguments);
+    assert_eq!(text, said([&arguments[..], &["--threads", "3"]].concat()));
+    let lines = objects(&text);
+    let last = lines.last().unwrap();
+    assert_eq!((&last["kind"], &last["holds"]), (&"control".into(), &true.into()), "{text}");
+    assert_eq!(last["traversals"], 3000);
+    let table = said(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
+    // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
+    assert!(table.contains("  26 doors, counted from each entry, in 1 floor plans"), "{table}");
+    assert!(table.contains("holds: each door leads where the specification says"), "{table}");
+}
+
+#[test]
+fn a_few_doors_are_taken_with_pictures() {
+    let arguments = ["evaluate", "control", "--images", "--look", "tiles", "--traversals", "4"];
+    let output = run([&arguments[..], &["--plan", SHAPE_8]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).contains("Control by pictures of 640x480"), "{}", stdout(&output));
+}
+
+// paper: exp.simulated
+#[test]
+fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
+    let text = said(["evaluate", "runs", "--plans", "12", "--starts", "2", "--json"]);
+    let lines = objects(&text);
+    let last = lines.last().unwrap();
+    assert_eq!((&last["kind"], &last["holds"]), (&"runs".into(), &true.into()), "{text}");
+    let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
+    assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
+    let table = said(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
+    for part in ["dropped", "frozen", "carried", "holds: each map is right, or the robot gave up"] {
+        assert!(table.contains(part), "{part}\n{table}");
+    }
+}
+
+#[test]
+fn what_cannot_work_is_said_before_the_run() {
+    let folder = folder("simulate_bad");
+    let write = |name: &str, text: &str| {
+        let file = folder.join(name);
+        fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let shape = fs::read_to_string(SHAPE_6).unwrap();
+    let of_width = |name, width| write(name, &shape.replace("hallway_width = 1.6", width));
+    let narrow = of_width("narrow.toml", "hallway_width = 0.9");
+    let wide = write(
+        "wide.toml",
+        "[floor]\nhallway_width = 2.6\n[junctions]\na = [0.0, 0.0]\nb = [9.0, 0.0]\nc = [9.0, 9.0]\n\
+         [[hallways]]\nfrom = \"a\"\nto = \"b\"\n[[hallways]]\nfrom = \"b\"\nto = \"c\"\n\
+         [start]\nat = \"b\"\nfacing = \"a\"\n",
+    );
+    // Four metres apart: closer than two widths of 2.1 m.
+    let close = of_width("close.toml", "hallway_width = 2.1");
+    let camera = write(
+        "camera.toml",
+        "[camera]\nkind = \"spherical-mirror\"\nimage = [640, 480]\ncentre = [320.0, 240.0]\n\
+         focal = 636.4\nmirror_radius = 0.05\nmirror_distance = 0.15\ncamera_height = 0.9\n\
+         ahead = 90.0\nseen_from = \"below\"\nmask = \"dark.png\"\n",
+    );
+    image::GrayImage::new(640, 480).save(folder.join("dark.png")).unwrap();
+    let cases: [(&[&str], &str); 10] = [
+        (&[&narrow], "its hallways are 0.9 m wide; the robot, 0.41 m across, needs 1.21 m"),
+        (&[&wide], "its hallways are 2.6 m wide; sensing sees up to 2.3 m"),
+        (&[&close], "are 4.00 m apart; it must be two hallway widths, 4.20 m"),
+        (
+            &["worlds/building-12.toml"],
+            "the start, courtyard, is a dead end; the marker is put down",
+        ),
+        (&[SHAPE_6, "--start", "tee:sw"], "the start, tee, is a T; the marker is put down at an L"),
+        (&["worlds/petersen.toml"], "this world is no floor plan"),
+        (&[SHAPE_6, "--calibration", "missing.toml"], "missing.toml: cannot be read"),
+        (&[SHAPE_6, "--calibration", &camera], "error: "),
+        (
+            &[SHAPE_6, "--noise", "9"],
+            "with more than 5 times the default a robot cannot find its way",
+        ),
+        (&[SHAPE_6, "--fault", "fog@3"], "there are dropped, late, frozen"),
+    ];
+    for (arguments, cause) in cases {
+        let output = run([&["simulate"][..], arguments].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.starts_with("error: ") && message.contains(cause), "{message}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
