@@ -94,6 +94,7 @@ impl Run<'_> {
 /// A simulated robot that stands at a dart's junction maps its building.
 ///
 /// `story` is told what Algorithm 1 does, `observer` what the robot does.
+// paper: exp.simulated
 pub fn run<'p, C, E, O, S>(
     plan: &'p FloorPlan,
     facing: Dart,
@@ -177,6 +178,7 @@ impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for 
 ///
 /// # Errors
 /// Where the recorded run ended early, and where what was recorded is not what is asked for.
+// paper: exp.off-line
 pub fn offline<V: Clone + PartialEq>(
     recording: &Recording<V>,
     eye: impl Eye<V>,
@@ -199,6 +201,10 @@ mod tests {
 
     const DARTS: usize = 200;
 
+    // paper: validation.traverse
+    // paper: validation.motion
+    // paper: exp.simulated
+    // paper: alg2.3
     #[test]
     fn each_plan_is_mapped_with_the_moves_of_the_specification() {
         for (name, plan) in plans().unwrap() {
@@ -213,6 +219,7 @@ mod tests {
         }
     }
 
+    // paper: exp.off-line
     #[test]
     fn what_was_recorded_gives_the_same_map_without_a_robot_that_moves() {
         let (_, plan) = plans().unwrap().swap_remove(2);

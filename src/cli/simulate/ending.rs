@@ -64,6 +64,7 @@ impl Ending<'_> {
     }
 
     /// The map as a world, where it is complete.
+    // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let (name, moves) = (&self.world.name, self.run.exploration.moves());
         let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
@@ -82,6 +83,7 @@ impl Ending<'_> {
         }
     }
 
+    // paper: exp.multiplicative
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
         let edges = self.world.graph.edge_count();
