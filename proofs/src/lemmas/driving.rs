@@ -8,7 +8,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use toposlam_model::{
     driving::{
         algorithm2::{
-            Command, IDLE, LEAST_FORWARD, LEAST_TURN, LEG, PathExecution, Standing, Step, UNIT,
+            Command, IDLE, LEAST_FORWARD, LEAST_TURN, LEG, PathExecution, STALLS, Standing, Step,
+            UNIT, UNKNOWNS,
         },
         odometry::Odometry,
         scene::{
@@ -65,7 +66,8 @@ declare! {
     driving_always_ends {
         "Whatever scenes follow each other, and however little is carried out: of 17 rounds in a \
          row one ends the path, takes a door or gets the robot ahead by 15 mm, and it never gets \
-         farther than the bound without a door. So it arrives or gives up.",
+         farther than the bound without a door. It gives up at the seventh picture in a row that \
+         tells nothing, and after three commands in a row of which nothing is carried out.",
         paper "4.3; Algorithm 2, lines 3 to 32",
         exhaustive "up to 1 scene of 8, carried out wholly, in part or not, then up to 3 such for \
                     ever; paths of up to 2 doors, 2 m from door to door", 1_081_800 cases:
@@ -382,6 +384,8 @@ fn always_ends<C: Choose, D: Driver, const BEFORE: u8, const PERIOD: u8>(choose:
     let mut odometry = Odometry::default();
     // Rounds in a row without getting anywhere, and metres in a row without a door.
     let (mut idle, mut way) = (0, 0.0);
+    // Pictures in a row that told nothing, and commands in a row of which nothing was carried out.
+    let (mut unknowns, mut stalls) = (0, 0);
     let mut round = 0;
     loop {
         let at = if round < before { round } else { before + (round - before) % period };
@@ -394,6 +398,11 @@ fn always_ends<C: Choose, D: Driver, const BEFORE: u8, const PERIOD: u8>(choose:
         let takes = driver.queue().len() < open;
         way = if takes { 0.0 } else { way + forward };
         idle = if takes || forward >= LEAST_FORWARD / 2.0 { 0 } else { idle + 1 };
+        unknowns = if matches!(scene.place, Place::Unknown(_)) { unknowns + 1 } else { 0 };
+        claim("it gives up at the seventh unknown", unknowns < UNKNOWNS)?;
+        let stalled = *share == 0.0 && command != Command::default();
+        stalls = if stalled { stalls + 1 } else { 0 };
+        claim("it gives up when nothing is carried out", stalls <= STALLS)?;
         claim("it gets somewhere", idle <= IDLE)?;
         claim("it does not get too far", way <= FAR + 2.0 * UNIT)?;
         round += 1;

@@ -114,9 +114,11 @@ fn a_robot_that_leaves_without_a_picture_is_noticed() {
 
 #[test]
 fn whatever_may_go_on_for_ever_is_noticed() {
-    let claim = "it gets somewhere";
+    let claim = "it gives up at the seventh unknown";
     assert_eq!(fails(always_ends::<_, Broken<UNKNOWN_FOR_EVER>, 0, 1>), claim);
+    let claim = "it gives up when nothing is carried out";
     assert_eq!(fails(always_ends::<_, Broken<STALLED_FOR_EVER>, 0, 1>), claim);
+    let claim = "it gets somewhere";
     assert_eq!(fails(always_ends::<_, Broken<IDLE_FOR_EVER>, 0, 1>), claim);
 }
 
