@@ -113,9 +113,10 @@ impl Arguments {
             print_rows(out, heads, &rows)?;
         }
         let [right, gave_up, wrong] = tally(judged.iter());
-        writeln!(out, "  right    {}", share(right, judged.len()))?;
-        writeln!(out, "  gave up  {}", share(gave_up, judged.len()))?;
-        writeln!(out, "  wrong    {}", share(wrong, judged.len()))?;
+        let all = judged.len();
+        writeln!(out, "  right    {} of {}", grouped(right as u128), grouped(all as u128))?;
+        writeln!(out, "  gave up  {}", share(gave_up, all))?;
+        writeln!(out, "  wrong    {}", share(wrong, all))?;
         let moves: u64 = judged.iter().map(|run| run.moves[0]).sum();
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
