@@ -81,6 +81,9 @@ fn the_pictures_are_what_the_program_draws() {
             world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap();
         assert!(svg(&Picture::from(&world)) == read(&format!("docs/{name}.svg")), "{name}");
     }
+    let way = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shape-8-run.svg");
+    toposlam(&["simulate", "worlds/shape-8.toml", "--svg", way.to_str().unwrap()]);
+    assert!(fs::read_to_string(&way).unwrap() == read("docs/shape-8-run.svg"));
     let map = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shape-8-map.svg");
     toposlam(&["explore", "worlds/shape-8.toml", "--svg", map.to_str().unwrap()]);
     assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));

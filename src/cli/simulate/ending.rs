@@ -30,6 +30,9 @@ pub(super) struct Ending<'a> {
     pub(super) wall_seconds: f64,
 }
 
+/// Computation is told from so many seconds on.
+const SHOWN: f64 = 0.01;
+
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line {
@@ -102,7 +105,8 @@ impl Ending<'_> {
         writeln!(out, "  known              {} vertices, {known} edges", map.vertex_count())?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
         writeln!(out, "  simulated time     {minutes:.1} minutes, {} pictures", run.pictures)?;
-        if self.replayed.is_some() {
+        // Without pictures there is next to nothing to compute.
+        if self.replayed.is_some() && seconds >= SHOWN {
             let ratio = run.seconds / seconds.max(1e-9);
             writeln!(
                 out,
@@ -129,7 +133,8 @@ impl Ending<'_> {
             conforms: divergence.is_none(),
             divergence,
             error: run.error.as_ref().map(ToString::to_string),
-            simulated_seconds: run.seconds,
+            // The control loop counts in quarters of a second, a picture in tenths.
+            simulated_seconds: (run.seconds * 1e3).round() / 1e3,
             compute_seconds: self.compute_seconds,
             frames: run.pictures,
         };

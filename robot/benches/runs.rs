@@ -1,0 +1,86 @@
+//! How long whole runs take: `cargo bench -p toposlam-robot --bench runs`.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use std::sync::Arc;
+
+use divan::Bencher;
+use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
+use toposlam_robot::{
+    evaluation::{Eyes, plans, random_plan::random_plan_with, runs::starts_of},
+    explorer::Told,
+    recording::Recording,
+    run::{Ending, Run, offline, run},
+    simulator::{Effects, LOOKS, Look, Setting},
+};
+use toposlam_vision::camera::Camera;
+
+const LARGE: [u32; 2] = [1280, 960];
+const DARTS: usize = 1000;
+
+fn main() {
+    divan::main();
+}
+
+/// A random plan with so many junctions, and a start in it.
+fn random(junctions: usize) -> (Arc<FloorPlan>, Dart) {
+    let plan = Arc::new(random_plan_with(1, junctions).unwrap());
+    let facing = starts_of(&plan)[0];
+    (plan, facing)
+}
+
+fn shape_6() -> (Arc<FloorPlan>, Dart) {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
+    let facing = starts_of(&plan)[0];
+    (plan, facing)
+}
+
+#[track_caller]
+fn right(run: &Run) {
+    assert_eq!(run.ending(), Ending::Right);
+}
+
+/// A whole run without pictures.
+#[divan::bench(args = [25, 100], sample_count = 10)]
+fn by_scene(bencher: Bencher, junctions: usize) {
+    let (plan, facing) = random(junctions);
+    bencher.bench(|| {
+        let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
+        right(&run(&plan, facing, robot, Told, (), &mut (), DARTS).0);
+    });
+}
+
+/// Shape 6 with rendered pictures of 1280 x 960.
+#[divan::bench(sample_count = 2)]
+fn shape_6_with_images(bencher: Bencher) {
+    let (plan, facing) = shape_6();
+    let (eyes, look) = eyes();
+    bencher.bench(|| {
+        let robot = Setting::at_start(plan.clone(), facing, 1).with_images(
+            eyes.rig(),
+            look,
+            &Effects::plain(),
+        );
+        right(&run(&plan, facing, robot, eyes.sensor(look), (), &mut (), DARTS).0);
+    });
+}
+
+/// The same pictures, off-line: decoding, sensing and both algorithms alone.
+#[divan::bench(sample_count = 10)]
+fn shape_6_off_line(bencher: Bencher) {
+    let (plan, facing) = shape_6();
+    let (eyes, look) = eyes();
+    let effects = Effects { jpeg_loss: 10.0, ..Effects::plain() };
+    let robot = Setting::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
+    let eye = eyes.sensor(look);
+    let (done, _, recording) = run(&plan, facing, robot, eye, Recording::default(), &mut (), DARTS);
+    right(&done);
+    bencher
+        .with_inputs(|| eyes.sensor(look))
+        .bench_local_values(|eye| offline(&recording, eye, DARTS).unwrap());
+}
+
+fn eyes() -> (Eyes, &'static Look) {
+    let look = &LOOKS[0];
+    (Eyes::new(&Camera::superscout().sized(LARGE), &[look], &()).unwrap(), look)
+}
