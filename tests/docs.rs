@@ -89,6 +89,30 @@ fn the_pictures_are_what_the_program_draws() {
     assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));
 }
 
+/// The times in that table are measured; its moves are those of the specification.
+#[test]
+fn what_mapping_costs_a_robot_is_what_the_specification_says() {
+    let text = read("worlds/README.md");
+    let (_, table) = text.split_once("## What mapping costs a robot").unwrap();
+    let (table, _) = table.split_once("\n## ").unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .filter(|line| line.contains(" : ") && line.starts_with("| "))
+        .skip(1)
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    assert_eq!(rows.len(), 11);
+    for row in rows {
+        let [name, start, cost] = [row[0], row[1], row[2]];
+        let folders = ["worlds/shapes", "worlds"];
+        let files = folders.map(|folder| format!("{folder}/{name}.toml"));
+        let file = files.iter().find(|file| Path::new(file).exists()).unwrap();
+        let told = toposlam(&["explore", file, "--start", start, "--json"]);
+        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+        assert_eq!(format!("{} : {}", told["moves"], told["edges"]), cost, "{name}");
+    }
+}
+
 #[test]
 fn every_test_of_the_model_is_in_its_fast_tier() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("model/tests");

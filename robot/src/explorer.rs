@@ -193,16 +193,6 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         &self.robot
     }
 
-    /// Whoever watches.
-    pub fn observer(&self) -> &O {
-        &self.observer
-    }
-
-    /// How many doors the robot has set out to take.
-    pub fn moves(&self) -> u64 {
-        self.moves
-    }
-
     /// The robot and whoever watched.
     pub fn into_parts(self) -> (R, O) {
         (self.robot, self.observer)

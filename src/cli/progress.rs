@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
 use super::Failure;
@@ -34,6 +34,20 @@ impl Progress {
         .map_err(|error| Failure::at("progress bar", error))?;
         let bar = ProgressBar::new(0).with_style(style).with_prefix(work.to_owned());
         Ok(Self { bar, unit, cases: AtomicU64::new(0) })
+    }
+
+    /// The same for work whose end nobody knows.
+    pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, Failure> {
+        let progress = Self::new(work, unit)?;
+        let style = ProgressStyle::with_template("{prefix} {spinner}  {msg}  {elapsed} done")
+            .map_err(|error| Failure::at("progress bar", error))?;
+        Ok(Self { bar: progress.bar.with_style(style), ..progress })
+    }
+
+    /// The same without a bar, where the work tells of itself.
+    pub(crate) fn hidden(self) -> Self {
+        self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        self
     }
 
     /// Takes the bar away.

@@ -7,7 +7,7 @@ mod feasible;
 
 use std::{
     cell::RefCell,
-    io::Write,
+    io::{self, IsTerminal, Write},
     path::{Path, PathBuf},
     rc::Rc,
     sync::Arc,
@@ -192,7 +192,10 @@ impl Arguments {
     {
         let Simulation { world, plan, facing, .. } = simulation;
         let chronicle = Rc::new(RefCell::new(Chronicle::default()));
-        let progress = Progress::new("exploring", "pictures")?;
+        let progress = Progress::endless("exploring", "pictures")?;
+        // On a terminal the story shows how far the run is.
+        let told = !self.json && io::stdout().is_terminal();
+        let progress = if told { progress.hidden() } else { progress };
         let watching = Watching::new(chronicle.clone(), pictures, progress);
         let shown: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let mut lines = Lines::new(shown, chronicle.clone());

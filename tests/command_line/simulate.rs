@@ -114,7 +114,7 @@ fn control_is_as_specified_on_any_number_of_threads() {
     assert_eq!(last["traversals"], 3000);
     let table = said(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
     // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
-    assert!(table.contains("  26 doors, counted from each entry, in 1 floor plans"), "{table}");
+    assert!(table.contains("  26 doors, counted from each entry, in 1 floor plan\n"), "{table}");
     assert!(table.contains("holds: each door leads where the specification says"), "{table}");
 }
 
@@ -193,4 +193,29 @@ fn what_cannot_work_is_said_before_the_run() {
         assert!(output.stdout.is_empty(), "{arguments:?}");
     }
     fs::remove_dir_all(folder).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_tells_what_is_known_and_is_incomplete() {
+    use std::{
+        io::{BufRead, BufReader, Read},
+        process::{Command, Stdio},
+    };
+
+    let mut robot = crate::toposlam();
+    // Far too long to end by itself.
+    robot.args(["simulate", "worlds/building-25.toml", "--start", "north-west:west-upper"]);
+    let mut robot = robot.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut out = BufReader::new(robot.stdout.take().unwrap());
+    // Its first line shows that it is at work.
+    let mut text = String::new();
+    out.read_line(&mut text).unwrap();
+    let killed = Command::new("kill").args(["-INT", &robot.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    out.read_to_string(&mut text).unwrap();
+    let output = robot.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{text}{}", stderr(&output));
+    assert!(text.contains("The robot gave up: the run was ended on move "), "{text}");
+    assert!(text.contains("  known              "), "{text}");
 }

@@ -36,8 +36,8 @@ impl MotionNoise {
     pub const NONE: Self = Self { slip: 0.0, bias: 0.0, uneven: 0.0, odometry: 0.0 };
     /// A base like a SuperScout on tiles.
     pub const DEFAULT: Self = Self { slip: 0.02, bias: 0.006, uneven: 0.03, odometry: 0.006 };
-    /// With so many times the default noise a robot can no longer find its way: at three deviations
-    /// from the mean, half a metre ends more than 20 degrees off, or a quarter turn.
+    /// With more than so many times the default noise a robot cannot find its way: a half turn may end
+    /// 45 degrees from where odometry puts it, at three standard deviations, and that is a contradiction.
     pub const MOST: f64 = 5.0;
 
     /// So many times as much of everything.

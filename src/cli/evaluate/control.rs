@@ -8,7 +8,11 @@ use toposlam_robot::evaluation::control::{JudgedTraversal, Outcome as Made, Trav
 
 use super::robots::{Random, Robots, failed, share, share_json};
 use crate::cli::{
-    Failure, Outcome, json::print_object, progress::Progress, use_threads, words::grouped,
+    Failure, Outcome,
+    json::print_object,
+    progress::Progress,
+    use_threads,
+    words::{counted, grouped},
 };
 
 /// Measure driving: does each door of each junction lead where the specification says?
@@ -66,9 +70,10 @@ impl Arguments {
         traversals: &Traversals,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
-        let (doors, plans) = (grouped(traversals.cases() as u128), traversals.plans());
+        let doors = grouped(traversals.cases() as u128);
+        let plans = counted(traversals.plans(), "floor plan");
         writeln!(out, "Control by {}, seed {}", self.robots.sight(), self.robots.seed)?;
-        writeln!(out, "  {doors} doors, counted from each entry, in {plans} floor plans")?;
+        writeln!(out, "  {doors} doors, counted from each entry, in {plans}")?;
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
             failed(out, named(traversal), &traversal.outcome)?;
         }

@@ -12,8 +12,12 @@ use toposlam_robot::{
 
 use super::robots::{Random, Robots, failed, share, share_json};
 use crate::cli::{
-    Failure, Outcome, columns::print_rows, json::print_object, progress::Progress, use_threads,
-    words::grouped,
+    Failure, Outcome,
+    columns::print_rows,
+    json::print_object,
+    progress::Progress,
+    use_threads,
+    words::{counted, grouped},
 };
 
 /// Measure whole runs: is each building mapped right, with the moves that the specification makes?
@@ -76,7 +80,8 @@ impl Arguments {
         } else {
             let sight = self.robots.sight();
             writeln!(out, "Whole runs by {sight}, seed {seed}")?;
-            writeln!(out, "  {} starts in {count} floor plans", grouped(runs.starts() as u128))?;
+            let plans = counted(count, "floor plan");
+            writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
             self.tell(&judged, violations, out)?;
         }
         eprintln!("{:.1} s", begun.elapsed().as_secs_f64());

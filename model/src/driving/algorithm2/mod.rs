@@ -2,7 +2,7 @@
 //!
 //! The numbers are those of the printed lines. One call of [`PathExecution::round`] is one round of
 //! the printed loop: a scene in, a command out. Pictures, sensing and motors are the caller's. What
-//! odometry says and when to give up is [`Reckoning`]'s.
+//! odometry says and when to give up is in `reckoning`.
 
 mod lost;
 mod reckoning;
