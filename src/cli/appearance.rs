@@ -18,7 +18,7 @@ pub(super) struct Appearance {
     /// Which effects there are
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: Which,
-    /// Set one effect; may be given more than once
+    /// Set one effect; may be given more than once; `toposlam render --help` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<(String, f64)>,
 }
