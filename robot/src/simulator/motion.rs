@@ -84,7 +84,6 @@ impl SimulatedBase {
         let bias = share(noise.bias) / 2.0;
         let odometry = [share(noise.odometry), share(noise.odometry)];
         let surroundings = Surroundings::new(plan);
-        let sonars = surroundings.sonars(pose);
         let odometer = Odometer::default();
         Self {
             pose,
@@ -100,7 +99,7 @@ impl SimulatedBase {
             odometry,
             chance,
             deaf: 0,
-            reading: Reading { time: 0.0, odometry: odometer.told(), sonars },
+            reading: Reading { time: 0.0, odometry: odometer.told() },
         }
     }
 
@@ -184,8 +183,7 @@ impl SimulatedBase {
     }
 
     fn read(&mut self) {
-        let sonars = self.surroundings.sonars(self.pose);
-        self.reading = Reading { time: self.time, odometry: self.odometer.told(), sonars };
+        self.reading = Reading { time: self.time, odometry: self.odometer.told() };
     }
 }
 
@@ -200,6 +198,10 @@ impl Base for SimulatedBase {
 
     fn reading(&self) -> Reading {
         self.reading
+    }
+
+    fn sonar(&self, sonar: usize) -> f64 {
+        self.surroundings.sonar(self.pose, sonar)
     }
 }
 

@@ -8,16 +8,17 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    superscout::{RADIUS, SONARS, sonar_direction},
+    superscout::{RADIUS, sonar_direction},
 };
 
 /// Sonars hear nothing that is farther from the robot's middle, in metres.
-const RANGE: f64 = 2.0;
+const RANGE: f64 = 1.5;
 
 /// The walls of a building, and other things that stand on its floor.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
-    walls: Vec<Wall>,
+    /// A wall is a rectangle without depth.
+    walls: Vec<Rectangle>,
     /// The walls within a sonar's range of each place.
     near: Squares,
     obstacles: Vec<Rectangle>,
@@ -25,9 +26,9 @@ pub(super) struct Surroundings {
 
 impl Surroundings {
     pub(super) fn new(plan: &FloorPlan) -> Self {
-        let walls = walls(plan);
+        let walls: Vec<_> = walls(plan).iter().map(rectangle).collect();
         let floors: Vec<_> = plan.floor().collect();
-        let around: Vec<_> = walls.iter().map(|wall| rectangle(wall).widened(RANGE)).collect();
+        let around: Vec<_> = walls.iter().map(|wall| wall.widened(RANGE)).collect();
         Self { near: Squares::new(&floors, 0.5, &around), walls, obstacles: Vec::new() }
     }
 
@@ -36,10 +37,10 @@ impl Surroundings {
         self.obstacles.push(obstacle);
     }
 
-    /// All that stands within a sonar's range of a place, as rectangles; a wall is one without depth.
+    /// All that stands within a sonar's range of a place.
     fn near(&self, [x, y]: [f64; 2]) -> impl Iterator<Item = Rectangle> {
         let walls = self.near.at([x as f32, y as f32]).iter();
-        walls.map(|&number| rectangle(&self.walls[number as usize])).chain(self.obstacles.clone())
+        walls.map(|&number| self.walls[number as usize]).chain(self.obstacles.iter().copied())
     }
 
     /// Whether the robot's body has room at a place.
@@ -48,35 +49,33 @@ impl Surroundings {
             let off = |axis: usize| {
                 place[axis] - place[axis].clamp(thing.least[axis], thing.greatest[axis])
             };
-            off(0).hypot(off(1)) >= RADIUS
+            off(0) * off(0) + off(1) * off(1) >= RADIUS * RADIUS
         })
     }
 
-    /// How far from its body each sonar of a robot hears something, in metres.
-    pub(super) fn sonars(&self, pose: Pose) -> [f64; SONARS] {
-        let mut heard = [f64::INFINITY; SONARS];
-        for (sonar, heard) in heard.iter_mut().enumerate() {
-            let (sine, cosine) = (pose.heading + sonar_direction(sonar)).sin_cos();
-            let meets = self.near(pose.position).filter_map(|thing| {
-                first_on(&thing, pose.position, [cosine, sine]).filter(|&range| range <= RANGE)
-            });
-            *heard = meets.fold(f64::INFINITY, f64::min) - RADIUS;
-        }
-        heard
+    /// How far from its body a sonar of a robot hears something, in metres.
+    pub(super) fn sonar(&self, pose: Pose, sonar: usize) -> f64 {
+        let (sine, cosine) = (pose.heading + sonar_direction(sonar)).sin_cos();
+        let steepness = [cosine, sine].map(|part| if part == 0.0 { 1e300 } else { 1.0 / part });
+        let meets = self.near(pose.position).filter_map(|thing| {
+            first_on(&thing, pose.position, steepness).filter(|&range| range <= RANGE)
+        });
+        meets.fold(f64::INFINITY, f64::min) - RADIUS
     }
 }
 
 fn rectangle(wall: &Wall) -> Rectangle {
-    let [from, to] = wall.span.map(|at| wall.foot(at));
-    Rectangle { least: from, greatest: to }
+    let [least, greatest] = wall.span.map(|at| wall.foot(at));
+    Rectangle { least, greatest }
 }
 
-/// How far along a ray a rectangle is first met.
-fn first_on(thing: &Rectangle, from: [f64; 2], ray: [f64; 2]) -> Option<f64> {
+/// How far along a ray a rectangle is first met; `steepness` is how far one has to go along the ray to
+/// get one metre farther along each axis.
+fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> Option<f64> {
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
     for axis in 0..2 {
         let [near, far] = [thing.least[axis], thing.greatest[axis]]
-            .map(|plane| (plane - from[axis]) / if ray[axis] == 0.0 { 1e-300 } else { ray[axis] });
+            .map(|plane| (plane - from[axis]) * steepness[axis]);
         enters = enters.max(near.min(far));
         leaves = leaves.min(near.max(far));
     }
@@ -99,17 +98,18 @@ mod tests {
     // paper: hardware.sonar
     #[test]
     fn sonars_hear_the_walls_from_the_robots_body_on() {
-        let heard = hallway().sonars(Pose { position: [0.0, 0.2], heading: 0.0 });
+        let hallway = hallway();
+        let heard = |sonar| hallway.sonar(Pose { position: [0.0, 0.2], heading: 0.0 }, sonar);
         let close = |sonar: usize, expected: f64| {
-            assert!((heard[sonar] - expected).abs() < 1e-6, "{sonar}: {}", heard[sonar]);
+            assert!((heard(sonar) - expected).abs() < 1e-6, "{sonar}: {}", heard(sonar));
         };
-        assert_eq!(heard[0], f64::INFINITY, "seven metres ahead");
+        assert_eq!(heard(0), f64::INFINITY, "seven metres ahead");
         close(4, 0.8 - RADIUS);
         close(12, 1.2 - RADIUS);
         close(8, 1.0 - RADIUS);
         close(2, 0.8 * SQRT_2 - RADIUS);
-        let turned = hallway().sonars(Pose { position: [0.0, 0.2], heading: FRAC_PI_4 });
-        assert!((turned[0] - (0.8 * SQRT_2 - RADIUS)).abs() < 1e-6);
+        let turned = hallway.sonar(Pose { position: [0.0, 0.2], heading: FRAC_PI_4 }, 0);
+        assert!((turned - (0.8 * SQRT_2 - RADIUS)).abs() < 1e-6);
     }
 
     #[test]
@@ -119,7 +119,7 @@ mod tests {
         assert!(!hallway.has_room([3.0, 1.001 - RADIUS]));
         hallway.put(Rectangle { least: [3.5, -0.2], greatest: [3.7, 0.2] });
         assert!(!hallway.has_room([3.4, 0.0]) && hallway.has_room([3.2, 0.0]));
-        let heard = hallway.sonars(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 });
-        assert!((heard[0] - (0.5 - RADIUS)).abs() < 1e-6);
+        let heard = hallway.sonar(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 }, 0);
+        assert!((heard - (0.5 - RADIUS)).abs() < 1e-6);
     }
 }

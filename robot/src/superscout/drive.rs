@@ -15,6 +15,9 @@ pub trait Base {
 
     /// What was last read.
     fn reading(&self) -> Reading;
+
+    /// How far from its body a sonar hears something, in metres; infinite for nothing.
+    fn sonar(&self, sonar: usize) -> f64;
 }
 
 /// What a base tells.
@@ -24,8 +27,6 @@ pub struct Reading {
     pub time: f64,
     /// Where it is by its wheels.
     pub odometry: Odometry,
-    /// How far from its body each sonar hears something, in metres; infinite for nothing.
-    pub sonars: [f64; SONARS],
 }
 
 /// The motions of a base: within its limits, and never longer than they should take.
@@ -74,9 +75,9 @@ impl<B: Base> Drive<'_, B> {
         let distance = distance.clamp(0.0, COMMAND);
         let begun = self.0.reading().odometry;
         for _ in 0..periods(distance / SPEED) {
-            let Reading { odometry, sonars, .. } = self.0.reading();
+            let odometry = self.0.reading().odometry;
             let left = distance - odometry.distance(&begun);
-            let most = room(&sonars).min(left);
+            let most = self.room().min(left);
             if most <= NEAR {
                 break;
             }
@@ -84,6 +85,12 @@ impl<B: Base> Drive<'_, B> {
             self.0.drive(WheelSpeeds::of(most / PERIOD, MEND * off / PERIOD))?;
         }
         self.stop()
+    }
+
+    /// How far the robot may go ahead by its sonars.
+    fn room(&self) -> f64 {
+        let ahead = (0..SONARS).filter(|&sonar| sonar_direction(sonar).abs() <= WHITHER);
+        ahead.map(|sonar| self.0.sonar(sonar) - CLEARANCE).fold(f64::INFINITY, f64::min)
     }
 
     /// Stops.
@@ -98,10 +105,4 @@ impl<B: Base> Drive<'_, B> {
 /// How many periods a motion may take that should take so many seconds.
 fn periods(seconds: f64) -> u32 {
     (seconds / PERIOD * PATIENCE) as u32 + 4
-}
-
-/// How far the robot may go ahead by its sonars.
-fn room(sonars: &[f64; SONARS]) -> f64 {
-    let ahead = (0..SONARS).filter(|&sonar| sonar_direction(sonar).abs() <= WHITHER);
-    ahead.map(|sonar| sonars[sonar] - CLEARANCE).fold(f64::INFINITY, f64::min)
 }
