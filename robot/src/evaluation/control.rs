@@ -13,7 +13,7 @@ use toposlam_model::{
     world::World,
 };
 
-use super::{Eyes, in_turn::in_turn, runs::starts_of};
+use super::{Eyes, in_turn::made_in_turn, runs::starts_of};
 use crate::{
     conformance::{Divergence, Specification},
     explorer::{Explorer, ExplorerError, Eye, Told},
@@ -143,10 +143,7 @@ impl Traversals {
         eyes: Option<&Eyes>,
         watch: &impl Watch,
     ) -> Vec<JudgedTraversal> {
-        let judged = in_turn(numbers, watch, |number| {
-            Ok::<_, std::convert::Infallible>(self.traversal(number).map(|case| judged(case, eyes)))
-        });
-        judged.into_iter().flatten().flatten().collect()
+        made_in_turn(numbers, watch, |number| self.traversal(number), |case| judged(case, eyes))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Many cases on all threads, their results in order.
 
+use std::convert::Infallible;
+
 use rayon::prelude::*;
 use toposlam_model::enumerate::Watch;
 
@@ -21,4 +23,15 @@ pub(super) fn in_turn<R: Send, E: Send>(
     });
     let results = results.collect::<Result<Vec<_>, E>>()?;
     Ok(results.into_iter().flatten().collect())
+}
+
+/// Makes the cases of these numbers, those that there are, on all threads.
+pub(super) fn made_in_turn<C, R: Send>(
+    numbers: std::ops::Range<u64>,
+    watch: &impl Watch,
+    case: impl Fn(u64) -> Option<C> + Sync,
+    make: impl Fn(C) -> R + Sync,
+) -> Vec<R> {
+    let made = in_turn(numbers, watch, |number| Ok::<_, Infallible>(case(number).map(&make)));
+    made.into_iter().flatten().flatten().collect()
 }

@@ -11,7 +11,7 @@ use toposlam_model::{
     mapping::DEFAULT_DART_BOUND,
 };
 
-use super::{Eyes, in_turn::in_turn};
+use super::{Eyes, in_turn::made_in_turn};
 use crate::{
     explorer::Told,
     run::{Ending, explored, run},
@@ -139,10 +139,7 @@ impl Runs {
         eyes: Option<&Eyes>,
         watch: &impl Watch,
     ) -> Vec<JudgedRun> {
-        let judged = in_turn(numbers, watch, |number| {
-            Ok::<_, std::convert::Infallible>(self.case(number).map(|case| judged(case, eyes)))
-        });
-        judged.into_iter().flatten().flatten().collect()
+        made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes))
     }
 }
 

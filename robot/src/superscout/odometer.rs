@@ -39,7 +39,7 @@ pub fn along_arc(from: &Odometry, wheels: WheelSpeeds, seconds: f64) -> Odometry
     let half = wheels.turn_rate() * seconds / 2.0;
     let chord = wheels.speed() * seconds * if half == 0.0 { 1.0 } else { half.sin() / half };
     let middle = from.moved(half, chord);
-    middle.moved(half, 0.0)
+    Odometry { heading: middle.heading + half, ..middle }
 }
 
 #[cfg(test)]
