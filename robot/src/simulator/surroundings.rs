@@ -57,10 +57,14 @@ impl Surroundings {
     pub(super) fn sonar(&self, pose: Pose, sonar: usize) -> f64 {
         let (sine, cosine) = (pose.heading + sonar_direction(sonar)).sin_cos();
         let steepness = [cosine, sine].map(|part| if part == 0.0 { 1e300 } else { 1.0 / part });
-        let meets = self.near(pose.position).filter_map(|thing| {
-            first_on(&thing, pose.position, steepness).filter(|&range| range <= RANGE)
-        });
-        meets.fold(f64::INFINITY, f64::min) - RADIUS
+        let mut nearest = f64::INFINITY;
+        for thing in self.near(pose.position) {
+            let range = first_on(&thing, pose.position, steepness);
+            if range <= RANGE && range < nearest {
+                nearest = range;
+            }
+        }
+        nearest - RADIUS
     }
 }
 
@@ -69,9 +73,10 @@ fn rectangle(wall: &Wall) -> Rectangle {
     Rectangle { least, greatest }
 }
 
-/// How far along a ray a rectangle is first met; `steepness` is how far one has to go along the ray to
+/// How far along a ray a rectangle is first met, infinite if never; `steepness` is how far one has to go along the ray to
 /// get one metre farther along each axis.
-fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> Option<f64> {
+#[inline]
+fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> f64 {
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
     for axis in 0..2 {
         let [near, far] = [thing.least[axis], thing.greatest[axis]]
@@ -79,7 +84,7 @@ fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> Option<f6
         enters = enters.max(near.min(far));
         leaves = leaves.min(near.max(far));
     }
-    (enters <= leaves).then_some(enters)
+    if enters <= leaves { enters } else { f64::INFINITY }
 }
 
 #[cfg(test)]

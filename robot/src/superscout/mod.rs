@@ -9,7 +9,7 @@ pub use drive::{Base, Drive, Reading};
 pub use odometer::{Odometer, along_arc};
 pub use wheels::WheelSpeeds;
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// From one wheel to the other, in metres.
 // paper: hardware.drive
@@ -32,8 +32,9 @@ pub const SONARS: usize = 16;
 /// It never goes nearer to anything ahead than this, in metres from its body.
 pub const CLEARANCE: f64 = 0.20;
 
-/// What a sonar looks along, relative to the robot's heading.
+/// What a sonar looks along, relative to the robot's heading, in (-pi, pi].
 #[must_use]
 pub fn sonar_direction(sonar: usize) -> f64 {
-    toposlam_model::driving::scene::wrapped(sonar as f64 * std::f64::consts::TAU / SONARS as f64)
+    let place = if sonar <= SONARS / 2 { sonar as f64 } else { sonar as f64 - SONARS as f64 };
+    place * (TAU / SONARS as f64)
 }
