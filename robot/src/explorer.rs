@@ -83,6 +83,9 @@ pub trait Observer<R: Robot> {
     /// A round of Algorithm 2.
     fn round(&mut self, _robot: &R, _round: &Round<R::View>) {}
 
+    /// The robot sets out for a door of the junction at which it stands.
+    fn leaving(&mut self, _robot: &R, _door: Door) {}
+
     /// The robot has come to a junction, by a door of the last one unless it is the first.
     fn arrived(&mut self, _robot: &R, _door: Option<Door>, _at: &Standing) {}
 
@@ -292,6 +295,7 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
     // paper: validation.traverse, validation.motion, drive.path
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
         let from = self.standing()?;
+        self.observer.leaving(&self.robot, door);
         self.moves += 1;
         self.door = Some(door);
         // Where the robot is, is not known before it has arrived.

@@ -31,6 +31,23 @@ pub trait Robot {
 
     /// Where the robot is by its wheels, and when.
     fn odometry(&self) -> Reckoned;
+
+    /// What the wheels were told and what odometry said then, from the beginning; empty where nobody
+    /// keeps it.
+    fn track(&self) -> &[Sample] {
+        &[]
+    }
+}
+
+/// What the wheels were told, and what came of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Metres a second ahead.
+    pub speed: f64,
+    /// Radians a second, counter-clockwise.
+    pub turning: f64,
+    /// What odometry said after it.
+    pub reckoned: Reckoned,
 }
 
 /// A picture.

@@ -161,6 +161,10 @@ impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for 
         self.observer.round(robot, round);
     }
 
+    fn leaving(&mut self, robot: &SimulatedRobot<C>, door: Door) {
+        self.observer.leaving(robot, door);
+    }
+
     fn arrived(&mut self, robot: &SimulatedRobot<C>, door: Option<Door>, at: &Standing) {
         let pose = robot.pose();
         let seen = robot.odometry().odometry.seen(at.entry);
