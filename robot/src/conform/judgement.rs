@@ -148,17 +148,15 @@ pub fn judge(
     let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
     loop {
         let mut judgement = Judgement::new(&events, question, &tolerated, watch)?;
-        let found = judgement.divergence.as_ref().and_then(|divergence| {
-            let quirk = quirks.tolerating(divergence)?;
-            amend(&mut events, divergence, &judgement.places).then_some(quirk)
+        let found = judgement.divergence.clone().and_then(|divergence| {
+            let quirk = quirks.tolerating(&divergence)?;
+            amend(&mut events, &divergence, &judgement.places).then_some((divergence, quirk))
         });
-        match (judgement.divergence.clone(), found) {
-            (Some(divergence), Some(quirk)) => tolerated.push((divergence, quirk)),
-            _ => {
-                judgement.tolerated = tolerated;
-                return Ok(judgement);
-            }
-        }
+        let Some(found) = found else {
+            judgement.tolerated = tolerated;
+            return Ok(judgement);
+        };
+        tolerated.push(found);
     }
 }
 

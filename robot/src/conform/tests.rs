@@ -99,7 +99,7 @@ impl Observer<Simulated> for Log {
 
     fn arrived(&mut self, robot: &Simulated, _: Option<Door>, at: &Standing) {
         let marker = match at.percept.sighting {
-            Sighting::Pointing(door) => door.0 as i32,
+            Sighting::Pointing(door) => door.0.cast_signed(),
             _ => -1,
         };
         let percept = messages::Percept {
@@ -256,7 +256,7 @@ impl Log {
                 percept.degree = percept.degree % 3 + 1 + u32::from(percept.degree == 3 && by > 2);
             }
             (Marker, Line::Percept(percept)) => {
-                percept.marker = if percept.marker < 0 { (by % 3) as i32 } else { -1 };
+                percept.marker = if percept.marker < 0 { (by % 3).cast_signed() } else { -1 };
             }
             (Entry, Line::Percept(percept)) => {
                 percept.entry += f64::from(1 + by % 3) * std::f64::consts::FRAC_PI_2;
@@ -408,7 +408,7 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
         let mut telling = Telling::default();
         for (moves, percept) in percepts.iter().enumerate() {
             let marker = match percept.sighting {
-                Sighting::Pointing(door) => door.0 as i32,
+                Sighting::Pointing(door) => door.0.cast_signed(),
                 _ => -1,
             };
             let (r#move, entry) = (moves as u32, f64::NAN);
