@@ -8,6 +8,7 @@
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Watch},
+    mapping::{FACING, PartialMap},
     percept::{Door, Percept, Sighting},
 };
 
@@ -22,6 +23,11 @@ pub struct Search {
     pub edges: usize,
     /// So many steps are tried at most.
     pub steps: u64,
+}
+
+impl Search {
+    /// So many steps are a second's work.
+    pub const STEPS: u64 = 500_000;
 }
 
 /// The smallest world that explains a trace.
@@ -48,8 +54,15 @@ pub enum Smallest {
 
 /// Finds the smallest world of a class that explains a trace: in which a robot that is put down
 /// somewhere, with a directional marker somewhere or none, perceives what was recorded.
+///
+/// What is `known` is in every such world: the map that Algorithm 1 has made of the trace so far.
 #[must_use]
-pub fn smallest(trace: &Trace, search: Search, watch: &impl Watch) -> Smallest {
+pub fn smallest(
+    trace: &Trace,
+    known: Option<&PartialMap>,
+    search: Search,
+    watch: &impl Watch,
+) -> Smallest {
     let mut growing = Growing::new(trace, search.class, watch);
     growing.steps = search.steps;
     // A world has as many darts as the vertices that were told apart by their degrees.
@@ -57,10 +70,12 @@ pub fn smallest(trace: &Trace, search: Search, watch: &impl Watch) -> Smallest {
     degrees.sort_unstable();
     degrees.dedup();
     let darts: u64 = degrees.iter().map(|&degree| u64::from(degree)).sum();
-    let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX).max(1);
+    let known = known.filter(|map| map.vertex_count() > 0);
+    let darts = darts.max(known.map_or(1, |map| map.dart_count() as u64));
+    let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX);
     for edges in least..=search.edges {
         growing.edges = edges;
-        if growing.begin() {
+        if growing.begin(known) {
             let (graph, marker) = (growing.world.graph(), growing.world.marker.map(Dart));
             return Smallest::World { graph, marker };
         }
@@ -107,6 +122,20 @@ struct Draft {
 const FREE: u32 = u32::MAX;
 
 impl Draft {
+    /// What Algorithm 1 knows; the robot started with the marker along its entry dart.
+    fn of(map: &PartialMap) -> Self {
+        let mut draft = Self { marker: Some(FACING.0), ..Self::default() };
+        for vertex in map.vertices() {
+            draft.add(map.degree(vertex));
+        }
+        for dart in 0..map.dart_count() as u32 {
+            if let Some(other) = map.opposite(Dart(dart)).filter(|other| other.0 > dart) {
+                draft.join(dart, other.0);
+            }
+        }
+        draft
+    }
+
     fn degree(&self, vertex: u32) -> u32 {
         let next = self.first.get(vertex as usize + 1).copied();
         next.unwrap_or(self.vertex.len() as u32) - self.first[vertex as usize]
@@ -195,8 +224,12 @@ impl<'t, W: Watch> Growing<'t, W> {
     }
 
     /// Explains the whole trace with the present number of edges.
-    fn begin(&mut self) -> bool {
+    fn begin(&mut self, known: Option<&PartialMap>) -> bool {
         let first = self.trace.percepts()[0];
+        if let Some(map) = known {
+            self.world = Draft::of(map);
+            return self.fits(FACING.0, first) && self.explain(At { pose: FACING.0, moves: 0 });
+        }
         self.world = Draft::default();
         self.at_new_vertex(first, |growing, pose| growing.explain(At { pose, moves: 0 }))
     }
@@ -370,7 +403,7 @@ mod tests {
         isomorphism::code,
         marker::Directional,
         trace::{
-            Event, poses,
+            Event, follow, poses,
             tests::{explored, lollipop, walked},
         },
         world::{GraphWorld, State},
@@ -414,7 +447,8 @@ mod tests {
         let corner = Event::Perceived(Percept { degree: 2, sighting: Sighting::Nothing });
         let trace = Trace::new([corner, Event::Left(Door(1))].repeat(4)).unwrap();
         for (class, edges) in [(Class::Multigraph, 1), (Class::Simple, 3)] {
-            let Smallest::World { graph, marker } = smallest(&trace, search(class, 9), &()) else {
+            let Smallest::World { graph, marker } = smallest(&trace, None, search(class, 9), &())
+            else {
                 panic!("{class}")
             };
             assert_eq!((graph.edge_count(), marker), (edges, None));
@@ -427,7 +461,7 @@ mod tests {
         let mut trace = walked(&graph, Dart(0), &[Door(0), Door(0), Door(0)]);
         // The end of the tail is left and come back to, and looks different.
         trace.percepts[2].degree = 3;
-        let found = smallest(&trace, search(Class::Multigraph, 6), &());
+        let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
         assert_eq!(found, Smallest::None { event: 4 });
     }
 
@@ -435,18 +469,35 @@ mod tests {
     fn a_search_that_is_cut_short_says_so() {
         let trace = explored(&lollipop(), Dart(0));
         let short = Search { steps: 3, ..search(Class::Multigraph, 6) };
-        assert!(matches!(smallest(&trace, short, &()), Smallest::Unfinished { .. }));
+        assert!(matches!(smallest(&trace, None, short, &()), Smallest::Unfinished { .. }));
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
+        fn what_algorithm_1_knows_is_in_the_smallest_world(
+            graph in any_graph(any_graph::Class::Multigraph, 6), part in any::<prop::sample::Index>(),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let trace = trace.up_to(part.index(trace.len()));
+            let known = follow(&trace, 100).exploration.map().clone();
+            let edges = |known| match smallest(&trace, known, search(Class::Multigraph, 6), &()) {
+                Smallest::World { graph, marker } => {
+                    assert!(explains(&graph, marker, &trace));
+                    graph.edge_count()
+                }
+                other => panic!("{other:?}"),
+            };
+            prop_assert_eq!(edges(Some(&known)), edges(None));
+        }
+
+        #[test]
         fn a_run_of_algorithm_1_is_explained_by_its_own_world_alone(
             graph in any_graph(any_graph::Class::Multigraph, 10),
         ) {
             let trace = explored(&graph, Dart(0));
-            let found = smallest(&trace, search(Class::Multigraph, 12), &());
+            let found = smallest(&trace, None, search(Class::Multigraph, 12), &());
             let Smallest::World { graph: found, marker } = found else { panic!("{found:?}") };
             prop_assert_eq!(marker, Some(Dart(0)));
             prop_assert_eq!(code(&found, Dart(0)), code(&graph, Dart(0)));
@@ -469,7 +520,7 @@ mod tests {
                 events.extend([Event::Left(door), Event::Perceived(world.sensed())]);
             }
             let trace = Trace::new(events).unwrap();
-            let edges = match smallest(&trace, search(class, 5), &()) {
+            let edges = match smallest(&trace, None, search(class, 5), &()) {
                 Smallest::World { graph, marker } => {
                     prop_assert!(explains(&graph, marker, &trace));
                     Some(graph.edge_count())
