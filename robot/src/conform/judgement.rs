@@ -269,13 +269,12 @@ impl Judgement {
         if question.world.is_none() {
             // Algorithm 1 has told its world from every other; one that it has not done with has all that
             // it knows.
-            let smallest = match explored {
-                Some(graph) => Smallest::World { graph, marker: Some(FACING) },
-                None => {
-                    let followed = judgement.followed.as_ref();
-                    let known = followed.map(|followed| followed.exploration.map());
-                    smallest(trace, known, question.search, watch)
-                }
+            let smallest = if let Some(graph) = explored {
+                Smallest::World { graph, marker: Some(FACING) }
+            } else {
+                let followed = judgement.followed.as_ref();
+                let known = followed.map(|followed| followed.exploration.map());
+                smallest(trace, known, question.search, watch)
             };
             if let Smallest::None { event } = smallest {
                 let edges = question.search.edges;
