@@ -97,6 +97,25 @@ pub trait Observer<R: Robot> {
 
 impl<R: Robot> Observer<R> for () {}
 
+/// Somebody watches, or nobody.
+impl<R: Robot, O: Observer<R>> Observer<R> for Option<O> {
+    fn round(&mut self, robot: &R, round: &Round<R::View>) {
+        self.iter_mut().for_each(|observer| observer.round(robot, round));
+    }
+
+    fn leaving(&mut self, robot: &R, door: Door) {
+        self.iter_mut().for_each(|observer| observer.leaving(robot, door));
+    }
+
+    fn arrived(&mut self, robot: &R, door: Option<Door>, at: &Standing) {
+        self.iter_mut().for_each(|observer| observer.arrived(robot, door, at));
+    }
+
+    fn stop(&self) -> bool {
+        self.as_ref().is_some_and(Observer::stop)
+    }
+}
+
 /// Why a robot cannot go on.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExplorerError {
