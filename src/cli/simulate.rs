@@ -214,9 +214,8 @@ impl Arguments {
         let mut telling = Telling::new(story, chronicle.clone(), log.clone());
         let (run, robot, watching) =
             run(plan, *facing, robot, eye(), watching, &mut telling, self.max_darts);
-        let logged = log.map_or(Ok(()), |log| {
-            log.end(&robot, run.exploration.moves(), run.error.as_ref())
-        });
+        let logged =
+            log.map_or(Ok(()), |log| log.end(&robot, run.exploration.moves(), run.error.as_ref()));
         telling.finish()?;
         drop(lines);
         let recording = watching.finish()?;
@@ -294,7 +293,11 @@ fn after_help() -> String {
         .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
     let head = "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
     head + &faults.collect::<String>()
-        + "\nExamples:
+        + "\nA log is an MCAP file of ROS 2 messages: /camera/image/compressed, /camera/annotated/compressed,
+/cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, percept, hypothesis, map, end.
+It grows under its own name: if the program is killed, it can be read up to its last ten seconds.
+
+Examples:
   toposlam simulate worlds/shape-6.toml
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap

@@ -32,9 +32,10 @@ class ByRosbags:
                 store.register({name: kind for name, kind in types.items() if name not in store.fielddefs})
             for connection, time, raw in reader.messages():
                 yield connection.topic, time, store.deserialize_cdr(raw, connection.msgtype)
+            kinds = {connection.msgtype for connection in reader.connections}
         self.hashes = {
             kind: store.hash_rihs01(kind) == STANDARD.hash_rihs01(kind)
-            for kind in sorted({connection.msgtype for connection in reader.connections})
+            for kind in sorted(kinds)
             if kind in STANDARD.fielddefs
         }
 

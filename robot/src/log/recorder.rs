@@ -263,3 +263,147 @@ fn entries(run: &messages::Run) -> BTreeMap<String, String> {
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+
+    use mcap::MessageStream;
+
+    use super::*;
+    use crate::{
+        evaluation::{plans, runs::starts_of},
+        explorer::Told,
+        run::{Run, run},
+        simulator::{Fault, FaultKind, Setting},
+    };
+
+    /// What the clones of a recorder wrote.
+    #[derive(Clone, Default)]
+    struct Shared(Rc<RefCell<Vec<u8>>>);
+
+    impl Write for Shared {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.borrow_mut().write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// A run on shape 6, where something may go wrong, and its log.
+    fn logged(fault: Option<Fault>, judge: impl Fn(&Run)) -> Vec<u8> {
+        let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
+        let facing = starts_of(&plan)[0];
+        let mut setting = Setting::at_start(plan.clone(), facing, 5);
+        (setting.keeps_track, setting.faults) = (true, fault.into_iter().collect());
+        let file = Shared::default();
+        let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
+        let recorder = Recorder::new(file.clone(), &head, None).unwrap();
+        let (run, robot, _) = run(
+            &plan,
+            facing,
+            setting.by_scene(),
+            Told,
+            recorder.clone(),
+            &mut recorder.clone(),
+            200,
+        );
+        recorder.end(&robot, run.exploration.moves(), run.error.as_ref()).unwrap();
+        judge(&run);
+        let bytes = file.0.borrow().clone();
+        bytes
+    }
+
+    /// Topic, time and body of each message.
+    fn messages(log: &[u8]) -> Vec<(String, u64, Vec<u8>)> {
+        let messages = MessageStream::new(log).unwrap().map(Result::unwrap);
+        messages.map(|m| (m.channel.topic.clone(), m.log_time, m.data.to_vec())).collect()
+    }
+
+    fn number(body: &[u8], at: usize) -> f64 {
+        f64::from_le_bytes(body[4 + at..12 + at].try_into().unwrap())
+    }
+
+    #[test]
+    fn a_run_is_told_from_its_head_to_its_end_in_the_order_of_time() {
+        let pictures = std::cell::Cell::new(0);
+        let told = messages(&logged(None, |run| {
+            assert_eq!((run.exploration.moves(), run.explore_moves), (8, 8));
+            pictures.set(run.pictures as usize);
+        }));
+        let count = |topic: &str| told.iter().filter(|(found, ..)| found == topic).count();
+        assert_eq!((&*told[0].0, &*told[told.len() - 1].0), ("/toposlam/run", "/toposlam/end"));
+        assert!(told.is_sorted_by_key(|(_, time, _)| *time));
+        assert_eq!((count("/toposlam/door"), count("/toposlam/percept")), (8, 9));
+        // The start, and six edges.
+        assert_eq!(count("/toposlam/map"), 7);
+        assert_eq!((count(IMAGE), count(ANNOTATED)), (0, 0));
+        assert_eq!(count("/toposlam/scene"), pictures.get());
+        // All but the last picture of each way are answered with a command.
+        assert_eq!(count("/toposlam/scene"), count("/toposlam/command") + 9);
+        assert_eq!(count(ODOM), count(TF));
+    }
+
+    #[test]
+    fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_picture_is_taken() {
+        let told = messages(&logged(None, |_| {}));
+        // The body of a twist: x ahead first, the turn about z last.
+        let mut standing = true;
+        let mut stops = 0;
+        for (topic, _, body) in &told {
+            match topic.as_str() {
+                CMD_VEL => {
+                    let stop = number(body, 0) == 0.0 && number(body, 40) == 0.0;
+                    assert!(!(stop && standing), "it stood already");
+                    stops += u32::from(stop);
+                    standing = stop;
+                }
+                "/toposlam/scene" | "/toposlam/end" => assert!(standing),
+                _ => {}
+            }
+        }
+        assert!(stops > 60, "{stops}");
+    }
+
+    #[test]
+    fn a_run_that_is_given_up_says_so_at_its_end() {
+        let blocked = Fault::at(FaultKind::Blocked, 20);
+        let told = messages(&logged(Some(blocked), |run| assert!(run.error.is_some())));
+        let (topic, _, body) = &told[told.len() - 1];
+        let text = String::from_utf8_lossy(body);
+        assert!(topic == "/toposlam/end" && text.contains("gave-up\0"), "{text}");
+        assert!(text.contains("3 commands in a row were not carried out"), "{text}");
+    }
+
+    #[test]
+    fn a_full_disk_ends_the_run() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+                // The head of a log is small.
+                if bytes.len() > 2000 {
+                    Err(io::ErrorKind::StorageFull.into())
+                } else {
+                    Ok(bytes.len())
+                }
+            }
+
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let (_, plan) = plans().unwrap().swap_remove(2);
+        let facing = starts_of(&plan)[0];
+        let mut setting = Setting::at_start(plan.clone(), facing, 5);
+        setting.keeps_track = true;
+        let recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
+        let (run, robot, _) =
+            run(&plan, facing, setting.by_scene(), Told, recorder.clone(), &mut (), 200);
+        assert!(recorder.failed());
+        let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
+        assert_eq!(run.error, stopped);
+        assert!(recorder.end(&robot, 1, run.error.as_ref()).is_err());
+    }
+}

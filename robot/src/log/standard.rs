@@ -253,3 +253,52 @@ impl Message for TFMessage<'_> {
         QUATERNION,
     ];
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::log::message::schema;
+
+    #[test]
+    fn a_picture_tells_its_format_by_its_first_bytes() {
+        let format = |bytes| CompressedImage::new(Stamp::default(), bytes).format;
+        assert_eq!(format(&[0xff, 0xd8, 0xff, 0xe0]), "jpeg");
+        assert_eq!(format(b"\x89PNG\r\n"), "png");
+        assert_eq!((format(b""), format(b"GIF89a")), ("", ""));
+    }
+
+    #[test]
+    fn a_half_turn_is_all_about_up() {
+        let Quaternion { x, y, z, w } = Quaternion::turn(PI);
+        assert_eq!((x, y), (0.0, 0.0));
+        assert!((z - 1.0).abs() < 1e-12 && w.abs() < 1e-12, "{z} {w}");
+    }
+
+    /// A type that is neither a number nor a word is defined in the same schema.
+    fn closed<M: Message>() {
+        let text = schema::<M>();
+        let defined: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("MSG: ")).collect();
+        let mut used = Vec::new();
+        for line in text.lines().filter(|line| !line.starts_with(['#', '=', 'M'])) {
+            let kind = line.split([' ', '[']).next().unwrap_or_default();
+            if kind.contains('/') && !used.contains(&kind) {
+                used.push(kind);
+            }
+        }
+        used.sort_unstable();
+        let mut sorted = defined.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, used, "{text}");
+    }
+
+    #[test]
+    fn every_definition_comes_with_those_that_it_uses_and_no_others() {
+        closed::<CompressedImage>();
+        closed::<Twist>();
+        closed::<Odometry>();
+        closed::<TFMessage>();
+        closed::<crate::log::messages::Percept>();
+    }
+}

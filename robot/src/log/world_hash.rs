@@ -47,6 +47,9 @@ mod tests {
     #[test]
     fn one_edge_has_the_hash_of_its_two_words() {
         let edge = EmbeddedGraph::from_edge_lists(&[("a", vec!["e"]), ("b", vec!["e"])]).unwrap();
-        assert_eq!(world_hash(&edge, Dart(0)), "d68892270a4358c723fefd6c3df811000689d276a7b15205c65037a41a989cce");
+        assert_eq!(
+            world_hash(&edge, Dart(0)),
+            "d68892270a4358c723fefd6c3df811000689d276a7b15205c65037a41a989cce"
+        );
     }
 }

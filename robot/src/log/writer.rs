@@ -163,8 +163,7 @@ impl<W: Write> LogWriter<W> {
         let known = match self.topics.get_mut(topic) {
             Some(known) => known,
             None => {
-                let schema =
-                    self.out.add_schema(M::TYPE, "ros2msg", schema::<M>().as_bytes())?;
+                let schema = self.out.add_schema(M::TYPE, "ros2msg", schema::<M>().as_bytes())?;
                 let channel = self.out.add_channel(schema, topic, "cdr", &BTreeMap::new())?;
                 self.topics.entry(topic.to_owned()).or_insert(Topic { channel, sequence: 0 })
             }
@@ -172,5 +171,149 @@ impl<W: Write> LogWriter<W> {
         let sequence = known.sequence;
         known.sequence = sequence.wrapping_add(1);
         Ok((known.channel, sequence))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mcap::{
+        MessageStream, Summary,
+        read::Options,
+        records::{Record, op},
+    };
+
+    use super::*;
+    use crate::log::messages::{Command, Door, Own, Percept, Stamp};
+
+    const SECOND: u64 = 1_000_000_000;
+
+    fn written(messages: impl Fn(&mut LogWriter<Vec<u8>>)) -> Vec<u8> {
+        let mut log = LogWriter::new(Vec::new()).unwrap();
+        messages(&mut log);
+        log.finish().unwrap()
+    }
+
+    /// The bytes of each message, as far as the file can be read.
+    fn bodies(file: &[u8]) -> Vec<Vec<u8>> {
+        let messages =
+            MessageStream::new_with_options(file, Options::IgnoreEndMagic.into()).unwrap();
+        messages.map_while(Result::ok).map(|message| message.data.to_vec()).collect()
+    }
+
+    fn doors(count: u64) -> impl Fn(&mut LogWriter<Vec<u8>>) {
+        move |log| {
+            for time in 0..count {
+                let door = Door { r#move: time as u32, ..Door::default() };
+                log.write(Door::TOPIC, time * SECOND, &door).unwrap();
+            }
+        }
+    }
+
+    /// By the Common Data Representation: each number is aligned to its size, counted from the end of
+    /// the four bytes of encapsulation; a word tells its length and ends in a zero; a field of fixed
+    /// length does not tell it.
+    #[test]
+    fn a_message_is_told_in_cdr() {
+        let stamp = Stamp { sec: 1, nanosec: 2 };
+        let command = Command { stamp, state: "go".to_owned(), turn: 1.0, forward: -0.5 };
+        let form = [true, false, true, false];
+        let percept = Percept { stamp, r#move: 3, degree: 2, marker: -1, form, entry: 1.0 };
+        let file = written(|log| {
+            log.write(Command::TOPIC, 5, &command).unwrap();
+            log.write(Percept::TOPIC, 6, &percept).unwrap();
+        });
+        let (one, minus_half) = ([0, 0, 0, 0, 0, 0, 0xf0, 0x3f], [0, 0, 0, 0, 0, 0, 0xe0, 0xbf]);
+        let head = [0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
+        let word = [3, 0, 0, 0, b'g', b'o', 0, 0];
+        let padded = [&head[..], &word, &one, &minus_half].concat();
+        let told = [&head[..], &[3, 0, 0, 0, 2, 0, 0, 0, 255, 255, 255, 255, 1, 0, 1, 0]];
+        assert_eq!(bodies(&file), [padded, [told.concat(), one.to_vec()].concat()]);
+    }
+
+    #[test]
+    fn the_same_messages_make_the_same_bytes_of_the_profile_of_ros_2() {
+        let file = written(doors(30));
+        assert_eq!(file, written(doors(30)));
+        let mut records = mcap::read::LinearReader::new(&file).unwrap();
+        let Some(Ok(Record::Header(header))) = records.next() else { panic!("a header") };
+        assert_eq!((header.profile.as_str(), header.library.as_str()), ("ros2", "toposlam"));
+        let message = MessageStream::new(&file).unwrap().next().unwrap().unwrap();
+        let schema = message.channel.schema.as_ref().unwrap();
+        assert_eq!(
+            (schema.name.as_str(), schema.encoding.as_str()),
+            (<Door as Own>::TYPE, "ros2msg")
+        );
+        let text = String::from_utf8(schema.data.to_vec()).unwrap();
+        let time = "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+        assert!(text.starts_with(<Door as Own>::DEFINITION) && text.ends_with(time), "{text}");
+        assert_eq!(message.channel.message_encoding, "cdr");
+    }
+
+    #[test]
+    fn a_log_that_was_broken_off_is_read_up_to_its_last_whole_chunk() {
+        let file = written(doors(35));
+        let chunks = Summary::read(&file).unwrap().unwrap().chunk_indexes;
+        // Eleven messages are ten seconds long.
+        assert_eq!(chunks.len(), 4);
+        for (number, chunk) in chunks.iter().enumerate() {
+            let begins = chunk.chunk_start_offset as usize;
+            let ends = begins + chunk.chunk_length as usize;
+            assert_eq!(file[begins], op::CHUNK);
+            assert_eq!(bodies(&file[..ends - 1]).len(), 11 * number);
+            assert_eq!(bodies(&file[..ends]).len(), (11 * (number + 1)).min(35));
+        }
+    }
+
+    #[test]
+    fn a_chunk_is_full_at_a_mebibyte_and_one_message_may_be_larger() {
+        let image = |bytes| vec![7_u8; bytes];
+        let file = written(|log| {
+            for bytes in [600_000, 500_000, 3_000_000, 1000] {
+                let data = image(bytes);
+                let picture = crate::log::standard::CompressedImage::new(Stamp::default(), &data);
+                log.write("/camera", 0, &picture).unwrap();
+            }
+        });
+        assert_eq!(Summary::read(&file).unwrap().unwrap().chunk_indexes.len(), 4);
+        let lengths: Vec<_> = bodies(&file).iter().map(Vec::len).collect();
+        assert!(lengths.iter().zip([600_000, 500_000, 3_000_000, 1000]).all(|(&l, n)| l == n + 36));
+    }
+
+    /// A file that takes so many bytes.
+    struct Full(usize);
+
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let taken = bytes.len().min(self.0);
+            self.0 -= taken;
+            if taken == 0 { Err(io::ErrorKind::StorageFull.into()) } else { Ok(taken) }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_an_error_at_any_byte() {
+        let fill = |bytes: usize| {
+            let mut log = LogWriter::new(Full(bytes))?;
+            log.note("n", BTreeMap::new())?;
+            for time in 0..20 {
+                log.write(Door::TOPIC, time * SECOND, &Door::default())?;
+            }
+            log.finish()
+        };
+        let needed = written(|log| {
+            log.note("n", BTreeMap::new()).unwrap();
+            (0..20).for_each(|t| log.write(Door::TOPIC, t * SECOND, &Door::default()).unwrap());
+        });
+        for bytes in 0..needed.len() {
+            let Err(WriteError::File(error)) = fill(bytes) else {
+                panic!("{bytes} bytes are enough")
+            };
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{bytes}");
+        }
+        assert!(fill(needed.len()).is_ok());
     }
 }

@@ -314,6 +314,25 @@ mod tests {
     }
 
     #[test]
+    fn its_track_tells_each_period_where_somebody_wants_to_know() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        Drive(&mut base).forward(0.1).unwrap();
+        assert!(base.track().is_empty());
+        base.keep_track();
+        let begun = base.time();
+        Drive(&mut base).forward(0.1).unwrap();
+        base.wait(0.3);
+        // Where it stood; 0.05 m in each of two periods; the stop; a picture.
+        let speeds: Vec<_> = base.track().iter().map(|sample| sample.speed).collect();
+        assert_eq!(speeds.len(), 5);
+        assert!(speeds[1] > 0.19 && speeds[2] > 0.15, "{speeds:?}");
+        assert_eq!((speeds[0], speeds[3], speeds[4]), (0.0, 0.0, 0.0));
+        let times: Vec<_> = base.track().iter().map(|s| s.reckoned.time - begun).collect();
+        assert!((times[4] - (3.0 * PERIOD + 0.3)).abs() < 1e-9 && times[0] == 0.0, "{times:?}");
+        assert_eq!(base.track()[4].reckoned.odometry, base.reading().odometry);
+    }
+
+    #[test]
     fn noise_is_that_of_the_seed_and_grows_with_its_factor() {
         let off = |factor: f64| {
             let end = |seed| {

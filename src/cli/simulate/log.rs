@@ -62,9 +62,8 @@ impl Arguments {
         for (name, value) in self.appearance.told() {
             say(name, Some(value));
         }
-        let unless = |value: f64, usual: f64| {
-            (value.total_cmp(&usual).is_ne()).then(|| value.to_string())
-        };
+        let unless =
+            |value: f64, usual: f64| (value.total_cmp(&usual).is_ne()).then(|| value.to_string());
         say("--noise", unless(self.noise, 1.0));
         say("--picture-time", unless(self.picture_time, PICTURE_TIME));
         for fault in &self.fault {
