@@ -100,15 +100,21 @@ impl<R: Robot> Observer<R> for () {}
 /// Somebody watches, or nobody.
 impl<R: Robot, O: Observer<R>> Observer<R> for Option<O> {
     fn round(&mut self, robot: &R, round: &Round<R::View>) {
-        self.iter_mut().for_each(|observer| observer.round(robot, round));
+        if let Some(observer) = self {
+            observer.round(robot, round);
+        }
     }
 
     fn leaving(&mut self, robot: &R, door: Door) {
-        self.iter_mut().for_each(|observer| observer.leaving(robot, door));
+        if let Some(observer) = self {
+            observer.leaving(robot, door);
+        }
     }
 
     fn arrived(&mut self, robot: &R, door: Option<Door>, at: &Standing) {
-        self.iter_mut().for_each(|observer| observer.arrived(robot, door, at));
+        if let Some(observer) = self {
+            observer.arrived(robot, door, at);
+        }
     }
 
     fn stop(&self) -> bool {

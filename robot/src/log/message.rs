@@ -1,5 +1,7 @@
 //! What makes a type a message of ROS 2: its name, and definitions from which any reader can read it.
 
+use std::fmt::Write;
+
 use serde::Serialize;
 
 use super::messages::Own;
@@ -50,7 +52,8 @@ impl<M: Own> Message for M {
 pub fn schema<M: Message>() -> String {
     let mut text = M::DEFINITION.to_owned();
     for Definition { name, text: used } in M::USES {
-        text += &format!("{}\nMSG: {name}\n{used}", "=".repeat(80));
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{:=<80}\nMSG: {name}\n{used}", "");
     }
     text
 }

@@ -312,8 +312,7 @@ mod tests {
         );
         recorder.end(&robot, run.exploration.moves(), run.error.as_ref()).unwrap();
         judge(&run);
-        let bytes = file.0.borrow().clone();
-        bytes
+        file.0.borrow().clone()
     }
 
     /// Topic, time and body of each message.

@@ -160,13 +160,12 @@ impl<W: Write> LogWriter<W> {
 
     /// The channel of a topic, and the number of its next message.
     fn next_of<M: Message>(&mut self, topic: &str) -> Result<(u16, u32), WriteError> {
-        let known = match self.topics.get_mut(topic) {
-            Some(known) => known,
-            None => {
-                let schema = self.out.add_schema(M::TYPE, "ros2msg", schema::<M>().as_bytes())?;
-                let channel = self.out.add_channel(schema, topic, "cdr", &BTreeMap::new())?;
-                self.topics.entry(topic.to_owned()).or_insert(Topic { channel, sequence: 0 })
-            }
+        let known = if let Some(known) = self.topics.get_mut(topic) {
+            known
+        } else {
+            let schema = self.out.add_schema(M::TYPE, "ros2msg", schema::<M>().as_bytes())?;
+            let channel = self.out.add_channel(schema, topic, "cdr", &BTreeMap::new())?;
+            self.topics.entry(topic.to_owned()).or_insert(Topic { channel, sequence: 0 })
         };
         let sequence = known.sequence;
         known.sequence = sequence.wrapping_add(1);
