@@ -4,7 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     Cause, Count, Definition, DefinitionError, Dialect, Field, Kind, MOST_BYTES, MOST_DEPTH,
-    MOST_FIELDS, Struct, error::quoted, least, line::{Line, line}, short_name,
+    MOST_FIELDS, Struct,
+    error::quoted,
+    least,
+    line::{Line, line},
+    short_name,
 };
 
 /// A message of which only the lines are known.
@@ -168,7 +172,9 @@ impl Resolver<'_> {
                 return Err(Cause::TwoFields(quoted(name)).at(*number));
             }
             let one = match kind {
-                Kind::Struct(part) => structs.get(part).and_then(Option::as_ref).map_or(0, |s| s.least),
+                Kind::Struct(part) => {
+                    structs.get(part).and_then(Option::as_ref).map_or(0, |s| s.least)
+                }
                 primitive => least(primitive, &[]),
             };
             if one == 0 && count != Count::One {

@@ -8,7 +8,8 @@ fn ros2(text: &str) -> Result<Definition, String> {
     Definition::read(Dialect::Ros2, "a/msg/A", text).map_err(|error| error.to_string())
 }
 
-const LINE: &str = "================================================================================";
+const LINE: &str =
+    "================================================================================";
 
 #[test]
 fn a_message_of_ros_1_is_resolved_through_its_sections() {
@@ -21,13 +22,17 @@ fn a_message_of_ros_1_is_resolved_through_its_sections() {
     assert_eq!(root.name, "a/A");
     let names: Vec<_> = root.fields.iter().map(|field| field.name.as_str()).collect();
     assert_eq!(names, ["header", "parts", "K"]);
-    assert_eq!(root.constants, [("LEFT", "1"), ("WORD", "a # b")].map(|(a, b)| (a.into(), b.into())));
+    assert_eq!(
+        root.constants,
+        [("LEFT", "1"), ("WORD", "a # b")].map(|(a, b)| (a.into(), b.into()))
+    );
     assert_eq!(root.field("K").unwrap().1.count, Count::Fixed(9));
     let Kind::Struct(header) = root.fields[0].kind else { panic!() };
     let header = definition.get(header).unwrap();
     assert_eq!(header.fields[1].kind, Kind::Time);
     let Kind::Struct(part) = root.fields[1].kind else { panic!() };
-    let kinds: Vec<_> = definition.get(part).unwrap().fields.iter().map(|field| field.kind).collect();
+    let kinds: Vec<_> =
+        definition.get(part).unwrap().fields.iter().map(|field| field.kind).collect();
     assert_eq!(kinds, [Kind::Int(1), Kind::Unsigned(1)]);
     assert_eq!(root.least, 16 + 4 + 72);
 }
@@ -60,15 +65,27 @@ fn what_is_wrong_is_told_with_its_line() {
         ("int32".to_owned(), "line 1 of the definition: `int32` is neither a field nor a constant"),
         ("int32 a\nint32 a".into(), "line 2 of the definition: there are two fields `a`"),
         ("int32 1a".into(), "line 1 of the definition: `1a` is not a name"),
-        ("int32[x] a".into(), "line 1 of the definition: `int32[x] a` is neither a field nor a constant"),
+        (
+            "int32[x] a".into(),
+            "line 1 of the definition: `int32[x] a` is neither a field nor a constant",
+        ),
         ("\nB b".into(), "line 2 of the definition: the type `B` is not defined"),
         ("B B=1".into(), "line 1 of the definition: a constant of the type `B` cannot be"),
         ("A a".into(), "line 1 of the definition: `A` is a part of itself"),
         (after("B b", "a/B\nA[] a"), "line 4 of the definition: `A` is a part of itself"),
         (after("B[] b", "a/B\n"), "line 1 of the definition: a list of `B`, which has no fields"),
-        (after("B b", "c/B\nint8 x\n===\nMSG: d/B\nint8 x"), "line 1 of the definition: the type `B` is defined more than once"),
-        ("===\nint8 x".into(), "line 2 of the definition: `int8 x` is neither a field nor a constant"),
-        ("int8 x 1".into(), "line 1 of the definition: `int8 x 1` is neither a field nor a constant"),
+        (
+            after("B b", "c/B\nint8 x\n===\nMSG: d/B\nint8 x"),
+            "line 1 of the definition: the type `B` is defined more than once",
+        ),
+        (
+            "===\nint8 x".into(),
+            "line 2 of the definition: `int8 x` is neither a field nor a constant",
+        ),
+        (
+            "int8 x 1".into(),
+            "line 1 of the definition: `int8 x 1` is neither a field nor a constant",
+        ),
     ] {
         assert_eq!(ros1(&text).unwrap_err(), message);
     }
