@@ -82,6 +82,14 @@ impl<'l> Messages<'l> {
         }
     }
 
+    /// There are to be no more.
+    pub(super) fn end(&mut self) {
+        self.ahead.clear();
+        self.waiting.clear();
+        self.held.clear();
+        self.held_bytes = 0;
+    }
+
     fn message(&mut self) -> Result<Option<Message>, LogError> {
         loop {
             while let Some(&section) = self.ahead.last() {
@@ -193,10 +201,7 @@ impl Iterator for Messages<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         let next = self.message();
         if next.is_err() {
-            self.ahead.clear();
-            self.waiting.clear();
-            self.held.clear();
-            self.held_bytes = 0;
+            self.end();
         }
         next.transpose()
     }

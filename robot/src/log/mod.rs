@@ -3,9 +3,13 @@
 mod container;
 pub mod decode;
 pub mod definition;
+pub mod entries;
 pub mod error;
 mod in_order;
+pub mod mapping;
 pub mod messages;
+mod own;
+mod picture;
 pub mod reading;
 mod source;
 pub mod topic;

@@ -126,6 +126,28 @@ impl Definition {
         self.structs.get(index)
     }
 
+    /// What stands at a path such as `pose.position.x` or `doors[0]`, if anything can.
+    #[must_use]
+    pub fn at(&self, path: &str) -> Option<(Kind, Count)> {
+        let mut here = (Kind::Struct(0), Count::One);
+        for step in path.split('.') {
+            let (Kind::Struct(index), Count::One) = here else { return None };
+            let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+            let (_, field) = self.get(index)?.field(name)?;
+            here = (field.kind, field.count);
+            if step.len() > name.len() {
+                let index: u32 = indices.strip_suffix(']')?.parse().ok()?;
+                match field.count {
+                    Count::Fixed(most) | Count::AtMost(most) if index < most => {}
+                    Count::Any => {}
+                    _ => return None,
+                }
+                here.1 = Count::One;
+            }
+        }
+        Some(here)
+    }
+
     /// The fewest bytes that one of a kind can have, padding not counted.
     pub(super) fn least(&self, kind: Kind) -> usize {
         least(kind, &self.structs)
