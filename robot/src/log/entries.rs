@@ -232,4 +232,25 @@ fn yaw([x, y, z, w]: [f64; 4]) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+
+    #[test]
+    fn a_robot_that_looks_to_its_left_has_turned_counter_clockwise() {
+        let turned =
+            |angle: f64| yaw([0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()]).unwrap();
+        for angle in [0.0, 1.0, FRAC_PI_2, 3.0, PI - 1e-9, -0.5, -3.0] {
+            assert!((turned(angle) - angle).abs() < 1e-9, "{angle}");
+        }
+        // The opposite quaternion is the same rotation, and so is one of another length.
+        let yaw_of = yaw([0.0, 0.0, -3.0, -3.0]).unwrap();
+        assert!((yaw_of - FRAC_PI_2).abs() < 1e-12);
+        // A robot on a slope looks to the same side.
+        let (sine, cosine) = 0.1_f64.sin_cos();
+        assert!(yaw([sine, 0.0, 0.0, cosine]).unwrap().abs() < 1e-12);
+        assert_eq!(yaw([0.0; 4]), None);
+        assert_eq!(yaw([f64::MAX; 4]), None);
+    }
+}

@@ -58,10 +58,10 @@ impl Log {
         let scan = container::scan(format, &source, &mut |record| topics.hear(record))?;
         let mut sections = scan.sections;
         for section in &mut sections {
-            let known = section
-                .counts
-                .as_ref()
-                .is_some_and(|counts| counts.keys().all(|id| topics.connections.contains_key(id)));
+            let known = section.counts.as_ref().is_some_and(|counts| {
+                let told = counts.keys().all(|id| topics.connections.contains_key(id));
+                told && (section.times.is_some() || counts.values().all(|count| *count == 0))
+            });
             if !known {
                 look_through(section, format, &source, &mut topics)?;
             }

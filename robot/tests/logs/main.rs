@@ -7,4 +7,5 @@ mod bag;
 mod broken;
 mod mcap_file;
 mod recorded;
+mod roles;
 mod written;

@@ -205,7 +205,8 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
         compression,
         size,
         checksum,
-        times: (size > 0).then_some(times),
+        // What ends before it starts is not believed.
+        times: (size > 0 && times[0] <= times[1]).then_some(times),
         counts: (size == 0).then(BTreeMap::new),
     }))
 }
