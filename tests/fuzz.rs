@@ -20,6 +20,12 @@ use toposlam_model::format::{
     plantri::{self, Code},
     world_file,
 };
+use toposlam_robot::log::{
+    decode::decode,
+    definition::{Definition, Dialect},
+    mapping::Mapping,
+    reading::Log,
+};
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
 
 /// A body for a fuzzer, and where it is.
@@ -31,7 +37,7 @@ struct Target {
     package: &'static str,
 }
 
-/// Every body: of worlds and of choices, and of sensing.
+/// Every body: of worlds and of choices, of sensing, and of logs.
 fn targets() -> Vec<Target> {
     let proofs = toposlam_proofs::fuzz::TARGETS.iter().map(|target| Target {
         name: target.name,
@@ -40,7 +46,9 @@ fn targets() -> Vec<Target> {
     });
     let vision = toposlam_vision::fuzz::TARGETS.iter();
     let vision = vision.map(|&(name, body)| Target { name, body, package: "toposlam_vision" });
-    proofs.chain(vision).collect()
+    let robot = toposlam_robot::fuzz::TARGETS.iter();
+    let robot = robot.map(|&(name, body)| Target { name, body, package: "toposlam_robot" });
+    proofs.chain(vision).chain(robot).collect()
 }
 
 /// A file or folder of the repository.
@@ -259,6 +267,31 @@ fn colours_hold() {
 }
 
 #[test]
+fn bags_hold() {
+    holds("bag", 10_000);
+}
+
+#[test]
+fn mcap_files_hold() {
+    holds("mcap", 10_000);
+}
+
+#[test]
+fn messages_of_ros_1_hold() {
+    holds("ros1_message", 30_000);
+}
+
+#[test]
+fn messages_in_cdr_hold() {
+    holds("cdr_message", 30_000);
+}
+
+#[test]
+fn mappings_of_logs_hold() {
+    holds("log_mapping", 10_000);
+}
+
+#[test]
 fn every_target_has_a_body_and_seeds_and_is_run() {
     let targets = targets();
     let names: BTreeSet<String> = targets.iter().map(|target| target.name.to_owned()).collect();
@@ -305,10 +338,23 @@ fn seeds_are_what_they_are_called() {
                     calibration::read(toml, &mut read).is_ok()
                 }
                 "colours" => ColourModel::read(&bytes).is_ok(),
+                "bag" | "mcap" => Log::of_bytes(bytes)
+                    .is_ok_and(|log| log.read_all().all(|message| message.is_ok())),
+                "ros1_message" => is_message(Dialect::Ros1, &bytes),
+                "cdr_message" => is_message(Dialect::Ros2, &bytes),
+                "log_mapping" => Mapping::read(&bytes).is_ok(),
                 "world_file" => world_file::read(&bytes).is_ok(),
                 _ => panic!("{target} is not known here"),
             };
             assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
         }
     }
+}
+
+/// Whether bytes are a definition, and after a zero byte a message of it.
+fn is_message(dialect: Dialect, bytes: &[u8]) -> bool {
+    let zero = bytes.iter().position(|&byte| byte == 0).unwrap();
+    let text = std::str::from_utf8(&bytes[..zero]).unwrap();
+    Definition::read(dialect, "a/A", text)
+        .is_ok_and(|definition| decode(&definition, &bytes[zero + 1..]).is_ok())
 }

@@ -9,6 +9,7 @@ pub mod conform;
 pub mod conformance;
 pub mod evaluation;
 pub mod explorer;
+pub mod fuzz;
 pub mod log;
 pub mod pose;
 pub mod recording;

@@ -10,6 +10,7 @@ mod counterexample;
 mod draw;
 mod evaluate;
 mod explore;
+mod info;
 mod input;
 mod json;
 mod movable;
@@ -72,6 +73,7 @@ enum Verb {
     Train(train::Arguments),
     Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
+    Info(info::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -154,6 +156,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Train(verb)) => verb.run(&mut out),
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
+        Some(Verb::Info(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

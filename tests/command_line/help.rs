@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 14] = [
+const VERBS: [(&str, &[&str]); 15] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -40,6 +40,7 @@ const VERBS: [(&str, &[&str]); 14] = [
         "render",
         &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
     ),
+    ("info", &["--mapping", "--write-mapping", "--json"]),
     ("completions", &[]),
 ];
 

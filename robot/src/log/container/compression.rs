@@ -1,0 +1,93 @@
+//! How chunks are compressed.
+
+use std::io::Read;
+
+use lz4_flex::frame::FrameDecoder;
+
+use crate::log::error::Cause;
+
+/// How many times as long as it is in the file a chunk can be; what says more is not decompressed.
+pub const MOST_GROWTH: u64 = 1000;
+
+/// How a chunk is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Compression {
+    /// Not at all.
+    None,
+    /// By bzip2.
+    Bz2,
+    /// By LZ4, in its frame format.
+    Lz4,
+    /// By Zstandard.
+    Zstd,
+}
+
+impl Compression {
+    /// As a bag calls it.
+    pub(super) fn of_bag(name: &[u8]) -> Result<Self, Cause> {
+        match name {
+            b"none" => Ok(Self::None),
+            b"bz2" => Ok(Self::Bz2),
+            b"lz4" => Ok(Self::Lz4),
+            _ => Err(unknown(name, "none, bz2 and lz4")),
+        }
+    }
+
+    /// As MCAP calls it.
+    pub(super) fn of_mcap(name: &[u8]) -> Result<Self, Cause> {
+        match name {
+            b"" => Ok(Self::None),
+            b"lz4" => Ok(Self::Lz4),
+            b"zstd" => Ok(Self::Zstd),
+            _ => Err(unknown(name, "lz4 and zstd")),
+        }
+    }
+}
+
+fn unknown(name: &[u8], known: &'static str) -> Cause {
+    let beginning = name.get(..name.len().min(20)).unwrap_or_default();
+    Cause::Compression(String::from_utf8_lossy(beginning).into_owned(), known)
+}
+
+/// The bytes of a chunk, which says how long it is, and perhaps its checksum.
+pub(super) fn decompress(
+    compression: Compression,
+    bytes: Vec<u8>,
+    size: u64,
+    checksum: u32,
+) -> Result<Vec<u8>, Cause> {
+    let compressed = bytes.len() as u64;
+    if size > compressed.saturating_mul(MOST_GROWTH) {
+        return Err(Cause::Growth { compressed, size });
+    }
+    let whole = match compression {
+        Compression::None => bytes,
+        Compression::Bz2 => read(bzip2::read::BzDecoder::new(&bytes[..]), size)?,
+        Compression::Lz4 => read(FrameDecoder::new(&bytes[..]), size)?,
+        Compression::Zstd => {
+            // Into the memory where it stays: a window of its own would be as large as the frame says.
+            let mut whole = Vec::with_capacity(size as usize);
+            let mut decoder = zstd::bulk::Decompressor::new().map_err(|error| fails(&error))?;
+            decoder.decompress_to_buffer(&bytes, &mut whole).map_err(|error| fails(&error))?;
+            whole
+        }
+    };
+    let found = whole.len() as u64;
+    if found != size {
+        return Err(Cause::Size { told: size, found });
+    }
+    if checksum != 0 && crc32fast::hash(&whole) != checksum {
+        return Err(Cause::Checksum);
+    }
+    Ok(whole)
+}
+
+fn read(decoder: impl Read, size: u64) -> Result<Vec<u8>, Cause> {
+    let mut whole = Vec::new();
+    decoder.take(size.saturating_add(1)).read_to_end(&mut whole).map_err(|error| fails(&error))?;
+    Ok(whole)
+}
+
+fn fails(error: &impl ToString) -> Cause {
+    Cause::Undecompressable(error.to_string().replace(char::is_control, " "))
+}

@@ -1,0 +1,205 @@
+//! What holds the messages of a log: ROS 1 bags and MCAP files, both of records, most of them in
+//! chunks.
+//!
+//! Either is first looked through from record to record, by their lengths, from which comes a list of
+//! sections: chunks, and stretches of messages outside of chunks. What the indices at the ends of files
+//! say is not needed for that, so files without them are read the same way.
+
+mod bag;
+mod compression;
+mod mcap;
+
+use std::{collections::BTreeMap, io, ops::Range};
+
+pub(super) use bag::MAGIC as BAG_MAGIC;
+pub use compression::MOST_GROWTH;
+use compression::{Compression, decompress};
+pub(super) use mcap::MAGIC as MCAP_MAGIC;
+
+use super::{
+    error::{Cause, LogError, Truncation},
+    source::Source,
+};
+
+/// What kind of file a log is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A ROS 1 bag, version 2.0.
+    Bag,
+    /// MCAP.
+    Mcap,
+}
+
+/// A record that is of use.
+pub(super) enum Record<'a> {
+    /// A message: where its bytes are, counted from where the record begins.
+    Message { connection: u32, time: u64, bytes: Range<usize> },
+    /// Of a bag: a topic, and what its messages are.
+    Connection { id: u32, topic: &'a [u8], type_name: &'a [u8], definition: &'a [u8] },
+    /// Of MCAP: what messages are.
+    Schema { id: u16, name: &'a [u8], encoding: &'a [u8], text: &'a [u8] },
+    /// Of MCAP: a topic.
+    Channel { id: u16, schema: u16, topic: &'a [u8], encoding: &'a [u8] },
+    /// Any other.
+    Other,
+}
+
+/// A chunk, or a stretch of the file outside of chunks; sections do not overlap, and stand in the order
+/// of the file.
+#[derive(Clone, Debug)]
+pub(super) struct Section {
+    /// Where its record begins, or its first one.
+    pub(super) offset: u64,
+    /// Where the records in it are, perhaps compressed.
+    bytes: Range<u64>,
+    compression: Compression,
+    /// How long it is when it is decompressed.
+    size: u64,
+    /// Of what is decompressed; 0: not told.
+    checksum: u32,
+    /// The time of its first message, and of its last one.
+    pub(super) times: Option<[u64; 2]>,
+    /// How many messages there are of each connection, if that is known.
+    pub(super) counts: Option<BTreeMap<u32, u64>>,
+}
+
+/// What looking through a file shows.
+#[derive(Default)]
+pub(super) struct Scan {
+    pub(super) sections: Vec<Section>,
+    pub(super) truncation: Option<Truncation>,
+    /// The section of messages outside of chunks that is still growing.
+    loose: Option<Section>,
+}
+
+/// Whoever is told of topics; each record once or several times.
+pub(super) type Listener<'l> = dyn FnMut(&Record<'_>) + 'l;
+
+/// Looks through a file.
+pub(super) fn scan(
+    format: Format,
+    source: &Source,
+    listener: &mut Listener<'_>,
+) -> Result<Scan, LogError> {
+    match format {
+        Format::Bag => bag::scan(source, listener),
+        Format::Mcap => mcap::scan(source, listener),
+    }
+}
+
+/// How long a stretch outside of chunks becomes.
+const LOOSE: u64 = 1 << 20;
+
+impl Scan {
+    /// A message outside of chunks, or another record among those.
+    fn add_loose(&mut self, record: Range<u64>, message: Option<(u32, u64)>) {
+        let fits = |section: &Section| {
+            section.bytes.end == record.start && record.end - section.offset <= LOOSE
+        };
+        if self.loose.as_ref().is_some_and(|section| !fits(section)) {
+            self.end_loose();
+        }
+        let section = self.loose.get_or_insert_with(|| Section {
+            offset: record.start,
+            bytes: record.start..record.start,
+            compression: Compression::None,
+            size: 0,
+            checksum: 0,
+            times: None,
+            counts: Some(BTreeMap::new()),
+        });
+        section.bytes.end = record.end;
+        section.size = section.bytes.end - section.bytes.start;
+        let Some((connection, time)) = message else { return };
+        let [first, last] = section.times.unwrap_or([time; 2]);
+        section.times = Some([first.min(time), last.max(time)]);
+        if let Some(counts) = &mut section.counts {
+            *counts.entry(connection).or_default() += 1;
+        }
+    }
+
+    /// What comes next is not outside of chunks, or further on.
+    fn end_loose(&mut self) {
+        self.sections.extend(self.loose.take().filter(|section| section.times.is_some()));
+    }
+
+    fn truncated(mut self, truncation: Truncation) -> Self {
+        self.end_loose();
+        // Some of its index may be missing.
+        if let Some(last) = self.sections.last_mut() {
+            last.counts = None;
+        }
+        self.truncation = Some(truncation);
+        self
+    }
+}
+
+impl Section {
+    /// Its records, decompressed.
+    ///
+    /// Takes at most [`MOST_GROWTH`] bytes for each byte that it has in the file, and 16 MiB besides.
+    pub(super) fn load(&self, source: &Source) -> Result<Vec<u8>, LogError> {
+        let wrong = |cause: Cause| cause.at(self.offset);
+        let bytes = source.read(self.bytes.clone()).map_err(|error| wrong(error.into()))?;
+        decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
+    }
+
+    /// How many bytes it takes when it is loaded.
+    pub(super) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Where a byte of its records is in the file; of one that is compressed, where it begins.
+    pub(super) fn place(&self, at: usize) -> u64 {
+        match self.compression {
+            Compression::None => self.bytes.start + at as u64,
+            _ => self.offset,
+        }
+    }
+
+    /// Its records, one after the other, with where each begins.
+    pub(super) fn records<'a>(
+        &'a self,
+        format: Format,
+        bytes: &'a [u8],
+    ) -> impl Iterator<Item = Result<(usize, Record<'a>), LogError>> {
+        let mut at = 0;
+        std::iter::from_fn(move || {
+            let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
+            let read = match format {
+                Format::Bag => bag::record(rest),
+                Format::Mcap => mcap::record(rest),
+            };
+            let start = at;
+            Some(match read {
+                Ok((record, length)) => {
+                    at = at.saturating_add(length);
+                    Ok((start, record))
+                }
+                Err(what) => {
+                    at = usize::MAX;
+                    Err(Cause::Malformed(what).at(self.place(start)))
+                }
+            })
+        })
+    }
+}
+
+/// A number of four bytes, the lesser first.
+fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..at.checked_add(4)?)?.try_into().ok().map(u32::from_le_bytes)
+}
+
+/// A number of eight bytes, the lesser first.
+fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+    bytes.get(at..at.checked_add(8)?)?.try_into().ok().map(u64::from_le_bytes)
+}
+
+/// A number of two bytes, the lesser first.
+fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
+    bytes.get(at..at.checked_add(2)?)?.try_into().ok().map(u16::from_le_bytes)
+}
+
+fn unreadable(offset: u64) -> impl Fn(io::Error) -> LogError {
+    move |error| Cause::Unreadable(error).at(offset)
+}

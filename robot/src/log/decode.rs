@@ -1,0 +1,244 @@
+//! From the bytes of a message to what it says: the serialisation of ROS 1, and CDR, as ROS 2 writes it
+//! (OMG DDSI-RTPS, 10; XCDR version 1, of either byte order).
+//!
+//! In ROS 1 all stands side by side, the lesser byte first. In CDR a number stands at a multiple of its
+//! size, counted from behind the four bytes that tell the byte order.
+
+use thiserror::Error;
+
+use super::{
+    definition::{Count, Definition, Dialect, Field, Kind},
+    value::{Numbers, Order, Value, number},
+};
+
+/// Why bytes are not a message of a definition.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("byte {offset} of the message{}: {cause}", in_field(.field))]
+pub struct DecodeError {
+    /// Where in the message; the first byte is 0.
+    pub offset: usize,
+    /// In which field of the message itself, if in one.
+    pub field: String,
+    /// What is wrong.
+    #[source]
+    pub cause: Cause,
+}
+
+fn in_field(field: &str) -> String {
+    if field.is_empty() { String::new() } else { format!(", `{field}`") }
+}
+
+/// What is wrong at a byte.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Cause {
+    /// The message is shorter than its definition.
+    #[error("{needed} more bytes are needed, and {left} are left")]
+    Short {
+        /// How many are needed.
+        needed: u64,
+        /// How many there are.
+        left: usize,
+    },
+    /// The message is longer than its definition.
+    #[error("{0} bytes are left over")]
+    LeftOver(usize),
+    /// A list is longer than its definition allows.
+    #[error("a list of {found}, which may have {most}")]
+    TooMany {
+        /// How long it is.
+        found: u32,
+        /// How long it may be.
+        most: u32,
+    },
+    /// The first bytes tell of a coding that is not known.
+    #[error("the encapsulation {0:#06x} is not known; known are 0x0000 and 0x0001, plain CDR")]
+    Encapsulation(u16),
+    /// Nobody says how many bytes a letter has.
+    #[error("a wstring cannot be read, for its writers do not agree on its letters")]
+    WideText,
+}
+
+/// Padding that writers of CDR leave behind a message, at most.
+const PADDING: usize = 7;
+
+/// What a message says.
+///
+/// Takes at most 256 bytes of memory for each byte of the message and for each field of the definition,
+/// and 4096 besides; a length is held against what is left before anything is made of it.
+///
+/// # Errors
+/// If the bytes are not a message of the definition. No bytes make it panic.
+pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'a>, DecodeError> {
+    let mut at = Decoder { definition, bytes, next: 0, origin: 0, order: Order::Little };
+    if definition.dialect() == Dialect::Ros2 {
+        at.encapsulation().map_err(|(offset, cause)| DecodeError {
+            offset,
+            field: String::new(),
+            cause,
+        })?;
+    }
+    let root = definition.root();
+    let mut values = Vec::with_capacity(root.fields.len());
+    for field in &root.fields {
+        values.push(at.field(field).map_err(|(offset, cause)| DecodeError {
+            offset,
+            field: field.name.clone(),
+            cause,
+        })?);
+    }
+    let left = bytes.len() - at.next;
+    let most = if definition.dialect() == Dialect::Ros2 { PADDING } else { 0 };
+    if left > most {
+        return Err(DecodeError {
+            offset: at.next,
+            field: String::new(),
+            cause: Cause::LeftOver(left),
+        });
+    }
+    Ok(Value::Struct(root, values))
+}
+
+/// What is wrong, and at which byte.
+type Failure = (usize, Cause);
+
+struct Decoder<'a> {
+    definition: &'a Definition,
+    bytes: &'a [u8],
+    /// Never beyond the bytes.
+    next: usize,
+    /// From where multiples are counted.
+    origin: usize,
+    order: Order,
+}
+
+impl<'a> Decoder<'a> {
+    fn encapsulation(&mut self) -> Result<(), Failure> {
+        let head = self.take(4)?;
+        let kind = head.iter().take(2).fold(0, |kind, byte| kind << 8 | u16::from(*byte));
+        self.order = match kind {
+            0 => Order::Big,
+            1 => Order::Little,
+            _ => return Err((0, Cause::Encapsulation(kind))),
+        };
+        self.origin = self.next;
+        Ok(())
+    }
+
+    fn left(&self) -> usize {
+        self.bytes.len() - self.next
+    }
+
+    fn take(&mut self, bytes: usize) -> Result<&'a [u8], Failure> {
+        self.need(bytes as u64)?;
+        let taken = self.bytes.get(self.next..self.next + bytes).unwrap_or_default();
+        self.next += bytes;
+        Ok(taken)
+    }
+
+    fn need(&self, needed: u64) -> Result<(), Failure> {
+        let left = self.left();
+        if needed > left as u64 { Err((self.next, Cause::Short { needed, left })) } else { Ok(()) }
+    }
+
+    fn align(&mut self, size: usize) -> Result<(), Failure> {
+        if self.definition.dialect() == Dialect::Ros2 {
+            let beyond = (self.next - self.origin) % size.max(1);
+            if beyond > 0 {
+                self.take(size - beyond)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn number(&mut self, kind: Kind, size: usize) -> Result<Value<'a>, Failure> {
+        self.align(size)?;
+        Ok(number(kind, self.order, self.take(size)?))
+    }
+
+    fn length(&mut self) -> Result<u32, Failure> {
+        match self.number(Kind::Unsigned(4), 4)? {
+            Value::Unsigned(length) => Ok(length as u32),
+            _ => Ok(0),
+        }
+    }
+
+    fn field(&mut self, field: &'a Field) -> Result<Value<'a>, Failure> {
+        let start = self.next;
+        match field.count {
+            Count::One => self.one(field.kind),
+            Count::Fixed(many) => self.list(field.kind, many),
+            Count::Any => {
+                let many = self.length()?;
+                self.list(field.kind, many)
+            }
+            Count::AtMost(most) => {
+                let found = self.length()?;
+                if found > most {
+                    return Err((start, Cause::TooMany { found, most }));
+                }
+                self.list(field.kind, found)
+            }
+        }
+    }
+
+    fn list(&mut self, kind: Kind, many: u32) -> Result<Value<'a>, Failure> {
+        let needed = u64::from(many).saturating_mul(self.definition.least(kind) as u64);
+        self.need(needed)?;
+        match kind {
+            Kind::Bool | Kind::Int(_) | Kind::Unsigned(_) | Kind::Float(_) => {
+                let size = self.definition.least(kind);
+                if many > 0 {
+                    self.align(size)?;
+                }
+                let bytes = self.take(size * many as usize)?;
+                Ok(Value::Numbers(Numbers { bytes, kind, order: self.order }))
+            }
+            _ => {
+                let mut list = Vec::with_capacity(many as usize);
+                for _ in 0..many {
+                    list.push(self.one(kind)?);
+                }
+                Ok(Value::List(list))
+            }
+        }
+    }
+
+    fn one(&mut self, kind: Kind) -> Result<Value<'a>, Failure> {
+        match kind {
+            Kind::Bool => self.number(kind, 1),
+            Kind::Int(size) | Kind::Unsigned(size) | Kind::Float(size) => {
+                self.number(kind, size.into())
+            }
+            Kind::Text => self.text(),
+            Kind::WideText => Err((self.next, Cause::WideText)),
+            Kind::Time | Kind::Duration => {
+                let part = if kind == Kind::Time { Kind::Unsigned(4) } else { Kind::Int(4) };
+                let [sec, nanosec] = [self.number(part, 4)?, self.number(part, 4)?];
+                Ok(Value::Time(sec.i64().unwrap_or_default(), nanosec.i64().unwrap_or_default()))
+            }
+            Kind::Struct(index) => {
+                let Some(made) = self.definition.get(index) else {
+                    return Ok(Value::List(Vec::new()));
+                };
+                let mut values = Vec::with_capacity(made.fields.len());
+                for field in &made.fields {
+                    values.push(self.field(field)?);
+                }
+                Ok(Value::Struct(made, values))
+            }
+        }
+    }
+
+    fn text(&mut self) -> Result<Value<'a>, Failure> {
+        let length = self.length()?;
+        let bytes = self.take(length as usize)?;
+        // In CDR the length counts a zero byte at the end.
+        Ok(Value::Text(match self.definition.dialect() {
+            Dialect::Ros1 => bytes,
+            Dialect::Ros2 => bytes.strip_suffix(&[0]).unwrap_or(bytes),
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

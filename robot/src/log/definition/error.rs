@@ -1,0 +1,70 @@
+//! What can be wrong with the definition of a message, and where.
+
+use thiserror::Error;
+
+use super::{MOST_BYTES, MOST_DEPTH, MOST_FIELDS};
+
+/// Why a text is not the definition of a message.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line} of the definition: {cause}")]
+pub struct DefinitionError {
+    /// Where; the first line is 1.
+    pub line: usize,
+    /// What is wrong.
+    #[source]
+    pub cause: Cause,
+}
+
+/// What is wrong at a line. What is quoted is cut to a few words.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Cause {
+    /// It is neither a field nor a constant.
+    #[error("`{0}` is neither a field nor a constant")]
+    Malformed(String),
+    /// A name that is none.
+    #[error("`{0}` is not a name")]
+    NotAName(String),
+    /// Two fields with one name.
+    #[error("there are two fields `{0}`")]
+    TwoFields(String),
+    /// A constant that is a list or a message.
+    #[error("a constant of the type `{0}` cannot be")]
+    ConstantType(String),
+    /// A type that the text does not define.
+    #[error("the type `{0}` is not defined")]
+    UnknownType(String),
+    /// A type that two packages define, and no package is named.
+    #[error("the type `{0}` is defined more than once")]
+    TwoTypes(String),
+    /// A message that is a part of itself.
+    #[error("`{0}` is a part of itself")]
+    PartOfItself(String),
+    /// A list of messages that have no fields, which takes no bytes however long it is.
+    #[error("a list of `{0}`, which has no fields")]
+    ListOfNothing(String),
+    /// Messages in messages in messages.
+    #[error("messages stand in one another more than {MOST_DEPTH} deep")]
+    TooDeep,
+    /// More fields than any message has.
+    #[error("there are more than {MOST_FIELDS} fields")]
+    TooManyFields,
+    /// A longer text than any definition.
+    #[error("the definition is longer than {MOST_BYTES} bytes")]
+    TooLong,
+}
+
+impl Cause {
+    pub(super) fn at(self, line: usize) -> DefinitionError {
+        DefinitionError { line, cause: self }
+    }
+}
+
+/// The beginning of a text, for a message of one line.
+pub(super) fn quoted(text: &str) -> String {
+    const MOST: usize = 60;
+    let mut quoted: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(MOST).is_some() {
+        quoted.push_str("...");
+    }
+    quoted
+}

@@ -1,0 +1,84 @@
+//! One line of a definition.
+
+use super::{
+    Count, Dialect,
+    error::{Cause, quoted},
+};
+
+/// What a line says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Line<'t> {
+    /// Nothing.
+    Empty,
+    /// What follows belongs to another message.
+    Separator,
+    /// A field.
+    Field { type_name: &'t str, count: Count, name: &'t str },
+    /// A constant.
+    Constant { type_name: &'t str, name: &'t str, value: &'t str },
+}
+
+/// Reads one line.
+pub(super) fn line(dialect: Dialect, text: &str) -> Result<Line<'_>, Cause> {
+    let trimmed = text.trim();
+    if trimmed.len() >= 3 && trimmed.bytes().all(|byte| byte == b'=') {
+        return Ok(Line::Separator);
+    }
+    let bare = trimmed.split('#').next().unwrap_or_default().trim_end();
+    if bare.is_empty() {
+        return Ok(Line::Empty);
+    }
+    let malformed = || Cause::Malformed(quoted(trimmed));
+    let (written, rest) = bare.split_once(char::is_whitespace).ok_or_else(malformed)?;
+    let rest = rest.trim_start();
+    let (type_name, count) = type_of(written).ok_or_else(malformed)?;
+    let end = rest.find(|letter: char| letter.is_whitespace() || letter == '=');
+    let (name, after) = rest.split_at(end.unwrap_or(rest.len()));
+    if !is_name(name) {
+        return Err(Cause::NotAName(quoted(name)));
+    }
+    let after = after.trim_start();
+    if let Some(value) = after.strip_prefix('=') {
+        if count != Count::One {
+            return Err(Cause::ConstantType(quoted(written)));
+        }
+        // A text of ROS 1 is all that follows, `#` and all.
+        let value = match (dialect, type_name) {
+            (Dialect::Ros1, "string") => trimmed.split_once('=').map_or(value, |(_, all)| all),
+            _ => value,
+        };
+        return Ok(Line::Constant { type_name, name, value: value.trim() });
+    }
+    match dialect {
+        Dialect::Ros1 if !after.is_empty() => Err(malformed()),
+        // What follows the name in ROS 2 is a default, which no recorded message needs.
+        _ => Ok(Line::Field { type_name, count, name }),
+    }
+}
+
+/// A type as it is written, such as `uint8[<=5]` or `string<=10`, without its bounds.
+fn type_of(written: &str) -> Option<(&str, Count)> {
+    let (base, count) = match written.split_once('[') {
+        None => (written, Count::One),
+        Some((base, list)) => {
+            let length = list.strip_suffix(']')?;
+            let count = match length.strip_prefix("<=") {
+                _ if length.is_empty() => Count::Any,
+                Some(most) => Count::AtMost(most.parse().ok()?),
+                None => Count::Fixed(length.parse().ok()?),
+            };
+            (base, count)
+        }
+    };
+    let base = match base.split_once("<=") {
+        None => base,
+        Some((base @ ("string" | "wstring"), most)) if most.parse::<u32>().is_ok() => base,
+        Some(_) => return None,
+    };
+    base.split('/').all(is_name).then_some((base, count))
+}
+
+fn is_name(text: &str) -> bool {
+    text.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
+        && text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
+}

@@ -1,0 +1,182 @@
+//! Definitions of messages, as logs carry them: ROS 1 (`ros1msg`) and ROS 2 (`ros2msg`).
+//!
+//! A log holds, with each topic, the text of its message's definition, and after it those of all
+//! messages that it uses, each behind a line of `=` and a line `MSG: package/Type`. A line is a field
+//! (`float64[9] K`), a constant (`uint8 LEFT=1`), a comment, or empty; a field of ROS 2 may have a
+//! default. `Header` is short for `std_msgs/Header`.
+
+mod error;
+mod line;
+mod resolve;
+
+pub use error::{Cause, DefinitionError};
+
+/// Which of the two languages a definition is written in, and which rules its messages follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dialect {
+    /// ROS 1: `time` and `duration` are built in.
+    Ros1,
+    /// ROS 2: they are messages; strings and lists may be bounded; fields may have defaults.
+    Ros2,
+}
+
+/// The longest definition that is read, in bytes.
+pub const MOST_BYTES: usize = 1 << 20;
+/// How deep messages may stand in one another.
+pub const MOST_DEPTH: usize = 32;
+/// How many fields a message may have, those of the messages in it counted too; a list counts once.
+pub const MOST_FIELDS: usize = 1 << 16;
+
+/// A definition of which every type is known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Definition {
+    dialect: Dialect,
+    structs: Vec<Struct>,
+}
+
+/// A message, or one within a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Struct {
+    /// Its type, as `package/Type`.
+    pub name: String,
+    /// Its fields, in their order.
+    pub fields: Vec<Field>,
+    /// Its constants: the name, and the value as it is written.
+    pub constants: Vec<(String, String)>,
+    /// The fewest bytes that a message of it can have, padding not counted.
+    least: usize,
+}
+
+/// A field of a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// What it is, or what each in its list is.
+    pub kind: Kind,
+    /// Whether it is a list.
+    pub count: Count,
+}
+
+/// What a field is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `bool`.
+    Bool,
+    /// A whole number with a sign, of so many bytes. `byte` in ROS 1.
+    Int(u8),
+    /// A whole number without a sign, of so many bytes. `char`; `byte` in ROS 2.
+    Unsigned(u8),
+    /// A number with a fraction, of so many bytes.
+    Float(u8),
+    /// `string`.
+    Text,
+    /// `wstring`.
+    WideText,
+    /// `time` of ROS 1: two numbers without a sign.
+    Time,
+    /// `duration` of ROS 1: two numbers with a sign.
+    Duration,
+    /// A message: which of the definition's.
+    Struct(usize),
+}
+
+/// How many there are of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Count {
+    /// It is no list.
+    One,
+    /// A list of always so many.
+    Fixed(u32),
+    /// A list of any length.
+    Any,
+    /// A list of at most so many.
+    AtMost(u32),
+}
+
+impl Definition {
+    /// Reads a definition, of which the log tells the type.
+    ///
+    /// Takes at most 256 bytes of memory for each byte of the text and of the name, and 4096 besides.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line. No text makes it panic.
+    pub fn read(dialect: Dialect, type_name: &str, text: &str) -> Result<Self, DefinitionError> {
+        resolve::resolve(dialect, type_name, text)
+    }
+
+    /// In which language it is written.
+    #[must_use]
+    pub fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    /// The message itself.
+    #[must_use]
+    pub fn root(&self) -> &Struct {
+        // There is always a first one; the other is never made.
+        static NOTHING: Struct =
+            Struct { name: String::new(), fields: Vec::new(), constants: Vec::new(), least: 0 };
+        self.structs.first().unwrap_or(&NOTHING)
+    }
+
+    /// A message within it.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<&Struct> {
+        self.structs.get(index)
+    }
+
+    /// What stands at a path such as `pose.position.x` or `doors[0]`, if anything can.
+    #[must_use]
+    pub fn at(&self, path: &str) -> Option<(Kind, Count)> {
+        let mut here = (Kind::Struct(0), Count::One);
+        for step in path.split('.') {
+            let (Kind::Struct(index), Count::One) = here else { return None };
+            let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+            let (_, field) = self.get(index)?.field(name)?;
+            here = (field.kind, field.count);
+            if step.len() > name.len() {
+                let index: u32 = indices.strip_suffix(']')?.parse().ok()?;
+                match field.count {
+                    Count::Fixed(most) | Count::AtMost(most) if index < most => {}
+                    Count::Any => {}
+                    _ => return None,
+                }
+                here.1 = Count::One;
+            }
+        }
+        Some(here)
+    }
+
+    /// The fewest bytes that one of a kind can have, padding not counted.
+    pub(super) fn least(&self, kind: Kind) -> usize {
+        least(kind, &self.structs)
+    }
+}
+
+fn least(kind: Kind, structs: &[Struct]) -> usize {
+    match kind {
+        Kind::Bool => 1,
+        Kind::Int(bytes) | Kind::Unsigned(bytes) | Kind::Float(bytes) => bytes.into(),
+        Kind::Text | Kind::WideText => 4,
+        Kind::Time | Kind::Duration => 8,
+        Kind::Struct(index) => structs.get(index).map_or(0, |found| found.least),
+    }
+}
+
+impl Struct {
+    /// The field of a name, and which it is.
+    #[must_use]
+    pub fn field(&self, name: &str) -> Option<(usize, &Field)> {
+        self.fields.iter().enumerate().find(|(_, field)| field.name == name)
+    }
+}
+
+/// A type without the `msg` that ROS 2 puts in its middle: `package/Type`.
+#[must_use]
+pub fn short_name(type_name: &str) -> String {
+    type_name.replacen("/msg/", "/", 1)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,252 @@
+//! From the lines of a definition to one of which every type is known.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{
+    Cause, Count, Definition, DefinitionError, Dialect, Field, Kind, MOST_BYTES, MOST_DEPTH,
+    MOST_FIELDS, Struct,
+    error::quoted,
+    least,
+    line::{Line, line},
+    short_name,
+};
+
+/// A message of which only the lines are known.
+struct Section<'t> {
+    name: String,
+    line: usize,
+    lines: Vec<(usize, Line<'t>)>,
+}
+
+/// What the text need not define.
+const KNOWN: [(&str, &str); 2] = [
+    ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
+    ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec"),
+];
+
+pub(super) fn resolve(
+    dialect: Dialect,
+    type_name: &str,
+    text: &str,
+) -> Result<Definition, DefinitionError> {
+    if text.len().saturating_add(type_name.len()) > MOST_BYTES {
+        return Err(Cause::TooLong.at(1));
+    }
+    let mut sections = sections(dialect, type_name, text)?;
+    if dialect == Dialect::Ros2 {
+        for (name, text) in KNOWN {
+            if !sections.iter().any(|section| section.name == name) {
+                let lines = text.lines().filter_map(|text| Some((0, line(dialect, text).ok()?)));
+                sections.push(Section { name: name.to_owned(), line: 0, lines: lines.collect() });
+            }
+        }
+    }
+    let mut names = BTreeMap::new();
+    let mut last_parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, section) in sections.iter().enumerate() {
+        // A type may be told several times; all tell the same.
+        if names.insert(section.name.as_str(), index).is_none() {
+            last_parts.entry(last_part(&section.name)).or_default().push(index);
+        }
+    }
+    let resolver = Resolver { dialect, sections: &sections, names, last_parts };
+    let mut structs: Vec<_> = sections.iter().map(|_| None).collect();
+    let mut sizes = vec![Size::default(); sections.len()];
+    resolver.add(0, 1, &mut structs, &mut sizes, &mut BTreeSet::new())?;
+    // Those that nothing uses stay empty.
+    let structs = structs.into_iter().zip(&sections).map(|(made, section)| {
+        made.unwrap_or_else(|| Struct {
+            name: section.name.clone(),
+            fields: Vec::new(),
+            constants: Vec::new(),
+            least: 0,
+        })
+    });
+    Ok(Definition { dialect, structs: structs.collect() })
+}
+
+fn last_part(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
+}
+
+/// The messages of a text.
+fn sections<'t>(
+    dialect: Dialect,
+    type_name: &str,
+    text: &'t str,
+) -> Result<Vec<Section<'t>>, DefinitionError> {
+    let first = Section { name: short_name(type_name), line: 1, lines: Vec::new() };
+    let mut sections = Vec::new();
+    let mut section = first;
+    let mut numbered = text.lines().enumerate().map(|(nth, text)| (nth + 1, text));
+    while let Some((number, text)) = numbered.next() {
+        match line(dialect, text).map_err(|cause| cause.at(number))? {
+            Line::Empty => {}
+            Line::Separator => {
+                let next = numbered.find(|(_, text)| !text.trim().is_empty());
+                let Some((number, text)) = next else { break };
+                let name = text.trim().strip_prefix("MSG:").map(|name| short_name(name.trim()));
+                let malformed = || Cause::Malformed(quoted(text.trim())).at(number);
+                let name = name.filter(|name| !name.is_empty()).ok_or_else(malformed)?;
+                let next = Section { name, line: number, lines: Vec::new() };
+                sections.push(std::mem::replace(&mut section, next));
+            }
+            told => section.lines.push((number, told)),
+        }
+    }
+    sections.push(section);
+    Ok(sections)
+}
+
+/// How much there is in a message.
+#[derive(Clone, Copy, Default)]
+struct Size {
+    /// Its fields, and those of the messages in it.
+    fields: usize,
+    /// How deep messages stand in it, itself counted.
+    depth: usize,
+}
+
+struct Resolver<'t> {
+    dialect: Dialect,
+    sections: &'t [Section<'t>],
+    names: BTreeMap<&'t str, usize>,
+    last_parts: BTreeMap<&'t str, Vec<usize>>,
+}
+
+impl Resolver<'_> {
+    /// Makes a message and those in it, unless that is done; the fields of each are counted.
+    fn add(
+        &self,
+        index: usize,
+        depth: usize,
+        structs: &mut [Option<Struct>],
+        sizes: &mut [Size],
+        within: &mut BTreeSet<usize>,
+    ) -> Result<(), DefinitionError> {
+        let Some(section) = self.sections.get(index) else { return Ok(()) };
+        if depth > MOST_DEPTH {
+            return Err(Cause::TooDeep.at(section.line));
+        }
+        within.insert(index);
+        let mut made = Struct {
+            name: section.name.clone(),
+            fields: Vec::new(),
+            constants: Vec::new(),
+            least: 0,
+        };
+        let mut names = BTreeSet::new();
+        let mut size = Size { fields: 0, depth: 1 };
+        for (number, told) in &section.lines {
+            let (type_name, count, name) = match *told {
+                Line::Constant { type_name, name, value } => {
+                    if self.primitive(type_name).is_none() {
+                        return Err(Cause::ConstantType(quoted(type_name)).at(*number));
+                    }
+                    made.constants.push((name.to_owned(), value.to_owned()));
+                    continue;
+                }
+                Line::Field { type_name, count, name } => (type_name, count, name),
+                Line::Empty | Line::Separator => continue,
+            };
+            let kind = self.kind(type_name, &section.name).map_err(|cause| cause.at(*number))?;
+            size.fields += 1;
+            if let Kind::Struct(part) = kind {
+                if within.contains(&part) {
+                    return Err(Cause::PartOfItself(quoted(type_name)).at(*number));
+                }
+                if structs.get(part).is_none_or(Option::is_none) {
+                    self.add(part, depth + 1, structs, sizes, within)?;
+                }
+                let part = sizes.get(part).copied().unwrap_or_default();
+                size.fields += part.fields;
+                size.depth = size.depth.max(part.depth + 1);
+            }
+            if size.depth > MOST_DEPTH {
+                return Err(Cause::TooDeep.at(*number));
+            }
+            if size.fields > MOST_FIELDS {
+                return Err(Cause::TooManyFields.at(*number));
+            }
+            if !names.insert(name) {
+                return Err(Cause::TwoFields(quoted(name)).at(*number));
+            }
+            let one = match kind {
+                Kind::Struct(part) => {
+                    structs.get(part).and_then(Option::as_ref).map_or(0, |s| s.least)
+                }
+                primitive => least(primitive, &[]),
+            };
+            if one == 0 && count != Count::One {
+                return Err(Cause::ListOfNothing(quoted(type_name)).at(*number));
+            }
+            made.least = made.least.saturating_add(match count {
+                Count::One => one,
+                Count::Fixed(many) => one.saturating_mul(many as usize),
+                Count::Any | Count::AtMost(_) => 4,
+            });
+            made.fields.push(Field { name: name.to_owned(), kind, count });
+        }
+        if made.fields.is_empty() && self.dialect == Dialect::Ros2 {
+            // As rosidl does, for a struct of C has at least one member.
+            let name = "structure_needs_at_least_one_member".to_owned();
+            made.fields.push(Field { name, kind: Kind::Unsigned(1), count: Count::One });
+            made.least = 1;
+        }
+        within.remove(&index);
+        if let Some(place) = sizes.get_mut(index) {
+            *place = size;
+        }
+        if let Some(place) = structs.get_mut(index) {
+            *place = Some(made);
+        }
+        Ok(())
+    }
+
+    fn kind(&self, type_name: &str, user: &str) -> Result<Kind, Cause> {
+        if let Some(kind) = self.primitive(type_name) {
+            return Ok(kind);
+        }
+        let full = match type_name {
+            "Header" => "std_msgs/Header".to_owned(),
+            "time" => "builtin_interfaces/Time".to_owned(),
+            "duration" => "builtin_interfaces/Duration".to_owned(),
+            _ if type_name.contains('/') => short_name(type_name),
+            _ => match user.rsplit_once('/') {
+                Some((package, _)) => format!("{package}/{type_name}"),
+                None => type_name.to_owned(),
+            },
+        };
+        if let Some(&index) = self.names.get(full.as_str()) {
+            return Ok(Kind::Struct(index));
+        }
+        // Some writers leave the package out.
+        let alike = self.last_parts.get(type_name).map(Vec::as_slice).unwrap_or_default();
+        match alike {
+            [index] => Ok(Kind::Struct(*index)),
+            [] => Err(Cause::UnknownType(quoted(type_name))),
+            _ => Err(Cause::TwoTypes(quoted(type_name))),
+        }
+    }
+
+    fn primitive(&self, type_name: &str) -> Option<Kind> {
+        Some(match (type_name, self.dialect) {
+            ("bool", _) => Kind::Bool,
+            ("int8", _) | ("byte", Dialect::Ros1) => Kind::Int(1),
+            ("int16", _) => Kind::Int(2),
+            ("int32", _) => Kind::Int(4),
+            ("int64", _) => Kind::Int(8),
+            ("uint8" | "char", _) | ("byte", Dialect::Ros2) => Kind::Unsigned(1),
+            ("uint16", _) => Kind::Unsigned(2),
+            ("uint32", _) => Kind::Unsigned(4),
+            ("uint64", _) => Kind::Unsigned(8),
+            ("float32", _) => Kind::Float(4),
+            ("float64", _) => Kind::Float(8),
+            ("string", _) => Kind::Text,
+            ("wstring", Dialect::Ros2) => Kind::WideText,
+            ("time", Dialect::Ros1) => Kind::Time,
+            ("duration", Dialect::Ros1) => Kind::Duration,
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,116 @@
+use super::*;
+
+fn ros1(text: &str) -> Result<Definition, String> {
+    Definition::read(Dialect::Ros1, "a/A", text).map_err(|error| error.to_string())
+}
+
+fn ros2(text: &str) -> Result<Definition, String> {
+    Definition::read(Dialect::Ros2, "a/msg/A", text).map_err(|error| error.to_string())
+}
+
+const LINE: &str =
+    "================================================================================";
+
+#[test]
+fn a_message_of_ros_1_is_resolved_through_its_sections() {
+    let text = format!(
+        "# said\nHeader header # who\nB[] parts\nuint8 LEFT=1\nstring WORD= a # b \nfloat64[9] K\n\
+         \n{LINE}\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n{LINE}\nMSG: a/B\nbyte x\nchar y\n"
+    );
+    let definition = ros1(&text).unwrap();
+    let root = definition.root();
+    assert_eq!(root.name, "a/A");
+    let names: Vec<_> = root.fields.iter().map(|field| field.name.as_str()).collect();
+    assert_eq!(names, ["header", "parts", "K"]);
+    assert_eq!(
+        root.constants,
+        [("LEFT", "1"), ("WORD", "a # b")].map(|(a, b)| (a.into(), b.into()))
+    );
+    assert_eq!(root.field("K").unwrap().1.count, Count::Fixed(9));
+    let Kind::Struct(header) = root.fields[0].kind else { panic!() };
+    let header = definition.get(header).unwrap();
+    assert_eq!(header.fields[1].kind, Kind::Time);
+    let Kind::Struct(part) = root.fields[1].kind else { panic!() };
+    let kinds: Vec<_> =
+        definition.get(part).unwrap().fields.iter().map(|field| field.kind).collect();
+    assert_eq!(kinds, [Kind::Int(1), Kind::Unsigned(1)]);
+    assert_eq!(root.least, 16 + 4 + 72);
+}
+
+#[test]
+fn a_message_of_ros_2_has_bounds_and_defaults() {
+    let text = format!(
+        "builtin_interfaces/Time stamp\nstring<=10 name \"a b\"\nint32[<=5] few [1, 2]\nbyte b 3\n\
+         geometry_msgs/msg/Point at\nwstring w\nstring<=3[2] words\nint32 MOST = 4 # four\n\
+         {LINE}\nMSG: geometry_msgs/Point\nfloat64 x 1.5\n"
+    );
+    let definition = ros2(&text).unwrap();
+    let root = definition.root();
+    assert_eq!(root.fields[2].count, Count::AtMost(5));
+    assert_eq!(root.fields[3].kind, Kind::Unsigned(1));
+    assert_eq!(root.fields[5].kind, Kind::WideText);
+    assert_eq!(root.fields[6].count, Count::Fixed(2));
+    assert_eq!(root.constants, [("MOST".to_owned(), "4".to_owned())]);
+    let Kind::Struct(stamp) = root.fields[0].kind else { panic!() };
+    assert_eq!(definition.get(stamp).unwrap().fields[1].name, "nanosec");
+    // A message without fields takes a byte.
+    assert_eq!(ros2("").unwrap().root().least, 1);
+    assert_eq!(ros1("").unwrap().root().least, 0);
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line() {
+    let after = |section: &str, text: &str| format!("{section}\n{LINE}\nMSG: {text}");
+    for (text, message) in [
+        ("int32".to_owned(), "line 1 of the definition: `int32` is neither a field nor a constant"),
+        ("int32 a\nint32 a".into(), "line 2 of the definition: there are two fields `a`"),
+        ("int32 1a".into(), "line 1 of the definition: `1a` is not a name"),
+        (
+            "int32[x] a".into(),
+            "line 1 of the definition: `int32[x] a` is neither a field nor a constant",
+        ),
+        ("\nB b".into(), "line 2 of the definition: the type `B` is not defined"),
+        ("B B=1".into(), "line 1 of the definition: a constant of the type `B` cannot be"),
+        ("A a".into(), "line 1 of the definition: `A` is a part of itself"),
+        (after("B b", "a/B\nA[] a"), "line 4 of the definition: `A` is a part of itself"),
+        (after("B[] b", "a/B\n"), "line 1 of the definition: a list of `B`, which has no fields"),
+        (
+            after("B b", "c/B\nint8 x\n===\nMSG: d/B\nint8 x"),
+            "line 1 of the definition: the type `B` is defined more than once",
+        ),
+        (
+            "===\nint8 x".into(),
+            "line 2 of the definition: `int8 x` is neither a field nor a constant",
+        ),
+        (
+            "int8 x 1".into(),
+            "line 1 of the definition: `int8 x 1` is neither a field nor a constant",
+        ),
+    ] {
+        assert_eq!(ros1(&text).unwrap_err(), message);
+    }
+}
+
+#[test]
+fn a_message_is_neither_deep_nor_wide_without_end() {
+    let chain = |parts: usize, field: fn(usize) -> String| {
+        let sections = (0..parts).map(|nth| format!("===\nMSG: a/B{nth}\n{}", field(nth + 1)));
+        format!("{}{}===\nMSG: a/B{parts}\nint8 x", field(0), sections.collect::<String>())
+    };
+    let one = |nth| format!("B{nth} x\n");
+    assert!(ros1(&chain(MOST_DEPTH - 2, one)).is_ok());
+    assert!(ros1(&chain(MOST_DEPTH - 1, one)).unwrap_err().contains("more than 32 deep"));
+    let two = |nth| format!("B{nth} x\nB{nth} y\n");
+    assert!(ros1(&chain(20, two)).unwrap_err().contains("more than 65536 fields"));
+    // The parts are deep already when they are used.
+    let late = format!("B15 y\n{}", chain(MOST_DEPTH - 2, one));
+    assert!(ros1(&late).is_ok());
+    assert!(ros1(&"int8 x".repeat(MOST_BYTES)).unwrap_err().contains("longer than"));
+}
+
+proptest::proptest! {
+    #[test]
+    fn no_text_makes_it_panic(text in "([a-zB/ =#<\\[\\]0-9]|===\n|MSG: |\n|int8 |B[a-z]*){0,60}") {
+        let _ = (ros1(&text), ros2(&text));
+    }
+}

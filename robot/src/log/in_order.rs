@@ -1,0 +1,208 @@
+//! Messages in the order of their times, from sections that may overlap.
+
+use std::{
+    cmp::Reverse,
+    collections::{BTreeMap, BinaryHeap},
+    ops::Range,
+};
+
+use super::{
+    container::Record,
+    error::{Cause, LogError},
+    reading::Log,
+};
+
+/// A message of a log, not yet decoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// Which topic of the log it is on.
+    pub topic: usize,
+    /// When it was recorded, in nanoseconds.
+    pub time: u64,
+    /// Where its record is in the file, or the compressed chunk in which it is.
+    pub offset: u64,
+    /// The how-manyeth message of the log it is, in the order of their times; the first is 1.
+    pub number: u64,
+    /// What it says.
+    pub bytes: Vec<u8>,
+}
+
+/// How many bytes of chunks stay in memory while others are read.
+const HELD: u64 = 64 << 20;
+
+/// The messages of a log in the order of their times.
+pub struct Messages<'l> {
+    log: &'l Log,
+    /// Whether each topic is wanted.
+    wanted: Vec<bool>,
+    /// The sections that are not yet looked through, the last one first.
+    ahead: Vec<usize>,
+    /// What the sections that are looked through still hold, the oldest first.
+    waiting: BinaryHeap<Reverse<Waiting>>,
+    held: BTreeMap<usize, Held>,
+    held_bytes: u64,
+    /// How often something was asked for.
+    asked: u64,
+    number: u64,
+}
+
+/// A message that waits for its turn. Those of one time come in the order of the file.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting {
+    time: u64,
+    section: usize,
+    /// Where its record begins in the section.
+    at: usize,
+    start: usize,
+    end: usize,
+    topic: usize,
+}
+
+/// A section of which some messages wait.
+struct Held {
+    bytes: Option<Vec<u8>>,
+    waiting: usize,
+    asked: u64,
+}
+
+impl<'l> Messages<'l> {
+    pub(super) fn new(log: &'l Log, topics: &[usize]) -> Self {
+        let mut ahead: Vec<usize> = (0..log.sections.len()).collect();
+        let start = |section: usize| log.sections.get(section).and_then(|section| section.times);
+        ahead.sort_by_key(|section| Reverse((start(*section).map(|[start, _]| start), *section)));
+        Self {
+            log,
+            wanted: (0..log.topics.len()).map(|topic| topics.contains(&topic)).collect(),
+            ahead,
+            waiting: BinaryHeap::new(),
+            held: BTreeMap::new(),
+            held_bytes: 0,
+            asked: 0,
+            number: 0,
+        }
+    }
+
+    /// There are to be no more.
+    pub(super) fn end(&mut self) {
+        self.ahead.clear();
+        self.waiting.clear();
+        self.held.clear();
+        self.held_bytes = 0;
+    }
+
+    fn message(&mut self) -> Result<Option<Message>, LogError> {
+        loop {
+            while let Some(&section) = self.ahead.last() {
+                let start = self.log.sections.get(section).and_then(|section| section.times);
+                let Some([start, _]) = start else {
+                    self.ahead.pop();
+                    continue;
+                };
+                if self.waiting.peek().is_some_and(|Reverse(first)| first.time < start) {
+                    break;
+                }
+                self.ahead.pop();
+                self.look_through(section, start)?;
+            }
+            let Some(Reverse(next)) = self.waiting.pop() else { return Ok(None) };
+            self.number += 1;
+            let bytes = if self.wanted.get(next.topic).copied().unwrap_or_default() {
+                Some(self.take(next.section, next.start..next.end)?)
+            } else {
+                None
+            };
+            self.release(next.section);
+            let Some(bytes) = bytes else { continue };
+            let section = self.log.sections.get(next.section);
+            return Ok(Some(Message {
+                topic: next.topic,
+                time: next.time,
+                offset: section.map_or(0, |section| section.place(next.at)),
+                number: self.number,
+                bytes,
+            }));
+        }
+    }
+
+    /// Puts the messages of a section to those that wait.
+    fn look_through(&mut self, index: usize, start: u64) -> Result<(), LogError> {
+        let log = self.log;
+        let Some(section) = log.sections.get(index) else { return Ok(()) };
+        let bytes = section.load(&log.source)?;
+        let mut waiting = 0;
+        for read in section.records(log.format, &bytes) {
+            let (at, Record::Message { connection, time, bytes }) = read? else { continue };
+            let wrong = |cause: Cause| cause.at(section.place(at));
+            let topic = log.connections.get(&connection).copied();
+            let topic = topic.ok_or_else(|| wrong(Cause::UnknownConnection(connection)))?;
+            if time < start {
+                return Err(wrong(Cause::TooOld));
+            }
+            let [start, end] = [bytes.start, bytes.end].map(|within| at + within);
+            self.waiting.push(Reverse(Waiting { time, section: index, at, start, end, topic }));
+            waiting += 1;
+        }
+        if waiting > 0 {
+            self.asked += 1;
+            self.held_bytes += section.size();
+            self.held.insert(index, Held { bytes: Some(bytes), waiting, asked: self.asked });
+            self.let_go();
+        }
+        Ok(())
+    }
+
+    /// Some bytes of a section, which is read again if it had to go.
+    fn take(&mut self, index: usize, part: Range<usize>) -> Result<Vec<u8>, LogError> {
+        let Some(section) = self.log.sections.get(index) else { return Ok(Vec::new()) };
+        let Some(held) = self.held.get_mut(&index) else { return Ok(Vec::new()) };
+        self.asked += 1;
+        held.asked = self.asked;
+        let bytes = match &mut held.bytes {
+            Some(bytes) => bytes,
+            gone => {
+                self.held_bytes += section.size();
+                gone.insert(section.load(&self.log.source)?)
+            }
+        };
+        let taken = bytes.get(part).unwrap_or_default().to_vec();
+        self.let_go();
+        Ok(taken)
+    }
+
+    /// A message of a section has had its turn.
+    fn release(&mut self, index: usize) {
+        let Some(held) = self.held.get_mut(&index) else { return };
+        held.waiting -= 1;
+        if held.waiting == 0 {
+            let gone = self.held.remove(&index).and_then(|held| held.bytes);
+            let section = self.log.sections.get(index);
+            if let (Some(_), Some(section)) = (gone, section) {
+                self.held_bytes -= section.size();
+            }
+        }
+    }
+
+    /// Forgets the bytes of those that nobody has asked for the longest, but the last.
+    fn let_go(&mut self) {
+        while self.held_bytes > HELD {
+            let last = self.asked;
+            let held = self.held.iter_mut();
+            let others = held.filter(|(_, held)| held.bytes.is_some() && held.asked != last);
+            let Some((index, held)) = others.min_by_key(|(_, held)| held.asked) else { return };
+            held.bytes = None;
+            self.held_bytes -= self.log.sections.get(*index).map_or(0, |section| section.size());
+        }
+    }
+}
+
+impl Iterator for Messages<'_> {
+    type Item = Result<Message, LogError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let next = self.message();
+        if next.is_err() {
+            self.end();
+        }
+        next.transpose()
+    }
+}

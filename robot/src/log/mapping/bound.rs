@@ -1,0 +1,121 @@
+//! A mapping that fits its log: each topic that carries something, and the paths in its messages.
+
+use std::collections::BTreeMap;
+
+use super::{Angle, Carrier, Cause, Length, Mapping, MappingError, Part, Role};
+use crate::log::{
+    definition::{Count, Definition, Kind},
+    topic::Topic,
+};
+
+/// A mapping that fits a log.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    pub(in crate::log) carried: Vec<Carried>,
+}
+
+/// What a topic of a log carries, and where in its messages. A topic may carry several things.
+#[derive(Clone, Debug)]
+pub(in crate::log) struct Carried {
+    pub(in crate::log) role: Role,
+    pub(in crate::log) topic: usize,
+    /// None for messages of the project's own.
+    pub(in crate::log) paths: BTreeMap<Part, String>,
+    /// Whether it is the project's own message.
+    pub(in crate::log) own: bool,
+    pub(in crate::log) length: Length,
+    pub(in crate::log) angle: Angle,
+}
+
+impl Bound {
+    /// The topics of the log that carry something.
+    #[must_use]
+    pub fn topics(&self) -> Vec<usize> {
+        self.carried.iter().map(|carried| carried.topic).collect()
+    }
+}
+
+pub(super) fn bind(mapping: &Mapping, topics: &[Topic]) -> Result<Bound, MappingError> {
+    let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
+    Ok(Bound { carried: carried.collect::<Result<_, _>>()? })
+}
+
+fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, MappingError> {
+    let wrong = |cause: Cause| cause.at(carrier.place.clone());
+    let (index, topic) = named(&carrier.topic, topics).map_err(wrong)?;
+    let definition = topic.definition.as_ref().map_err(|why| {
+        wrong(Cause::Undecodable { topic: carrier.topic.clone(), why: why.to_string() })
+    })?;
+    let type_name = topic.short_type();
+    let usual = role.usual(&type_name);
+    let own = role.own() == Some(type_name.as_str()) && carrier.paths.is_empty();
+    if usual.is_none() && role.parts().is_empty() {
+        return Err(wrong(Cause::WrongType { role, type_name }));
+    }
+    let mut paths = carrier.paths.clone();
+    if !own {
+        let heading_told =
+            [Part::Heading, Part::Quaternion].iter().any(|part| paths.contains_key(part));
+        for (part, path) in usual.unwrap_or_default() {
+            let is_heading = matches!(part, Part::Heading | Part::Quaternion);
+            if !(is_heading && heading_told) {
+                paths.entry(*part).or_insert_with(|| (*path).to_owned());
+            }
+        }
+        for part in needed(role, &paths) {
+            if !paths.contains_key(&part) {
+                return Err(wrong(Cause::NoPath { part, type_name }));
+            }
+        }
+    }
+    for (part, path) in &paths {
+        let place = carrier.places.get(part).unwrap_or(&carrier.place);
+        let expected = if *part == Part::Quaternion { "a quaternion" } else { "a number" };
+        if !leads(definition, path, *part) {
+            let (path, type_name) = (path.clone(), type_name.clone());
+            return Err(Cause::WrongPath { path, expected, type_name }.at(place.clone()));
+        }
+    }
+    let (length, angle) = (carrier.length, carrier.angle);
+    Ok(Carried { role, topic: index, paths, own, length, angle })
+}
+
+/// The parts without which there is nothing.
+fn needed(role: Role, paths: &BTreeMap<Part, String>) -> Vec<Part> {
+    match role {
+        Role::Odometry if paths.contains_key(&Part::Quaternion) => vec![Part::X, Part::Y],
+        Role::Odometry => vec![Part::X, Part::Y, Part::Heading],
+        Role::Motion => vec![Part::Forward, Part::Turn],
+        Role::Percept => vec![Part::Degree],
+        Role::Door => vec![Part::Door],
+        _ => Vec::new(),
+    }
+}
+
+fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Cause> {
+    let mut found = topics.iter().enumerate().filter(|(_, topic)| topic.name == name);
+    let Some(first) = found.next() else {
+        const SHOWN: usize = 12;
+        let names = topics.iter().take(SHOWN).map(|topic| topic.name.escape_debug().to_string());
+        let more = (topics.len() > SHOWN).then(|| "...".to_owned());
+        let known: Vec<_> = names.chain(more).collect();
+        return Err(Cause::NoTopic { topic: name.to_owned(), known: known.join(", ") });
+    };
+    match found.next() {
+        None => Ok(first),
+        Some(_) => Err(Cause::TwoTopics(name.to_owned())),
+    }
+}
+
+/// Whether a path leads to what a part is.
+fn leads(definition: &Definition, path: &str, part: Part) -> bool {
+    let found = definition.at(path);
+    if part != Part::Quaternion {
+        let number = |kind| matches!(kind, Kind::Int(_) | Kind::Unsigned(_) | Kind::Float(_));
+        return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);
+    }
+    ["x", "y", "z", "w"].iter().all(|name| {
+        let part = definition.at(&format!("{path}.{name}"));
+        part.is_some_and(|(kind, count)| matches!(kind, Kind::Float(_)) && count == Count::One)
+    })
+}

@@ -1,0 +1,33 @@
+//! Which topics could carry what, by the types of their messages.
+
+use super::Role;
+use crate::log::topic::Topic;
+
+/// The topics that could carry something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Guess {
+    /// What.
+    pub role: Role,
+    /// Which topics of the log; at least one, and none is better than the others.
+    pub topics: Vec<usize>,
+}
+
+/// For everything that could be carried, all topics with messages that could: those of the project's own
+/// types, also where they have come by way of ROS 1; and those of the types that are usual for it.
+///
+/// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's.
+#[must_use]
+pub fn guess(topics: &[Topic]) -> Vec<Guess> {
+    let could = |role: Role, topic: &Topic| {
+        let annotated = topic.name.split('/').any(|part| part == "annotated");
+        topic.messages > 0
+            && topic.definition.is_ok()
+            && role.usual(&topic.short_type()).is_some()
+            && !(role == Role::Image && annotated)
+    };
+    let guesses = Role::ALL.map(|role| {
+        let topics = topics.iter().enumerate().filter(|(_, topic)| could(role, topic));
+        Guess { role, topics: topics.map(|(index, _)| index).collect() }
+    });
+    guesses.into_iter().filter(|guess| !guess.topics.is_empty()).collect()
+}

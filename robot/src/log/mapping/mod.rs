@@ -1,0 +1,178 @@
+//! Mapping files: which topics of a log carry what, whoever recorded it.
+//!
+//! ```toml
+//! [image]                        # sensor_msgs CompressedImage, or Image in rgb8, bgr8 or mono8
+//! topic = "/camera/image/compressed"
+//!
+//! [odometry]
+//! topic = "/odom"
+//! x = "pose.pose.position.x"     # the usual types need no paths
+//! y = "pose.pose.position.y"
+//! quaternion = "pose.pose.orientation"   # or heading = "theta"
+//! length = "metres"              # or "inches"
+//! angle = "radians"              # or "degrees"; of a heading
+//!
+//! [motion]
+//! topic = "/cmd_vel"
+//! forward = "linear.x"
+//! turn = "angular.z"
+//!
+//! [percept]
+//! topic = "/junction"
+//! degree = "exits"
+//! marker = "marker_door"
+//!
+//! [door]
+//! topic = "/decision"
+//! door = "exit"
+//! ```
+//!
+//! And `[run]`, `[end]`, `[scene]`, `[command]`, `[hypothesis]` and `[map]`, with a topic, for the
+//! project's own messages. A path leads through the fields of a message, `a.b[0].c`.
+
+mod bound;
+mod error;
+mod guess;
+mod read;
+mod role;
+
+pub use bound::Bound;
+pub(super) use bound::Carried;
+pub use error::{Cause, MappingError};
+pub use guess::{Guess, guess};
+pub use role::{Angle, Length, Part, Role};
+
+use std::{collections::BTreeMap, fmt::Write};
+
+use toposlam_model::format::place::Place;
+
+use super::reading::Log;
+
+/// Which topics carry what.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Mapping {
+    carriers: BTreeMap<Role, Carrier>,
+}
+
+/// A topic that carries something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Carrier {
+    /// Its name.
+    pub topic: String,
+    /// Where in its messages each part stands; what is usual for its type is left out.
+    pub paths: BTreeMap<Part, String>,
+    /// In what lengths are.
+    pub length: Length,
+    /// In what angles are.
+    pub angle: Angle,
+    /// Where the mapping file says so.
+    place: Place,
+    /// Where it says each path.
+    places: BTreeMap<Part, Place>,
+}
+
+impl Carrier {
+    /// A topic of a usual type.
+    #[must_use]
+    pub fn usual(topic: &str) -> Self {
+        Self {
+            topic: topic.to_owned(),
+            paths: BTreeMap::new(),
+            length: Length::Metres,
+            angle: Angle::Radians,
+            place: Place::File,
+            places: BTreeMap::new(),
+        }
+    }
+}
+
+impl Mapping {
+    /// Reads a mapping file.
+    ///
+    /// Takes at most 512 bytes of memory for each byte of it, and 4096 besides.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place. No bytes make it panic.
+    pub fn read(bytes: &[u8]) -> Result<Self, MappingError> {
+        read::read(bytes)
+    }
+
+    /// What the topics of a log say by their types.
+    ///
+    /// # Errors
+    /// If several topics could carry the same: which.
+    pub fn from_log(log: &Log) -> Result<Self, MappingError> {
+        let guesses = guess(log.topics());
+        if let Some(Guess { role, topics }) = guesses.iter().find(|guess| guess.topics.len() > 1) {
+            let names = topics.iter().filter_map(|topic| log.topics().get(*topic));
+            let topics = names.map(|topic| topic.name.clone()).collect();
+            return Err(Cause::Several { role: *role, topics }.in_file());
+        }
+        Ok(Self::unambiguous(log))
+    }
+
+    /// What the topics of a log say by their types, without what several topics could carry.
+    #[must_use]
+    pub fn unambiguous(log: &Log) -> Self {
+        let mut carriers = BTreeMap::new();
+        for Guess { role, topics } in guess(log.topics()) {
+            if let [topic] = topics[..]
+                && let Some(topic) = log.topics().get(topic)
+            {
+                carriers.insert(role, Carrier::usual(&topic.name));
+            }
+        }
+        Self { carriers }
+    }
+
+    /// What carries something, if anything does.
+    #[must_use]
+    pub fn carrier(&self, role: Role) -> Option<&Carrier> {
+        self.carriers.get(&role)
+    }
+
+    /// Everything that is carried.
+    pub fn carriers(&self) -> impl Iterator<Item = (Role, &Carrier)> {
+        self.carriers.iter().map(|(role, carrier)| (*role, carrier))
+    }
+
+    /// Whether nothing is carried.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.carriers.is_empty()
+    }
+
+    /// Holds it against a log: every topic is there, once, and every path leads to what it should.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place in the mapping file.
+    pub fn bind(&self, log: &Log) -> Result<Bound, MappingError> {
+        bound::bind(self, log.topics())
+    }
+
+    /// The mapping file that reads as this.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let mut text = String::new();
+        for (role, carrier) in &self.carriers {
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            let quoted = |text: &str| toml::Value::from(text).to_string();
+            let _ = writeln!(text, "[{}]\ntopic = {}", role.name(), quoted(&carrier.topic));
+            for (part, path) in &carrier.paths {
+                let _ = writeln!(text, "{} = {}", part.name(), quoted(path));
+            }
+            if carrier.length != Length::Metres {
+                let _ = writeln!(text, "length = {}", quoted(carrier.length.name()));
+            }
+            if carrier.angle != Angle::Radians {
+                let _ = writeln!(text, "angle = {}", quoted(carrier.angle.name()));
+            }
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests;

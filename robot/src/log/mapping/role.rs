@@ -1,0 +1,222 @@
+//! What a topic can carry, of which parts that is, in which units, and where it stands in messages of
+//! the usual types.
+
+/// What a topic carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// Pictures of the robot's camera.
+    Image,
+    /// Where the robot is by its wheels.
+    Odometry,
+    /// The motion that it is told to make.
+    Motion,
+    /// What it perceives at a junction.
+    Percept,
+    /// The door that it takes.
+    Door,
+    /// The head of a log of the project.
+    Run,
+    /// What sensing tells.
+    Scene,
+    /// What Algorithm 2 answers.
+    Command,
+    /// A step of Algorithm 1.
+    Hypothesis,
+    /// The map.
+    Map,
+    /// The end of a log of the project.
+    End,
+}
+
+/// A part of what is carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Part {
+    /// To the front of where the robot began.
+    X,
+    /// To the left.
+    Y,
+    /// The direction in which it looks, counter-clockwise.
+    Heading,
+    /// The same, as a quaternion with x, y, z and w.
+    Quaternion,
+    /// The speed straight ahead.
+    Forward,
+    /// The speed of turning, counter-clockwise.
+    Turn,
+    /// The number of doors.
+    Degree,
+    /// The door along which the marker points; -1: no marker.
+    Marker,
+    /// A door.
+    Door,
+    /// How many moves were made, or which it is.
+    Move,
+}
+
+/// In what a length is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// Metres.
+    Metres,
+    /// Inches of 25.4 mm.
+    Inches,
+}
+
+/// In what an angle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Angle {
+    /// Radians.
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+impl Length {
+    /// As mapping files call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Metres => "metres",
+            Self::Inches => "inches",
+        }
+    }
+
+    /// How many metres it is.
+    #[must_use]
+    pub fn in_metres(self) -> f64 {
+        match self {
+            Self::Metres => 1.0,
+            Self::Inches => 0.0254,
+        }
+    }
+}
+
+impl Angle {
+    /// As mapping files call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Radians => "radians",
+            Self::Degrees => "degrees",
+        }
+    }
+
+    /// How many radians it is.
+    #[must_use]
+    pub fn in_radians(self) -> f64 {
+        match self {
+            Self::Radians => 1.0,
+            Self::Degrees => 1_f64.to_radians(),
+        }
+    }
+}
+
+impl Part {
+    /// As mapping files call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Heading => "heading",
+            Self::Quaternion => "quaternion",
+            Self::Forward => "forward",
+            Self::Turn => "turn",
+            Self::Degree => "degree",
+            Self::Marker => "marker",
+            Self::Door => "door",
+            Self::Move => "move",
+        }
+    }
+}
+
+impl Role {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Image,
+        Self::Odometry,
+        Self::Motion,
+        Self::Percept,
+        Self::Door,
+        Self::Run,
+        Self::Scene,
+        Self::Command,
+        Self::Hypothesis,
+        Self::Map,
+        Self::End,
+    ];
+
+    /// As mapping files call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Image => "image",
+            Self::Odometry => "odometry",
+            Self::Motion => "motion",
+            Self::Percept => "percept",
+            Self::Door => "door",
+            Self::Run => "run",
+            Self::Scene => "scene",
+            Self::Command => "command",
+            Self::Hypothesis => "hypothesis",
+            Self::Map => "map",
+            Self::End => "end",
+        }
+    }
+
+    /// Of which parts it is.
+    pub(super) fn parts(self) -> &'static [Part] {
+        match self {
+            Self::Odometry => &[Part::X, Part::Y, Part::Heading, Part::Quaternion],
+            Self::Motion => &[Part::Forward, Part::Turn],
+            Self::Percept => &[Part::Move, Part::Degree, Part::Marker],
+            Self::Door => &[Part::Move, Part::Door],
+            _ => &[],
+        }
+    }
+
+    /// The type of the project's own messages of it, if they have one.
+    pub(super) fn own(self) -> Option<&'static str> {
+        match self {
+            Self::Percept => Some("toposlam_msgs/Percept"),
+            Self::Door => Some("toposlam_msgs/Door"),
+            Self::Run => Some("toposlam_msgs/Run"),
+            Self::Scene => Some("toposlam_msgs/Scene"),
+            Self::Command => Some("toposlam_msgs/Command"),
+            Self::Hypothesis => Some("toposlam_msgs/Hypothesis"),
+            Self::Map => Some("toposlam_msgs/Map"),
+            Self::End => Some("toposlam_msgs/End"),
+            Self::Image | Self::Odometry | Self::Motion => None,
+        }
+    }
+
+    /// Where its parts stand in messages of a type, if that is usual for it.
+    pub(super) fn usual(self, type_name: &str) -> Option<&'static [(Part, &'static str)]> {
+        if self.own() == Some(type_name) {
+            return Some(&[]);
+        }
+        Some(match (self, type_name) {
+            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image") => &[],
+            (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
+                (Part::X, "pose.pose.position.x"),
+                (Part::Y, "pose.pose.position.y"),
+                (Part::Quaternion, "pose.pose.orientation"),
+            ],
+            (Self::Odometry, "geometry_msgs/PoseStamped") => &[
+                (Part::X, "pose.position.x"),
+                (Part::Y, "pose.position.y"),
+                (Part::Quaternion, "pose.orientation"),
+            ],
+            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose") => {
+                &[(Part::X, "x"), (Part::Y, "y"), (Part::Heading, "theta")]
+            }
+            (Self::Motion, "geometry_msgs/Twist") => {
+                &[(Part::Forward, "linear.x"), (Part::Turn, "angular.z")]
+            }
+            (Self::Motion, "geometry_msgs/TwistStamped") => {
+                &[(Part::Forward, "twist.linear.x"), (Part::Turn, "twist.angular.z")]
+            }
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,74 @@
+use super::*;
+
+fn wrong(text: &str) -> String {
+    Mapping::read(text.as_bytes()).unwrap_err().to_string()
+}
+
+const WHOLE: &str = "\
+[image]
+topic = \"/camera\"
+
+[odometry]
+topic = \"/place\"
+x = \"at.x\"
+y = \"at.y\"
+heading = \"at[0].theta\"
+length = \"inches\"
+angle = \"degrees\"
+
+[percept]
+topic = \"/junction\"
+degree = \"exits\"
+";
+
+#[test]
+fn a_mapping_is_written_as_it_was_read() {
+    let mapping = Mapping::read(WHOLE.as_bytes()).unwrap();
+    let odometry = mapping.carrier(Role::Odometry).unwrap();
+    assert_eq!((odometry.length, odometry.angle), (Length::Inches, Angle::Degrees));
+    assert_eq!(odometry.paths[&Part::Heading], "at[0].theta");
+    assert_eq!(mapping.to_toml(), WHOLE);
+    let strange = "[run]\ntopic = \"/a\\\"\\n\\u0001'b\"\n";
+    let strange = Mapping::read(strange.as_bytes()).unwrap();
+    assert_eq!(Mapping::read(strange.to_toml().as_bytes()).unwrap().to_toml(), strange.to_toml());
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_column() {
+    for (text, message) in [
+        ("", "no topic is told to carry anything"),
+        ("[image", "line 1, column 7: "),
+        ("image = 1", "line 1, column 9: here should be a table"),
+        (
+            "[pictures]\ntopic = \"a\"",
+            "line 1, column 2: unknown key \"pictures\"; here can stand: image, odometry, motion",
+        ),
+        ("[image]\ntopic = 1", "line 2, column 9: here should be the name of a topic"),
+        ("[image]", "line 1, column 2: the key `topic` is missing"),
+        (
+            "[image]\ntopic = \"a\"\n  x = \"b\"",
+            "line 3, column 3: unknown key \"x\"; here can stand: topic",
+        ),
+        (
+            "[odometry]\ntopic = \"a\"\nlength = \"feet\"",
+            "line 3, column 10: here should be \"metres\" or \"inches\"",
+        ),
+        (
+            "[door]\ntopic = \"a\"\nlength = \"metres\"",
+            "line 3, column 1: unknown key \"length\"; here can stand: topic, move, door",
+        ),
+        (
+            "[motion]\ntopic = \"a\"\nturn = 3",
+            "line 3, column 8: here should be the path of a field",
+        ),
+        (
+            "[odometry]\ntopic = \"a\"\nheading = \"h\"\nquaternion = \"q\"",
+            "line 4, column 14: either `heading` or `quaternion` tells where the robot looks, not both",
+        ),
+    ] {
+        let found = wrong(text);
+        assert!(found.starts_with(message), "{text}: {found}");
+    }
+    let bytes = Mapping::read(b"[image]\ntopic = \"\xff\"").unwrap_err();
+    assert_eq!(bytes.to_string(), "line 2, column 10: this is not UTF-8 text");
+}

@@ -1,0 +1,62 @@
+//! Pictures as ROS publishes them: `sensor_msgs/CompressedImage`, and `Image` without compression.
+
+use image::RgbImage;
+
+use super::value::Value;
+
+/// A picture of a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Picture {
+    /// The file of an image, JPEG or PNG.
+    File(Vec<u8>),
+    /// Its pixels.
+    Pixels(RgbImage),
+}
+
+/// The picture that a message is, or why it is none.
+pub(super) fn picture(message: &Value<'_>) -> Result<Picture, String> {
+    let data = message.at("data").and_then(|data| data.bytes());
+    let data = data.ok_or("it has no bytes `data`")?;
+    let Some(encoding) = message.at("encoding").and_then(|encoding| encoding.text()) else {
+        return Ok(Picture::File(data.to_vec()));
+    };
+    let number = |name| {
+        let found = message.at(name).and_then(|value| value.u64());
+        found
+            .and_then(|number| u32::try_from(number).ok())
+            .ok_or(format!("it has no number `{name}`"))
+    };
+    let [width, height, step] = [number("width")?, number("height")?, number("step")?];
+    let (bytes, order): (u32, [usize; 3]) = match &*encoding {
+        "rgb8" => (3, [0, 1, 2]),
+        "bgr8" => (3, [2, 1, 0]),
+        "mono8" => (1, [0, 0, 0]),
+        other => {
+            let other: String = other.chars().take(40).collect();
+            return Err(format!(
+                "pixels in {other:?} cannot be read; known are rgb8, bgr8 and mono8"
+            ));
+        }
+    };
+    let row = u64::from(width) * u64::from(bytes);
+    // Before anything is made of what the message promises.
+    if row == 0
+        || height == 0
+        || u64::from(step) < row
+        || data.len() as u64 / u64::from(step) < height.into()
+    {
+        return Err(format!(
+            "{} bytes are not {height} rows of {step} bytes with {width} pixels each",
+            data.len()
+        ));
+    }
+    let rows = data.chunks_exact(step as usize).take(height as usize);
+    let pixels = rows
+        .flat_map(|line| line.get(..row as usize).unwrap_or_default().chunks_exact(bytes as usize));
+    let colours =
+        pixels.flat_map(|pixel| order.map(|at| pixel.get(at).copied().unwrap_or_default()));
+    let mut all = Vec::with_capacity((row / u64::from(bytes) * 3 * u64::from(height)) as usize);
+    all.extend(colours);
+    let made = RgbImage::from_raw(width, height, all);
+    Ok(Picture::Pixels(made.ok_or("its size does not go with its pixels")?))
+}

@@ -1,0 +1,88 @@
+//! The bytes of a log, wherever they are.
+
+use std::{
+    io::{self, Read, Seek, SeekFrom},
+    ops::Range,
+    sync::{Mutex, PoisonError},
+};
+
+/// What a log is read from.
+pub trait Storage: Read + Seek + Send {}
+
+impl<S: Read + Seek + Send> Storage for S {}
+
+/// A file, of which any part can be read.
+pub(super) struct Source {
+    storage: Mutex<Box<dyn Storage>>,
+    length: u64,
+}
+
+impl Source {
+    pub(super) fn new(mut storage: Box<dyn Storage>) -> io::Result<Self> {
+        let length = storage.seek(SeekFrom::End(0))?;
+        Ok(Self { storage: Mutex::new(storage), length })
+    }
+
+    pub(super) fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// A part of the file; takes as much memory as it is long. It must lie within the file.
+    pub(super) fn read(&self, part: Range<u64>) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.read_into(part, &mut bytes)?;
+        Ok(bytes)
+    }
+
+    fn read_into(&self, part: Range<u64>, bytes: &mut Vec<u8>) -> io::Result<()> {
+        if part.start > part.end || part.end > self.length {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        let length = usize::try_from(part.end - part.start).map_err(io::Error::other)?;
+        let mut storage = self.storage.lock().unwrap_or_else(PoisonError::into_inner);
+        storage.seek(SeekFrom::Start(part.start))?;
+        bytes.clear();
+        bytes.resize(length, 0);
+        storage.read_exact(bytes)
+    }
+}
+
+/// Reads a file from its front to its back, a little ahead.
+pub(super) struct Window<'s> {
+    source: &'s Source,
+    start: u64,
+    bytes: Vec<u8>,
+}
+
+/// How far ahead.
+const AHEAD: u64 = 1 << 16;
+
+impl<'s> Window<'s> {
+    pub(super) fn new(source: &'s Source) -> Self {
+        Self { source, start: 0, bytes: Vec::new() }
+    }
+
+    /// A part of the file; `None` where the file ends before it does.
+    pub(super) fn get(&mut self, start: u64, length: u64) -> io::Result<Option<&[u8]>> {
+        let Some(end) = start.checked_add(length).filter(|end| *end <= self.source.length) else {
+            return Ok(None);
+        };
+        if start < self.start || end > self.start + self.bytes.len() as u64 {
+            let ahead = end.max(start.saturating_add(AHEAD).min(self.source.length));
+            self.source.read_into(start..ahead, &mut self.bytes)?;
+            self.start = start;
+        }
+        let [start, end] = [start, end].map(|at| (at - self.start) as usize);
+        Ok(self.bytes.get(start..end))
+    }
+
+    /// Whether the file goes on to there.
+    pub(super) fn within(&self, end: u64) -> bool {
+        end <= self.source.length
+    }
+
+    /// A number of four bytes.
+    pub(super) fn u32(&mut self, start: u64) -> io::Result<Option<u32>> {
+        Ok(self.get(start, 4)?.and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes))
+    }
+}

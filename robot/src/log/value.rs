@@ -1,0 +1,243 @@
+//! What a message says, by the names of its fields. Texts and lists of numbers stay where they are in
+//! the message.
+
+use std::borrow::Cow;
+
+use super::{
+    definition::{Kind, Struct},
+    messages::Stamp,
+};
+
+/// What a message or a field says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value<'a> {
+    /// True or false.
+    Bool(bool),
+    /// A whole number of a type with a sign.
+    Int(i64),
+    /// A whole number of a type without a sign.
+    Unsigned(u64),
+    /// A number with a fraction.
+    Float(f64),
+    /// A text, which should be UTF-8.
+    Text(&'a [u8]),
+    /// A time or a duration of ROS 1: seconds and nanoseconds.
+    Time(i64, i64),
+    /// A list of truths or numbers.
+    Numbers(Numbers<'a>),
+    /// A list of texts, times or messages.
+    List(Vec<Value<'a>>),
+    /// A message: its fields in their order.
+    Struct(&'a Struct, Vec<Value<'a>>),
+}
+
+/// A list of truths or numbers, as it stands in a message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) kind: Kind,
+    pub(super) order: Order,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The least.
+    Little,
+    /// The greatest.
+    Big,
+}
+
+impl<'a> Numbers<'a> {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bytes.len() / self.size()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = Value<'a>> + use<'a> {
+        let (kind, order) = (self.kind, self.order);
+        self.bytes.chunks_exact(self.size()).map(move |bytes| number(kind, order, bytes))
+    }
+
+    /// One of them.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<Value<'a>> {
+        self.bytes
+            .chunks_exact(self.size())
+            .nth(index)
+            .map(|bytes| number(self.kind, self.order, bytes))
+    }
+
+    fn size(&self) -> usize {
+        match self.kind {
+            Kind::Int(bytes) | Kind::Unsigned(bytes) | Kind::Float(bytes) => bytes.max(1).into(),
+            _ => 1,
+        }
+    }
+}
+
+/// A truth or a number, of its bytes.
+pub(super) fn number<'a>(kind: Kind, order: Order, bytes: &[u8]) -> Value<'a> {
+    let mut all = [0; 8];
+    let used = bytes.iter().take(8);
+    match order {
+        Order::Little => all.iter_mut().zip(used).for_each(|(to, from)| *to = *from),
+        Order::Big => all.iter_mut().zip(used.rev()).for_each(|(to, from)| *to = *from),
+    }
+    let unsigned = u64::from_le_bytes(all);
+    match kind {
+        Kind::Bool => Value::Bool(unsigned != 0),
+        Kind::Int(bytes) => {
+            // The sign goes up to the last bit.
+            let unused = 64_u32.saturating_sub(8 * u32::from(bytes)).min(63);
+            Value::Int(unsigned.wrapping_shl(unused).cast_signed() >> unused)
+        }
+        Kind::Float(4) => Value::Float(f32::from_bits(unsigned as u32).into()),
+        Kind::Float(_) => Value::Float(f64::from_bits(unsigned)),
+        _ => Value::Unsigned(unsigned),
+    }
+}
+
+impl<'a> Value<'a> {
+    /// What stands at a path such as `pose.pose.position.x` or `doors[0]`; the empty path is the
+    /// message itself. Of a time `sec` and `nanosec` are parts (`secs` and `nsecs`, too).
+    #[must_use]
+    pub fn at(&self, path: &str) -> Option<Value<'a>> {
+        if path.is_empty() {
+            return Some(self.clone());
+        }
+        let mut here = Cow::Borrowed(self);
+        for step in path.split('.') {
+            let (name, indices) =
+                step.split_once('[').map_or((step, None), |(name, rest)| (name, Some(rest)));
+            here = part(here, name)?;
+            let Some(indices) = indices else { continue };
+            for index in indices.strip_suffix(']')?.split("][") {
+                here = element(here, index.parse().ok()?)?;
+            }
+        }
+        Some(here.into_owned())
+    }
+
+    /// A number, as near as 53 bits can tell.
+    #[must_use]
+    pub fn f64(&self) -> Option<f64> {
+        match *self {
+            Self::Int(number) => Some(number as f64),
+            Self::Unsigned(number) => Some(number as f64),
+            Self::Float(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// A whole number, also where the type has fractions.
+    #[must_use]
+    pub fn i64(&self) -> Option<i64> {
+        match *self {
+            Self::Int(number) => Some(number),
+            Self::Unsigned(number) => number.try_into().ok(),
+            // Whole numbers of doubles beyond this are not exact.
+            Self::Float(number) if number.fract() == 0.0 && number.abs() <= 9e15 => {
+                Some(number as i64)
+            }
+            _ => None,
+        }
+    }
+
+    /// A whole number that is not negative, also where the type has fractions.
+    #[must_use]
+    pub fn u64(&self) -> Option<u64> {
+        match *self {
+            Self::Unsigned(number) => Some(number),
+            _ => self.i64()?.try_into().ok(),
+        }
+    }
+
+    /// True or false.
+    #[must_use]
+    pub fn bool(&self) -> Option<bool> {
+        match *self {
+            Self::Bool(truth) => Some(truth),
+            _ => None,
+        }
+    }
+
+    /// A text. What is not UTF-8 in it is replaced by `U+FFFD`.
+    #[must_use]
+    pub fn text(&self) -> Option<Cow<'a, str>> {
+        match *self {
+            Self::Text(bytes) => Some(String::from_utf8_lossy(bytes)),
+            _ => None,
+        }
+    }
+
+    /// A list of bytes (`uint8[]`, `char[]`, `int8[]`).
+    #[must_use]
+    pub fn bytes(&self) -> Option<&'a [u8]> {
+        match *self {
+            Self::Numbers(Numbers { bytes, kind: Kind::Unsigned(1) | Kind::Int(1), .. }) => {
+                Some(bytes)
+            }
+            _ => None,
+        }
+    }
+
+    /// A time, of ROS 1 or of ROS 2.
+    #[must_use]
+    pub fn stamp(&self) -> Option<Stamp> {
+        let [sec, nanosec] =
+            ["sec", "nanosec"].map(|name| self.at(name).and_then(|part| part.i64()));
+        // A time of ROS 1 goes beyond 2038.
+        Some(Stamp { sec: sec? as i32, nanosec: nanosec?.try_into().ok()? })
+    }
+
+    /// The elements of a list.
+    #[must_use]
+    pub fn elements(&self) -> Option<Vec<Value<'a>>> {
+        match self {
+            Self::Numbers(numbers) => Some(numbers.iter().collect()),
+            Self::List(list) => Some(list.clone()),
+            _ => None,
+        }
+    }
+}
+
+fn part<'v, 'a>(value: Cow<'v, Value<'a>>, name: &str) -> Option<Cow<'v, Value<'a>>> {
+    if let Value::Time(sec, nanosec) = *value {
+        return match name {
+            "sec" | "secs" => Some(Cow::Owned(Value::Int(sec))),
+            "nanosec" | "nsecs" => Some(Cow::Owned(Value::Int(nanosec))),
+            _ => None,
+        };
+    }
+    match value {
+        Cow::Borrowed(Value::Struct(made, values)) => {
+            values.get(made.field(name)?.0).map(Cow::Borrowed)
+        }
+        Cow::Owned(Value::Struct(made, mut values)) => {
+            let (index, _) = made.field(name)?;
+            (index < values.len()).then(|| Cow::Owned(values.swap_remove(index)))
+        }
+        _ => None,
+    }
+}
+
+fn element<'v, 'a>(value: Cow<'v, Value<'a>>, index: usize) -> Option<Cow<'v, Value<'a>>> {
+    match value {
+        Cow::Borrowed(Value::Numbers(numbers)) => numbers.get(index).map(Cow::Owned),
+        Cow::Owned(Value::Numbers(numbers)) => numbers.get(index).map(Cow::Owned),
+        Cow::Borrowed(Value::List(list)) => list.get(index).map(Cow::Borrowed),
+        Cow::Owned(Value::List(mut list)) => {
+            (index < list.len()).then(|| Cow::Owned(list.swap_remove(index)))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,11 @@
+//! Logs as they are found: whole, cut off, damaged, without an index, compressed in every way, written by
+//! the tools of ROS themselves or by the `mcap` crate.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+mod bag;
+mod broken;
+mod mcap_file;
+mod recorded;
+mod roles;
+mod written;

@@ -1,0 +1,258 @@
+//! `toposlam info LOG...`: what logs hold. Sections 5 and 6.
+
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use serde::Serialize;
+use toposlam_robot::log::{
+    Format,
+    mapping::{Guess, Mapping, guess},
+    reading::Log,
+    topic::{Encoding, Topic},
+};
+
+use super::{
+    Failure, Outcome, columns::print_rows, input, json::print_object, output, words::grouped,
+};
+
+/// Tell what is in logs: when they were recorded, whether they are whole, their topics
+///
+/// Logs are ROS 1 bags (version 2.0) and MCAP files, of this program or of any other. Besides the topics
+/// it tells which of them could carry what a run is made of: pictures, odometry, motion, percepts, doors.
+/// A mapping file says so where that is not clear, or not usual.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  toposlam info run.mcap --write-mapping mapping.toml
+
+Ends with 3 if a log is truncated; what is in it up to there is told.")]
+pub(super) struct Arguments {
+    /// The logs
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// Hold this mapping file against each log
+    #[arg(long, value_name = "FILE", conflicts_with = "write_mapping")]
+    mapping: Option<PathBuf>,
+    /// Write a mapping file of what only one topic of the log could carry
+    #[arg(long, value_name = "FILE")]
+    write_mapping: Option<PathBuf>,
+    /// Print one JSON object for each log
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints for a log.
+#[derive(Serialize)]
+struct Line<'l> {
+    schema: u32,
+    log: String,
+    format: &'static str,
+    bytes: u64,
+    /// Nanoseconds.
+    start: Option<u64>,
+    end: Option<u64>,
+    /// Seconds.
+    duration: Option<f64>,
+    messages: u64,
+    truncated: Option<Truncated>,
+    topics: Vec<TopicLine<'l>>,
+    /// For what it could be, the topics that could carry it; or that the mapping file says do.
+    mapping: BTreeMap<&'static str, Vec<&'l str>>,
+}
+
+#[derive(Serialize)]
+struct Truncated {
+    offset: u64,
+    cause: String,
+}
+
+#[derive(Serialize)]
+struct TopicLine<'l> {
+    name: &'l str,
+    r#type: &'l str,
+    encoding: &'l str,
+    messages: u64,
+    /// Messages a second.
+    rate: Option<f64>,
+    undecodable: Option<String>,
+}
+
+impl Arguments {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        if let Some(path) = &self.write_mapping {
+            output::check_place(path, &["toml"])?;
+            if self.logs.len() > 1 {
+                return Err(Failure::at("--write-mapping", "this goes with one log"));
+            }
+        }
+        let mapping = match &self.mapping {
+            None => None,
+            Some(path) => {
+                let read = Mapping::read(&input::read(path)?);
+                Some((path, read.map_err(|error| Failure::in_file(path, error))?))
+            }
+        };
+        let mut outcome = Outcome::Holds;
+        for path in &self.logs {
+            let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
+            if let Some((mapping_path, mapping)) = &mapping {
+                mapping.bind(&log).map_err(|error| {
+                    Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
+                })?;
+            }
+            let carriers = carriers(&log, mapping.as_ref().map(|(_, mapping)| mapping));
+            if let Some(target) = &self.write_mapping {
+                write_mapping(target, &log, &carriers)?;
+            }
+            if self.json {
+                print_object(out, &line(path, &log, carriers))?;
+            } else {
+                print(out, path, &log, &carriers)?;
+            }
+            if log.truncation().is_some() {
+                outcome = Outcome::Incomplete;
+            }
+        }
+        Ok(outcome)
+    }
+}
+
+/// For everything that is or could be carried, the names of the topics.
+fn carriers<'l>(log: &'l Log, mapping: Option<&'l Mapping>) -> Vec<(&'static str, Vec<&'l str>)> {
+    if let Some(mapping) = mapping {
+        let carriers = mapping.carriers();
+        return carriers.map(|(role, carrier)| (role.name(), vec![&*carrier.topic])).collect();
+    }
+    let name = |topic: usize| log.topics().get(topic).map(|topic| &*topic.name);
+    let names = |guess: Guess| {
+        let topics = guess.topics.into_iter().filter_map(name);
+        (guess.role.name(), topics.collect())
+    };
+    guess(log.topics()).into_iter().map(names).collect()
+}
+
+fn format(log: &Log) -> &'static str {
+    match log.format() {
+        Format::Bag => "bag",
+        Format::Mcap => "mcap",
+    }
+}
+
+/// How long it takes from the first to the last message, in seconds.
+fn duration(log: &Log) -> Option<f64> {
+    Some(log.end()?.saturating_sub(log.start()?) as f64 / 1e9)
+}
+
+/// How many messages a second there are on a topic.
+fn rate(log: &Log, topic: &Topic) -> Option<f64> {
+    let duration = duration(log).filter(|duration| *duration > 0.0)?;
+    Some(topic.messages as f64 / duration)
+}
+
+fn line<'l>(path: &Path, log: &'l Log, carriers: Vec<(&'static str, Vec<&'l str>)>) -> Line<'l> {
+    Line {
+        schema: 1,
+        log: path.display().to_string(),
+        format: format(log),
+        bytes: log.size(),
+        start: log.start(),
+        end: log.end(),
+        duration: duration(log),
+        messages: log.messages_total(),
+        truncated: log
+            .truncation()
+            .map(|found| Truncated { offset: found.offset, cause: found.cause.to_string() }),
+        topics: log
+            .topics()
+            .iter()
+            .map(|topic| TopicLine {
+                name: &topic.name,
+                r#type: &topic.type_name,
+                encoding: match &topic.encoding {
+                    Encoding::Ros1 => "ros1",
+                    Encoding::Cdr => "cdr",
+                    Encoding::Other(other) => other,
+                },
+                messages: topic.messages,
+                rate: rate(log, topic),
+                undecodable: topic.definition.as_ref().err().map(ToString::to_string),
+            })
+            .collect(),
+        mapping: carriers.into_iter().collect(),
+    }
+}
+
+/// A name out of a log, as it can be printed.
+fn shown(name: &str) -> String {
+    name.escape_debug().to_string()
+}
+
+fn print(
+    out: &mut dyn Write,
+    path: &Path,
+    log: &Log,
+    carriers: &[(&str, Vec<&str>)],
+) -> Result<(), Failure> {
+    let whole = match log.truncation() {
+        None => "whole".to_owned(),
+        Some(truncation) => truncation.to_string(),
+    };
+    let format = match log.format() {
+        Format::Bag => "ROS 1 bag",
+        Format::Mcap => "MCAP",
+    };
+    writeln!(out, "{}: {format}, {} bytes, {whole}", path.display(), grouped(log.size().into()))?;
+    if let (Some(start), Some(duration)) = (log.start(), duration(log)) {
+        let (seconds, rest) = (start / 1_000_000_000, start % 1_000_000_000);
+        writeln!(out, "from {seconds}.{rest:09} s, for {duration:.3} s")?;
+    }
+    writeln!(out, "{} messages\n", grouped(log.messages_total().into()))?;
+    let rows: Vec<_> = log
+        .topics()
+        .iter()
+        .map(|topic| {
+            let rate = rate(log, topic).map_or(String::new(), |rate| format!("{rate:.2}"));
+            let why = topic.definition.as_ref().err().map(|why| shown(&why.to_string()));
+            [
+                format!("{:>10}", grouped(topic.messages.into())),
+                format!("{rate:>8}"),
+                shown(&topic.name),
+                shown(&topic.type_name),
+                why.unwrap_or_default(),
+            ]
+        })
+        .collect();
+    print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
+    writeln!(out)?;
+    if carriers.is_empty() {
+        writeln!(out, "No topic is known to carry what a run is made of; a mapping file can say.")?;
+    }
+    let rows: Vec<_> = carriers
+        .iter()
+        .map(|(role, topics)| {
+            let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
+            [(*role).to_owned(), topics.join(" or ")]
+        })
+        .collect();
+    if !rows.is_empty() {
+        print_rows(out, ["carried", "by"], &rows)?;
+    }
+    Ok(())
+}
+
+/// Writes what only one topic could carry; what several could stands in comments.
+fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), Failure> {
+    let mapping = Mapping::unambiguous(log);
+    if mapping.is_empty() {
+        return Err(Failure::in_file(path, "there is nothing that only one topic could carry"));
+    }
+    let mut text = mapping.to_toml();
+    for (role, topics) in carriers.iter().filter(|(_, topics)| topics.len() > 1) {
+        let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
+        text += &format!("\n# [{role}]\n# topic = {}\n", topics.join(" or "));
+    }
+    output::write_whole(path, text.as_bytes())
+}
