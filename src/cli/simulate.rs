@@ -141,7 +141,8 @@ impl Arguments {
         feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
         let robot = simulation.robot(&eyes, &self.appearance, &effects);
         let eye = || eyes.sensor(self.appearance.look);
-        let log = self.recorder(&simulation, Some(&camera))?;
+        let log =
+            self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
         let pictures = match (&self.frames, &self.html) {
             (Some(folder), _) => Pictures::Files { camera, folder: folder.clone() },
             (None, Some(_)) => Pictures::Small { camera },

@@ -4,6 +4,7 @@
 mod cause;
 mod derived;
 mod events;
+mod gathered;
 mod judgement;
 mod quirks;
 mod shorter;
@@ -15,6 +16,7 @@ mod tests;
 pub use cause::{Cause, Culprit, Divergence};
 pub use derived::{Derivation, NEAR};
 pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Source};
+pub use gathered::{Evidence, Gathered, Looking, NoEvents, gather};
 pub use judgement::{Coverage, Driver, Judgement, KnownWorld, NotJudged, Question, Verdict, judge};
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use shorter::shorter;

@@ -22,4 +22,5 @@ mod world_hash;
 pub mod writer;
 
 pub use container::{Format, MOST_GROWTH};
+pub(crate) use told::scene_of;
 pub use world_hash::world_hash;

@@ -259,6 +259,7 @@ fn entries(run: &messages::Run) -> BTreeMap<String, String> {
         ("marker", run.marker.clone()),
         ("seed", run.seed.to_string()),
         ("calibration", run.calibration.clone()),
+        ("colours", run.colours.clone()),
         ("command", run.command.clone()),
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()

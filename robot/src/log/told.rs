@@ -3,11 +3,13 @@
 use toposlam_model::{
     driving::{
         algorithm2::{self, Standing, State},
-        scene::{self, Place, Status},
+        scene::{
+            self, CentreLine, HallwayView, JunctionView, MarkerView, Place, Reason, Status, Unclear,
+        },
     },
     embedded_graph::{Dart, Vertex},
     mapping::{Event, Journey},
-    percept::Sighting,
+    percept::{Door, Sighting},
 };
 
 use super::messages::{Command, Hypothesis, Map, Percept, Scene, Stamp};
@@ -68,6 +70,46 @@ pub(super) fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
     }
     told
 }
+
+/// The scene that a message tells; `None` where there is no such scene.
+pub(crate) fn scene_of(told: &Scene) -> Option<scene::Scene> {
+    let place = match told.place.as_str() {
+        "hallway" => Place::Hallway(HallwayView {
+            heading: told.heading,
+            left: told.left,
+            right: told.right,
+            status: match told.status.as_str() {
+                "clear" => Status::Clear,
+                why => Status::Unclear(UNCLEAR.into_iter().find(|one| one.to_string() == why)?),
+            },
+            confidence: told.confidence,
+        }),
+        "junction" => {
+            let through = told.turning_point;
+            let line = |&direction| CentreLine { through, direction };
+            Place::Junction(JunctionView {
+                doors: told.doors.iter().map(line).collect(),
+                turning_point: through,
+                confidence: told.confidence,
+            })
+        }
+        "unknown" => {
+            Place::Unknown(REASONS.into_iter().find(|one| one.to_string() == told.reason)?)
+        }
+        _ => return None,
+    };
+    let marker = told.marker.then(|| MarkerView {
+        position: told.marker_position,
+        axis: told.marker_axis,
+        door: u32::try_from(told.marker_door).ok().map(Door),
+    });
+    Some(scene::Scene { place, marker })
+}
+
+const UNCLEAR: [Unclear; 3] =
+    [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind];
+const REASONS: [Reason; 4] =
+    [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
 
 /// What Algorithm 2 answered.
 pub(super) fn command(stamp: Stamp, state: State, command: algorithm2::Command) -> Command {
@@ -141,4 +183,39 @@ pub(super) fn map(stamp: Stamp, journey: &Journey, event: Event) -> Option<Map> 
             .collect(),
         robot: journey.robot().0,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_was_told_is_the_same_scene() {
+        let line = |direction| CentreLine { through: [0.5, 0.1], direction };
+        let hallway = |status| {
+            Place::Hallway(HallwayView {
+                heading: 0.1,
+                left: 0.7,
+                right: 0.9,
+                status,
+                confidence: 0.5,
+            })
+        };
+        let junction = JunctionView {
+            doors: vec![line(3.0), line(1.4)],
+            turning_point: [0.5, 0.1],
+            confidence: 0.8,
+        };
+        let places = UNCLEAR.map(|why| hallway(Status::Unclear(why))).into_iter();
+        let places = places.chain(REASONS.map(Place::Unknown));
+        let places = places.chain([hallway(Status::Clear), Place::Junction(junction)]);
+        let marker = |door| MarkerView { position: [0.4, 0.0], axis: 0.2, door };
+        for place in places {
+            for marker in [None, Some(marker(None)), Some(marker(Some(Door(1))))] {
+                let seen = scene::Scene { place: place.clone(), marker };
+                assert_eq!(scene_of(&scene(Stamp::default(), &seen)), Some(seen));
+            }
+        }
+        assert_eq!(scene_of(&Scene::default()), None);
+    }
 }

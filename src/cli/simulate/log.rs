@@ -6,7 +6,10 @@ use toposlam_robot::{
     log::{messages, recorder, world_hash, writer::WriteError},
     simulator::PICTURE_TIME,
 };
-use toposlam_vision::camera::{Camera, calibration};
+use toposlam_vision::{
+    camera::{Camera, calibration},
+    colour::ColourModel,
+};
 
 use super::{Arguments, Failure, Simulation};
 use crate::cli::output;
@@ -15,11 +18,12 @@ use crate::cli::output;
 pub(super) type Recorder = recorder::Recorder<File>;
 
 impl Arguments {
-    /// The log, where one is wanted; its pictures are those of the camera.
+    /// The log, where one is wanted; its pictures are those of the camera, its colours those of
+    /// the building.
     pub(super) fn recorder(
         &self,
         simulation: &Simulation,
-        camera: Option<&Camera>,
+        eyes: Option<(&Camera, &ColourModel)>,
     ) -> Result<Option<Recorder>, Failure> {
         let Some(path) = &self.log else { return Ok(None) };
         let run = messages::Run {
@@ -30,11 +34,12 @@ impl Arguments {
             start: simulation.world.start_text(simulation.facing),
             marker: "directional".to_owned(),
             seed: self.seed,
-            calibration: camera.map(calibration::to_toml).unwrap_or_default(),
+            calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
+            colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
             command: self.command(),
         };
         let file = output::grow(path)?;
-        let recorder = Recorder::new(file, &run, camera.cloned());
+        let recorder = Recorder::new(file, &run, eyes.map(|(camera, _)| camera.clone()));
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 
