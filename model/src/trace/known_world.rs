@@ -13,6 +13,8 @@ use crate::{
 pub struct Poses {
     /// How many ways are left after each event that fits.
     pub left: Vec<usize>,
+    /// The only way that is left after each such event, where there is only one.
+    pub alone: Vec<Option<State>>,
     /// The ways that are left after the last of them.
     pub states: Vec<State>,
     /// The first event that fits none of them.
@@ -62,6 +64,7 @@ pub fn poses(
 ) -> Poses {
     let mut states = starts.to_vec();
     let mut left = Vec::with_capacity(trace.len());
+    let mut alone = Vec::with_capacity(trace.len());
     for (number, event) in trace.events().enumerate() {
         let judged = |&state: &State| (state, after(graph, marker, state, event));
         let judged: Vec<_> = states.iter().map(judged).collect();
@@ -70,12 +73,13 @@ pub fn poses(
             let why = |(state, after): (State, Result<State, Why>)| Some((state, after.err()?));
             let candidates = judged.into_iter().filter_map(why).collect();
             let misfit = Some(Misfit { event: number, candidates });
-            return Poses { left, states, misfit };
+            return Poses { left, alone, states, misfit };
         }
         left.push(fit.len());
+        alone.push(if let [state] = fit[..] { Some(state) } else { None });
         states = fit;
     }
-    Poses { left, states, misfit: None }
+    Poses { left, alone, states, misfit: None }
 }
 
 /// How the robot stands after an event, if the event fits.

@@ -267,6 +267,13 @@ impl Judgement {
             found.note(len, cause);
         }
         if question.world.is_none() {
+            let darts = judgement
+                .followed
+                .as_ref()
+                .map_or(0, |followed| followed.exploration.map().dart_count());
+            // A bound below what is known already would be none.
+            let edges = question.search.edges.max(darts.div_ceil(2) + BEYOND);
+            let search = Search { edges, ..question.search };
             // Algorithm 1 has told its world from every other; one that it has not done with has all that
             // it knows.
             let smallest = if let Some(graph) = explored {
@@ -274,10 +281,9 @@ impl Judgement {
             } else {
                 let followed = judgement.followed.as_ref();
                 let known = followed.map(|followed| followed.exploration.map());
-                smallest(trace, known, question.search, watch)
+                smallest(trace, known, search, watch)
             };
             if let Smallest::None { event } = smallest {
-                let edges = question.search.edges;
                 // It is the fault of an event, if of any, before which all is explained.
                 found.note(at(event.min(trace.len() - 1)), Cause::NoWorld { edges });
             }
@@ -375,6 +381,9 @@ impl KnownWorld<'_> {
         self.states.iter().any(is)
     }
 }
+
+/// Where Algorithm 1 knows a part of a world, worlds with so many more edges are tried at least.
+const BEYOND: usize = 4;
 
 /// So many events are looked at to tell whose fault a misfit is.
 const AHEAD: usize = 12;

@@ -19,5 +19,5 @@ pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Sourc
 pub use gathered::{Evidence, Gathered, Looking, NoEvents, gather};
 pub use judgement::{Coverage, Driver, Judgement, KnownWorld, NotJudged, Question, Verdict, judge};
 pub use quirks::{Quirk, QuirkError, Quirks};
-pub use shorter::shorter;
+pub use shorter::{Shorter, shorter};
 pub use told::Telling;

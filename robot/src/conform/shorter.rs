@@ -8,9 +8,18 @@ use toposlam_model::{
 use super::{
     cause::{Cause, Divergence},
     events::{Event, Events, Kind, Perceived, Source},
-    judgement::{Judgement, Question, judge},
+    judgement::{Driver, Judgement, Question, judge},
     quirks::Quirks,
 };
+
+/// A log that diverges in the same way as a longer one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shorter {
+    /// Its events.
+    pub events: Events,
+    /// Whether it diverges by itself, in whatever world and whoever drives.
+    pub by_itself: bool,
+}
 
 /// The events up to the first divergence, without those that it does not need; `None` where there is no
 /// divergence, or nothing to cut.
@@ -18,9 +27,10 @@ use super::{
 /// Where percepts and doors diverge, stretches of moves are left out; where an event contradicts itself
 /// or odometry, all but the last events are.
 #[must_use]
-pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -> Option<Events> {
+pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -> Option<Shorter> {
     let divergence = judgement.divergence.as_ref()?;
-    let judged = |events: &Events| {
+    let anyone = Question { world: None, driver: Driver::Anyone, ..question.clone() };
+    let judged = |events: &Events, question: &Question| {
         let judgement = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
         judgement.divergence.filter(|found| alike(found, divergence))
     };
@@ -30,12 +40,12 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
             let shows = |trace: &Trace| {
                 let events = of_trace(trace);
                 let at = events.events.len() - 1;
-                judged(&events).is_some_and(|found| found.event == at)
+                judged(&events, question).is_some_and(|found| found.event == at)
             };
             let cut = judgement.trace.up_to(last);
             let short = shortened(&cut, shows);
             let events = Events { head: judgement.events.head.clone(), ..of_trace(&short) };
-            judged(&events).map(|_| events)
+            judged(&events, question).map(|_| Shorter { events, by_itself: false })
         }
         Cause::Unfinished { .. } | Cause::Map | Cause::WrongMap | Cause::Moves { .. } => None,
         _ => {
@@ -43,8 +53,9 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
             (0..=divergence.event).rev().find_map(|first| {
                 let events = judgement.events.from(first, last)?;
-                let found = judged(&events)?;
-                (found.event == divergence.event - first).then_some(events)
+                let found = judged(&events, &anyone)?;
+                let same = found.event == divergence.event - first;
+                same.then_some(Shorter { events, by_itself: true })
             })
         }
     }
