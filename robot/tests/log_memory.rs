@@ -137,7 +137,7 @@ fn seeds_hold() {
 
 /// What becomes far larger than it is.
 fn zeros_hold() {
-    for compression in [mcap::Compression::Lz4, mcap::Compression::Zstd] {
+    for (compression, read) in [(mcap::Compression::Lz4, true), (mcap::Compression::Zstd, false)] {
         let options = mcap::WriteOptions::new().compression(Some(compression)).chunk_size(None);
         let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
         let channel_id =
@@ -149,6 +149,6 @@ fn zeros_hold() {
         let bytes = writer.into_inner().into_inner();
         let taken = log_holds(&bytes);
         // By LZ4 it is 255 times as large, and read; by Zstandard far more, and refused.
-        assert_eq!(taken > 100_000_000, compression == mcap::Compression::Lz4, "{taken}");
+        assert_eq!(taken > 100_000_000, read, "{taken}");
     }
 }

@@ -66,7 +66,7 @@ fn a_bag_that_is_cut_says_what_stands_before_the_cut() {
                 let said = said(&log);
                 assert_eq!(said, all[..said.len()], "{length}");
                 assert_eq!(said.len() as u64, log.messages_total());
-                assert!(said.len() >= most && said.len() % 4 == 0, "{length}");
+                assert!(said.len() >= most && said.len().is_multiple_of(4), "{length}");
                 most = said.len();
             }
             assert_eq!(most, if closed == Closed::Yes { 12 } else { 8 });
