@@ -77,11 +77,12 @@ fn reading_takes_no_more_memory_than_stated() {
             definition_holds(Dialect::Ros1, &text);
             definition_holds(Dialect::Ros2, &text);
         }
-        let fields: String = (0..length / 8).map(|nth| format!("int8 a{nth}\n")).collect();
+        let fields: Vec<_> = (0..length / 8).map(|nth| format!("int8 a{nth}\n")).collect();
+        let fields = fields.concat();
         definition_holds(Dialect::Ros1, &fields);
         definition_holds(Dialect::Ros2, &fields);
-        let sections: String =
-            (0..length / 20).map(|nth| format!("===\nMSG: a/B{nth}\nint8 x\n")).collect();
+        let sections = (0..length / 20).map(|nth| format!("===\nMSG: a/B{nth}\nint8 x\n"));
+        let sections = sections.collect::<Vec<_>>().concat();
         definition_holds(Dialect::Ros1, &sections);
         for part in [
             "[image]\n",
