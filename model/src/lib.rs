@@ -14,7 +14,8 @@
 //! * [`ambiguity`]: worlds that a marker cannot tell apart, with witnesses (Section 2.2);
 //! * [`mapping`]: Algorithm 1, the movable marker algorithm, and what they stand on (Section 2.3);
 //! * [`driving`]: what sensing tells of a place (Sections 3 and 4);
-//! * [`check`]: an algorithm on every start, judged.
+//! * [`check`]: an algorithm on every start, judged;
+//! * [`trace`]: recorded explorations, judged.
 //!
 //! ```
 //! use toposlam_model::{
@@ -48,6 +49,7 @@ pub mod isomorphism;
 pub mod mapping;
 pub mod marker;
 pub mod percept;
+pub mod trace;
 pub mod world;
 
 #[cfg(test)]

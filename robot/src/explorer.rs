@@ -97,6 +97,31 @@ pub trait Observer<R: Robot> {
 
 impl<R: Robot> Observer<R> for () {}
 
+/// Somebody watches, or nobody.
+impl<R: Robot, O: Observer<R>> Observer<R> for Option<O> {
+    fn round(&mut self, robot: &R, round: &Round<R::View>) {
+        if let Some(observer) = self {
+            observer.round(robot, round);
+        }
+    }
+
+    fn leaving(&mut self, robot: &R, door: Door) {
+        if let Some(observer) = self {
+            observer.leaving(robot, door);
+        }
+    }
+
+    fn arrived(&mut self, robot: &R, door: Option<Door>, at: &Standing) {
+        if let Some(observer) = self {
+            observer.arrived(robot, door, at);
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.as_ref().is_some_and(Observer::stop)
+    }
+}
+
 /// Why a robot cannot go on.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExplorerError {

@@ -5,6 +5,7 @@
 // Tests state numbers as they are.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
+pub mod conform;
 pub mod conformance;
 pub mod evaluation;
 pub mod explorer;

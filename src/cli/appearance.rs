@@ -24,6 +24,14 @@ pub(super) struct Appearance {
 }
 
 impl Appearance {
+    /// The arguments that say it, without those that are as usual.
+    pub(super) fn told(&self) -> Vec<(&'static str, String)> {
+        let look = (self.look.name != LOOKS[0].name).then(|| ("--look", self.look.name.to_owned()));
+        let none = matches!(self.effects, Which::None).then(|| ("--effects", "none".to_owned()));
+        let set = self.effect.iter().map(|(name, value)| ("--effect", format!("{name}={value}")));
+        look.into_iter().chain(none).chain(set).collect()
+    }
+
     /// The effects of a seed.
     pub(super) fn effects(&self, seed: u64) -> Result<Effects, Failure> {
         let mut effects = match self.effects {

@@ -1,4 +1,4 @@
-//! Files are written whole or not at all.
+//! Files are written whole or not at all; but for logs, which grow.
 
 use std::{
     ffi::{OsStr, OsString},
@@ -29,6 +29,12 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         let _ = fs::remove_file(&partial);
         unwritable(path, &error)
     })
+}
+
+/// A file that grows while somebody writes it, under its own name: what is written of a log is worth
+/// reading even where its writer was killed.
+pub(crate) fn grow(path: &Path) -> Result<fs::File, Failure> {
+    fs::File::create(path).map_err(|error| unwritable(path, &error))
 }
 
 /// Makes the folder, if it is not there.

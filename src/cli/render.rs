@@ -62,6 +62,14 @@ pub(super) enum Size {
 }
 
 impl Size {
+    /// As it is written.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Small => "640x480",
+            Self::Large => "1280x960",
+        }
+    }
+
     pub(super) fn pixels(self) -> [u32; 2] {
         match self {
             Self::Small => [640, 480],

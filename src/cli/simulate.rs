@@ -4,6 +4,7 @@
 mod chronicle;
 mod ending;
 mod feasible;
+mod log;
 
 use std::{
     cell::RefCell,
@@ -21,6 +22,7 @@ use toposlam_model::{
 use toposlam_robot::{
     evaluation::Eyes,
     explorer::{Eye, Told},
+    log::recorder::Photograph,
     run::{Run, offline, run},
     simulator::{Camera, Effects, FAULTS, Fault, PICTURE_TIME, Setting, SimulatedRobot},
 };
@@ -37,6 +39,7 @@ use super::{
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
 use ending::Ending;
+use log::{MAX_DARTS, Recorder};
 
 /// Let a simulated SuperScout map a floor plan by Algorithm 1, from what its camera sees
 ///
@@ -79,8 +82,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME@PICTURE[:HOW-MANY]")]
     fault: Vec<Fault>,
     /// Give up when more edge ends are known
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
     max_darts: usize,
+    /// Write a log of the run, .mcap: pictures, commands, odometry, scenes, percepts, the mapping
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
     /// Write a picture of the run: the floor plan, the way, what the robot called each junction
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -119,13 +125,15 @@ impl Arguments {
         let setting = Setting {
             noise: self.noise,
             picture_time: self.picture_time,
+            keeps_track: self.log.is_some(),
             faults: self.fault.clone(),
             ..Setting::at_start(plan.clone(), facing, self.seed)
         };
         let simulation = Simulation { world, plan, facing, setting, begun };
         if self.by_scene {
             let robot = simulation.setting.by_scene();
-            return self.simulate(&simulation, robot, || Told, Pictures::None, out);
+            let log = self.recorder(&simulation, None)?;
+            return self.simulate(&simulation, robot, || Told, Pictures::None, log, out);
         }
         let camera = self.camera()?;
         let effects = self.appearance.effects(self.seed)?;
@@ -133,17 +141,19 @@ impl Arguments {
         feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
         let robot = simulation.robot(&eyes, &self.appearance, &effects);
         let eye = || eyes.sensor(self.appearance.look);
+        let log =
+            self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
         let pictures = match (&self.frames, &self.html) {
             (Some(folder), _) => Pictures::Files { camera, folder: folder.clone() },
             (None, Some(_)) => Pictures::Small { camera },
             (None, None) => Pictures::None,
         };
-        self.simulate(&simulation, robot, eye, pictures, out)
+        self.simulate(&simulation, robot, eye, pictures, log, out)
     }
 
     fn check_places(&self) -> Result<(), Failure> {
-        let places: [(&Option<PathBuf>, &[&str]); 2] =
-            [(&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
+        let places: [(&Option<PathBuf>, &[&str]); 3] =
+            [(&self.log, &["mcap"]), (&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
         for (path, endings) in places {
             if let Some(path) = path {
                 output::check_place(path, endings)?;
@@ -185,10 +195,11 @@ impl Arguments {
         robot: SimulatedRobot<C>,
         eye: impl Fn() -> E,
         pictures: Pictures,
+        log: Option<Recorder>,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure>
     where
-        C::View: Shown,
+        C::View: Shown + Photograph,
     {
         let Simulation { world, plan, facing, .. } = simulation;
         let chronicle = Rc::new(RefCell::new(Chronicle::default()));
@@ -196,17 +207,20 @@ impl Arguments {
         // On a terminal the story shows how far the run is.
         let told = !self.json && io::stdout().is_terminal();
         let progress = if told { progress.hidden() } else { progress };
-        let watching = Watching::new(chronicle.clone(), pictures, progress);
+        let watching = Watching::new(chronicle.clone(), pictures, progress, log.clone());
         let shown: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let mut lines = Lines::new(shown, chronicle.clone());
         let detail = Detail { every_hypothesis: false, doors: false };
         let story = Story::new(&mut lines, world, *facing, detail);
-        let mut telling = Telling::new(story, chronicle.clone());
-        let (run, _, watching) =
+        let mut telling = Telling::new(story, chronicle.clone(), log.clone());
+        let (run, robot, watching) =
             run(plan, *facing, robot, eye(), watching, &mut telling, self.max_darts);
+        let logged =
+            log.map_or(Ok(()), |log| log.end(&robot, run.exploration.moves(), run.error.as_ref()));
         telling.finish()?;
         drop(lines);
         let recording = watching.finish()?;
+        logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
         let replayed = offline(&recording, eye(), self.max_darts);
         let compute_seconds = computed.elapsed().as_secs_f64();
@@ -280,9 +294,14 @@ fn after_help() -> String {
         .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
     let head = "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
     head + &faults.collect::<String>()
-        + "\nExamples:
+        + "\nA log is an MCAP file of ROS 2 messages: /camera/image/compressed, /camera/annotated/compressed,
+/cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, percept, hypothesis, map, end.
+It grows under its own name: if the program is killed, it can be read up to its last ten seconds.
+
+Examples:
   toposlam simulate worlds/shape-6.toml
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
+  toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/building-12.toml --start north-west:north --seed 3 --json
   toposlam simulate worlds/shape-6.toml --fault blocked@40
 

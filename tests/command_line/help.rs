@@ -24,7 +24,17 @@ const VERBS: [(&str, &[&str]); 15] = [
     ("evaluate", &["vision", "control", "runs"]),
     (
         "simulate",
-        &["--start", "--seed", "--by-scene", "--fault", "--noise", "--html", "--frames", "blocked"],
+        &[
+            "--start",
+            "--seed",
+            "--by-scene",
+            "--fault",
+            "--noise",
+            "--log",
+            "--html",
+            "blocked",
+            ".mcap",
+        ],
     ),
     (
         "render",

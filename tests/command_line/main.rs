@@ -12,6 +12,7 @@ mod evaluate;
 mod explore;
 mod help;
 mod info;
+mod log;
 mod proofs;
 mod render;
 mod sense;

@@ -70,10 +70,16 @@ impl Eyes {
         self.looks[(number % self.looks.len() as u64) as usize].0
     }
 
+    /// The colours of buildings of a look; of the first, where it is none of them.
+    #[must_use]
+    pub fn colours(&self, look: &'static Look) -> &ColourModel {
+        let known = self.looks.iter().find(|(known, _)| known.name == look.name);
+        &known.unwrap_or(&self.looks[0]).1
+    }
+
     /// Sensing in buildings of a look; of the first, where it is none of them.
     #[must_use]
     pub fn sensor(&self, look: &'static Look) -> Sensor {
-        let known = self.looks.iter().find(|(known, _)| known.name == look.name);
-        Sensor::new(&self.camera, &known.unwrap_or(&self.looks[0]).1)
+        Sensor::new(&self.camera, self.colours(look))
     }
 }

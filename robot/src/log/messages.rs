@@ -12,6 +12,14 @@ pub struct Stamp {
     pub nanosec: u32,
 }
 
+impl Stamp {
+    /// The time in nanoseconds; 0 before the beginning of time.
+    #[must_use]
+    pub fn nanoseconds(self) -> u64 {
+        u64::try_from(self.sec).unwrap_or(0) * 1_000_000_000 + u64::from(self.nanosec)
+    }
+}
+
 /// A message of the project.
 pub trait Own: Serialize {
     /// Its type, as ROS 2 names it.
@@ -58,6 +66,8 @@ own! {
         seed: u64,
         /// The camera's calibration, if there is a camera.
         calibration: String,
+        /// The colours of the building, if there is a camera.
+        colours: String,
         /// The command, if one made it.
         command: String,
     }

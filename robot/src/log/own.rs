@@ -70,7 +70,7 @@ macro_rules! read {
 }
 
 read! {
-    Run { stamp version world world_hash start marker seed calibration command }
+    Run { stamp version world world_hash start marker seed calibration colours command }
     Scene {
         stamp place status reason heading left right doors turning_point confidence marker
         marker_position marker_axis marker_door

@@ -1,6 +1,6 @@
 //! What can go wrong with a simulated robot, on purpose. Section 2.5.
 
-use std::str::FromStr;
+use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
@@ -76,6 +76,13 @@ impl Fault {
     /// Whether it begins with the picture of a number.
     pub(super) fn begins(&self, picture: u64) -> bool {
         self.picture == picture
+    }
+}
+
+/// As it is read.
+impl fmt::Display for Fault {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}@{}:{}", self.kind.name(), self.picture, self.lasting)
     }
 }
 

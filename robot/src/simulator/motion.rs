@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    robot::RobotError,
+    robot::{Reckoned, RobotError, Sample},
     superscout::{Base, Odometer, PERIOD, Reading, WATCHDOG, WheelSpeeds, along_arc},
 };
 
@@ -73,6 +73,8 @@ pub struct SimulatedBase {
     /// Commands that will not be carried out.
     deaf: u32,
     reading: Reading,
+    /// What the wheels were told, where somebody wants to know.
+    track: Option<Vec<Sample>>,
 }
 
 impl SimulatedBase {
@@ -100,6 +102,7 @@ impl SimulatedBase {
             chance,
             deaf: 0,
             reading: Reading { time: 0.0, odometry: odometer.told() },
+            track: None,
         }
     }
 
@@ -115,6 +118,26 @@ impl SimulatedBase {
         self.time
     }
 
+    /// From now on it keeps what its wheels are told.
+    pub(super) fn keep_track(&mut self) {
+        self.track = Some(Vec::new());
+        self.sample();
+    }
+
+    /// What its wheels were told in each period, and while a picture was taken.
+    pub(super) fn track(&self) -> &[Sample] {
+        self.track.as_deref().unwrap_or_default()
+    }
+
+    fn sample(&mut self) {
+        if let Some(track) = &mut self.track {
+            let Reading { time, odometry } = self.reading;
+            let reckoned = Reckoned { time, odometry };
+            let (speed, turning) = (self.wheels.speed(), self.wheels.turn_rate());
+            track.push(Sample { speed, turning, reckoned });
+        }
+    }
+
     /// Lets time go by without a command: the wheels go on turning, until the watchdog stops them.
     pub fn wait(&mut self, seconds: f64) {
         let mut left = seconds;
@@ -128,6 +151,7 @@ impl SimulatedBase {
             left -= step;
         }
         self.read();
+        self.sample();
     }
 
     /// A new motion begins: its wheels slip in their own way. Whether it will be carried out.
@@ -193,6 +217,7 @@ impl Base for SimulatedBase {
         self.silent = PERIOD;
         self.advance(PERIOD);
         self.read();
+        self.sample();
         Ok(self.reading)
     }
 
@@ -286,6 +311,25 @@ mod tests {
         base.ignore(1);
         assert!(!base.begin() && base.begin());
         assert_eq!((base.pose().position, base.time()), ([0.0; 2], PERIOD));
+    }
+
+    #[test]
+    fn its_track_tells_each_period_where_somebody_wants_to_know() {
+        let mut base = base(&MotionNoise::NONE, 1);
+        Drive(&mut base).forward(0.1).unwrap();
+        assert!(base.track().is_empty());
+        base.keep_track();
+        let begun = base.time();
+        Drive(&mut base).forward(0.1).unwrap();
+        base.wait(0.3);
+        // Where it stood; 0.05 m in each of two periods; the stop; a picture.
+        let speeds: Vec<_> = base.track().iter().map(|sample| sample.speed).collect();
+        assert_eq!(speeds.len(), 5);
+        assert!(speeds[1] > 0.19 && speeds[2] > 0.15, "{speeds:?}");
+        assert_eq!((speeds[0], speeds[3], speeds[4]), (0.0, 0.0, 0.0));
+        let times: Vec<_> = base.track().iter().map(|s| s.reckoned.time - begun).collect();
+        assert!((times[4] - (3.0 * PERIOD + 0.3)).abs() < 1e-9 && times[0] == 0.0, "{times:?}");
+        assert_eq!(base.track()[4].reckoned.odometry, base.reading().odometry);
     }
 
     #[test]

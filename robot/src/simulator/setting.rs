@@ -35,6 +35,8 @@ pub struct Setting {
     pub picture_time: f64,
     /// What goes wrong.
     pub faults: Vec<Fault>,
+    /// Whether it keeps what its wheels were told, for [`Robot::track`](crate::robot::Robot::track).
+    pub keeps_track: bool,
     /// From which everything follows that is left to chance.
     pub seed: u64,
 }
@@ -45,8 +47,16 @@ impl Setting {
     #[must_use]
     pub fn at_start(plan: Arc<FloorPlan>, facing: Dart, seed: u64) -> Self {
         let pose = start_pose(&plan, facing);
-        let faults = Vec::new();
-        Self { plan, marker: facing, pose, noise: 1.0, picture_time: PICTURE_TIME, faults, seed }
+        Self {
+            plan,
+            marker: facing,
+            pose,
+            noise: 1.0,
+            picture_time: PICTURE_TIME,
+            faults: Vec::new(),
+            keeps_track: false,
+            seed,
+        }
     }
 
     /// The robot with a camera that renders pictures of a building.

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    robot::{Picture, Reckoned, Robot, RobotError},
+    robot::{Picture, Reckoned, Robot, RobotError, Sample},
     superscout::{Base, Drive},
 };
 
@@ -42,7 +42,10 @@ const DEEP: f64 = 0.3;
 impl<C: Camera> SimulatedRobot<C> {
     pub(super) fn new(setting: &Setting, camera: C) -> Self {
         let Setting { plan, pose, picture_time, faults, seed, .. } = setting.clone();
-        let base = SimulatedBase::new(&plan, pose, &setting.motion_noise(), seed);
+        let mut base = SimulatedBase::new(&plan, pose, &setting.motion_noise(), seed);
+        if setting.keeps_track {
+            base.keep_track();
+        }
         Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
     }
 
@@ -121,6 +124,10 @@ impl<C: Camera> Robot for SimulatedRobot<C> {
     fn odometry(&self) -> Reckoned {
         let reading = self.base.reading();
         Reckoned { time: reading.time, odometry: reading.odometry }
+    }
+
+    fn track(&self) -> &[Sample] {
+        self.base.track()
     }
 }
 

@@ -24,6 +24,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::{self, Observer},
+    log::recorder::Photograph,
     pose::Pose,
     recording::Recording,
     run::Run,
@@ -31,7 +32,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::{annotate, camera, image_file::ImageFile};
 
-use super::{Failure, Story};
+use super::{Failure, Story, log::Recorder};
 use crate::cli::{picture_file, progress::Progress, scene::in_words};
 
 /// What is kept.
@@ -114,6 +115,7 @@ pub(super) struct Watching<V> {
     pictures: Pictures,
     progress: Progress,
     recording: Recording<V>,
+    log: Option<Recorder>,
     /// The first picture that could not be written.
     failure: Option<Failure>,
 }
@@ -123,8 +125,10 @@ impl<V> Watching<V> {
         chronicle: Rc<RefCell<Chronicle>>,
         pictures: Pictures,
         progress: Progress,
+        log: Option<Recorder>,
     ) -> Self {
-        Self { chronicle, pictures, progress, recording: Recording::default(), failure: None }
+        let recording = Recording::default();
+        Self { chronicle, pictures, progress, recording, log, failure: None }
     }
 
     /// What was recorded.
@@ -157,10 +161,11 @@ impl<V: Shown> Watching<V> {
 
 impl<C: Camera> Observer<SimulatedRobot<C>> for Watching<C::View>
 where
-    C::View: Shown,
+    C::View: Shown + Photograph,
 {
     fn round(&mut self, robot: &SimulatedRobot<C>, round: &explorer::Round<C::View>) {
         self.recording.round(robot, round);
+        self.log.round(robot, round);
         self.progress.part_done(1);
         let number = self.recording.len();
         let picture = self.picture(number, &round.picture.view, round.scene);
@@ -182,14 +187,20 @@ where
         chronicle.rounds.push(round);
     }
 
-    fn arrived(&mut self, robot: &SimulatedRobot<C>, _: Option<Door>, _: &Standing) {
+    fn leaving(&mut self, robot: &SimulatedRobot<C>, door: Door) {
+        self.log.leaving(robot, door);
+    }
+
+    fn arrived(&mut self, robot: &SimulatedRobot<C>, door: Option<Door>, at: &Standing) {
+        self.log.arrived(robot, door, at);
         let mut chronicle = self.chronicle.borrow_mut();
         let rounds = chronicle.rounds.len();
         chronicle.calls.push((rounds, robot.pose()));
     }
 
     fn stop(&self) -> bool {
-        self.failure.is_some() || self.progress.stop()
+        let failed = self.log.as_ref().is_some_and(Recorder::failed);
+        failed || self.failure.is_some() || self.progress.stop()
     }
 }
 
@@ -223,15 +234,20 @@ impl Write for Lines<'_> {
     }
 }
 
-/// Tells the story of Algorithm 1, and keeps the map whenever it has grown.
+/// Tells the story of Algorithm 1, logs it, and keeps the map whenever it has grown.
 pub(super) struct Telling<'o, 'l> {
     story: Story<'l, Lines<'o>>,
     chronicle: Rc<RefCell<Chronicle>>,
+    log: Option<Recorder>,
 }
 
 impl<'o, 'l> Telling<'o, 'l> {
-    pub(super) fn new(story: Story<'l, Lines<'o>>, chronicle: Rc<RefCell<Chronicle>>) -> Self {
-        Self { story, chronicle }
+    pub(super) fn new(
+        story: Story<'l, Lines<'o>>,
+        chronicle: Rc<RefCell<Chronicle>>,
+        log: Option<Recorder>,
+    ) -> Self {
+        Self { story, chronicle, log }
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
@@ -242,6 +258,9 @@ impl<'o, 'l> Telling<'o, 'l> {
 impl mapping::Observer for Telling<'_, '_> {
     fn event(&mut self, journey: &Journey, event: Event) {
         self.story.event(journey, event);
+        if let Some(log) = &mut self.log {
+            log.event(journey, event);
+        }
         let grown = matches!(
             event,
             Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. }

@@ -136,6 +136,13 @@ impl Mapping {
         self.carriers.iter().map(|(role, carrier)| (*role, carrier))
     }
 
+    /// What it says of some things.
+    #[must_use]
+    pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {
+        let carrier = |role: &Role| Some((*role, self.carriers.get(role)?.clone()));
+        Self { carriers: roles.into_iter().filter_map(carrier).collect() }
+    }
+
     /// Whether nothing is carried.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -1,0 +1,165 @@
+//! Which cases of Algorithm 1 and of perception a run went through. Sections 2.1 and 2.3.
+
+use std::{collections::BTreeMap, fmt};
+
+use crate::{
+    embedded_graph::EmbeddedGraph,
+    mapping::{DEFAULT_DART_BOUND, Event, Exploration, Journey, Nearest, Observer, map_world},
+    percept::Sighting,
+    world::GraphWorld,
+};
+
+/// Something that can happen in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Case {
+    /// Lines 21 to 23: an unexplored edge led to a new vertex.
+    NewVertex,
+    /// Lines 16 to 20: a hypothesis was confirmed, and a loop closed.
+    Confirmed,
+    /// Line 7: the percept on arrival contradicted a hypothesis at once.
+    RejectedAtOnce,
+    /// Lines 13 to 15: a hypothesis fell on its way to the marker.
+    RejectedOnTheWay,
+    /// Lines 13 to 15: a hypothesis fell where the marker should have been.
+    RejectedAtTheEnd,
+    /// The marker was perceived, after the start.
+    MarkerSeen,
+    /// The marker was expected and not perceived.
+    MarkerMissed,
+}
+
+impl Case {
+    /// Every case.
+    pub const ALL: [Self; 7] = [
+        Self::NewVertex,
+        Self::Confirmed,
+        Self::RejectedAtOnce,
+        Self::RejectedOnTheWay,
+        Self::RejectedAtTheEnd,
+        Self::MarkerSeen,
+        Self::MarkerMissed,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NewVertex => "new-vertex",
+            Self::Confirmed => "confirmed",
+            Self::RejectedAtOnce => "rejected-at-once",
+            Self::RejectedOnTheWay => "rejected-on-the-way",
+            Self::RejectedAtTheEnd => "rejected-at-the-end",
+            Self::MarkerSeen => "marker-seen",
+            Self::MarkerMissed => "marker-missed",
+        }
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+/// How often each case happened.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    counts: BTreeMap<Case, u64>,
+}
+
+impl Coverage {
+    /// How often a case happened.
+    #[must_use]
+    pub fn count(&self, case: Case) -> u64 {
+        self.counts.get(&case).copied().unwrap_or(0)
+    }
+
+    /// Takes in what happened in another run.
+    pub fn include(&mut self, other: &Self) {
+        for (&case, count) in &other.counts {
+            *self.counts.entry(case).or_default() += count;
+        }
+    }
+
+    fn add(&mut self, case: Case, count: u64) {
+        if count > 0 {
+            *self.counts.entry(case).or_default() += count;
+        }
+    }
+}
+
+/// Whoever counts listens.
+impl Observer for Coverage {
+    fn event(&mut self, _: &Journey, event: Event) {
+        match event {
+            Event::Moved { percept, .. } => {
+                self.add(Case::MarkerSeen, u64::from(percept.sighting != Sighting::Nothing));
+            }
+            Event::Arrived { contradicted, .. } => {
+                self.add(Case::RejectedAtOnce, contradicted as u64);
+            }
+            Event::Rejected { expected, perceived, .. } => {
+                // The marker is expected at the end of the path, and nowhere else on it.
+                let at_the_end = expected.sighting != Sighting::Nothing;
+                let missed = at_the_end && perceived.sighting == Sighting::Nothing;
+                let case = if at_the_end { Case::RejectedAtTheEnd } else { Case::RejectedOnTheWay };
+                self.add(case, 1);
+                self.add(Case::MarkerMissed, u64::from(missed));
+            }
+            Event::LoopClosed { .. } => self.add(Case::Confirmed, 1),
+            Event::VertexAdded { .. } => self.add(Case::NewVertex, 1),
+            Event::Started { .. } | Event::Confirmed { .. } | Event::Movable(_) => {}
+        }
+    }
+}
+
+/// How often each case happens when a world is mapped from each of its starts, with the default
+/// choices.
+#[must_use]
+pub fn reachable(graph: &EmbeddedGraph) -> Coverage {
+    let mut coverage = Coverage::default();
+    let mut exploration = Exploration::new(DEFAULT_DART_BOUND);
+    for facing in graph.darts() {
+        // A world beyond the bound has been covered as far as a run goes.
+        let mut world = GraphWorld::new(graph, facing);
+        let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
+    }
+    coverage
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{embedded_graph::Dart, trace::tests::lollipop};
+
+    #[test]
+    fn cases_are_counted() {
+        let graph = lollipop();
+        let mut coverage = Coverage::default();
+        let mut exploration = Exploration::new(8);
+        let mut world = GraphWorld::new(&graph, Dart(0));
+        map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage).unwrap();
+        // The tail leads to the fork, one way round to two corners; the last edge closes the loop, which
+        // is found by going the rest of it and back along the tail.
+        let counts = Case::ALL.map(|case| coverage.count(case));
+        assert_eq!(counts[..2], [3, 1], "{coverage:?}");
+        assert_eq!(coverage.count(Case::MarkerSeen), 1);
+        let mut twice = coverage.clone();
+        twice.include(&coverage);
+        assert_eq!(Case::ALL.map(|case| twice.count(case)), counts.map(|count| 2 * count));
+    }
+
+    #[test]
+    fn a_chain_never_rejects_on_the_way() {
+        let graph = EmbeddedGraph::from_neighbour_lists(&[
+            ("a", vec!["b"]),
+            ("b", vec!["a", "c"]),
+            ("c", vec!["b"]),
+        ])
+        .unwrap();
+        let reachable = reachable(&graph);
+        assert_eq!(reachable.count(Case::RejectedOnTheWay), 0);
+        assert_eq!(reachable.count(Case::Confirmed), 0);
+        assert_eq!(reachable.count(Case::NewVertex), 2 * 4);
+    }
+}

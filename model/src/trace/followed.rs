@@ -1,0 +1,554 @@
+//! A trace against Algorithm 1: were the doors taken those that it takes, or ones that it may take?
+//! Section 2.3.
+
+use std::{
+    collections::{HashSet, VecDeque},
+    fmt,
+};
+
+use thiserror::Error;
+
+use super::{Coverage, Trace};
+use crate::{
+    embedded_graph::Dart,
+    mapping::{
+        Choices, Contradiction, Exploration, MappingError, Nearest, Observer, PartialMap, Verdict,
+        map_world, try_path,
+    },
+    percept::{Door, Percept},
+    world::World,
+};
+
+/// How far Algorithm 1 goes along with a trace.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    /// Whose choices it takes.
+    pub choosing: Choosing,
+    /// How far it came.
+    pub reached: Reached,
+    /// What it knew then.
+    pub exploration: Exploration,
+    /// The cases that it went through.
+    pub coverage: Coverage,
+    /// The choices that are not the default ones.
+    script: Option<Script>,
+}
+
+/// Whose choices a trace shows, as far as it goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choosing {
+    /// The default ones.
+    Default,
+    /// Others, which Algorithm 1 leaves open.
+    Other {
+        /// The first event, from 0, that the default choices would not have.
+        from: usize,
+    },
+}
+
+/// How far Algorithm 1 goes along with a trace.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// To its end: the map is complete.
+    Mapped,
+    /// As far as the trace goes.
+    EndOfTrace,
+    /// To an event that it would not have.
+    Departure(Departure),
+}
+
+/// The first event of a trace that no run of Algorithm 1 has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Departure {
+    /// Which event, from 0.
+    pub event: usize,
+    /// What Algorithm 1 would have done there, for each choice that leads there; each once.
+    pub allowed: Vec<Allowed>,
+}
+
+/// What Algorithm 1 would have done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Allowed {
+    /// The door that it takes; `None` where it takes none.
+    pub door: Option<Door>,
+    /// What for.
+    pub purpose: Purpose,
+}
+
+/// Why a robot that runs Algorithm 1 goes where it goes. Darts are those of the map, told as vertex
+/// and index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Lines 5 and 6: to explore this dart.
+    Explore {
+        /// The vertex's number.
+        vertex: u32,
+        /// The index of the dart.
+        index: u32,
+    },
+    /// Lines 10 to 15: to follow the path of the hypothesis that it has come in by this dart, or back.
+    Try {
+        /// The vertex's number.
+        vertex: u32,
+        /// The index of the dart.
+        index: u32,
+    },
+    /// The map is complete; there is nowhere to go.
+    Done,
+    /// What is perceived cannot be.
+    Contradicted(Contradiction),
+    /// More darts are known than the bound allows.
+    Bound,
+}
+
+impl fmt::Display for Purpose {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Explore { vertex, index } => {
+                write!(out, "line 5: explores the unexplored dart {index} of vertex v{vertex}")
+            }
+            Self::Try { vertex, index } => {
+                write!(out, "line 9: tries whether it came in by dart {index} of vertex v{vertex}")
+            }
+            Self::Done => write!(out, "line 4: the map is complete"),
+            Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
+            Self::Bound => write!(out, "more darts are known than the bound allows"),
+        }
+    }
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        if let Some(door) = self.door {
+            write!(out, "door {} (", door.0)?;
+            write!(out, "{})", self.purpose)
+        } else {
+            write!(out, "{}", self.purpose)
+        }
+    }
+}
+
+/// A world that answers with what was recorded, for as long as it is asked for what was done then.
+#[derive(Clone, Debug)]
+struct Recorded<'t> {
+    trace: &'t Trace,
+    moves: usize,
+}
+
+/// Why a recorded world does not answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+enum Unlike {
+    #[error("door {} was taken then, not door {}", recorded.0, asked.0)]
+    Door { recorded: Door, asked: Door },
+    #[error("the trace ends here")]
+    End,
+}
+
+impl World for Recorded<'_> {
+    type Error = Unlike;
+
+    fn percept(&mut self) -> Result<Percept, Unlike> {
+        self.trace.percepts().get(self.moves).copied().ok_or(Unlike::End)
+    }
+
+    fn traverse(&mut self, asked: Door) -> Result<(), Unlike> {
+        match self.trace.doors().get(self.moves) {
+            None => Err(Unlike::End),
+            Some(&recorded) if recorded != asked => Err(Unlike::Door { recorded, asked }),
+            Some(_) => {
+                self.moves += 1;
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Follows a trace by Algorithm 1, with the default choices for as long as they lead along it, and
+/// otherwise with any that do. At most `bound` darts may become known.
+#[must_use]
+pub fn follow(trace: &Trace, bound: usize) -> Followed {
+    let mut world = Recorded { trace, moves: 0 };
+    let mut exploration = Exploration::new(bound);
+    let mut coverage = Coverage::default();
+    let run = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
+    let reached = match &run {
+        Ok(()) if world.moves == trace.doors().len() => Some(Reached::Mapped),
+        Err(MappingError::World(Unlike::End)) => Some(Reached::EndOfTrace),
+        _ => None,
+    };
+    if let Some(reached) = reached {
+        let choosing = Choosing::Default;
+        return Followed { choosing, reached, exploration, coverage, script: None };
+    }
+    let from = match run {
+        Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * world.moves,
+        _ => 2 * world.moves + 1,
+    };
+    let mut search = Search::default();
+    let found = search.run(trace, bound);
+    let (reached, script) = found.unwrap_or_else(|| search.departure());
+    let choosing = match &reached {
+        Reached::Departure(departure) if departure.event == from => Choosing::Default,
+        _ => Choosing::Other { from },
+    };
+    let mut followed = Followed { choosing, reached, exploration, coverage, script: Some(script) };
+    let mut coverage = Coverage::default();
+    followed.exploration = followed.again(trace, bound, &mut coverage);
+    Followed { coverage, ..followed }
+}
+
+impl Followed {
+    /// Runs along the trace again, as far as Algorithm 1 goes along with it, for an observer.
+    pub fn again(&self, trace: &Trace, bound: usize, observer: &mut impl Observer) -> Exploration {
+        let mut exploration = Exploration::new(bound);
+        let mut world = Recorded { trace, moves: 0 };
+        // It ends as it was found to end.
+        let _ = match self.script.clone() {
+            None => map_world(&mut world, &mut Nearest, &mut exploration, observer),
+            Some(mut script) => map_world(&mut world, &mut script, &mut exploration, observer),
+        };
+        exploration
+    }
+}
+
+/// What was chosen, in order.
+#[derive(Clone, Debug, Default)]
+struct Script {
+    edges: VecDeque<Dart>,
+    hypotheses: VecDeque<Dart>,
+}
+
+impl Choices for Script {
+    fn next_edge(&mut self, _: &PartialMap, _: Dart, nearest: Dart) -> Dart {
+        self.edges.pop_front().unwrap_or(nearest)
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+        let chosen = self.hypotheses.pop_front();
+        let place = chosen.and_then(|dart| hypotheses.iter().position(|&one| one == dart));
+        place.unwrap_or(hypotheses.len() - 1)
+    }
+}
+
+/// A way to go along with the trace so far.
+#[derive(Clone)]
+struct Way<'t> {
+    exploration: Exploration,
+    world: Recorded<'t>,
+    script: Script,
+    /// Whether it stands at line 8, not at line 4.
+    within_round: bool,
+}
+
+/// What tells ways apart that have come equally far: the map and the robot in it, and H.
+type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
+
+/// All choices, depth first.
+#[derive(Default)]
+struct Search {
+    seen: HashSet<Known>,
+    /// The first event that none of the ways would have that came farthest,
+    farthest: usize,
+    /// what they would have instead,
+    allowed: Vec<Allowed>,
+    /// and the choices of the first of them.
+    script: Script,
+}
+
+impl Search {
+    /// A way that goes along with the whole trace.
+    fn run(&mut self, trace: &Trace, bound: usize) -> Option<(Reached, Script)> {
+        let mut exploration = Exploration::new(bound);
+        let mut world = Recorded { trace, moves: 0 };
+        let begun = exploration.begin(&mut world, &mut ());
+        let way = Way { exploration, world, script: Script::default(), within_round: false };
+        if let Err(error) = begun {
+            self.ended(&way, &error, Purpose::Done);
+            return None;
+        }
+        let mut ways = vec![way];
+        while let Some(way) = ways.pop() {
+            let known = (
+                way.world.moves,
+                way.within_round,
+                way.exploration.map().clone(),
+                way.exploration.robot(),
+                way.exploration.hypotheses().to_vec(),
+            );
+            if !self.seen.insert(known) {
+                continue;
+            }
+            let next = if way.within_round { self.line_8(&way) } else { self.line_4(&way) };
+            match next {
+                // The first choice is tried first.
+                Ok(next) => ways.extend(next.into_iter().rev()),
+                Err(end) => return Some(end),
+            }
+        }
+        None
+    }
+
+    /// Every choice at line 5 that leads along the trace; an error where the trace ends.
+    fn line_4<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, (Reached, Script)> {
+        if way.exploration.map().unexplored_is_empty() {
+            if way.world.moves == way.world.trace.doors().len() {
+                return Err((Reached::Mapped, way.script.clone()));
+            }
+            let done = Allowed { door: None, purpose: Purpose::Done };
+            self.departed(2 * way.world.moves + 1, done, &way.script);
+        }
+        let mut next = Vec::new();
+        for edge in way.exploration.map().unexplored() {
+            let mut way = way.clone();
+            way.script.edges.push_back(edge);
+            let _ = way.exploration.next_edge(&mut This(edge, 0));
+            match way.exploration.explore(edge, &mut way.world, &mut ()) {
+                Ok(()) => next.push(Way { within_round: true, ..way }),
+                Err(MappingError::World(Unlike::End)) => {
+                    return Err((Reached::EndOfTrace, way.script));
+                }
+                Err(error) => {
+                    let map = way.exploration.map();
+                    let (vertex, index) = (map.vertex(edge).0, map.index(edge));
+                    self.ended(&way, &error, Purpose::Explore { vertex, index });
+                }
+            }
+        }
+        Ok(next)
+    }
+
+    /// Every choice at line 9 that leads along the trace; an error where the trace ends.
+    fn line_8<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, (Reached, Script)> {
+        if way.exploration.hypotheses().is_empty() {
+            let mut way = Way { within_round: false, ..way.clone() };
+            if let Err(error) = way.exploration.add_place(&mut ()) {
+                self.ended(&way, &error, Purpose::Bound);
+                return Ok(Vec::new());
+            }
+            return Ok(vec![way]);
+        }
+        let mut next: Vec<Way<'t>> = Vec::new();
+        let mut rejected = HashSet::new();
+        // The default is the last.
+        for place in (0..way.exploration.hypotheses().len()).rev() {
+            let mut way = way.clone();
+            let Some(dart) = way.exploration.next_hypothesis(&mut This(Dart(0), place)) else {
+                continue;
+            };
+            way.script.hypotheses.push_back(dart);
+            match try_path(&mut way.exploration, dart, &mut way.world, &mut ()) {
+                Ok(Verdict::Confirmed) => {
+                    way.exploration.close_loop(dart, &mut ());
+                    next.push(Way { within_round: false, ..way });
+                }
+                // Two hypotheses that fall after the same moves are alike: whichever is tried later
+                // falls after the same moves again.
+                Ok(Verdict::Rejected) if rejected.insert(way.world.moves) => next.push(way),
+                Ok(Verdict::Rejected) => {}
+                Err(MappingError::World(Unlike::End)) => {
+                    return Err((Reached::EndOfTrace, way.script));
+                }
+                Err(error) => {
+                    let map = way.exploration.map();
+                    let (vertex, index) = (map.vertex(dart).0, map.index(dart));
+                    self.ended(&way, &error, Purpose::Try { vertex, index });
+                }
+            }
+        }
+        Ok(next)
+    }
+
+    /// A way ended before the trace.
+    fn ended(&mut self, way: &Way, error: &MappingError<Unlike>, purpose: Purpose) {
+        let at_percept = 2 * way.world.moves;
+        let (event, door, purpose) = match error {
+            MappingError::World(Unlike::Door { asked, .. }) => {
+                (at_percept + 1, Some(*asked), purpose)
+            }
+            // The end of the trace is told otherwise.
+            MappingError::World(Unlike::End) => return,
+            MappingError::Contradiction(contradiction) => {
+                (at_percept, None, Purpose::Contradicted(*contradiction))
+            }
+            MappingError::Bound { .. } => (at_percept, None, Purpose::Bound),
+        };
+        self.departed(event, Allowed { door, purpose }, &way.script);
+    }
+
+    /// Instead of an event of the trace a way would have had something else.
+    fn departed(&mut self, event: usize, allowed: Allowed, script: &Script) {
+        if self.allowed.is_empty() || event > self.farthest {
+            self.farthest = event;
+            self.allowed.clear();
+            self.script = script.clone();
+        }
+        if event == self.farthest && !self.allowed.contains(&allowed) {
+            self.allowed.push(allowed);
+        }
+    }
+
+    /// Where the ways ended that came farthest.
+    fn departure(self) -> (Reached, Script) {
+        let departure = Departure { event: self.farthest, allowed: self.allowed };
+        (Reached::Departure(departure), self.script)
+    }
+}
+
+/// Takes this edge, and the hypothesis at this place.
+struct This(Dart, usize);
+
+impl Choices for This {
+    fn next_edge(&mut self, _: &PartialMap, _: Dart, _: Dart) -> Dart {
+        self.0
+    }
+
+    fn next_hypothesis(&mut self, _: &PartialMap, _: &[Dart]) -> usize {
+        self.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{Class, any_graph},
+        embedded_graph::EmbeddedGraph,
+        isomorphism::code,
+        mapping::{FACING, Journey},
+        percept::Sighting,
+        trace::{
+            Event,
+            tests::{explored, lollipop, walked},
+        },
+        world::GraphWorld,
+    };
+
+    /// A run of Algorithm 1 that chooses by a row of numbers.
+    fn chosen(graph: &EmbeddedGraph, numbers: &[u8]) -> Trace {
+        struct Numbers<'n>(std::iter::Cycle<std::slice::Iter<'n, u8>>);
+        impl Choices for Numbers<'_> {
+            fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
+                let number = usize::from(*self.0.next().unwrap());
+                map.unexplored().nth(number % map.unexplored_count() as usize).unwrap()
+            }
+            fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
+                usize::from(*self.0.next().unwrap()) % hypotheses.len()
+            }
+        }
+        let mut doors = Vec::new();
+        let mut listen = |_: &Journey, event: crate::mapping::Event| {
+            if let crate::mapping::Event::Moved { door, .. } = event {
+                doors.push(door);
+            }
+        };
+        let mut exploration = Exploration::new(graph.dart_count());
+        let mut world = GraphWorld::new(graph, Dart(0));
+        let mut choices = Numbers(numbers.iter().cycle());
+        map_world(&mut world, &mut choices, &mut exploration, &mut listen).unwrap();
+        walked(graph, Dart(0), &doors)
+    }
+
+    #[test]
+    fn a_door_that_no_choice_takes_is_told_with_those_that_may_be_taken() {
+        let graph = lollipop();
+        // At the fork the robot goes back where it came from, while nothing is left there.
+        let trace = walked(&graph, Dart(0), &[Door(0), Door(0)]);
+        let followed = follow(&trace, 100);
+        let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
+        let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
+        assert_eq!(departure.event, 3);
+        assert_eq!(
+            allowed,
+            [
+                "door 1 (line 5: explores the unexplored dart 1 of vertex v1)",
+                "door 2 (line 5: explores the unexplored dart 2 of vertex v1)",
+            ]
+        );
+        assert_eq!(followed.choosing, Choosing::Default);
+    }
+
+    #[test]
+    fn a_robot_that_goes_on_when_all_is_known_departs() {
+        let graph = lollipop();
+        let mut doors = explored(&graph, Dart(0)).doors().to_vec();
+        let moves = doors.len();
+        doors.push(Door(0));
+        let followed = follow(&walked(&graph, Dart(0), &doors), 100);
+        let done = Allowed { door: None, purpose: Purpose::Done };
+        let departure = Departure { event: 2 * moves + 1, allowed: vec![done] };
+        assert_eq!(followed.reached, Reached::Departure(departure));
+        assert!(followed.exploration.map().complete().is_some());
+    }
+
+    #[test]
+    fn a_start_without_the_marker_departs_at_once() {
+        let percept = Percept { degree: 2, sighting: Sighting::Nothing };
+        let followed = follow(&Trace::new([Event::Perceived(percept)]).unwrap(), 100);
+        let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
+        assert_eq!(departure.event, 0);
+        let contradiction = Contradiction::Start { perceived: percept };
+        assert_eq!(departure.allowed[0].purpose, Purpose::Contradicted(contradiction));
+    }
+
+    #[test]
+    fn more_darts_than_the_bound_depart() {
+        let trace = explored(&lollipop(), Dart(0));
+        let Reached::Departure(departure) = follow(&trace, 3).reached else { panic!() };
+        assert_eq!(departure.allowed[0].purpose, Purpose::Bound);
+    }
+
+    proptest! {
+        #[test]
+        fn every_run_is_followed_to_its_map(graph in any_graph(Class::Multigraph, 30)) {
+            let trace = explored(&graph, Dart(0));
+            let followed = follow(&trace, 100);
+            prop_assert_eq!(followed.choosing, Choosing::Default);
+            prop_assert_eq!(&followed.reached, &Reached::Mapped);
+            let map = followed.exploration.map().complete().unwrap();
+            prop_assert_eq!(code(map, FACING), code(&graph, Dart(0)));
+        }
+
+        #[test]
+        fn every_part_of_a_run_is_followed_to_its_end(
+            graph in any_graph(Class::Multigraph, 12), part in any::<prop::sample::Index>(),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let event = part.index(trace.len() - 1);
+            let followed = follow(&trace.up_to(event), 100);
+            prop_assert_eq!(followed.reached, Reached::EndOfTrace);
+        }
+
+        #[test]
+        fn every_choice_is_followed(
+            graph in any_graph(Class::Multigraph, 12),
+            numbers in prop::collection::vec(any::<u8>(), 1..40),
+        ) {
+            let trace = chosen(&graph, &numbers);
+            let followed = follow(&trace, 100);
+            prop_assert_eq!(&followed.reached, &Reached::Mapped);
+            let same = trace == explored(&graph, Dart(0));
+            prop_assert_eq!(followed.choosing == Choosing::Default, same);
+            let map = followed.exploration.map().complete().unwrap();
+            prop_assert_eq!(code(map, FACING), code(&graph, Dart(0)));
+        }
+
+        #[test]
+        fn a_false_door_departs_there_or_is_another_choice(
+            graph in any_graph(Class::Multigraph, 12), part in any::<prop::sample::Index>(),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let moves = part.index(trace.doors().len());
+            // The doors up to there, and then one that is not there.
+            let mut false_door = trace.up_to(2 * moves + 1);
+            false_door.doors[moves] = Door(1000);
+            let Reached::Departure(departure) = follow(&false_door, 100).reached else {
+                panic!("it is followed")
+            };
+            prop_assert_eq!(departure.event, 2 * moves + 1);
+            let taken = trace.doors()[moves];
+            prop_assert!(departure.allowed.iter().any(|allowed| allowed.door == Some(taken)));
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A trace against a known world: all the poses that fit what was perceived so far. Section 2.1.
+
+use super::{Event, Trace};
+use crate::{
+    embedded_graph::EmbeddedGraph,
+    marker::Marker,
+    percept::Percept,
+    world::{GraphWorld, Refused, State, World},
+};
+
+/// How the robot may stand in a known world, event by event.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Poses {
+    /// How many ways are left after each event that fits.
+    pub left: Vec<usize>,
+    /// The ways that are left after the last of them.
+    pub states: Vec<State>,
+    /// The first event that fits none of them.
+    pub misfit: Option<Misfit>,
+}
+
+/// An event that fits no way in which the robot may stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Misfit {
+    /// Which event, from 0.
+    pub event: usize,
+    /// Each way in which the robot may have stood before it (at a percept: in which it has come to
+    /// stand), and why the event does not fit it.
+    pub candidates: Vec<(State, Why)>,
+}
+
+/// Why an event does not fit a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Something else is perceived there.
+    Percept {
+        /// What.
+        expected: Percept,
+    },
+    /// There is no such door.
+    NoSuchDoor {
+        /// How many there are.
+        degree: u32,
+    },
+}
+
+/// Every way in which a robot may stand that has put its marker down where it stands, along its entry
+/// dart.
+#[must_use]
+pub fn anywhere(graph: &EmbeddedGraph, marker: &impl Marker) -> Vec<State> {
+    let start = |facing| GraphWorld::with_marker(graph, marker, facing).state();
+    graph.darts().map(start).collect()
+}
+
+/// Follows a trace in a known world from every way in which the robot may stand at first.
+#[must_use]
+pub fn poses(
+    graph: &EmbeddedGraph,
+    marker: &impl Marker,
+    starts: &[State],
+    trace: &Trace,
+) -> Poses {
+    let mut states = starts.to_vec();
+    let mut left = Vec::with_capacity(trace.len());
+    for (number, event) in trace.events().enumerate() {
+        let judged = |&state: &State| (state, after(graph, marker, state, event));
+        let judged: Vec<_> = states.iter().map(judged).collect();
+        let fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
+        if fit.is_empty() {
+            let why = |(state, after): (State, Result<State, Why>)| Some((state, after.err()?));
+            let candidates = judged.into_iter().filter_map(why).collect();
+            let misfit = Some(Misfit { event: number, candidates });
+            return Poses { left, states, misfit };
+        }
+        left.push(fit.len());
+        states = fit;
+    }
+    Poses { left, states, misfit: None }
+}
+
+/// How the robot stands after an event, if the event fits.
+fn after(
+    graph: &EmbeddedGraph,
+    marker: &impl Marker,
+    state: State,
+    event: Event,
+) -> Result<State, Why> {
+    let Some(facing) = state.placed else { return Ok(state) };
+    let mut world = GraphWorld::with_marker(graph, marker, facing).at(state);
+    match event {
+        Event::Perceived(percept) => {
+            let expected = world.sensed();
+            if percept == expected { Ok(state) } else { Err(Why::Percept { expected }) }
+        }
+        Event::Left(door) => match world.traverse(door) {
+            Ok(()) => Ok(world.state()),
+            Err(Refused::NoSuchDoor { degree, .. }) => Err(Why::NoSuchDoor { degree }),
+            Err(_) => Ok(state),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{Class, any_graph},
+        embedded_graph::Dart,
+        marker::{Directional, NoMarker},
+        percept::{Door, Sighting},
+        trace::tests::{explored, lollipop, walked},
+    };
+
+    #[test]
+    fn the_poses_that_fit_grow_fewer() {
+        let graph = lollipop();
+        // Without a marker, from the end of the tail: 8 poses, one with degree 1.
+        let trace = walked(&graph, Dart(0), &[Door(0), Door(1), Door(1)]);
+        let bare = trace.events().map(|event| match event {
+            Event::Perceived(percept) => {
+                Event::Perceived(Percept { sighting: Sighting::Nothing, ..percept })
+            }
+            door @ Event::Left(_) => door,
+        });
+        let bare = Trace::new(bare).unwrap();
+        let found = poses(&graph, &NoMarker, &anywhere(&graph, &NoMarker), &bare);
+        assert_eq!((found.left[0], found.misfit), (1, None));
+        // A robot that comes to a vertex with two doors may stand in 4 ways.
+        let corner = bare.without(0, 2);
+        let found = poses(&graph, &NoMarker, &anywhere(&graph, &NoMarker), &corner);
+        assert_eq!(found.left[0], 4);
+    }
+
+    #[test]
+    fn a_false_percept_and_a_door_that_is_not_there_are_told() {
+        let graph = lollipop();
+        let start = [GraphWorld::new(&graph, Dart(0)).state()];
+        let mut trace = walked(&graph, Dart(0), &[Door(0), Door(1)]);
+        trace.percepts[1].degree = 2;
+        let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
+        let expected = Percept { degree: 3, sighting: Sighting::Nothing };
+        assert_eq!(misfit.event, 2);
+        assert_eq!(misfit.candidates[0].1, Why::Percept { expected });
+        trace.percepts[1].degree = 3;
+        trace.doors[1] = Door(3);
+        let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
+        assert_eq!((misfit.event, misfit.candidates[0].1), (3, Why::NoSuchDoor { degree: 3 }));
+    }
+
+    proptest! {
+        #[test]
+        fn a_run_fits_its_start_and_no_start_that_is_not_isomorphic(
+            graph in any_graph(Class::Multigraph, 12),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let found = poses(&graph, &Directional, &anywhere(&graph, &Directional), &trace);
+            prop_assert_eq!(found.misfit, None);
+            // The directional marker tells every start from every other, but by an automorphism.
+            let code = |dart| crate::isomorphism::code(&graph, dart);
+            let alike = graph.darts().filter(|&dart| code(dart) == code(Dart(0))).count();
+            prop_assert_eq!(*found.left.last().unwrap(), alike);
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A trace that shows something, without what it does not need to show it.
+
+use super::Trace;
+
+/// So many shorter traces are tried at most.
+const TRIALS: usize = 20_000;
+
+/// A trace from which no stretch of moves can be left out without its no longer showing what it is to
+/// show; the one given, where that shows nothing.
+///
+/// Stretches are left out from the longest to the shortest, and again until none can be: what is left
+/// is short, not shortest.
+#[must_use]
+pub fn shortened(trace: &Trace, mut shows: impl FnMut(&Trace) -> bool) -> Trace {
+    let mut shortest = trace.clone();
+    let mut trials = 0;
+    let mut length = shortest.doors.len();
+    while length > 0 && trials < TRIALS {
+        let mut from = 0;
+        let mut left_out = false;
+        // The last percept, which the last door leads to, stays.
+        while from + length < shortest.percepts.len() && trials < TRIALS {
+            let shorter = shortest.without(from, from + length);
+            trials += 1;
+            if shows(&shorter) {
+                shortest = shorter;
+                left_out = true;
+            } else {
+                from += 1;
+            }
+        }
+        length = if left_out { length.min(shortest.doors.len()) } else { length - 1 };
+    }
+    shortest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        embedded_graph::Dart,
+        marker::Directional,
+        percept::Door,
+        trace::{
+            poses,
+            tests::{lollipop, walked},
+        },
+        world::GraphWorld,
+    };
+
+    #[test]
+    fn a_false_percept_is_shown_by_the_shortest_walk_to_it() {
+        let graph = lollipop();
+        let start = [GraphWorld::new(&graph, Dart(0)).state()];
+        // Round the triangle twice; the last percept is false.
+        let round = [0, 1, 1, 1, 2, 1, 1].map(Door);
+        let mut trace = walked(&graph, Dart(0), &round);
+        trace.percepts.last_mut().unwrap().degree = 7;
+        let misfit = |trace: &Trace| poses(&graph, &Directional, &start, trace).misfit;
+        let why = misfit(&trace).unwrap().candidates[0].1;
+        let shows = |trace: &Trace| {
+            misfit(trace).is_some_and(|misfit| {
+                misfit.event + 1 == trace.len() && misfit.candidates[0].1 == why
+            })
+        };
+        let short = shortened(&trace, shows);
+        assert!(shows(&short));
+        assert_eq!(short.doors, [Door(0)]);
+    }
+
+    #[test]
+    fn what_shows_nothing_stays() {
+        let graph = lollipop();
+        let trace = walked(&graph, Dart(0), &[Door(0), Door(1)]);
+        assert_eq!(shortened(&trace, |_| false), trace);
+    }
+}

@@ -1,0 +1,534 @@
+//! A trace against every world: the smallest one that explains it, found by growing worlds along the
+//! trace. Section 2.1.
+//!
+//! A world grows as the enumeration grows it, but along what was recorded: where the robot leaves by a
+//! dart whose other end is free, it comes to a new vertex, or in by a free dart of a known one. Each
+//! start with the given number of edges has exactly one such history, so none is missed.
+
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    enumerate::{Class, Watch},
+    mapping::{FACING, PartialMap},
+    percept::{Door, Percept, Sighting},
+};
+
+use super::Trace;
+
+/// What is searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// The class of worlds.
+    pub class: Class,
+    /// Worlds have at most so many edges.
+    pub edges: usize,
+    /// So many steps are tried at most.
+    pub steps: u64,
+}
+
+impl Search {
+    /// So many steps are a second's work.
+    pub const STEPS: u64 = 500_000;
+}
+
+/// The smallest world that explains a trace.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Smallest {
+    /// A world; of those with as few edges the first found.
+    World {
+        /// The world; the robot starts with dart 0 behind it.
+        graph: EmbeddedGraph,
+        /// The dart along which the marker lies, if it was perceived.
+        marker: Option<Dart>,
+    },
+    /// No world up to the bound explains the trace.
+    None {
+        /// The first event, from 0, that none of those explains that explain all before it.
+        event: usize,
+    },
+    /// The search was not finished: no world with so many edges explains the trace.
+    Unfinished {
+        /// Up to which number of edges all were tried.
+        edges: usize,
+    },
+}
+
+/// Finds the smallest world of a class that explains a trace: in which a robot that is put down
+/// somewhere, with a directional marker somewhere or none, perceives what was recorded.
+///
+/// What is `known` is in every such world: the map that Algorithm 1 has made of the trace so far.
+#[must_use]
+pub fn smallest(
+    trace: &Trace,
+    known: Option<&PartialMap>,
+    search: Search,
+    watch: &impl Watch,
+) -> Smallest {
+    let mut growing = Growing::new(trace, search.class, watch);
+    growing.steps = search.steps;
+    // A world has as many darts as the vertices that were told apart by their degrees.
+    let mut degrees: Vec<u32> = trace.percepts().iter().map(|percept| percept.degree).collect();
+    degrees.sort_unstable();
+    degrees.dedup();
+    let darts: u64 = degrees.iter().map(|&degree| u64::from(degree)).sum();
+    let known = known.filter(|map| map.vertex_count() > 0);
+    let darts = darts.max(known.map_or(1, |map| map.dart_count() as u64));
+    let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX);
+    for edges in least..=search.edges {
+        growing.edges = edges;
+        if growing.begin(known) {
+            let (graph, marker) = (growing.world.graph(), growing.world.marker.map(Dart));
+            return Smallest::World { graph, marker };
+        }
+        if growing.stopped {
+            return Smallest::Unfinished { edges: edges - 1 };
+        }
+    }
+    Smallest::None { event: growing.farthest }
+}
+
+/// A world in the making, and the way it was explained so far.
+struct Growing<'t, W> {
+    trace: &'t Trace,
+    class: Class,
+    watch: &'t W,
+    edges: usize,
+    steps: u64,
+    stopped: bool,
+    /// The event that no world has explained yet.
+    farthest: usize,
+    world: Draft,
+}
+
+/// Where the robot is, and what was explained.
+#[derive(Clone, Copy)]
+struct At {
+    pose: u32,
+    moves: usize,
+}
+
+/// Vertices with free darts, joined one edge at a time, which can be undone.
+#[derive(Default)]
+struct Draft {
+    /// The first dart of each vertex.
+    first: Vec<u32>,
+    vertex: Vec<u32>,
+    opposite: Vec<u32>,
+    free: usize,
+    /// The dart along which the marker lies, if it was seen.
+    marker: Option<u32>,
+}
+
+/// Stands as the opposite of a free dart.
+const FREE: u32 = u32::MAX;
+
+impl Draft {
+    /// What Algorithm 1 knows; the robot started with the marker along its entry dart.
+    fn of(map: &PartialMap) -> Self {
+        let mut draft = Self { marker: Some(FACING.0), ..Self::default() };
+        for vertex in map.vertices() {
+            draft.add(map.degree(vertex));
+        }
+        for dart in 0..map.dart_count() as u32 {
+            if let Some(other) = map.opposite(Dart(dart)).filter(|other| other.0 > dart) {
+                draft.join(dart, other.0);
+            }
+        }
+        draft
+    }
+
+    fn degree(&self, vertex: u32) -> u32 {
+        let next = self.first.get(vertex as usize + 1).copied();
+        next.unwrap_or(self.vertex.len() as u32) - self.first[vertex as usize]
+    }
+
+    fn behind(&self, pose: u32, door: u32) -> u32 {
+        let vertex = self.vertex[pose as usize];
+        let first = self.first[vertex as usize];
+        first + (pose - first + door) % self.degree(vertex)
+    }
+
+    fn door(&self, pose: u32, dart: u32) -> Door {
+        let vertex = self.vertex[pose as usize];
+        Door((dart + self.degree(vertex) - pose) % self.degree(vertex))
+    }
+
+    fn add(&mut self, degree: u32) -> u32 {
+        let (vertex, first) = (self.first.len() as u32, self.vertex.len() as u32);
+        self.first.push(first);
+        let darts = self.vertex.len() + degree as usize;
+        self.vertex.resize(darts, vertex);
+        self.opposite.resize(darts, FREE);
+        self.free += degree as usize;
+        first
+    }
+
+    fn remove_last(&mut self) {
+        if let Some(first) = self.first.pop() {
+            self.free -= self.vertex.len() - first as usize;
+            self.vertex.truncate(first as usize);
+            self.opposite.truncate(first as usize);
+        }
+    }
+
+    fn join(&mut self, one: u32, other: u32) {
+        self.opposite[one as usize] = other;
+        self.opposite[other as usize] = one;
+        self.free -= 2;
+    }
+
+    fn part(&mut self, one: u32, other: u32) {
+        self.opposite[one as usize] = FREE;
+        self.opposite[other as usize] = FREE;
+        self.free += 2;
+    }
+
+    /// Edges that are there or will have to be.
+    fn edges(&self) -> usize {
+        self.vertex.len().div_ceil(2)
+    }
+
+    fn adjacent(&self, one: u32, other: u32) -> bool {
+        let first = self.first[one as usize] as usize;
+        let darts = first..first + self.degree(one) as usize;
+        darts.into_iter().any(|dart| {
+            let opposite = self.opposite[dart];
+            opposite != FREE && self.vertex[opposite as usize] == other
+        })
+    }
+
+    /// The darts with no other end, after one.
+    fn free_after(&self, dart: u32) -> Vec<u32> {
+        let after = dart as usize + 1;
+        (after..self.opposite.len())
+            .filter(|&dart| self.opposite[dart] == FREE)
+            .map(|dart| dart as u32)
+            .collect()
+    }
+
+    fn graph(&self) -> EmbeddedGraph {
+        let mut graph = EmbeddedGraph::unfinished();
+        for vertex in 0..self.first.len() as u32 {
+            let _: Vertex = graph.add_vertex(self.degree(vertex));
+        }
+        for (dart, &opposite) in self.opposite.iter().enumerate() {
+            graph.join(Dart(dart as u32), Dart(opposite));
+        }
+        graph
+    }
+}
+
+impl<'t, W: Watch> Growing<'t, W> {
+    fn new(trace: &'t Trace, class: Class, watch: &'t W) -> Self {
+        let world = Draft::default();
+        Self { trace, class, watch, edges: 0, steps: 0, stopped: false, farthest: 0, world }
+    }
+
+    /// Explains the whole trace with the present number of edges.
+    fn begin(&mut self, known: Option<&PartialMap>) -> bool {
+        let first = self.trace.percepts()[0];
+        if let Some(map) = known {
+            self.world = Draft::of(map);
+            return self.fits(FACING.0, first) && self.explain(At { pose: FACING.0, moves: 0 });
+        }
+        self.world = Draft::default();
+        self.at_new_vertex(first, |growing, pose| growing.explain(At { pose, moves: 0 }))
+    }
+
+    /// Goes on with a new vertex that the robot perceives, if there may be one.
+    fn at_new_vertex(
+        &mut self,
+        percept: Percept,
+        go_on: impl FnOnce(&mut Self, u32) -> bool,
+    ) -> bool {
+        let Percept { degree, sighting } = percept;
+        let points = match sighting {
+            Sighting::Nothing => None,
+            Sighting::Pointing(door) if door.0 < degree => Some(door.0),
+            _ => return false,
+        };
+        let room = 2 * self.edges - self.world.vertex.len().min(2 * self.edges);
+        let may = degree > 0 && degree <= self.class.max_degree() && degree as usize <= room;
+        // There is one marker.
+        if !may || (points.is_some() && self.world.marker.is_some()) {
+            return false;
+        }
+        let pose = self.world.add(degree);
+        let marker = self.world.marker;
+        if let Some(door) = points {
+            self.world.marker = Some(pose + door);
+        }
+        let found = go_on(self, pose);
+        if !found {
+            self.world.marker = marker;
+            self.world.remove_last();
+        }
+        found
+    }
+
+    /// Explains what was recorded after so many moves, from a pose.
+    fn explain(&mut self, mut at: At) -> bool {
+        // Along known edges there is no choice.
+        let leaving = loop {
+            self.farthest = self.farthest.max(2 * at.moves + 1);
+            let Some(&door) = self.trace.doors().get(at.moves) else {
+                return self.complete(0);
+            };
+            let vertex = self.world.vertex[at.pose as usize];
+            if door.0 >= self.world.degree(vertex) {
+                return false;
+            }
+            self.farthest = self.farthest.max(2 * at.moves + 2);
+            let dart = self.world.behind(at.pose, door.0);
+            let opposite = self.world.opposite[dart as usize];
+            if opposite == FREE {
+                break dart;
+            }
+            at = At { pose: opposite, moves: at.moves + 1 };
+            match self.trace.percepts().get(at.moves) {
+                None => return self.complete(0),
+                Some(&percept) if self.fits(at.pose, percept) => {}
+                Some(_) => return false,
+            }
+        };
+        let Some(&percept) = self.trace.percepts().get(at.moves + 1) else {
+            return self.complete(0);
+        };
+        self.leave(leaving, percept, at.moves + 1)
+    }
+
+    /// Every way in which a dart with no other end can lead to where this is perceived.
+    fn leave(&mut self, dart: u32, percept: Percept, moves: usize) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        let near = self.world.vertex[dart as usize];
+        for other in 0..self.world.opposite.len() as u32 {
+            let far = self.world.vertex[other as usize];
+            let possible = other != dart
+                && self.world.opposite[other as usize] == FREE
+                && self.fits(other, percept)
+                && self.may_join(near, far);
+            if possible {
+                self.world.join(dart, other);
+                if self.explain(At { pose: other, moves }) {
+                    return true;
+                }
+                self.world.part(dart, other);
+            }
+        }
+        self.at_new_vertex(percept, |growing, pose| {
+            growing.world.join(dart, pose);
+            let found = growing.explain(At { pose, moves });
+            if !found {
+                growing.world.part(dart, pose);
+            }
+            found
+        })
+    }
+
+    /// Joins what is left over after everything is explained, from a dart on.
+    fn complete(&mut self, from: u32) -> bool {
+        self.farthest = self.trace.len();
+        if self.world.free == 0 {
+            let exact = self.world.vertex.len() == 2 * self.edges;
+            return exact && (self.class != Class::Planar || self.world.graph().genus() == 0);
+        }
+        if self.is_over() {
+            return false;
+        }
+        let free = (from..self.world.opposite.len() as u32)
+            .find(|&dart| self.world.opposite[dart as usize] == FREE);
+        let Some(dart) = free else { return false };
+        let near = self.world.vertex[dart as usize];
+        for other in self.world.free_after(dart) {
+            if self.may_join(near, self.world.vertex[other as usize]) {
+                self.world.join(dart, other);
+                if self.complete(dart + 1) {
+                    return true;
+                }
+                self.world.part(dart, other);
+            }
+        }
+        let room = 2 * self.edges - self.world.vertex.len().min(2 * self.edges);
+        for degree in 1..=self.class.max_degree().min(room as u32) {
+            let first = self.world.add(degree);
+            self.world.join(dart, first);
+            if self.complete(dart + 1) {
+                return true;
+            }
+            self.world.part(dart, first);
+            self.world.remove_last();
+        }
+        false
+    }
+
+    fn may_join(&self, near: u32, far: u32) -> bool {
+        !self.class.is_simple() || (near != far && !self.world.adjacent(near, far))
+    }
+
+    /// Whether this is perceived by a robot that has come in by a dart of a vertex that it knows.
+    fn fits(&self, pose: u32, percept: Percept) -> bool {
+        let vertex = self.world.vertex[pose as usize];
+        if self.world.degree(vertex) != percept.degree {
+            return false;
+        }
+        let marker = self.world.marker.filter(|&dart| self.world.vertex[dart as usize] == vertex);
+        let expected = match marker {
+            Some(dart) => Sighting::Pointing(self.world.door(pose, dart)),
+            None => Sighting::Nothing,
+        };
+        percept.sighting == expected
+    }
+
+    /// Whether there are too many edges, or the search is to end.
+    fn is_over(&mut self) -> bool {
+        if self.steps == 0 || self.watch.stop() {
+            self.stopped = true;
+        }
+        self.steps = self.steps.saturating_sub(1);
+        self.stopped || self.world.edges() > self.edges
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        any_graph::{self, any_graph},
+        enumerate::{Each, Enumeration},
+        isomorphism::code,
+        marker::Directional,
+        trace::{
+            Event, follow, poses,
+            tests::{explored, lollipop, walked},
+        },
+        world::{GraphWorld, State},
+    };
+
+    fn search(class: Class, edges: usize) -> Search {
+        Search { class, edges, steps: 10_000_000 }
+    }
+
+    /// The number of edges of the smallest world, by trying them all: every start, with the marker
+    /// along each of its darts, or without one.
+    fn by_trying_all(trace: &Trace, class: Class, most: usize) -> Option<usize> {
+        (1..=most).find(|&edges| {
+            let all = Enumeration::new(Each::Start, class, edges).unwrap();
+            let explains = |graph: &EmbeddedGraph| {
+                let marked = |facing| explains(graph, Some(facing), trace);
+                explains(graph, None, trace) || graph.darts().any(marked)
+            };
+            let visit = |found: crate::enumerate::Found| {
+                if explains(found.graph) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            all.for_each(&mut { visit }).is_break()
+        })
+    }
+
+    /// Whether a world explains a trace.
+    fn explains(graph: &EmbeddedGraph, marker: Option<Dart>, trace: &Trace) -> bool {
+        let state = State { pose: Dart(0), placed: Some(marker.unwrap_or(Dart(0))) };
+        match marker {
+            Some(_) => poses(graph, &Directional, &[state], trace).misfit.is_none(),
+            None => poses(graph, &crate::marker::NoMarker, &[state], trace).misfit.is_none(),
+        }
+    }
+
+    #[test]
+    fn a_ring_of_three_explains_a_walk_round_a_ring_of_four_without_a_marker() {
+        let corner = Event::Perceived(Percept { degree: 2, sighting: Sighting::Nothing });
+        let trace = Trace::new([corner, Event::Left(Door(1))].repeat(4)).unwrap();
+        for (class, edges) in [(Class::Multigraph, 1), (Class::Simple, 3)] {
+            let Smallest::World { graph, marker } = smallest(&trace, None, search(class, 9), &())
+            else {
+                panic!("{class}")
+            };
+            assert_eq!((graph.edge_count(), marker), (edges, None));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_told_at_its_event() {
+        let graph = lollipop();
+        let mut trace = walked(&graph, Dart(0), &[Door(0), Door(0), Door(0)]);
+        // The end of the tail is left and come back to, and looks different.
+        trace.percepts[2].degree = 3;
+        let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
+        assert_eq!(found, Smallest::None { event: 4 });
+    }
+
+    #[test]
+    fn a_search_that_is_cut_short_says_so() {
+        let trace = explored(&lollipop(), Dart(0));
+        let short = Search { steps: 3, ..search(Class::Multigraph, 6) };
+        assert!(matches!(smallest(&trace, None, short, &()), Smallest::Unfinished { .. }));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn what_algorithm_1_knows_is_in_the_smallest_world(
+            graph in any_graph(any_graph::Class::Multigraph, 6), part in any::<prop::sample::Index>(),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let trace = trace.up_to(part.index(trace.len()));
+            let known = follow(&trace, 100).exploration.map().clone();
+            let edges = |known| match smallest(&trace, known, search(Class::Multigraph, 6), &()) {
+                Smallest::World { graph, marker } => {
+                    assert!(explains(&graph, marker, &trace));
+                    graph.edge_count()
+                }
+                other => panic!("{other:?}"),
+            };
+            prop_assert_eq!(edges(Some(&known)), edges(None));
+        }
+
+        #[test]
+        fn a_run_of_algorithm_1_is_explained_by_its_own_world_alone(
+            graph in any_graph(any_graph::Class::Multigraph, 10),
+        ) {
+            let trace = explored(&graph, Dart(0));
+            let found = smallest(&trace, None, search(Class::Multigraph, 12), &());
+            let Smallest::World { graph: found, marker } = found else { panic!("{found:?}") };
+            prop_assert_eq!(marker, Some(Dart(0)));
+            prop_assert_eq!(code(&found, Dart(0)), code(&graph, Dart(0)));
+        }
+
+        #[test]
+        fn the_smallest_world_of_a_walk_is_as_small_as_trying_all_finds(
+            graph in any_graph(any_graph::Class::Simple, 5),
+            walk in prop::collection::vec(any::<u8>(), 0..12),
+            class in prop::sample::select(Class::ALL.to_vec()),
+            marked in any::<prop::sample::Index>(),
+        ) {
+            let facing = Dart(marked.index(graph.dart_count()) as u32);
+            let mut world = GraphWorld::new(&graph, facing);
+            world = world.clone().at(State { pose: Dart(0), ..world.state() });
+            let mut events = vec![Event::Perceived(world.sensed())];
+            for step in walk {
+                let door = Door(u32::from(step) % world.sensed().degree);
+                crate::world::World::traverse(&mut world, door).unwrap();
+                events.extend([Event::Left(door), Event::Perceived(world.sensed())]);
+            }
+            let trace = Trace::new(events).unwrap();
+            let edges = match smallest(&trace, None, search(class, 5), &()) {
+                Smallest::World { graph, marker } => {
+                    prop_assert!(explains(&graph, marker, &trace));
+                    Some(graph.edge_count())
+                }
+                Smallest::None { .. } => None,
+                Smallest::Unfinished { .. } => panic!("it was cut short"),
+            };
+            prop_assert_eq!(edges, by_trying_all(&trace, class, 5));
+        }
+    }
+}

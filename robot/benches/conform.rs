@@ -1,0 +1,78 @@
+//! How long it takes to hold a long log against the specification, once its events are read:
+//! `cargo bench -p toposlam-robot --bench conform`. Runs in the plans with 12, 50, 100 and 200 junctions
+//! have 141, 5,763, 34,393 and 95,411 events.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use toposlam_model::{
+    embedded_graph::Dart,
+    enumerate::Class,
+    mapping::{Event, Exploration, Journey, Nearest, map_world},
+    marker::Directional,
+    trace::{self, Search, Trace, anywhere, follow, smallest},
+    world::GraphWorld,
+};
+use toposlam_robot::{
+    conform::{
+        Driver, Event as LogEvent, Events, Kind, KnownWorld, Perceived, Question, Quirks, Source,
+        judge,
+    },
+    evaluation::random_plan::random_plan_with,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// A run of Algorithm 1 in a plan with so many junctions.
+fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
+    let graph = plan.graph();
+    let mut events = vec![trace::Event::Perceived(GraphWorld::new(graph, Dart(0)).sensed())];
+    let mut listen = |_: &Journey, event: Event| {
+        if let Event::Moved { door, percept } = event {
+            events.extend([trace::Event::Left(door), trace::Event::Perceived(percept)]);
+        }
+    };
+    let mut exploration = Exploration::new(graph.dart_count());
+    let mut world = GraphWorld::new(graph, Dart(0));
+    map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
+    Trace::new(events).unwrap()
+}
+
+/// A run against a known world from an unknown start, and without one; with the number of its events.
+#[divan::bench(args = [12, 50, 100, 200], sample_count = 5)]
+fn a_run(bencher: divan::Bencher, junctions: usize) {
+    let plan = random_plan_with(1, junctions).unwrap();
+    let trace = trace(&plan);
+    let event = |(place, event): (usize, trace::Event)| LogEvent {
+        source: Source { time: place as u64, ..Source::default() },
+        kind: match event {
+            trace::Event::Perceived(percept) => Kind::Perceived(Perceived {
+                percept,
+                number: None,
+                form: None,
+                entry: None,
+                entry_off: None,
+            }),
+            trace::Event::Left(door) => Kind::Left { door, number: None, off: None },
+        },
+    };
+    let events =
+        Events { events: trace.events().enumerate().map(event).collect(), ..Events::default() };
+    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    let states = anywhere(plan.graph(), &Directional);
+    let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
+    let question = Question { world, driver: Driver::Algorithm1, search, dart_bound: 1000 };
+    bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
+}
+
+/// The smallest world for half of a run, as far as the search goes where nobody says otherwise.
+#[divan::bench(args = [12, 50, 100], sample_count = 3)]
+fn smallest_world(bencher: divan::Bencher, junctions: usize) {
+    let plan = random_plan_with(1, junctions).unwrap();
+    let trace = trace(&plan);
+    let half = trace.up_to(trace.len() / 2);
+    let known = follow(&half, 1000).exploration.map().clone();
+    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
+}

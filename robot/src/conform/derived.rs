@@ -1,0 +1,203 @@
+//! Events from a log that has only pictures and motion: junction visits and the doors taken, from what
+//! sensing tells of the pictures and where odometry says that the robot was. Sections 3 to 5.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
+
+use toposlam_model::{
+    driving::{
+        odometry::Odometry,
+        scene::{JunctionView, Place, Scene, wrapped},
+        visit::{Form, Visit},
+    },
+    percept::Door,
+};
+
+use super::{
+    events::{Event, Kind, Perceived, Source},
+    told::direction,
+};
+
+/// A junction is visited when its turning point comes as near as this, in metres.
+pub const NEAR: f64 = 0.3;
+/// A robot that drives off by more than this from every door takes none, in radians.
+const ASIDE: f64 = FRAC_PI_6;
+/// A turning point that is as far from the last one is another junction's, in metres.
+const ANOTHER: f64 = 1.5;
+/// So far from its turning point a junction is left, in metres; nearer what looks like a hallway is none.
+const AWAY: f64 = 0.6;
+
+/// Makes events of scenes as they come.
+#[derive(Clone, Debug)]
+pub struct Derivation {
+    events: Vec<Event>,
+    approach: Option<Approach>,
+    /// What was seen since the last junction.
+    seen: Visit,
+    /// How the robot looked when it was last in a hallway.
+    hallway: Option<f64>,
+}
+
+/// A run of scenes of one junction.
+#[derive(Clone, Debug)]
+struct Approach {
+    /// Of its first scene.
+    source: Source,
+    visit: Visit,
+    /// The direction of the entry door in the frame of odometry.
+    entry: f64,
+    /// Where the turning point is in that frame.
+    turning_point: [f64; 2],
+    /// How near the turning point came, in metres, and in which scene.
+    nearest: f64,
+    visited: Source,
+}
+
+impl Derivation {
+    /// Nothing has happened yet. A robot that is `marked` puts its marker down where it begins.
+    #[must_use]
+    pub fn new(marked: bool) -> Self {
+        let seen = if marked { Visit::at_marker() } else { Visit::default() };
+        Self { events: Vec::new(), approach: None, seen, hallway: None }
+    }
+
+    /// What sensing tells of the next picture, and where the robot was when it was taken.
+    pub fn see(&mut self, source: Source, scene: &Scene, odometry: &Odometry) {
+        match &scene.place {
+            Place::Unknown(_) => {}
+            Place::Hallway(_) => self.in_hallway(source, scene, odometry),
+            Place::Junction(junction) => self.at_junction(source, scene, junction, odometry),
+        }
+    }
+
+    /// The events, once no more pictures come.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<Event> {
+        if let Some(approach) = self.approach.take().filter(Approach::is_visit) {
+            self.visited(&approach);
+        }
+        self.events
+    }
+
+    fn in_hallway(&mut self, source: Source, scene: &Scene, odometry: &Odometry) {
+        if let Some(approach) = self.approach.take() {
+            if !approach.is_over(odometry) {
+                // A junction that is still ahead was taken for a hallway. The marker shows all the same.
+                let mut approach = approach;
+                if !approach.is_visit() {
+                    approach.visit.see(scene);
+                }
+                self.approach = Some(approach);
+                return;
+            }
+            self.leave(source, &approach, odometry.heading);
+        } else if let Some(before) = self.hallway
+            && wrapped(odometry.heading - before).abs() > FRAC_PI_2
+        {
+            self.push(source, Kind::TurnedBack);
+            self.seen = Visit::default();
+        }
+        self.hallway = Some(odometry.heading);
+        self.seen.see(scene);
+    }
+
+    /// The robot has left a junction, or its neighbourhood.
+    fn leave(&mut self, source: Source, approach: &Approach, heading: f64) {
+        if approach.is_visit() {
+            let Some((form, entry)) = self.visited(approach) else { return };
+            let off = |door: u32| {
+                let direction = direction(form, entry, Door(door))?;
+                Some((wrapped(heading - direction).abs(), Door(door)))
+            };
+            let nearest = (0..form.degree()).filter_map(off);
+            let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0));
+            let Some((off, door)) = nearest else { return };
+            self.push(source, Kind::Left { door, number: None, off: Some(off) });
+            if off > ASIDE {
+                self.push(source, Kind::Aside { off });
+            }
+        } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
+            self.push(source, Kind::TurnedBack);
+        } else {
+            self.push(approach.source, Kind::Undecided);
+        }
+    }
+
+    fn at_junction(
+        &mut self,
+        source: Source,
+        scene: &Scene,
+        junction: &JunctionView,
+        odometry: &Odometry,
+    ) {
+        let turning_point = in_frame(junction.turning_point, odometry);
+        let another = self.approach.as_ref().is_some_and(|approach| {
+            let [x, y] = [0, 1].map(|axis| turning_point[axis] - approach.turning_point[axis]);
+            x.hypot(y) > ANOTHER
+        });
+        if another && let Some(approach) = self.approach.take() {
+            self.leave(source, &approach, odometry.heading);
+            self.hallway = Some(odometry.heading);
+        }
+        let seen = &mut self.seen;
+        let approach = self.approach.get_or_insert_with(|| Approach {
+            source,
+            visit: std::mem::take(seen),
+            entry: junction.doors.first().map_or(0.0, |entry| odometry.whither(entry.direction)),
+            turning_point,
+            nearest: f64::INFINITY,
+            visited: source,
+        });
+        let junction = junction.clone().entered_from(odometry.seen(approach.entry));
+        let [x, y] = junction.turning_point;
+        if x.hypot(y) < approach.nearest {
+            (approach.nearest, approach.visited) = (x.hypot(y), source);
+        }
+        approach.visit.see(&Scene { place: Place::Junction(junction), marker: scene.marker });
+    }
+
+    /// What was perceived on a visit; answers how the junction lies. Where its pictures do not tell, that
+    /// is an event.
+    fn visited(&mut self, approach: &Approach) -> Option<(Form, f64)> {
+        let Approach { visit, entry, visited, .. } = approach;
+        let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
+            self.push(*visited, Kind::Undecided);
+            return None;
+        };
+        let entry_off = None;
+        let kind = Kind::Perceived(Perceived {
+            percept,
+            number: None,
+            form: Some(form),
+            entry: Some(*entry),
+            entry_off,
+        });
+        self.push(*visited, kind);
+        Some((form, *entry))
+    }
+
+    fn push(&mut self, source: Source, kind: Kind) {
+        self.events.push(Event { source, kind });
+    }
+}
+
+impl Approach {
+    fn is_visit(&self) -> bool {
+        self.nearest <= NEAR
+    }
+
+    /// Whether a robot in a hallway has done with this junction: it is away from it after a visit, has
+    /// passed it without one, or looks back.
+    fn is_over(&self, odometry: &Odometry) -> bool {
+        let [x, y] = [0, 1].map(|axis| odometry.position[axis] - self.turning_point[axis]);
+        let inwards = -(x * self.entry.cos() + y * self.entry.sin());
+        let looks_back = wrapped(odometry.heading - self.entry).abs() < FRAC_PI_2;
+        x.hypot(y) >= AWAY && (self.is_visit() || looks_back || inwards >= AWAY)
+    }
+}
+
+/// A point that the robot sees, in the frame of odometry.
+fn in_frame([x, y]: [f64; 2], odometry: &Odometry) -> [f64; 2] {
+    let (sine, cosine) = odometry.heading.sin_cos();
+    let [east, north] = odometry.position;
+    [east + x * cosine - y * sine, north + x * sine + y * cosine]
+}

@@ -1,0 +1,311 @@
+//! The events of a log: those that it tells, or else those that are derived from its scenes or its
+//! pictures, and its odometry. Sections 3 to 6.
+
+use rayon::prelude::*;
+use thiserror::Error;
+use toposlam_model::driving::{
+    odometry::Odometry,
+    scene::{Scene, wrapped},
+};
+use toposlam_vision::{
+    image_file::ImageFile,
+    sensing::{Sensor, WrongSize},
+};
+
+use super::{
+    Derivation, Telling,
+    events::{Ending, Events, Head, Source},
+};
+use crate::log::{
+    entries::{Content, Entry, Picture},
+    error::LogError,
+    mapping::{Mapping, MappingError, Role},
+    messages,
+    reading::Log,
+    scene_of,
+};
+
+/// What events are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// The percepts and doors that the log tells.
+    Told,
+    /// The scenes that it tells, and its odometry.
+    Scenes,
+    /// Its pictures, and its odometry.
+    Pictures,
+}
+
+/// What was made of a log.
+#[derive(Clone, Debug)]
+pub struct Gathered {
+    /// The events, and what the log says of itself.
+    pub events: Events,
+    /// What they are made of.
+    pub evidence: Evidence,
+    /// The head of the log, where it has one.
+    pub run: Option<messages::Run>,
+    /// How many pictures were looked at.
+    pub pictures: u64,
+    /// How many of them are no images.
+    pub unreadable: u64,
+}
+
+/// Why there are no events.
+#[derive(Debug, Error)]
+pub enum NoEvents {
+    /// The log cannot be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The mapping does not fit it.
+    #[error(transparent)]
+    Mapping(#[from] MappingError),
+    /// Nothing that could be judged is mapped.
+    #[error(
+        "it has neither percepts and doors, nor scenes or pictures together with odometry, as far as the \
+         mapping tells; `toposlam info` tells what it has"
+    )]
+    NothingMapped,
+    /// Pictures have to be looked at, and there is no calibration, or there are no colours.
+    #[error(
+        "its events have to be derived from its pictures: that needs --calibration and --colours"
+    )]
+    NoEyes,
+    /// A picture is not of the calibrated camera.
+    #[error("message {message}: {cause}")]
+    Size {
+        /// Which message, counted from 1.
+        message: u64,
+        /// What is wrong with it.
+        cause: WrongSize,
+    },
+    /// A scene that is none.
+    #[error("message {message}: there is no such scene")]
+    Scene {
+        /// Which message, counted from 1.
+        message: u64,
+    },
+}
+
+/// Watches pictures being looked at, and may break off.
+pub trait Looking {
+    /// So many more pictures have been looked at.
+    fn looked(&self, _pictures: u64) {}
+}
+
+impl Looking for () {}
+
+/// So many pictures are looked at together, by as many threads as there are.
+const TOGETHER: usize = 32;
+
+impl Evidence {
+    /// What events can be made of where such things are mapped: the first in the order of this list.
+    #[must_use]
+    pub fn of(mapping: &Mapping) -> Option<Self> {
+        let has = |role| mapping.carrier(role).is_some();
+        if has(Role::Percept) && has(Role::Door) {
+            Some(Self::Told)
+        } else if has(Role::Scene) && has(Role::Odometry) {
+            Some(Self::Scenes)
+        } else if has(Role::Image) && has(Role::Odometry) {
+            Some(Self::Pictures)
+        } else {
+            None
+        }
+    }
+
+    fn roles(self) -> &'static [Role] {
+        match self {
+            Self::Told => &[Role::Percept, Role::Door, Role::Odometry],
+            Self::Scenes => &[Role::Scene, Role::Odometry],
+            Self::Pictures => &[Role::Image, Role::Odometry],
+        }
+    }
+}
+
+/// Makes events of a log. A robot that is `marked` puts its marker down where it begins; that is only
+/// asked where events are derived.
+///
+/// # Errors
+/// Where the log cannot be read, and where there is nothing in it of which events could be made.
+pub fn gather(
+    log: &Log,
+    mapping: &Mapping,
+    evidence: Evidence,
+    sensor: Option<&Sensor>,
+    marked: bool,
+    watch: &impl Looking,
+) -> Result<Gathered, NoEvents> {
+    let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
+    let threads = rayon::current_num_threads();
+    let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
+    let bound = mapping.only(asked).bind(log)?;
+    let mut gathering = Gathering {
+        telling: Telling::default(),
+        track: Vec::new(),
+        seen: Vec::new(),
+        waiting: Vec::new(),
+        run: None,
+        events: Events { truncated: log.truncation().is_some(), ..Events::default() },
+        sensors,
+        watch,
+        pictures: 0,
+        unreadable: 0,
+    };
+    for entry in log.entries(&bound) {
+        gathering.take(entry?)?;
+    }
+    gathering.look()?;
+    let Gathering { telling, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
+    events.events = match evidence {
+        Evidence::Told => telling.finish(),
+        Evidence::Scenes | Evidence::Pictures => {
+            let mut derivation = Derivation::new(marked);
+            for (source, time, scene) in &seen {
+                if let Some(odometry) = at(&track, *time) {
+                    derivation.see(*source, scene, &odometry);
+                }
+            }
+            derivation.finish()
+        }
+    };
+    Ok(Gathered { events, evidence, run, pictures, unreadable })
+}
+
+struct Gathering<'w, W> {
+    telling: Telling,
+    /// Where the robot was, and when.
+    track: Vec<(u64, Odometry)>,
+    /// What was seen, and when the picture was taken.
+    seen: Vec<(Source, u64, Scene)>,
+    /// Pictures that have not been looked at.
+    waiting: Vec<(Source, u64, Picture)>,
+    run: Option<messages::Run>,
+    events: Events,
+    /// One for each thread.
+    sensors: Vec<Sensor>,
+    watch: &'w W,
+    pictures: u64,
+    unreadable: u64,
+}
+
+impl<W: Looking> Gathering<'_, W> {
+    fn take(&mut self, entry: Entry) -> Result<(), NoEvents> {
+        let Entry { time, offset, number, stamp, content, .. } = entry;
+        let source = Source { time, message: number, offset };
+        let stamp = stamp.nanoseconds();
+        match content {
+            Content::Percept(percept) => self.telling.perceived(source, &percept),
+            Content::Door(door) => self.telling.left(source, &door),
+            Content::Odometry(odometry) => {
+                self.telling.moved(odometry);
+                self.track.push((stamp, odometry));
+            }
+            Content::Scene(told) => {
+                let scene = scene_of(&told).ok_or(NoEvents::Scene { message: number })?;
+                self.seen.push((source, stamp, scene));
+            }
+            Content::Image(picture) => {
+                self.waiting.push((source, stamp, picture));
+                if self.waiting.len() >= TOGETHER {
+                    self.look()?;
+                }
+            }
+            Content::Run(run) => {
+                self.events.head = Some(Head {
+                    world: run.world.clone(),
+                    world_hash: run.world_hash.clone(),
+                    start: run.start.clone(),
+                    marker: run.marker.clone(),
+                });
+                self.run = Some(run);
+            }
+            Content::End(messages::End { moves, ending, cause, .. }) => {
+                self.events.ending = Some(Ending { ending, cause, moves });
+            }
+            Content::Map(messages::Map { degrees, opposite, .. }) => {
+                self.events.map = Some((degrees, opposite));
+            }
+            Content::Motion { .. } | Content::Command(_) | Content::Hypothesis(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Looks at the pictures that wait.
+    fn look(&mut self) -> Result<(), NoEvents> {
+        if self.waiting.is_empty() {
+            return Ok(());
+        }
+        if self.sensors.is_empty() {
+            return Err(NoEvents::NoEyes);
+        }
+        let share = self.waiting.len().div_ceil(self.sensors.len());
+        let shares = self.sensors.par_iter_mut().zip(self.waiting.par_chunks(share));
+        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, Picture)])| {
+            pictures.iter().map(|(_, _, picture)| sense(sensor, picture)).collect::<Vec<_>>()
+        };
+        let seen: Vec<_> = shares.flat_map_iter(look).collect();
+        self.watch.looked(seen.len() as u64);
+        self.pictures += seen.len() as u64;
+        for ((source, time, _), scene) in self.waiting.drain(..).zip(seen) {
+            let message = source.message;
+            match scene {
+                None => self.unreadable += 1,
+                Some(scene) => {
+                    let scene = scene.map_err(|cause| NoEvents::Size { message, cause })?;
+                    self.seen.push((source, time, scene));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a picture shows; `None` where it is no image.
+fn sense(sensor: &mut Sensor, picture: &Picture) -> Option<Result<Scene, WrongSize>> {
+    match picture {
+        Picture::Pixels(image) => Some(sensor.sense(image)),
+        Picture::File(bytes) => {
+            let image = ImageFile::open(bytes).and_then(|file| file.image()).ok()?;
+            Some(sensor.sense(&image))
+        }
+    }
+}
+
+/// Where a robot was at a time, between the two readings nearest to it.
+fn at(track: &[(u64, Odometry)], time: u64) -> Option<Odometry> {
+    let after = track.partition_point(|&(reading, _)| reading < time);
+    match (after.checked_sub(1).and_then(|before| track.get(before)), track.get(after)) {
+        (Some(&(begin, from)), Some(&(end, to))) => {
+            let part = (time - begin) as f64 / (end - begin) as f64;
+            let turned = wrapped(to.heading - from.heading);
+            Some(Odometry {
+                position: [0, 1].map(|axis| {
+                    from.position[axis] + part * (to.position[axis] - from.position[axis])
+                }),
+                heading: wrapped(from.heading + part * turned),
+            })
+        }
+        (one, other) => one.or(other).map(|&(_, odometry)| odometry),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_two_readings_a_robot_is_between_two_places() {
+        let odometry = |x, heading| Odometry { position: [x, 0.0], heading };
+        let track = [(10, odometry(0.0, 3.0)), (20, odometry(1.0, -3.0))];
+        let at = |time| at(&track, time).unwrap();
+        assert_eq!(
+            (at(5), at(10), at(20), at(30)),
+            (track[0].1, track[0].1, track[1].1, track[1].1)
+        );
+        let half = at(15);
+        assert_eq!(half.position, [0.5, 0.0]);
+        assert!((half.heading.abs() - std::f64::consts::PI).abs() < 1e-12, "{half:?}");
+        assert_eq!(super::at(&[], 5), None);
+    }
+}

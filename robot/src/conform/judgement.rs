@@ -1,0 +1,496 @@
+//! The judgement of a recorded run: against itself, a known world or some world, and Algorithm 1.
+//! Sections 2.1 and 2.3.
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+use toposlam_model::{
+    driving::visit::Form,
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Watch,
+    isomorphism::code,
+    mapping::{Contradiction, FACING, PartialMap},
+    marker::Marker,
+    percept::Percept,
+    trace::{
+        self, Departure, Followed, Misfit, NotInTurn, Poses, Purpose, Reached, Search, Smallest,
+        Trace, Why, follow, poses, smallest,
+    },
+    world::State,
+};
+
+use super::{
+    cause::{Cause, Culprit, Divergence, OFF},
+    events::{Ending, Event, Events, Kind, OutOfOrder, Perceived},
+    quirks::Quirks,
+};
+
+/// What a run is held against.
+#[derive(Clone, Debug)]
+pub struct Question<'w> {
+    /// The world in which it was, where that is known.
+    pub world: Option<KnownWorld<'w>>,
+    /// Who took the doors.
+    pub driver: Driver,
+    /// Which worlds are searched for one that explains the log, where none is known.
+    pub search: Search,
+    /// How many darts Algorithm 1 may come to know.
+    pub dart_bound: usize,
+}
+
+/// A known world, and how the robot may stand in it at first.
+#[derive(Clone, Debug)]
+pub struct KnownWorld<'w> {
+    /// The embedded graph.
+    pub graph: &'w EmbeddedGraph,
+    /// The kind of marker.
+    pub marker: &'static dyn Marker,
+    /// All the ways in which the robot may stand, and the marker lie, at first.
+    pub states: Vec<State>,
+}
+
+/// Who takes the doors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// Algorithm 1, with any choices.
+    Algorithm1,
+    /// Anyone, wherever they like.
+    Anyone,
+}
+
+/// What the specification says of a run.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// What was judged; where quirks were tolerated, as it should have been.
+    pub events: Events,
+    /// Its percepts and doors, and which events they are; up to where they no longer take turns.
+    pub trace: Trace,
+    /// Which event each of the trace is, from 0.
+    pub places: Vec<usize>,
+    /// The first event that does not fit.
+    pub divergence: Option<Divergence>,
+    /// How the robot may stand in the known world.
+    pub poses: Option<Poses>,
+    /// The smallest world that explains the log, where none is known.
+    pub smallest: Option<Smallest>,
+    /// How far Algorithm 1 goes along.
+    pub followed: Option<Followed>,
+    /// What the run went through.
+    pub coverage: Coverage,
+    /// Divergences that were tolerated, in order, with the quirk's place in its file.
+    pub tolerated: Vec<(Divergence, usize)>,
+}
+
+/// The cases that a run went through.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    /// Of Algorithm 1.
+    pub algorithm: trace::Coverage,
+    /// Of perception: each kind of junction, from each of its entries.
+    pub junctions: BTreeMap<Form, u64>,
+}
+
+impl Coverage {
+    /// Takes in what happened in another run.
+    pub fn include(&mut self, other: &Self) {
+        self.algorithm.include(&other.algorithm);
+        for (&form, count) in &other.junctions {
+            *self.junctions.entry(form).or_default() += count;
+        }
+    }
+}
+
+/// The verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// All of it fits.
+    Conforms,
+    /// An event does not fit.
+    Diverged,
+    /// All of it fits, but it is not all.
+    Incomplete,
+}
+
+impl Verdict {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Conforms => "conforms",
+            Self::Diverged => "diverged",
+            Self::Incomplete => "incomplete",
+        }
+    }
+}
+
+/// Nothing that could be judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum NotJudged {
+    /// There is no event.
+    #[error("there is neither a percept nor a visit to a junction in it")]
+    Empty,
+    /// The events are out of order.
+    #[error(transparent)]
+    OutOfOrder(#[from] OutOfOrder),
+}
+
+/// Holds a run against the specification. Quirks are tolerated, and judged as they should have been.
+///
+/// # Errors
+/// Where there is no event, and where they are out of order.
+pub fn judge(
+    mut events: Events,
+    question: &Question,
+    quirks: &Quirks,
+    watch: &impl Watch,
+) -> Result<Judgement, NotJudged> {
+    events.in_order()?;
+    let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
+    loop {
+        let mut judgement = Judgement::new(&events, question, &tolerated, watch)?;
+        let found = judgement.divergence.clone().and_then(|divergence| {
+            let quirk = quirks.tolerating(&divergence)?;
+            amend(&mut events, &divergence, &judgement.places).then_some((divergence, quirk))
+        });
+        let Some(found) = found else {
+            judgement.tolerated = tolerated;
+            return Ok(judgement);
+        };
+        tolerated.push(found);
+    }
+}
+
+/// Makes of an event what it should have been; `false` where that is not known.
+fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool {
+    let expected = match &divergence.cause {
+        Cause::World(misfit) => expected_by(misfit),
+        Cause::Algorithm(departure) => expected_after(departure),
+        Cause::NotInTurn(_) | Cause::NoWorld { .. } => return false,
+        // It is passed over.
+        _ => return true,
+    };
+    let Some(expected) = expected else { return false };
+    let place = places.iter().copied().find(|&place| place == divergence.event);
+    match place.and_then(|place| events.events.get_mut(place)).map(|event| &mut event.kind) {
+        Some(Kind::Perceived(perceived)) => {
+            perceived.percept = expected;
+            true
+        }
+        _ => false,
+    }
+}
+
+/// What should be perceived at every pose that is left.
+fn expected_by(misfit: &Misfit) -> Option<Percept> {
+    let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
+        Why::Percept { expected } => Some(*expected),
+        Why::NoSuchDoor { .. } => None,
+    });
+    let first = expected.next()??;
+    expected.all(|other| other == Some(first)).then_some(first)
+}
+
+/// What Algorithm 1 expects to be perceived.
+fn expected_after(departure: &Departure) -> Option<Percept> {
+    departure.allowed.iter().find_map(|allowed| match allowed.purpose {
+        Purpose::Contradicted(
+            Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
+        ) => Some(expected),
+        _ => None,
+    })
+}
+
+impl Judgement {
+    fn new(
+        events: &Events,
+        question: &Question,
+        tolerated: &[(Divergence, usize)],
+        watch: &impl Watch,
+    ) -> Result<Self, NotJudged> {
+        let mut found = Found { tolerated, first: None };
+        let (trace, places) = match events.trace() {
+            Ok(all) => all,
+            Err(NotInTurn::Empty) => return Err(NotJudged::Empty),
+            Err(not @ (NotInTurn::NoDoor { event } | NotInTurn::NoPercept { event })) => {
+                found.note(event, Cause::NotInTurn(not));
+                match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
+                    Some(Ok(before)) => before,
+                    _ => return Err(NotJudged::Empty),
+                }
+            }
+        };
+        let in_turn = found.first.is_none();
+        for (place, cause) in events.own_faults() {
+            found.note(place, cause);
+        }
+        let len = events.events.len();
+        let at = |event: usize| places.get(event).copied().unwrap_or(len);
+        let mut judgement = Self {
+            events: events.clone(),
+            divergence: None,
+            poses: None,
+            smallest: None,
+            followed: None,
+            coverage: Coverage { junctions: junctions(events), ..Coverage::default() },
+            tolerated: Vec::new(),
+            trace,
+            places: places.clone(),
+        };
+        let trace = &judgement.trace;
+        if let Some(known) = &question.world {
+            let poses = poses(known.graph, &known.marker, &known.states, trace);
+            if let Some(misfit) = &poses.misfit {
+                let culprit = known.culprit(trace, misfit);
+                found.note_as(at(misfit.event), Cause::World(misfit.clone()), culprit);
+            }
+            judgement.poses = Some(poses);
+        }
+        let mut explored = None;
+        if question.driver == Driver::Algorithm1 {
+            let followed = follow(trace, question.dart_bound);
+            match &followed.reached {
+                Reached::Departure(departure) => {
+                    found.note(at(departure.event), Cause::Algorithm(departure.clone()));
+                }
+                Reached::Mapped => explored = followed.exploration.map().complete().cloned(),
+                Reached::EndOfTrace => {}
+            }
+            if in_turn {
+                for cause in events.false_ending(&followed, question.world.as_ref()) {
+                    found.note(len, cause);
+                }
+            }
+            judgement.coverage.algorithm = followed.coverage.clone();
+            judgement.followed = Some(followed);
+        }
+        if in_turn && let Some(cause) = events.false_moves(trace) {
+            found.note(len, cause);
+        }
+        if question.world.is_none() {
+            // Algorithm 1 has told its world from every other; one that it has not done with has all that
+            // it knows.
+            let smallest = if let Some(graph) = explored {
+                Smallest::World { graph, marker: Some(FACING) }
+            } else {
+                let followed = judgement.followed.as_ref();
+                let known = followed.map(|followed| followed.exploration.map());
+                smallest(trace, known, question.search, watch)
+            };
+            if let Smallest::None { event } = smallest {
+                let edges = question.search.edges;
+                // It is the fault of an event, if of any, before which all is explained.
+                found.note(at(event.min(trace.len() - 1)), Cause::NoWorld { edges });
+            }
+            judgement.smallest = Some(smallest);
+        }
+        judgement.divergence = found.first;
+        Ok(judgement)
+    }
+
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        if self.divergence.is_some() {
+            return Verdict::Diverged;
+        }
+        let searched = !matches!(self.smallest, Some(Smallest::Unfinished { .. }));
+        if searched && self.events.is_whole(self.followed.is_some()) {
+            Verdict::Conforms
+        } else {
+            Verdict::Incomplete
+        }
+    }
+
+    /// In how many ways the robot may stand after the last event that fits: in the known world, or, where
+    /// none is known and one was found, 1.
+    #[must_use]
+    pub fn candidates(&self) -> usize {
+        match (&self.poses, &self.smallest) {
+            (Some(poses), _) => poses.states.len(),
+            (None, Some(Smallest::World { .. })) => 1,
+            _ => 0,
+        }
+    }
+
+    /// The event of the trace that an event is, or the next one that is one.
+    #[must_use]
+    pub fn in_trace(&self, event: usize) -> usize {
+        self.places.partition_point(|&place| place < event)
+    }
+}
+
+/// The first divergence, of those that are not tolerated.
+struct Found<'t> {
+    tolerated: &'t [(Divergence, usize)],
+    first: Option<Divergence>,
+}
+
+impl Found<'_> {
+    fn note(&mut self, event: usize, cause: Cause) {
+        let culprit = cause.culprit();
+        self.note_as(event, cause, culprit);
+    }
+
+    /// Of two at one event the one noted first counts.
+    fn note_as(&mut self, event: usize, cause: Cause, culprit: Culprit) {
+        let same = |other: &Divergence| other.event == event && other.cause.name() == cause.name();
+        let tolerated = self.tolerated.iter().any(|(tolerated, _)| same(tolerated));
+        let earlier = self.first.as_ref().is_none_or(|first| event < first.event);
+        if earlier && !tolerated {
+            self.first = Some(Divergence { event, cause, culprit });
+        }
+    }
+}
+
+impl KnownWorld<'_> {
+    /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
+    /// perceived this one thing wrongly, it is motion's.
+    fn culprit(&self, trace: &Trace, misfit: &Misfit) -> Culprit {
+        if !misfit.event.is_multiple_of(2) {
+            return Culprit::Algorithm;
+        }
+        let moves = misfit.event / 2;
+        let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
+            let Why::Percept { expected } = why else { return None };
+            Some(self.fitting(&ahead(trace, moves, expected), &[state]))
+        });
+        let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
+        let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
+        let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
+        let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
+        let came_elsewhere =
+            self.fitting(&ahead(trace, moves, trace.percepts()[moves]), &elsewhere);
+        if came_elsewhere > perceived_wrongly { Culprit::Motion } else { Culprit::Perception }
+    }
+
+    /// How many events fit.
+    fn fitting(&self, trace: &Trace, states: &[State]) -> usize {
+        poses(self.graph, &self.marker, states, trace).left.len()
+    }
+
+    /// Whether a map is that of this world, from one of the starts.
+    fn has(&self, map: &EmbeddedGraph) -> bool {
+        let of_map = code(map, FACING);
+        let is = |state: &State| state.placed.is_some_and(|dart| code(self.graph, dart) == of_map);
+        self.states.iter().any(is)
+    }
+}
+
+/// So many events are looked at to tell whose fault a misfit is.
+const AHEAD: usize = 12;
+
+/// What follows some moves, with another first percept.
+fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
+    let first = trace::Event::Perceived(first);
+    let rest = trace.events().skip(2 * moves + 1).take(AHEAD);
+    // They take turns as before, whatever the first percept is.
+    Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
+}
+
+impl Events {
+    /// What each event contradicts by itself, in order.
+    fn own_faults(&self) -> Vec<(usize, Cause)> {
+        let mut faults = Vec::new();
+        let mut moves = 0;
+        for (place, event) in self.events.iter().enumerate() {
+            let mut fault = |cause| faults.push((place, cause));
+            match &event.kind {
+                Kind::Perceived(perceived) => {
+                    let Perceived { percept, number, form, entry_off, .. } = perceived;
+                    if let Some(told) = number.filter(|&told| told != moves) {
+                        fault(Cause::Number { expected: moves, told });
+                    }
+                    let doors = form.map_or(percept.degree, Form::degree);
+                    if doors != percept.degree {
+                        fault(Cause::Form { degree: percept.degree, doors });
+                    }
+                    if let Some(off) = entry_off.filter(|&off| off > OFF) {
+                        fault(Cause::Entry { off });
+                    }
+                }
+                Kind::Left { number, off, .. } => {
+                    moves += 1;
+                    if let Some(told) = number.filter(|&told| told != moves) {
+                        fault(Cause::Number { expected: moves, told });
+                    }
+                    // Where a robot went aside, an event of its own says so.
+                    let own = self.events.get(place + 1).map(|event| &event.kind);
+                    let told = matches!(own, Some(Kind::Aside { .. }));
+                    if let Some(off) = off.filter(|&off| off > OFF && !told) {
+                        fault(Cause::Aside { off });
+                    }
+                }
+                Kind::Aside { off } => fault(Cause::Aside { off: *off }),
+                Kind::TurnedBack => fault(Cause::TurnedBack),
+                Kind::Undecided => fault(Cause::Undecided),
+            }
+        }
+        faults
+    }
+
+    /// What is false in how the log says that the run ended, given what Algorithm 1 makes of it.
+    fn false_ending(&self, followed: &Followed, known: Option<&KnownWorld>) -> Vec<Cause> {
+        let map = followed.exploration.map();
+        let mapped = self.ending.as_ref().is_some_and(Ending::is_mapped);
+        let mut faults = Vec::new();
+        match (&followed.reached, map.complete()) {
+            (Reached::EndOfTrace, _) if mapped => {
+                faults.push(Cause::Unfinished { unexplored: map.unexplored_count() });
+            }
+            (Reached::Mapped, Some(graph)) => {
+                if self.map.as_ref().is_some_and(|told| *told != in_numbers(map)) {
+                    faults.push(Cause::Map);
+                }
+                if known.is_some_and(|known| !known.has(graph)) {
+                    faults.push(Cause::WrongMap);
+                }
+            }
+            _ => {}
+        }
+        faults
+    }
+
+    /// Whether the log says another number of moves than it has.
+    fn false_moves(&self, trace: &Trace) -> Option<Cause> {
+        let made = trace.percepts().len() - 1;
+        let told = self.ending.as_ref()?.moves;
+        (made != told as usize).then_some(Cause::Moves { made, told })
+    }
+
+    /// Whether this is all of a run; of one that Algorithm 1 drives, to its end.
+    fn is_whole(&self, driven: bool) -> bool {
+        let ended = match (&self.head, &self.ending) {
+            (_, Some(ending)) => ending.is_mapped() || !driven,
+            (Some(_), None) => false,
+            // A log of somebody else's does not tell.
+            (None, None) => true,
+        };
+        ended && !self.truncated
+    }
+}
+
+impl Ending {
+    fn is_mapped(&self) -> bool {
+        self.ending == "mapped"
+    }
+}
+
+/// A map as a log tells it.
+fn in_numbers(map: &PartialMap) -> (Vec<u32>, Vec<i32>) {
+    let degrees = map.vertices().map(|vertex| map.degree(vertex)).collect();
+    let opposite = |dart: u32| {
+        map.opposite(Dart(dart)).and_then(|other| i32::try_from(other.0).ok()).unwrap_or(-1)
+    };
+    (degrees, (0..map.dart_count() as u32).map(opposite).collect())
+}
+
+/// How often each kind of junction was perceived, from each of its entries.
+fn junctions(events: &Events) -> BTreeMap<Form, u64> {
+    let mut counts = BTreeMap::new();
+    for Event { kind, .. } in &events.events {
+        if let Kind::Perceived(Perceived { form: Some(form), .. }) = kind {
+            *counts.entry(*form).or_default() += 1;
+        }
+    }
+    counts
+}

@@ -1,0 +1,23 @@
+//! A recorded run, held against the specification: where it first diverged, what the specification
+//! would have allowed there, and whose fault it was. Sections 2 and 4 to 6.
+
+mod cause;
+mod derived;
+mod events;
+mod gathered;
+mod judgement;
+mod quirks;
+mod shorter;
+mod told;
+
+#[cfg(test)]
+mod tests;
+
+pub use cause::{Cause, Culprit, Divergence};
+pub use derived::{Derivation, NEAR};
+pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Source};
+pub use gathered::{Evidence, Gathered, Looking, NoEvents, gather};
+pub use judgement::{Coverage, Driver, Judgement, KnownWorld, NotJudged, Question, Verdict, judge};
+pub use quirks::{Quirk, QuirkError, Quirks};
+pub use shorter::shorter;
+pub use told::Telling;

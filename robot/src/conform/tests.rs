@@ -1,0 +1,502 @@
+//! Is the checker any good? Good runs conform, and every mutation of one is told at its event, or is
+//! known not to show.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use toposlam_model::{
+    driving::{algorithm2::Standing, scene::Scene},
+    embedded_graph::Dart,
+    enumerate::Class,
+    floor_plan::FloorPlan,
+    marker::Directional,
+    percept::{Door, Percept, Sighting},
+    trace::{Search, anywhere},
+    world::GraphWorld,
+};
+
+use super::*;
+use crate::{
+    evaluation::{plans, random_plan::random_plan_with, runs::starts_of},
+    explorer::{Observer, Round, Told},
+    log::messages,
+    robot::{Reckoned, Robot},
+    run::run,
+    simulator::{Setting, SimulatedRobot, ToldScene},
+};
+
+type Simulated = SimulatedRobot<crate::simulator::SceneCamera>;
+
+const DARTS: usize = 400;
+
+/// What a log of a simulated run would hold.
+#[derive(Clone, Debug, Default)]
+struct Log {
+    lines: Vec<(Reckoned, Line)>,
+}
+
+#[derive(Clone, Debug)]
+enum Line {
+    Percept(messages::Percept),
+    Door(messages::Door),
+    Scene(Scene),
+}
+
+impl Log {
+    fn put(&mut self, robot: &Simulated, line: Line) {
+        self.lines.push((robot.odometry(), line));
+    }
+
+    fn moves(&self) -> u32 {
+        self.lines.iter().filter(|(_, line)| matches!(line, Line::Door(_))).count() as u32
+    }
+
+    fn told(&self) -> Events {
+        let mut telling = Telling::default();
+        for (message, (reckoned, line)) in self.lines.iter().enumerate() {
+            telling.moved(reckoned.odometry);
+            let source = source(message, reckoned);
+            match line {
+                Line::Percept(percept) => telling.perceived(source, percept),
+                Line::Door(door) => telling.left(source, door),
+                Line::Scene(_) => {}
+            }
+        }
+        let ending =
+            Ending { ending: "mapped".to_owned(), cause: String::new(), moves: self.moves() };
+        let head = Some(Head::default());
+        Events { events: telling.finish(), head, ending: Some(ending), ..Events::default() }
+    }
+
+    fn derived(&self) -> Vec<Event> {
+        let mut derivation = Derivation::new(true);
+        for (message, (reckoned, line)) in self.lines.iter().enumerate() {
+            if let Line::Scene(scene) = line {
+                derivation.see(source(message, reckoned), scene, &reckoned.odometry);
+            }
+        }
+        derivation.finish()
+    }
+}
+
+fn source(message: usize, reckoned: &Reckoned) -> Source {
+    let time = (reckoned.time * 1e9).round() as u64;
+    Source { time, message: message as u64 + 1, offset: 0 }
+}
+
+impl Observer<Simulated> for Log {
+    fn round(&mut self, robot: &Simulated, round: &Round<ToldScene>) {
+        let scene = round.scene.clone();
+        self.lines
+            .push((Reckoned { time: robot.time(), odometry: round.odometry }, Line::Scene(scene)));
+    }
+
+    fn leaving(&mut self, robot: &Simulated, door: Door) {
+        let r#move = self.moves() + 1;
+        let door = messages::Door { r#move, door: door.0, ..Default::default() };
+        self.put(robot, Line::Door(door));
+    }
+
+    fn arrived(&mut self, robot: &Simulated, _: Option<Door>, at: &Standing) {
+        let marker = match at.percept.sighting {
+            Sighting::Pointing(door) => door.0.cast_signed(),
+            _ => -1,
+        };
+        let percept = messages::Percept {
+            r#move: self.moves(),
+            degree: at.percept.degree,
+            marker,
+            form: at.form.0,
+            entry: at.entry,
+            ..Default::default()
+        };
+        self.put(robot, Line::Percept(percept));
+    }
+}
+
+/// A good run.
+fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
+    let robot = Setting::at_start(plan.clone(), facing, seed).by_scene();
+    let (run, _, log) = run(plan, facing, robot, Told, Log::default(), &mut (), DARTS);
+    assert_eq!(run.ending(), crate::run::Ending::Right);
+    log
+}
+
+fn question(plan: &FloorPlan, facing: Option<Dart>) -> Question<'_> {
+    let graph = plan.graph();
+    let states = match facing {
+        Some(facing) => vec![GraphWorld::new(graph, facing).state()],
+        None => anywhere(graph, &Directional),
+    };
+    let world = Some(KnownWorld { graph, marker: &Directional, states });
+    Question { world, ..without_world() }
+}
+
+fn without_world() -> Question<'static> {
+    let search = Search { class: Class::Multigraph, edges: 12, steps: 1_000_000 };
+    Question { world: None, driver: Driver::Algorithm1, search, dart_bound: DARTS }
+}
+
+fn judged(events: &Events, question: &Question) -> Judgement {
+    judge(events.clone(), question, &Quirks::default(), &()).unwrap()
+}
+
+#[test]
+fn good_logs_of_every_plan_conform() {
+    for (name, plan) in plans().unwrap() {
+        for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(2) {
+            let events = log(&plan, facing, seed as u64).told();
+            for question in [question(&plan, Some(facing)), question(&plan, None), without_world()]
+            {
+                let judgement = judged(&events, &question);
+                assert_eq!(
+                    (judgement.verdict(), &judgement.divergence),
+                    (Verdict::Conforms, &None),
+                    "{name} from {facing:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Percepts and doors, without what they were made of.
+fn bare(events: &[Event]) -> Vec<(Option<Percept>, Option<Door>)> {
+    let bare = |event: &Event| match &event.kind {
+        Kind::Perceived(perceived) => (Some(perceived.percept), None),
+        Kind::Left { door, .. } => (None, Some(*door)),
+        other => panic!("{other:?} in a good run"),
+    };
+    events.iter().map(bare).collect()
+}
+
+#[test]
+fn pictures_and_motion_tell_the_same_percepts_and_doors_as_the_robot() {
+    for (name, plan) in plans().unwrap() {
+        for (seed, facing) in starts_of(&plan).into_iter().enumerate() {
+            let log = log(&plan, facing, seed as u64);
+            assert_eq!(bare(&log.derived()), bare(&log.told().events), "{name} from {facing:?}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn good_logs_of_random_plans_conform(seed in 0_u64..1000) {
+        let plan = Arc::new(random_plan_with(seed, 12).unwrap());
+        if let Some(&facing) = starts_of(&plan).first() {
+            let log = log(&plan, facing, seed);
+            let judgement = judged(&log.told(), &question(&plan, Some(facing)));
+            prop_assert_eq!(judgement.divergence, None);
+            prop_assert_eq!(bare(&log.derived()), bare(&log.told().events));
+        }
+    }
+}
+
+/// A change of one field of one event of a log, or of its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mutation {
+    Degree,
+    Marker,
+    Entry,
+    Form,
+    Door,
+    Number,
+    Dropped,
+    Repeated,
+    Swapped,
+    Earlier,
+    Later,
+    Within,
+}
+
+const MUTATIONS: [Mutation; 12] = [
+    Mutation::Degree,
+    Mutation::Marker,
+    Mutation::Entry,
+    Mutation::Form,
+    Mutation::Door,
+    Mutation::Number,
+    Mutation::Dropped,
+    Mutation::Repeated,
+    Mutation::Swapped,
+    Mutation::Earlier,
+    Mutation::Later,
+    Mutation::Within,
+];
+
+/// What is told of a mutated log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shows {
+    /// The event that is told, from 0.
+    At(usize),
+    /// Nothing, and why.
+    Never(&'static str),
+    /// There is no such mutation of this event.
+    NotOne,
+}
+
+impl Log {
+    /// Where the events are among the lines.
+    fn places(&self) -> Vec<usize> {
+        let is_event = |line: &Line| !matches!(line, Line::Scene(_));
+        (0..self.lines.len()).filter(|&place| is_event(&self.lines[place].1)).collect()
+    }
+
+    /// Mutates an event, and answers where that shows.
+    fn mutate(&mut self, event: usize, mutation: Mutation, by: u32) -> Shows {
+        use Mutation::*;
+        let places = self.places();
+        let (place, last) = (places[event], event + 1 == places.len());
+        let time = self.lines[place].0.time;
+        let before = event.checked_sub(1).map(|before| self.lines[places[before]].0.time);
+        match (mutation, &mut self.lines[place].1) {
+            (Degree, Line::Percept(percept)) => {
+                percept.degree = percept.degree % 3 + 1 + u32::from(percept.degree == 3 && by > 2);
+            }
+            (Marker, Line::Percept(percept)) => {
+                percept.marker = if percept.marker < 0 { (by % 3).cast_signed() } else { -1 };
+            }
+            (Entry, Line::Percept(percept)) => {
+                percept.entry += f64::from(1 + by % 3) * std::f64::consts::FRAC_PI_2;
+            }
+            (Form, Line::Percept(percept)) => {
+                let before = percept.form;
+                percept.form = [before[0], before[3], before[2], before[1]];
+                if percept.form == before {
+                    return Shows::NotOne;
+                }
+                let Some(Line::Door(door)) = places.get(event + 1).map(|&next| &self.lines[next].1)
+                else {
+                    return Shows::Never("no door is left by after the last percept");
+                };
+                return match door.door {
+                    0 => Shows::Never("the entry door is where it was"),
+                    // The door that is taken is no longer where the robot goes.
+                    _ => Shows::At(event + 1),
+                };
+            }
+            (Door, Line::Door(door)) => door.door = (door.door + 1 + by % 2) % 3,
+            (Number, Line::Percept(percept)) => percept.r#move ^= 1 + by,
+            (Number, Line::Door(door)) => door.r#move ^= 1 + by,
+            (Dropped, _) => {
+                self.lines.remove(place);
+            }
+            (Repeated, _) => {
+                let line = self.lines[place].clone();
+                self.lines.insert(place + 1, line);
+                return Shows::At(event + 1);
+            }
+            (Swapped | Later, _) if last => return Shows::NotOne,
+            (Swapped, _) => {
+                let next = places[event + 1];
+                let (one, other) = (self.lines[place].1.clone(), self.lines[next].1.clone());
+                (self.lines[place].1, self.lines[next].1) = (other, one);
+            }
+            (Earlier, _) => match before {
+                Some(before) if before < time => self.lines[place].0.time = before - 0.01,
+                _ => return Shows::NotOne,
+            },
+            (Later, _) => {
+                self.lines[place].0.time = self.lines[places[event + 1]].0.time + 0.01;
+                // It is the next one that is then too early.
+                return Shows::At(event + 1);
+            }
+            (Within, _) => {
+                let next =
+                    places.get(event + 1).map_or(time + 1.0, |&next| self.lines[next].0.time);
+                self.lines[place].0.time = f64::midpoint(time, next);
+                return Shows::Never("the time is still between those of its neighbours");
+            }
+            _ => return Shows::NotOne,
+        }
+        Shows::At(event)
+    }
+}
+
+/// At which event a log is told not to conform, from 0.
+fn told_at(log: &Log, moves: u32, question: &Question) -> Option<usize> {
+    let mut events = log.told();
+    events.ending.as_mut().unwrap().moves = moves;
+    match judge(events, question, &Quirks::default(), &()) {
+        Err(NotJudged::OutOfOrder(out)) => Some(out.event - 1),
+        Err(NotJudged::Empty) => Some(0),
+        Ok(judgement) => judgement.divergence.map(|divergence| divergence.event),
+    }
+}
+
+#[track_caller]
+fn mutation_is_told(
+    good: &Log,
+    plan: &FloorPlan,
+    facing: Dart,
+    event: usize,
+    how: (Mutation, u32),
+) {
+    let mut log = good.clone();
+    let expected = match log.mutate(event, how.0, how.1) {
+        Shows::At(event) => Some(event),
+        Shows::Never(_) => None,
+        Shows::NotOne => return,
+    };
+    let told = told_at(&log, good.moves(), &question(plan, Some(facing)));
+    assert_eq!(told, expected, "{how:?} of event {event}");
+}
+
+#[test]
+fn every_mutation_of_every_event_is_told_at_the_event_or_does_not_show() {
+    for (name, plan) in plans().unwrap().into_iter().take(3) {
+        println!("{name}");
+        let facing = starts_of(&plan)[0];
+        let good = log(&plan, facing, 1);
+        for event in 0..good.places().len() {
+            for mutation in MUTATIONS {
+                for by in 0..2 {
+                    mutation_is_told(&good, &plan, facing, event, (mutation, by));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let facing = starts_of(&plan)[0];
+    let good = log(&plan, facing, 1);
+    let question = question(&plan, Some(facing));
+    let end = good.places().len();
+    assert_eq!(told_at(&good, good.moves() + 1, &question), Some(end));
+    let mut events = good.told();
+    events.map = Some((vec![2], vec![1, 0]));
+    let divergence = judged(&events, &question).divergence.unwrap();
+    assert_eq!((divergence.event, divergence.cause), (end, Cause::Map));
+}
+
+#[test]
+fn half_a_run_is_incomplete_and_one_that_says_that_it_is_whole_diverges() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let facing = starts_of(&plan)[0];
+    let good = log(&plan, facing, 1).told();
+    let question = question(&plan, Some(facing));
+    let half = good.up_to(4);
+    assert_eq!(judged(&half, &question).verdict(), Verdict::Incomplete);
+    let ending = Ending { moves: 2, ..good.ending.clone().unwrap() };
+    let whole = Events { ending: Some(ending), ..half };
+    let divergence = judged(&whole, &question).divergence.unwrap();
+    assert!(matches!(divergence.cause, Cause::Unfinished { .. }), "{divergence:?}");
+}
+
+#[test]
+fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
+    // In shape 8 every junction has a door 1.
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-8").unwrap();
+    let graph = plan.graph();
+    let facing = starts_of(&plan)[0];
+    let told = [1; 8].map(Door);
+    let walk = |made: &[Door]| {
+        let mut world = GraphWorld::new(graph, facing);
+        let mut kinds = vec![world.sensed()];
+        for &door in made {
+            toposlam_model::world::World::traverse(&mut world, door).unwrap();
+            kinds.push(world.sensed());
+        }
+        kinds
+    };
+    let events = |percepts: &[Percept]| {
+        let mut telling = Telling::default();
+        for (moves, percept) in percepts.iter().enumerate() {
+            let marker = match percept.sighting {
+                Sighting::Pointing(door) => door.0.cast_signed(),
+                _ => -1,
+            };
+            let (r#move, entry) = (moves as u32, f64::NAN);
+            let degree = percept.degree;
+            let percept = messages::Percept { r#move, degree, marker, entry, ..Default::default() };
+            telling.perceived(Source::default(), &percept);
+            if let Some(door) = told.get(moves) {
+                let door =
+                    messages::Door { r#move: r#move + 1, door: door.0, ..Default::default() };
+                telling.left(Source::default(), &door);
+            }
+        }
+        Events { events: telling.finish(), ..Events::default() }
+    };
+    let question = Question { driver: Driver::Anyone, ..question(&plan, Some(facing)) };
+    let right = walk(&told);
+    assert_eq!(judged(&events(&right), &question).divergence, None);
+    // One percept is false.
+    let mut false_percept = right.clone();
+    false_percept[3].degree = 5;
+    let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
+    assert_eq!((divergence.event, divergence.culprit), (6, Culprit::Perception));
+    // One door was not the one that was told; everything after it is of another place.
+    let mut made = told;
+    made[2] = Door(0);
+    let elsewhere = walk(&made);
+    let divergence = judged(&events(&elsewhere), &question).divergence.unwrap();
+    assert_eq!(divergence.culprit, Culprit::Motion);
+}
+
+#[test]
+fn a_quirk_is_tolerated_and_counted() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let facing = starts_of(&plan)[0];
+    let mut log = log(&plan, facing, 1);
+    let moves = log.moves();
+    let percept = log.places().len() - 1;
+    assert_eq!(log.mutate(percept, Mutation::Marker, 0), Shows::At(percept));
+    let question = question(&plan, Some(facing));
+    assert_eq!(told_at(&log, moves, &question), Some(percept));
+    let text = "[[quirk]]\nname = \"glare\"\ncause = \"percept\"\nreason = \"the window\"";
+    let quirks = Quirks::read(text).unwrap();
+    let judgement = judge(log.told(), &question, &quirks, &()).unwrap();
+    assert_eq!((judgement.verdict(), judgement.tolerated.len()), (Verdict::Conforms, 1));
+    let elsewhere = Quirks::read(&format!("{text}\nevent = 1")).unwrap();
+    let judgement = judge(log.told(), &question, &elsewhere, &()).unwrap();
+    assert_eq!(judgement.verdict(), Verdict::Diverged);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_mutation_of_a_run_in_a_random_plan_is_told(
+        seed in 0_u64..1000,
+        event in any::<prop::sample::Index>(),
+        mutation in prop::sample::select(MUTATIONS.to_vec()),
+        by in 0_u32..3,
+    ) {
+        let plan = Arc::new(random_plan_with(seed, 8).unwrap());
+        if let Some(&facing) = starts_of(&plan).first() {
+            let good = log(&plan, facing, seed);
+            let event = event.index(good.places().len());
+            mutation_is_told(&good, &plan, facing, event, (mutation, by));
+        }
+    }
+
+    #[test]
+    fn a_shorter_log_diverges_in_the_same_way(
+        seed in 0_u64..1000,
+        event in any::<prop::sample::Index>(),
+        mutation in prop::sample::select(MUTATIONS.to_vec()),
+    ) {
+        let plan = Arc::new(random_plan_with(seed, 8).unwrap());
+        let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
+        let mut log = log(&plan, facing, seed);
+        let event = event.index(log.places().len());
+        log.mutate(event, mutation, 1);
+        let question = question(&plan, Some(facing));
+        let Ok(judgement) = judge(log.told(), &question, &Quirks::default(), &()) else {
+            return Ok(());
+        };
+        if let Some(short) = shorter(&judgement, &question, &()) {
+            let divergence = judgement.divergence.unwrap();
+            prop_assert!(short.events.len() <= divergence.event + 2);
+            let found = judged(&short, &question).divergence.unwrap();
+            prop_assert_eq!(found.cause.name(), divergence.cause.name());
+            prop_assert_eq!(found.culprit, divergence.culprit);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! What makes a type a message of ROS 2: its name, and definitions from which any reader can read it.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::messages::Own;
+
+/// A message that a log can hold.
+pub trait Message: Serialize {
+    /// Its type, as ROS 2 names it.
+    const TYPE: &'static str;
+    /// Its definition.
+    const DEFINITION: &'static str;
+    /// The types that it uses, and those that they use.
+    const USES: &'static [Definition];
+}
+
+/// A type and its definition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// Its name, as definitions refer to it: `PACKAGE/TYPE`.
+    pub name: &'static str,
+    /// Its definition.
+    pub text: &'static str,
+}
+
+/// The definition of a published type.
+macro_rules! definition {
+    ($package:literal, $name:literal) => {
+        $crate::log::message::Definition {
+            name: concat!($package, "/", $name),
+            text: include_str!(concat!("../../msgs/", $package, "/msg/", $name, ".msg")),
+        }
+    };
+}
+pub(super) use definition;
+
+/// A time, which nearly every message tells.
+pub(super) const TIME: Definition = definition!("builtin_interfaces", "Time");
+
+/// The project's messages are made of numbers, words and a time.
+impl<M: Own> Message for M {
+    const TYPE: &'static str = M::TYPE;
+    const DEFINITION: &'static str = M::DEFINITION;
+    const USES: &'static [Definition] = &[TIME];
+}
+
+/// All that a reader needs to know of a message, as the encoding `ros2msg` of MCAP has it: its
+/// definition, and those of the types that it uses.
+#[must_use]
+pub fn schema<M: Message>() -> String {
+    let mut text = M::DEFINITION.to_owned();
+    for Definition { name, text: used } in M::USES {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{:=<80}\nMSG: {name}\n{used}", "");
+    }
+    text
+}

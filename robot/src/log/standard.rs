@@ -1,0 +1,304 @@
+//! The messages of ROS 2 that a log holds: pictures, commands to the wheels, odometry and the frames
+//! that it relates. Their fields stand in the order of their definitions, which are in `robot/msgs`.
+//!
+//! x ahead, y to the left, metres, radians counter-clockwise (REP 103); the robot, `base_link`, moves in
+//! the frame `odom` (REP 105).
+
+use serde::{Serialize, Serializer};
+use toposlam_model::driving::odometry;
+
+use super::{
+    message::{Definition, Message, TIME, definition},
+    messages::Stamp,
+};
+
+/// The frame of odometry.
+pub const ODOM: &str = "odom";
+/// The frame of the robot.
+pub const BASE: &str = "base_link";
+/// The frame of the camera.
+pub const CAMERA: &str = "camera";
+
+const HEADER: Definition = definition!("std_msgs", "Header");
+const VECTOR: Definition = definition!("geometry_msgs", "Vector3");
+const POINT: Definition = definition!("geometry_msgs", "Point");
+const QUATERNION: Definition = definition!("geometry_msgs", "Quaternion");
+const TWIST: Definition = definition!("geometry_msgs", "Twist");
+
+/// When, and in which frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Header {
+    /// When it was so.
+    pub stamp: Stamp,
+    /// The frame in which it is so.
+    pub frame_id: &'static str,
+}
+
+/// The file of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CompressedImage<'a> {
+    /// When it was taken, by what.
+    pub header: Header,
+    /// `jpeg` or `png`.
+    pub format: &'static str,
+    /// The file.
+    #[serde(serialize_with = "bytes")]
+    pub data: &'a [u8],
+}
+
+impl Message for CompressedImage<'_> {
+    const TYPE: &'static str = "sensor_msgs/msg/CompressedImage";
+    const DEFINITION: &'static str = definition!("sensor_msgs", "CompressedImage").text;
+    const USES: &'static [Definition] = &[HEADER, TIME];
+}
+
+impl<'a> CompressedImage<'a> {
+    /// A picture; its format is told by its first bytes, and is empty where they are of no known one.
+    #[must_use]
+    pub fn new(taken: Stamp, data: &'a [u8]) -> Self {
+        let format = match data {
+            [0xff, 0xd8, 0xff, ..] => "jpeg",
+            [0x89, b'P', b'N', b'G', ..] => "png",
+            _ => "",
+        };
+        Self { header: Header { stamp: taken, frame_id: CAMERA }, format, data }
+    }
+}
+
+/// Bytes as one piece, not one by one.
+fn bytes<S: Serializer>(data: &&[u8], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_bytes(data)
+}
+
+/// A vector, or a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Vector3 {
+    /// Ahead.
+    pub x: f64,
+    /// To the left.
+    pub y: f64,
+    /// Up.
+    pub z: f64,
+}
+
+/// A rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Quaternion {
+    /// About ahead.
+    pub x: f64,
+    /// About left.
+    pub y: f64,
+    /// About up.
+    pub z: f64,
+    /// The real part.
+    pub w: f64,
+}
+
+impl Quaternion {
+    /// A turn on the spot, counter-clockwise.
+    #[must_use]
+    pub fn turn(angle: f64) -> Self {
+        let (sine, cosine) = (angle / 2.0).sin_cos();
+        Self { x: 0.0, y: 0.0, z: sine, w: cosine }
+    }
+}
+
+/// How fast something moves and turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Twist {
+    /// Metres a second.
+    pub linear: Vector3,
+    /// Radians a second.
+    pub angular: Vector3,
+}
+
+impl Message for Twist {
+    const TYPE: &'static str = "geometry_msgs/msg/Twist";
+    const DEFINITION: &'static str = TWIST.text;
+    const USES: &'static [Definition] = &[VECTOR];
+}
+
+impl Twist {
+    /// So fast ahead, and turning so fast.
+    #[must_use]
+    pub fn new(speed: f64, turning: f64) -> Self {
+        let linear = Vector3 { x: speed, ..Vector3::default() };
+        Self { linear, angular: Vector3 { z: turning, ..Vector3::default() } }
+    }
+}
+
+/// How sure one is of six numbers, pair by pair; nothing but zeros: nobody knows.
+pub type Covariance = [[f64; 6]; 6];
+
+/// Where something is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pose {
+    /// Its place.
+    pub position: Vector3,
+    /// Where it looks.
+    pub orientation: Quaternion,
+}
+
+/// Where something is, and how sure that is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PoseWithCovariance {
+    /// Where.
+    pub pose: Pose,
+    /// How sure.
+    pub covariance: Covariance,
+}
+
+/// How fast something moves, and how sure that is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TwistWithCovariance {
+    /// How fast.
+    pub twist: Twist,
+    /// How sure.
+    pub covariance: Covariance,
+}
+
+/// Where the robot is by its wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Odometry {
+    /// When, in which frame.
+    pub header: Header,
+    /// The frame that is there, and in which the twist is.
+    pub child_frame_id: &'static str,
+    /// Where it is.
+    pub pose: PoseWithCovariance,
+    /// How fast it moves.
+    pub twist: TwistWithCovariance,
+}
+
+impl Message for Odometry {
+    const TYPE: &'static str = "nav_msgs/msg/Odometry";
+    const DEFINITION: &'static str = definition!("nav_msgs", "Odometry").text;
+    const USES: &'static [Definition] = &[
+        HEADER,
+        TIME,
+        definition!("geometry_msgs", "PoseWithCovariance"),
+        definition!("geometry_msgs", "Pose"),
+        POINT,
+        QUATERNION,
+        definition!("geometry_msgs", "TwistWithCovariance"),
+        TWIST,
+        VECTOR,
+    ];
+}
+
+impl Odometry {
+    /// The robot was there by its wheels, and moved so fast.
+    #[must_use]
+    pub fn new(stamp: Stamp, at: &odometry::Odometry, twist: Twist) -> Self {
+        let [x, y] = at.position;
+        let position = Vector3 { x, y, z: 0.0 };
+        let pose = Pose { position, orientation: Quaternion::turn(at.heading) };
+        let covariance = Covariance::default();
+        Self {
+            header: Header { stamp, frame_id: ODOM },
+            child_frame_id: BASE,
+            pose: PoseWithCovariance { pose, covariance },
+            twist: TwistWithCovariance { twist, covariance },
+        }
+    }
+
+    /// The same, as the frame of the robot in that of odometry.
+    #[must_use]
+    pub fn transform(&self) -> TransformStamped {
+        let Pose { position, orientation } = self.pose.pose;
+        TransformStamped {
+            header: self.header,
+            child_frame_id: self.child_frame_id,
+            transform: Transform { translation: position, rotation: orientation },
+        }
+    }
+}
+
+/// Where one frame is in another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Transform {
+    /// Where its origin is.
+    pub translation: Vector3,
+    /// How it is turned.
+    pub rotation: Quaternion,
+}
+
+/// Where one frame is in another, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TransformStamped {
+    /// When, in which frame.
+    pub header: Header,
+    /// Which frame.
+    pub child_frame_id: &'static str,
+    /// Where it is.
+    pub transform: Transform,
+}
+
+/// Where frames are in each other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TFMessage<'a> {
+    /// Each of them.
+    pub transforms: &'a [TransformStamped],
+}
+
+impl Message for TFMessage<'_> {
+    const TYPE: &'static str = "tf2_msgs/msg/TFMessage";
+    const DEFINITION: &'static str = definition!("tf2_msgs", "TFMessage").text;
+    const USES: &'static [Definition] = &[
+        definition!("geometry_msgs", "TransformStamped"),
+        HEADER,
+        TIME,
+        definition!("geometry_msgs", "Transform"),
+        VECTOR,
+        QUATERNION,
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::log::message::schema;
+
+    #[test]
+    fn a_picture_tells_its_format_by_its_first_bytes() {
+        let format = |bytes| CompressedImage::new(Stamp::default(), bytes).format;
+        assert_eq!(format(&[0xff, 0xd8, 0xff, 0xe0]), "jpeg");
+        assert_eq!(format(b"\x89PNG\r\n"), "png");
+        assert_eq!((format(b""), format(b"GIF89a")), ("", ""));
+    }
+
+    #[test]
+    fn a_half_turn_is_all_about_up() {
+        let Quaternion { x, y, z, w } = Quaternion::turn(PI);
+        assert_eq!((x, y), (0.0, 0.0));
+        assert!((z - 1.0).abs() < 1e-12 && w.abs() < 1e-12, "{z} {w}");
+    }
+
+    /// A type that is neither a number nor a word is defined in the same schema.
+    fn closed<M: Message>() {
+        let text = schema::<M>();
+        let defined: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("MSG: ")).collect();
+        let mut used = Vec::new();
+        for line in text.lines().filter(|line| !line.starts_with(['#', '=', 'M'])) {
+            let kind = line.split([' ', '[']).next().unwrap_or_default();
+            if kind.contains('/') && !used.contains(&kind) {
+                used.push(kind);
+            }
+        }
+        used.sort_unstable();
+        let mut sorted = defined.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, used, "{text}");
+    }
+
+    #[test]
+    fn every_definition_comes_with_those_that_it_uses_and_no_others() {
+        closed::<CompressedImage>();
+        closed::<Twist>();
+        closed::<Odometry>();
+        closed::<TFMessage>();
+        closed::<crate::log::messages::Percept>();
+    }
+}

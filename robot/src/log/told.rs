@@ -1,0 +1,221 @@
+//! What sensing, driving and mapping tell, as messages.
+
+use toposlam_model::{
+    driving::{
+        algorithm2::{self, Standing, State},
+        scene::{
+            self, CentreLine, HallwayView, JunctionView, MarkerView, Place, Reason, Status, Unclear,
+        },
+    },
+    embedded_graph::{Dart, Vertex},
+    mapping::{Event, Journey},
+    percept::{Door, Sighting},
+};
+
+use super::messages::{Command, Hypothesis, Map, Percept, Scene, Stamp};
+
+/// Stands for none.
+const NONE: i32 = -1;
+
+/// A time, in nanoseconds since the robot was switched on.
+pub(super) fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * 1e9).round() as u64
+}
+
+/// The same, as messages tell it.
+pub(super) fn stamp(nanoseconds: u64) -> Stamp {
+    const SECOND: u64 = 1_000_000_000;
+    let sec = i32::try_from(nanoseconds / SECOND).unwrap_or(i32::MAX);
+    Stamp { sec, nanosec: (nanoseconds % SECOND) as u32 }
+}
+
+/// A number of a dart, a door or a vertex.
+fn number(number: u32) -> i32 {
+    i32::try_from(number).unwrap_or(i32::MAX)
+}
+
+/// How many, as messages count.
+pub(super) fn count(count: u64) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+/// What sensing told of a picture that was taken then.
+pub(super) fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
+    let mut told = Scene { stamp, marker_door: NONE, ..Scene::default() };
+    match &scene.place {
+        Place::Hallway(hallway) => {
+            "hallway".clone_into(&mut told.place);
+            told.status = match hallway.status {
+                Status::Clear => "clear".to_owned(),
+                Status::Unclear(why) => why.to_string(),
+            };
+            (told.heading, told.left, told.right) = (hallway.heading, hallway.left, hallway.right);
+            told.confidence = hallway.confidence;
+        }
+        Place::Junction(junction) => {
+            "junction".clone_into(&mut told.place);
+            told.doors = junction.doors.iter().map(|door| door.direction).collect();
+            told.turning_point = junction.turning_point;
+            told.confidence = junction.confidence;
+        }
+        Place::Unknown(reason) => {
+            "unknown".clone_into(&mut told.place);
+            told.reason = reason.to_string();
+        }
+    }
+    if let Some(marker) = &scene.marker {
+        told.marker = true;
+        (told.marker_position, told.marker_axis) = (marker.position, marker.axis);
+        told.marker_door = marker.door.map_or(NONE, |door| number(door.0));
+    }
+    told
+}
+
+/// The scene that a message tells; `None` where there is no such scene.
+pub(crate) fn scene_of(told: &Scene) -> Option<scene::Scene> {
+    let place = match told.place.as_str() {
+        "hallway" => Place::Hallway(HallwayView {
+            heading: told.heading,
+            left: told.left,
+            right: told.right,
+            status: match told.status.as_str() {
+                "clear" => Status::Clear,
+                why => Status::Unclear(UNCLEAR.into_iter().find(|one| one.to_string() == why)?),
+            },
+            confidence: told.confidence,
+        }),
+        "junction" => {
+            let through = told.turning_point;
+            let line = |&direction| CentreLine { through, direction };
+            Place::Junction(JunctionView {
+                doors: told.doors.iter().map(line).collect(),
+                turning_point: through,
+                confidence: told.confidence,
+            })
+        }
+        "unknown" => {
+            Place::Unknown(REASONS.into_iter().find(|one| one.to_string() == told.reason)?)
+        }
+        _ => return None,
+    };
+    let marker = told.marker.then(|| MarkerView {
+        position: told.marker_position,
+        axis: told.marker_axis,
+        door: u32::try_from(told.marker_door).ok().map(Door),
+    });
+    Some(scene::Scene { place, marker })
+}
+
+const UNCLEAR: [Unclear; 3] =
+    [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind];
+const REASONS: [Reason; 4] =
+    [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
+
+/// What Algorithm 2 answered.
+pub(super) fn command(stamp: Stamp, state: State, command: algorithm2::Command) -> Command {
+    let state = match state {
+        State::Leaving => "leaving",
+        State::Hallway => "hallway",
+        State::Junction => "junction",
+        State::Unknown => "unknown",
+    };
+    let algorithm2::Command { turn, forward } = command;
+    Command { stamp, state: state.to_owned(), turn, forward }
+}
+
+/// Where the robot stands.
+pub(super) fn percept(stamp: Stamp, moves: u64, at: &Standing) -> Percept {
+    let marker = match at.percept.sighting {
+        Sighting::Pointing(door) => number(door.0),
+        _ => NONE,
+    };
+    let degree = at.percept.degree;
+    Percept { stamp, r#move: count(moves), degree, marker, form: at.form.0, entry: at.entry }
+}
+
+/// A step of Algorithm 1; moves are told by [`Percept`].
+pub(super) fn hypothesis(stamp: Stamp, journey: &Journey, event: Event) -> Option<Hypothesis> {
+    let told = |step: &str, dart: Option<Dart>| Hypothesis {
+        stamp,
+        r#move: count(journey.moves()),
+        step: step.to_owned(),
+        dart: dart.map_or(NONE, |Dart(dart)| number(dart)),
+        other: NONE,
+        ..Hypothesis::default()
+    };
+    Some(match event {
+        Event::Started { .. } => told("started", None),
+        Event::Arrived { edge, contradicted, hypotheses, .. } => Hypothesis {
+            contradicted: count(contradicted as u64),
+            hypotheses: count(hypotheses as u64),
+            ..told("arrived", Some(edge))
+        },
+        Event::Rejected { hypothesis, followed, .. } => {
+            Hypothesis { followed, ..told("rejected", Some(hypothesis)) }
+        }
+        Event::Confirmed { hypothesis, followed } => {
+            Hypothesis { followed, ..told("confirmed", Some(hypothesis)) }
+        }
+        Event::LoopClosed { edge, other: Dart(other) } => {
+            Hypothesis { other: number(other), ..told("loop-closed", Some(edge)) }
+        }
+        Event::VertexAdded { edge, vertex: Vertex(vertex) } => {
+            Hypothesis { other: number(vertex), ..told("vertex-added", Some(edge)) }
+        }
+        Event::Moved { .. } | Event::Movable(_) => return None,
+    })
+}
+
+/// The map, where an event made it grow.
+pub(super) fn map(stamp: Stamp, journey: &Journey, event: Event) -> Option<Map> {
+    let grown = matches!(
+        event,
+        Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. }
+    );
+    let map = journey.map();
+    let darts = map.vertices().flat_map(|vertex| map.darts_of(vertex));
+    grown.then(|| Map {
+        stamp,
+        r#move: count(journey.moves()),
+        degrees: map.vertices().map(|vertex| map.degree(vertex)).collect(),
+        opposite: darts
+            .map(|dart| map.opposite(dart).map_or(NONE, |Dart(far)| number(far)))
+            .collect(),
+        robot: journey.robot().0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_was_told_is_the_same_scene() {
+        let line = |direction| CentreLine { through: [0.5, 0.1], direction };
+        let hallway = |status| {
+            Place::Hallway(HallwayView {
+                heading: 0.1,
+                left: 0.7,
+                right: 0.9,
+                status,
+                confidence: 0.5,
+            })
+        };
+        let junction = JunctionView {
+            doors: vec![line(3.0), line(1.4)],
+            turning_point: [0.5, 0.1],
+            confidence: 0.8,
+        };
+        let places = UNCLEAR.map(|why| hallway(Status::Unclear(why))).into_iter();
+        let places = places.chain(REASONS.map(Place::Unknown));
+        let places = places.chain([hallway(Status::Clear), Place::Junction(junction)]);
+        let marker = |door| MarkerView { position: [0.4, 0.0], axis: 0.2, door };
+        for place in places {
+            for marker in [None, Some(marker(None)), Some(marker(Some(Door(1))))] {
+                let seen = scene::Scene { place: place.clone(), marker };
+                assert_eq!(scene_of(&scene(Stamp::default(), &seen)), Some(seen));
+            }
+        }
+        assert_eq!(scene_of(&Scene::default()), None);
+    }
+}

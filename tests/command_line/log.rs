@@ -1,0 +1,242 @@
+//! `toposlam simulate --log`: what is in a log, by readers in Python that share nothing with its writer;
+//! and what is left of one whose writer was killed.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use mcap::{MessageStream, Summary, read::Options};
+use serde_json::Value;
+
+use crate::{folder, objects, read_world, run, said, stderr, stdout};
+
+const SHAPE_6: &str = "worlds/shape-6.toml";
+
+/// Simulates shape 6 and writes a log; what is said of the run.
+fn logged(log: &Path, arguments: &[&str]) -> Value {
+    let log = log.to_str().unwrap();
+    let simulate = ["simulate", SHAPE_6, "--seed", "3", "--json", "--log", log];
+    objects(&said([&simulate[..], arguments].concat())).remove(0)
+}
+
+/// What Python reads in a log; `None`, and why, where it has no readers of logs.
+fn by_python(log: &Path) -> Option<Value> {
+    let python = |arguments: &[&str]| {
+        let mut command = Command::new("python3");
+        command.current_dir(env!("CARGO_MANIFEST_DIR")).arg("-B").args(arguments).output()
+    };
+    let readers = "import mcap, mcap_ros2, rosbags";
+    if !python(&["-c", readers]).is_ok_and(|output| output.status.success()) {
+        let required = std::env::var("TOPOSLAM_PYTHON_LOGS").is_ok_and(|value| value == "required");
+        assert!(!required, "there is no python3 with rosbags, mcap and mcap-ros2-support");
+        eprintln!("skipped: there is no python3 with rosbags, mcap and mcap-ros2-support");
+        return None;
+    }
+    let output = python(&["tests/oracle/read_log.py", log.to_str().unwrap()]).unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    Some(serde_json::from_slice(&output.stdout).unwrap())
+}
+
+/// What Python must find in the log of any run on shape 6 that maps it.
+fn agree(told: &Value, line: &Value) {
+    assert_eq!(told["in_order"], true);
+    let count = |topic: &str| told["counts"][topic].as_u64().unwrap_or_default();
+    let moves = line["moves"].as_u64().unwrap();
+    assert_eq!(count("/toposlam/scene"), line["frames"].as_u64().unwrap());
+    assert_eq!((count("/toposlam/door"), count("/toposlam/percept")), (moves, moves + 1));
+    assert_eq!((count("/toposlam/run"), count("/toposlam/end")), (1, 1));
+    assert_eq!(count("/odom"), count("/tf"));
+    // At least four samples a second of driving, which is most of the time.
+    let seconds = line["simulated_seconds"].as_f64().unwrap();
+    assert!(count("/odom") as f64 > 3.0 * seconds && count("/odom") > count("/cmd_vel"), "{told}");
+    assert_eq!(told["run"]["start"], line["start"]);
+    assert_eq!((&told["run"]["seed"], &told["run"]["marker"]), (&3.into(), &"directional".into()));
+    let end = serde_json::json!({"moves": moves, "ending": "mapped", "cause": ""});
+    assert_eq!(told["end"], end);
+    // The degrees of an L, a T, three Ls and a dead end, as the robot comes upon them.
+    let degrees = serde_json::json!([2, 3, 2, 2, 2, 1]);
+    assert_eq!(told["map"]["degrees"], degrees);
+    let opposite: Vec<usize> = serde_json::from_value(told["map"]["opposite"].clone()).unwrap();
+    assert!((0..12).all(|dart| opposite[opposite[dart]] == dart), "{opposite:?}");
+    let percepts = told["percepts"].as_array().unwrap();
+    assert_eq!(percepts[0], serde_json::json!([0, 2, 0, [true, false, false, true]]));
+    assert!(percepts.iter().enumerate().all(|(moves, percept)| percept[0] == moves));
+    assert!(percepts.iter().all(|percept| {
+        let doors = percept[3].as_array().unwrap().iter().filter(|&door| door == true);
+        percept[1] == doors.count()
+    }));
+    assert_eq!(told["frames"], serde_json::json!(["odom", "base_link"]));
+    assert_eq!(told["first_odometry"], serde_json::json!([0, 0.0, 0.0]));
+    let last = told["last_odometry"][0].as_f64().unwrap() / 1e9;
+    assert!((last - seconds).abs() < 1e-3, "{last} {seconds}");
+    let turn: Vec<f64> = serde_json::from_value(told["orientation"].clone()).unwrap();
+    assert!((turn.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-9, "{turn:?}");
+    assert_eq!(told["last_cmd_vel"], serde_json::json!([0.0, 0.0]));
+    for (kind, same) in told["standard_types_are_those_of_ros_2"].as_object().unwrap() {
+        assert_eq!(same, true, "{kind}");
+    }
+}
+
+fn log_in(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name).with_extension("mcap")
+}
+
+// paper: exp.simulated
+#[test]
+fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
+    let folder = folder("log");
+    let [one, other] = ["one", "other"].map(|name| log_in(&folder, name));
+    let line = logged(&one, &["--by-scene"]);
+    logged(&other, &["--by-scene"]);
+    assert_eq!(fs::read(&one).unwrap(), fs::read(&other).unwrap(), "the same bytes each time");
+    if let Some(told) = by_python(&one) {
+        agree(&told, &line);
+        assert_eq!(told["images"], serde_json::json!({}), "there are no pictures");
+        assert_eq!(told["run"]["calibration"], "");
+        assert_eq!(
+            told["run"]["command"],
+            "toposlam simulate worlds/shape-6.toml --seed 3 --by-scene"
+        );
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+// paper: exp.simulated
+#[test]
+fn a_log_holds_the_pictures_as_the_camera_gave_them() {
+    let folder = folder("log_pictures");
+    let [log, html] = [log_in(&folder, "run"), folder.join("run.html")];
+    let line = logged(&log, &["--effects", "none", "--html", html.to_str().unwrap()]);
+    if let Some(told) = by_python(&log) {
+        agree(&told, &line);
+        let (image, annotated) = ("/camera/image/compressed", "/camera/annotated/compressed");
+        for topic in [image, annotated] {
+            assert_eq!(told["counts"][topic], line["frames"]);
+        }
+        // Without effects the camera gives PNG; the first is taken at once.
+        assert_eq!(told["images"][image], serde_json::json!(["png", 0, 640, 480]));
+        assert_eq!(told["images"][annotated], serde_json::json!(["jpeg", 0, 640, 480]));
+        assert!(told["run"]["calibration"].as_str().unwrap().starts_with("[camera]\nkind = "));
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// The number of messages that can be read, and the topic of the last.
+fn readable(file: &[u8]) -> (usize, String) {
+    let messages = MessageStream::new_with_options(file, Options::IgnoreEndMagic.into()).unwrap();
+    let mut last = String::new();
+    let whole =
+        messages.map_while(Result::ok).inspect(|message| last.clone_from(&message.channel.topic));
+    (whole.count(), last)
+}
+
+#[test]
+fn a_log_whose_writer_was_killed_is_read_up_to_its_last_whole_chunk() {
+    let folder = folder("log_killed");
+    let log = log_in(&folder, "run");
+    logged(&log, &["--by-scene"]);
+    let file = fs::read(&log).unwrap();
+    let summary = Summary::read(&file).unwrap().unwrap();
+    let messages = summary.stats.unwrap().message_count as usize;
+    assert_eq!(readable(&file), (messages, "/toposlam/end".to_owned()));
+    // The head has a chunk of its own; the others are of ten seconds each.
+    let ends: Vec<_> = summary
+        .chunk_indexes
+        .iter()
+        .map(|chunk| (chunk.chunk_start_offset + chunk.chunk_length) as usize)
+        .collect();
+    assert!(ends.len() > 20, "{ends:?}");
+    assert_eq!(readable(&file[..ends[0]]), (1, "/toposlam/run".to_owned()));
+    let mut before = 0;
+    for end in ends {
+        assert_eq!(readable(&file[..end - 1]).0, before, "up to {}", end - 1);
+        let now = readable(&file[..end]).0;
+        assert!(now > before && (now < messages || end + 1000 > before));
+        before = now;
+    }
+    assert_eq!(before, messages);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_run_that_cannot_begin_leaves_no_log() {
+    let folder = folder("log_bad");
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    for (log, more, cause) in [
+        ("run.bag", "--by-scene", "the name must end in .mcap"),
+        ("nowhere/run.mcap", "--by-scene", "there is no folder"),
+        ("run.mcap", "--start=tee:sw", "the start, tee, is a T"),
+        ("run.mcap", "--calibration=missing.toml", "missing.toml: cannot be read"),
+    ] {
+        let output = run(["simulate", SHAPE_6, more, "--log", &path(log)]);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.starts_with("error: ") && message.contains(cause), "{message}");
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// A device that is always full.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_ends_the_run() {
+    let output = run(["simulate", SHAPE_6, "--by-scene", "--json", "--log", "/dev/full"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.starts_with("error: /dev/full: cannot be written: No space"), "{message}");
+    assert!(output.stdout.is_empty(), "{}", stdout(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn the_log_of_an_interrupted_run_ends_with_that() {
+    use std::process::Stdio;
+
+    let folder = folder("log_interrupted");
+    let log = log_in(&folder, "run");
+    let mut robot = crate::toposlam();
+    // Far too long to end by itself.
+    robot.args(["simulate", "worlds/building-25.toml", "--start", "north-west:west-upper"]);
+    robot.arg("--log").arg(&log).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut robot = robot.spawn().unwrap();
+    // Its head is written when it sets out.
+    while fs::metadata(&log).map_or(0, |file| file.len()) < 1000 {
+        assert!(robot.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let killed = Command::new("kill").args(["-INT", &robot.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(robot.wait().unwrap().code(), Some(3));
+    let file = fs::read(&log).unwrap();
+    assert!(Summary::read(&file).unwrap().is_some(), "the log is whole");
+    let last = MessageStream::new(&file).unwrap().map(Result::unwrap).last().unwrap();
+    assert_eq!(last.channel.topic, "/toposlam/end");
+    assert!(String::from_utf8_lossy(&last.data).contains("stopped\0"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_start_of_a_log_is_known_by_its_hash_whatever_its_names() {
+    let folder = folder("log_hash");
+    let hash = |arguments: &[&str]| {
+        let log = log_in(&folder, "run");
+        let simulate = ["simulate", "--by-scene", "--json", "--log", log.to_str().unwrap()];
+        said([&simulate[..], arguments].concat());
+        let file = fs::read(&log).unwrap();
+        let summary = Summary::read(&file).unwrap().unwrap();
+        mcap::read::metadata(&file, &summary.metadata_indexes[0]).unwrap().metadata["world_hash"]
+            .clone()
+    };
+    let renamed = folder.join("renamed.toml");
+    let text = fs::read_to_string(SHAPE_6).unwrap();
+    fs::write(&renamed, text.replace("corner", "x").replace("tee", "y")).unwrap();
+    assert_eq!(read_world(&renamed).graph.edge_count(), 6);
+    let shape = hash(&[SHAPE_6]);
+    assert!(shape.len() == 64 && shape.bytes().all(|digit| digit.is_ascii_hexdigit()), "{shape}");
+    assert_eq!(hash(&[renamed.to_str().unwrap()]), shape);
+    assert_ne!(hash(&["worlds/shape-8.toml"]), shape);
+    fs::remove_dir_all(folder).unwrap();
+}
