@@ -11,6 +11,7 @@ mod draw;
 mod evaluate;
 mod explore;
 mod help;
+mod info;
 mod log;
 mod proofs;
 mod render;

@@ -8,13 +8,21 @@ use super::{container::MOST_GROWTH, decode::DecodeError};
 
 /// Why a log cannot be read, or not any further.
 #[derive(Debug, Error)]
-#[error("byte {offset}: {cause}")]
+#[error("{}{cause}", place(*.offset, .cause))]
 pub struct LogError {
     /// Where in the file: at which record, or at which chunk; the first byte is 0.
     pub offset: u64,
     /// What is wrong.
     #[source]
     pub cause: Cause,
+}
+
+/// A file that cannot be read cannot be so at any byte.
+fn place(offset: u64, cause: &Cause) -> String {
+    match cause {
+        Cause::Unreadable(_) => String::new(),
+        _ => format!("byte {offset}: "),
+    }
 }
 
 /// What is wrong at a byte of a log.

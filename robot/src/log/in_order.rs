@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    container::Record,
+    container::{Record, Section},
     error::{Cause, LogError},
     reading::Log,
 };
@@ -190,7 +190,7 @@ impl<'l> Messages<'l> {
             let others = held.filter(|(_, held)| held.bytes.is_some() && held.asked != last);
             let Some((index, held)) = others.min_by_key(|(_, held)| held.asked) else { return };
             held.bytes = None;
-            self.held_bytes -= self.log.sections.get(*index).map_or(0, |section| section.size());
+            self.held_bytes -= self.log.sections.get(*index).map_or(0, Section::size);
         }
     }
 }

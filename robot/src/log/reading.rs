@@ -66,7 +66,7 @@ impl Log {
                 look_through(section, format, &source, &mut topics)?;
             }
         }
-        let Topics { topics, connections, .. } = topics;
+        let Topics { list: topics, connections, .. } = topics;
         let mut log = Self {
             source,
             format,

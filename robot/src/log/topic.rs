@@ -65,7 +65,7 @@ impl Topic {
 /// The topics of a log, as its records tell them one by one. What is told again is passed over.
 #[derive(Default)]
 pub(super) struct Topics {
-    pub(super) topics: Vec<Topic>,
+    pub(super) list: Vec<Topic>,
     /// Of each topic, the text that defines it.
     texts: Vec<Vec<u8>>,
     /// The topic of each connection.
@@ -135,15 +135,15 @@ impl Topics {
         text: &[u8],
         read: impl FnOnce(&str, &str) -> (Encoding, Result<Definition, Undecodable>),
     ) {
-        let mut known = self.topics.iter().zip(&self.texts);
+        let mut known = self.list.iter().zip(&self.texts);
         let same = known.position(|(topic, told)| {
             topic.name == name && topic.type_name == type_name && told == text
         });
         let index = same.unwrap_or_else(|| {
             let (encoding, definition) = read(&type_name, &String::from_utf8_lossy(text));
-            self.topics.push(Topic { name, type_name, encoding, definition, messages: 0 });
+            self.list.push(Topic { name, type_name, encoding, definition, messages: 0 });
             self.texts.push(text.to_owned());
-            self.topics.len() - 1
+            self.list.len() - 1
         });
         self.connections.insert(id, index);
     }

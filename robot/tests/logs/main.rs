@@ -1,6 +1,8 @@
 //! Logs as they are found: whole, cut off, damaged, without an index, compressed in every way, written by
 //! the tools of ROS themselves or by the `mcap` crate.
 
+// What was written is what is read, to the last bit.
+#![allow(clippy::float_cmp)]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 mod bag;

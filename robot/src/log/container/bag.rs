@@ -130,7 +130,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
         };
         let read = one(&mut window, at, header, body.clone(), &mut scan, listener);
         match read? {
-            Ok(CONNECTION) if scan_is_past(&head, at) => connections += 1,
+            Ok(CONNECTION) if is_in_index(head.as_ref(), at) => connections += 1,
             Ok(CHUNK_INFO) => chunks += 1,
             Ok(HEADER) => head = head_of(&mut window, at).map_err(unreadable(at))?,
             Ok(_) => {}
@@ -155,8 +155,8 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
 }
 
 /// Whether a record stands where the connections are told again.
-fn scan_is_past(head: &Option<Head>, at: u64) -> bool {
-    head.as_ref().is_some_and(|head| at >= head.index)
+fn is_in_index(head: Option<&Head>, at: u64) -> bool {
+    head.is_some_and(|head| at >= head.index)
 }
 
 /// How long the header of a record is, and where its body is; `None` where the file ends before it.

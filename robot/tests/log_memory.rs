@@ -1,0 +1,155 @@
+//! No bytes make a reader of logs, of messages or of mappings take more memory than it states. The
+//! allocator of the whole program is watched, so this is a program of its own, with one test in it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::{fs, hint::black_box, io::Cursor, path::Path};
+
+use peak_alloc::PeakAlloc;
+use toposlam_robot::log::{
+    decode::decode,
+    definition::{Definition, Dialect},
+    mapping::Mapping,
+    reading::Log,
+};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// The most memory taken at any time while this runs.
+fn peak(run: impl FnOnce()) -> usize {
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
+    run();
+    MEMORY.peak_usage().saturating_sub(before)
+}
+
+/// As [`Log::new`] and [`Log::read`] state, all bytes taken for those of the largest chunk.
+fn log_holds(bytes: &[u8]) -> usize {
+    let taken = peak(|| {
+        // In memory it is there twice.
+        if let Ok(log) = Log::of_bytes(bytes.to_vec()) {
+            for message in log.read_all() {
+                let _ = black_box(message.map_err(|error| error.to_string()));
+            }
+        }
+    });
+    let stated = 1101 * bytes.len() + (32 << 20);
+    assert!(taken <= stated, "{taken} for {}", bytes.len());
+    taken
+}
+
+fn definition_holds(dialect: Dialect, text: &str) {
+    let taken = peak(|| {
+        let _ =
+            black_box(Definition::read(dialect, "a/A", text).map_err(|error| error.to_string()));
+    });
+    let stated = 256 * (text.len() + 3) + 4096;
+    assert!(taken <= stated, "{taken} for {}: {}", text.len(), &text[..text.len().min(60)]);
+}
+
+fn message_holds(dialect: Dialect, text: &str, bytes: &[u8]) {
+    let definition = Definition::read(dialect, "a/A", text).unwrap();
+    let taken = peak(|| {
+        let _ = black_box(decode(&definition, bytes).map_err(|error| error.to_string()));
+    });
+    let stated = 256 * (bytes.len() + definition.root().fields.len()) + 4096;
+    assert!(taken <= stated, "{taken} for {}: {text}", bytes.len());
+}
+
+fn mapping_holds(text: &str) {
+    let taken = peak(|| {
+        let _ = black_box(Mapping::read(text.as_bytes()).map_err(|error| error.to_string()));
+    });
+    let stated = 512 * text.len() + 4096;
+    assert!(taken <= stated, "{taken} for {}: {}", text.len(), &text[..text.len().min(60)]);
+}
+
+#[test]
+fn reading_takes_no_more_memory_than_stated() {
+    assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
+    seeds_hold();
+    zeros_hold();
+    for length in [0, 1, 7, 8, 30, 127, 260, 1030, 4100, 33_000] {
+        for part in ["int8 a\n", "int8 a", "\n", "===\nMSG: a/B\n", "int8 A=1\n", "#", "B b\n", "a"]
+        {
+            let text = part.repeat(length / part.len() + 1);
+            definition_holds(Dialect::Ros1, &text);
+            definition_holds(Dialect::Ros2, &text);
+        }
+        let fields: Vec<_> = (0..length / 8).map(|nth| format!("int8 a{nth}\n")).collect();
+        let fields = fields.concat();
+        definition_holds(Dialect::Ros1, &fields);
+        definition_holds(Dialect::Ros2, &fields);
+        let sections = (0..length / 20).map(|nth| format!("===\nMSG: a/B{nth}\nint8 x\n"));
+        let sections = sections.collect::<Vec<_>>().concat();
+        definition_holds(Dialect::Ros1, &sections);
+        for part in [
+            "[image]\n",
+            "a=",
+            "\n",
+            "[",
+            "{",
+            "[a.",
+            "image.a.b=1\n",
+            "\"",
+            "#",
+            "[[a]]\n",
+            "a=1\n",
+        ] {
+            mapping_holds(&part.repeat(length / part.len() + 1));
+            mapping_holds(&format!("image=[{}", part.repeat(length / part.len() + 1)));
+        }
+        let bytes = vec![0; length];
+        for text in [
+            "bool a",
+            "string[] s",
+            "B[] b\n===\nMSG: a/B\nbool x",
+            "C[] c\n===\nMSG: a/C\nB b\n===\nMSG: a/B\nbool x",
+            "time[] t",
+            "bool[100] b",
+        ] {
+            for many in [0, length as u32, length as u32 / 4, u32::MAX] {
+                message_holds(Dialect::Ros1, text, &[&many.to_le_bytes()[..], &bytes].concat());
+                let head = [&[0, 1, 0, 0], &many.to_le_bytes()[..], &bytes].concat();
+                if !text.contains("time") {
+                    message_holds(Dialect::Ros2, text, &head);
+                }
+            }
+        }
+    }
+}
+
+/// The seeds of fuzzers, and every four bytes of them as large as can be.
+fn seeds_hold() {
+    for target in ["bag", "mcap"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus").join(target);
+        for entry in fs::read_dir(folder).unwrap() {
+            let bytes = fs::read(entry.unwrap().path()).unwrap();
+            log_holds(&bytes);
+            for at in (0..bytes.len().saturating_sub(4)).step_by(3) {
+                let mut large = bytes.clone();
+                large[at..at + 4].copy_from_slice(&[255, 255, 255, 127]);
+                log_holds(&large);
+            }
+        }
+    }
+}
+
+/// What becomes far larger than it is.
+fn zeros_hold() {
+    for (compression, read) in [(mcap::Compression::Lz4, true), (mcap::Compression::Zstd, false)] {
+        let options = mcap::WriteOptions::new().compression(Some(compression)).chunk_size(None);
+        let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
+        let channel_id =
+            writer.add_channel(0, "/a", "x", &std::collections::BTreeMap::new()).unwrap();
+        let header =
+            mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+        writer.write_to_known_channel(&header, &vec![0; 100_000_000]).unwrap();
+        writer.finish().unwrap();
+        let bytes = writer.into_inner().into_inner();
+        let taken = log_holds(&bytes);
+        // By LZ4 it is 255 times as large, and read; by Zstandard far more, and refused.
+        assert_eq!(taken > 100_000_000, read, "{taken}");
+    }
+}
