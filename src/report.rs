@@ -32,6 +32,28 @@ pub struct Report {
     pub world: Option<String>,
 }
 
+impl Report {
+    /// How often each case was gone through in several logs together; one that can be in any of their
+    /// worlds can be.
+    #[must_use]
+    pub fn coverage_of(reports: &[Self]) -> Vec<Covered> {
+        let mut together: Vec<Covered> = Vec::new();
+        for covered in reports.iter().flat_map(|report| &report.coverage) {
+            match together.iter_mut().find(|known| known.case == covered.case) {
+                None => together.push(covered.clone()),
+                Some(known) => {
+                    known.count += covered.count;
+                    known.reachable = match (known.reachable, covered.reachable) {
+                        (Some(one), Some(other)) => Some(one || other),
+                        _ => None,
+                    };
+                }
+            }
+        }
+        together
+    }
+}
+
 /// An event, as a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {

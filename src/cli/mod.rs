@@ -6,6 +6,7 @@ mod check;
 mod columns;
 mod compare;
 mod completions;
+mod conform;
 mod counterexample;
 mod draw;
 mod evaluate;
@@ -74,6 +75,7 @@ enum Verb {
     Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
     Info(info::Arguments),
+    Conform(conform::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -157,6 +159,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Sense(verb)) => verb.run(&mut out),
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Info(verb)) => verb.run(&mut out),
+        Some(Verb::Conform(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

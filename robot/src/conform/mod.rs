@@ -20,4 +20,4 @@ pub use gathered::{Evidence, Gathered, Looking, NoEvents, gather};
 pub use judgement::{Coverage, Driver, Judgement, KnownWorld, NotJudged, Question, Verdict, judge};
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use shorter::{Shorter, shorter};
-pub use told::Telling;
+pub use told::{Telling, direction};

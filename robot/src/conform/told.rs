@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::events::{Event, Kind, Perceived, Source};
-use crate::log::messages;
+use crate::log::{entries::UNTOLD, messages};
 
 /// Odometry tells a direction over so many metres. Over many more it drifts.
 const TOLD: f64 = 1.0;
@@ -103,11 +103,12 @@ fn way(from: &Odometry, to: &Odometry) -> f64 {
 
 /// A number of moves, where the log tells it.
 fn known(number: u32) -> Option<u32> {
-    (number != u32::MAX).then_some(number)
+    (number != UNTOLD).then_some(number)
 }
 
 /// The direction in the frame of odometry in which a door of a junction leads.
-pub(super) fn direction(form: Form, entry: f64, door: Door) -> Option<f64> {
+#[must_use]
+pub fn direction(form: Form, entry: f64, door: Door) -> Option<f64> {
     let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
     let quarter = doors.nth(door.0 as usize)?;
     Some(wrapped(entry - quarter as f64 * FRAC_PI_2))

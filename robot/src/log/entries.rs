@@ -32,6 +32,9 @@ pub struct Entry {
     pub content: Content,
 }
 
+/// Stands for a number of moves that a log does not tell.
+pub const UNTOLD: u32 = u32::MAX;
+
 /// What an entry tells.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
@@ -55,10 +58,10 @@ pub enum Content {
     /// What Algorithm 2 answers.
     Command(Command),
     /// What the robot perceives. Where the log has a message of its own for that: `move` and `marker` are
-    /// 0 and -1 where they are not mapped, `form` is all false, and `entry` not a number.
+    /// [`UNTOLD`] and -1 where they are not mapped, `form` is all false, and `entry` not a number.
     Percept(Percept),
-    /// The door that it takes. Where the log has a message of its own for that, `move` is 0 where it is
-    /// not mapped.
+    /// The door that it takes. Where the log has a message of its own for that, `move` is [`UNTOLD`] where
+    /// it is not mapped.
     Door(Door),
     /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
@@ -139,10 +142,7 @@ fn entries(log: &Log, bound: &Bound, message: &Message) -> Result<Vec<Entry>, Lo
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
     let told = ["stamp", "header.stamp"].into_iter().find_map(|path| value.at(path)?.stamp());
-    told.unwrap_or(Stamp {
-        sec: i32::try_from(time / 1_000_000_000).unwrap_or(i32::MAX),
-        nanosec: (time % 1_000_000_000) as u32,
-    })
+    told.unwrap_or(Stamp::of(time))
 }
 
 fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content, String> {
@@ -155,7 +155,7 @@ fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content
         },
         Role::Percept if !carried.own => Content::Percept(Percept {
             stamp,
-            r#move: whole(carried, value, Part::Move)?.unwrap_or_default(),
+            r#move: whole(carried, value, Part::Move)?.unwrap_or(UNTOLD),
             degree: whole(carried, value, Part::Degree)?.unwrap_or_default(),
             marker: whole(carried, value, Part::Marker)?.unwrap_or(-1),
             form: [false; 4],
@@ -163,7 +163,7 @@ fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content
         }),
         Role::Door if !carried.own => Content::Door(Door {
             stamp,
-            r#move: whole(carried, value, Part::Move)?.unwrap_or_default(),
+            r#move: whole(carried, value, Part::Move)?.unwrap_or(UNTOLD),
             door: whole(carried, value, Part::Door)?.unwrap_or_default(),
         }),
         Role::Percept => Content::Percept(own(value)?),

@@ -13,6 +13,14 @@ pub struct Stamp {
 }
 
 impl Stamp {
+    /// A time in nanoseconds.
+    #[must_use]
+    pub fn of(nanoseconds: u64) -> Self {
+        const SECOND: u64 = 1_000_000_000;
+        let sec = i32::try_from(nanoseconds / SECOND).unwrap_or(i32::MAX);
+        Self { sec, nanosec: (nanoseconds % SECOND) as u32 }
+    }
+
     /// The time in nanoseconds; 0 before the beginning of time.
     #[must_use]
     pub fn nanoseconds(self) -> u64 {

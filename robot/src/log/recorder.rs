@@ -127,7 +127,7 @@ impl<W: Write, R: Robot<View: Photograph>> Observer<R> for Recorder<W> {
     fn round(&mut self, robot: &R, round: &Round<R::View>) {
         let mut log = self.0.borrow_mut();
         log.catch_up(robot);
-        let taken = told::stamp(told::nanoseconds(round.picture.taken));
+        let taken = Stamp::of(told::nanoseconds(round.picture.taken));
         if let Some(file) = round.picture.view.file() {
             log.say(IMAGE, &CompressedImage::new(taken, file));
             if let Some(annotated) = log.annotated(file, round.scene) {
@@ -205,7 +205,7 @@ impl<W: Write> Log<W> {
     }
 
     fn stamp(&self) -> Stamp {
-        told::stamp(self.now)
+        Stamp::of(self.now)
     }
 
     /// It is as late as this.
@@ -232,7 +232,7 @@ impl<W: Write> Log<W> {
             self.say(CMD_VEL, &twist);
         }
         self.at(sample.reckoned.time);
-        let stamp = told::stamp(told::nanoseconds(sample.reckoned.time));
+        let stamp = Stamp::of(told::nanoseconds(sample.reckoned.time));
         let odometry = Odometry::new(stamp, &sample.reckoned.odometry, twist);
         self.say(ODOM, &odometry);
         self.say(TF, &TFMessage { transforms: &[odometry.transform()] });

@@ -22,13 +22,6 @@ pub(super) fn nanoseconds(seconds: f64) -> u64 {
     (seconds * 1e9).round() as u64
 }
 
-/// The same, as messages tell it.
-pub(super) fn stamp(nanoseconds: u64) -> Stamp {
-    const SECOND: u64 = 1_000_000_000;
-    let sec = i32::try_from(nanoseconds / SECOND).unwrap_or(i32::MAX);
-    Stamp { sec, nanosec: (nanoseconds % SECOND) as u32 }
-}
-
 /// A number of a dart, a door or a vertex.
 fn number(number: u32) -> i32 {
     i32::try_from(number).unwrap_or(i32::MAX)

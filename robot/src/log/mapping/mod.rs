@@ -136,6 +136,12 @@ impl Mapping {
         self.carriers.iter().map(|(role, carrier)| (*role, carrier))
     }
 
+    /// One thing, carried by a topic of a usual type.
+    #[must_use]
+    pub fn of(role: Role, topic: &str) -> Self {
+        Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]) }
+    }
+
     /// What it says of some things.
     #[must_use]
     pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {

@@ -1,0 +1,311 @@
+//! A judgement in words.
+
+use std::path::Path;
+
+use toposlam::{
+    picture::{self, Picture},
+    report::{Covered, Line, Report, Told},
+};
+use toposlam_model::{
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    mapping::PartialMap,
+    percept::Percept,
+    trace::{Case, Choosing, Reached, Smallest, Why},
+};
+use toposlam_robot::{
+    conform::{Cause, Divergence, Event, Evidence, Kind, Perceived, Quirks, Verdict},
+    evaluation::class::FORMS,
+};
+
+use super::{Judged, minimised::Minimised};
+use crate::cli::words::{counted, grouped, vertices};
+
+/// So many ways are told one by one.
+const TOLD: usize = 8;
+
+impl Judged {
+    /// All that is said of a log; `shown` where it is looked at, with pictures.
+    pub(super) fn report(
+        &self,
+        path: &Path,
+        quirks: &Quirks,
+        shorter: Option<Minimised>,
+        shown: bool,
+    ) -> Report {
+        let verdict = self.judgement.verdict();
+        let divergence = self.judgement.divergence.as_ref();
+        let picture = divergence.filter(|_| shown).and_then(|divergence| {
+            let events = &self.judgement.events.events;
+            let at = events.get(divergence.event).or(events.last())?;
+            self.opened.picture(at.source.message)
+        });
+        let (shorter, command) = shorter.map_or((Vec::new(), None), |shorter| {
+            let events = shorter.events.events.iter().map(|event| what(&event.kind));
+            (events.collect(), shorter.command)
+        });
+        Report {
+            log: path.display().to_string(),
+            verdict,
+            remarks: self.remarks(verdict),
+            facts: self.facts(),
+            events: self.lines(),
+            divergence: divergence.map(|divergence| self.told(divergence)),
+            coverage: self.coverage(),
+            tolerated: self.tolerated(quirks),
+            shorter,
+            command,
+            picture,
+            world: self.world().filter(|_| shown),
+        }
+    }
+
+    fn remarks(&self, verdict: Verdict) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if let Some(truncation) = self.opened.log.truncation() {
+            remarks.push(format!("the log is {truncation}"));
+        }
+        let events = &self.judgement.events;
+        match (&events.head, &events.ending) {
+            (_, Some(ending)) if ending.ending != "mapped" => {
+                let cause = if ending.cause.is_empty() { "" } else { ": " };
+                remarks.push(format!("the run {}{cause}{}", ended(&ending.ending), ending.cause));
+            }
+            (Some(_), None) => remarks.push("the log does not tell how the run ended".to_owned()),
+            _ => {}
+        }
+        if let Some(Smallest::Unfinished { edges }) = self.judgement.smallest {
+            remarks.push(format!(
+                "no world with up to {} explains it; not all larger ones were tried",
+                counted(edges, "edge")
+            ));
+        }
+        if let (Verdict::Conforms, Some(followed)) = (verdict, &self.judgement.followed)
+            && followed.reached == Reached::EndOfTrace
+        {
+            remarks.push("it ends before the map is complete".to_owned());
+        }
+        if self.gathered.unreadable > 0 {
+            let pictures = counted(self.gathered.unreadable as usize, "picture");
+            remarks.push(format!("{pictures} could not be read and were passed over"));
+        }
+        remarks
+    }
+
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let judgement = &self.judgement;
+        let count = counted(judgement.events.events.len(), "event");
+        let made = match self.gathered.evidence {
+            Evidence::Told => "as the log tells them".to_owned(),
+            Evidence::Scenes => "derived from the log's scenes and odometry".to_owned(),
+            Evidence::Pictures => {
+                let pictures = grouped(self.gathered.pictures.into());
+                format!("derived from {pictures} pictures and odometry")
+            }
+        };
+        let mut facts = vec![("events", format!("{count}, {made}"))];
+        match (&self.known, &judgement.poses, &judgement.smallest) {
+            (Some(known), Some(poses), _) => {
+                let world = &known.world;
+                let from = match known.start {
+                    None => "from any start".to_owned(),
+                    Some(start) => format!("from {}", world.start_text(start)),
+                };
+                let (begun, left) = (poses.left.first().unwrap_or(&0), poses.left.last());
+                let fit = match (judgement.divergence.is_some(), left) {
+                    (false, Some(1)) => poses.states.first().map_or(String::new(), |state| {
+                        format!("the robot is {}", known.pose(state.pose))
+                    }),
+                    (false, left) => format!("{} fit", counted(*left.unwrap_or(&0), "pose")),
+                    (true, _) => format!("{} fit at first", counted(*begun, "pose")),
+                };
+                facts.push(("world", format!("{}, {from}; {fit}", world.name)));
+            }
+            (_, _, Some(Smallest::World { graph, .. })) => {
+                let (edges, count) = (counted(graph.edge_count(), "edge"), graph.vertex_count());
+                let smallest = format!("{edges}, {}", vertices(count));
+                facts.push((
+                    "world",
+                    format!("not known; the smallest that explains it has {smallest}"),
+                ));
+            }
+            _ => facts.push(("world", "not known".to_owned())),
+        }
+        if let Some(followed) = &judgement.followed {
+            let from = |event: usize| judgement.places.get(event).map_or(0, |place| place + 1);
+            let choices = match followed.choosing {
+                Choosing::Default => "those of Algorithm 1, with the default choices".to_owned(),
+                Choosing::Other { from: event } => format!(
+                    "some that Algorithm 1 may take; not its default choices from event {} on",
+                    from(event)
+                ),
+            };
+            let doors = match &followed.reached {
+                Reached::Departure(departure) => {
+                    format!("{choices}; up to event {}", from(departure.event).saturating_sub(1))
+                }
+                _ => choices,
+            };
+            facts.push(("doors", doors));
+            facts.push(("map", map_in_words(followed.exploration.map())));
+        }
+        facts
+    }
+
+    /// Every event, and where the robot is after it.
+    fn lines(&self) -> Vec<Line> {
+        let judgement = &self.judgement;
+        let begun = self.opened.log.start().unwrap_or(0);
+        let mut before = String::new();
+        let line = |(number, event): (usize, &Event)| {
+            let in_trace = judgement.places.binary_search(&number).ok();
+            let there = judgement.poses.as_ref().zip(self.known.as_ref()).zip(in_trace);
+            let there = there.and_then(|((poses, known), event)| {
+                Some(match (poses.alone.get(event)?, poses.left.get(event)?) {
+                    // A door tells where the robot is to come.
+                    _ if event % 2 == 1 => return None,
+                    (Some(state), _) => known.pose(state.pose),
+                    (None, left) => format!("{left} poses fit"),
+                })
+            });
+            // What is as before is not told again.
+            let then = there.filter(|there| *there != before);
+            if let Some(then) = &then {
+                before.clone_from(then);
+            }
+            Line {
+                number: number + 1,
+                time: event.source.time.saturating_sub(begun) as f64 / 1e9,
+                what: what(&event.kind),
+                then: then.unwrap_or_default(),
+            }
+        };
+        judgement.events.events.iter().enumerate().map(line).collect()
+    }
+
+    fn told(&self, divergence: &Divergence) -> Told {
+        let events = &self.judgement.events.events;
+        let begun = self.opened.log.start().unwrap_or(0);
+        let event = events.get(divergence.event);
+        let time = event.or(events.last()).map_or(begun, |event| event.source.time);
+        Told {
+            event: divergence.event + 1,
+            time: time.saturating_sub(begun) as f64 / 1e9,
+            message: event.map(|event| (event.source.message, event.source.offset)),
+            culprit: divergence.culprit,
+            cause: divergence.cause.name(),
+            what: event.map_or("the end of the log".to_owned(), |event| what(&event.kind)),
+            why: divergence.cause.to_string(),
+            allowed: self.allowed(&divergence.cause),
+        }
+    }
+
+    /// What would have been allowed.
+    fn allowed(&self, cause: &Cause) -> Vec<String> {
+        match cause {
+            Cause::World(misfit) => {
+                let candidate = |(state, why): &(toposlam_model::world::State, Why)| {
+                    let pose = self.known.as_ref().map(|known| known.pose(state.pose));
+                    let pose = pose.unwrap_or_default();
+                    match why {
+                        Why::Percept { expected } => format!("{pose}: {expected}"),
+                        Why::NoSuchDoor { degree } => {
+                            format!("{pose}: doors 0 to {}", degree.saturating_sub(1))
+                        }
+                    }
+                };
+                let mut told: Vec<_> = misfit.candidates.iter().take(TOLD).map(candidate).collect();
+                if let Some(more) = misfit.candidates.len().checked_sub(TOLD + 1) {
+                    told.push(format!("and {} more", more + 1));
+                }
+                told
+            }
+            Cause::Algorithm(departure) => {
+                departure.allowed.iter().map(ToString::to_string).collect()
+            }
+            Cause::Number { expected, .. } => vec![format!("number {expected}")],
+            Cause::Moves { made, .. } => vec![counted(*made, "move")],
+            _ => Vec::new(),
+        }
+    }
+
+    fn coverage(&self) -> Vec<Covered> {
+        let Judged { judgement, known, .. } = self;
+        let cases = Case::ALL.into_iter().map(|case| Covered {
+            case: case.name().to_owned(),
+            count: judgement.coverage.algorithm.count(case),
+            reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),
+        });
+        let junctions = FORMS.into_iter().map(|(form, name)| Covered {
+            case: name.to_owned(),
+            count: judgement.coverage.junctions.get(&form).copied().unwrap_or(0),
+            reachable: known
+                .as_ref()
+                .and_then(|known| known.forms.as_ref())
+                .map(|forms| forms.contains(&form)),
+        });
+        cases.chain(junctions).collect()
+    }
+
+    fn tolerated(&self, quirks: &Quirks) -> Vec<(String, String, Vec<usize>)> {
+        let tolerated = quirks.all().iter().enumerate().map(|(place, quirk)| {
+            let these = self.judgement.tolerated.iter().filter(|(_, of)| *of == place);
+            let events = these.map(|(divergence, _)| divergence.event + 1).collect();
+            (quirk.name.clone(), quirk.reason.clone(), events)
+        });
+        tolerated.collect()
+    }
+
+    /// The known world, or the smallest that explains the log, as a drawing.
+    fn world(&self) -> Option<String> {
+        match (&self.known, &self.judgement.smallest) {
+            (Some(known), _) => Some(picture::svg(&Picture::from(&known.world))),
+            (None, Some(Smallest::World { graph, marker })) => {
+                let start = marker.or(Some(Dart(0)));
+                let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
+                Some(picture::svg(&Picture::from(&world)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// How a run ended that did not map its world.
+fn ended(ending: &str) -> &str {
+    match ending {
+        "gave-up" => "was given up",
+        "stopped" => "was stopped",
+        other => other,
+    }
+}
+
+fn map_in_words(map: &PartialMap) -> String {
+    let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
+    let size = format!("{}, {}", vertices(map.vertex_count()), counted(known, "edge"));
+    if map.complete().is_some() {
+        format!("complete: {size}")
+    } else {
+        format!("{size} known, {} unexplored", counted(map.unexplored_count() as usize, "edge end"))
+    }
+}
+
+/// An event in words.
+pub(super) fn what(kind: &Kind) -> String {
+    match kind {
+        Kind::Perceived(Perceived { percept, form, .. }) => {
+            let name = form.and_then(|form| FORMS.iter().find(|(known, _)| *known == form));
+            let kind = name.map_or(String::new(), |(_, name)| format!(" ({name})"));
+            format!("percept: {}{kind}", in_words(percept))
+        }
+        Kind::Left { door, .. } => format!("door {}", door.0),
+        Kind::Aside { off } => {
+            format!("drove off {:.0} degrees aside of every door", off.to_degrees())
+        }
+        Kind::TurnedBack => "turned back".to_owned(),
+        Kind::Undecided => "a junction that was not made out".to_owned(),
+    }
+}
+
+fn in_words(percept: &Percept) -> String {
+    percept.to_string()
+}

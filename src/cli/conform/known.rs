@@ -1,0 +1,107 @@
+//! The world in which a log is known to have been made.
+
+use std::path::Path;
+
+use toposlam_model::{
+    driving::visit::Form,
+    embedded_graph::Dart,
+    format::named_world::NamedWorld,
+    marker::Marker,
+    trace::{self, anywhere},
+    world::{GraphWorld, State},
+};
+use toposlam_robot::{
+    conform::KnownWorld,
+    log::{messages::Run, world_hash},
+    pose::Pose,
+    truth::{JunctionTruth, angle},
+};
+
+use super::{Arguments, Failure};
+use crate::cli::input;
+
+/// A known world.
+pub(super) struct Known {
+    pub(super) world: NamedWorld,
+    pub(super) marker: &'static dyn Marker,
+    /// Where the robot starts, where that is known.
+    pub(super) start: Option<Dart>,
+    states: Vec<State>,
+    /// How often each case is gone through from all starts.
+    pub(super) reachable: trace::Coverage,
+    /// The kinds of junctions from each of their entries, where the world is a floor plan.
+    pub(super) forms: Option<Vec<Form>>,
+}
+
+/// Says that the start is not known.
+const ANY: &str = "any";
+
+impl Known {
+    pub(super) fn new(
+        path: &Path,
+        arguments: &Arguments,
+        run: Option<&Run>,
+    ) -> Result<Self, Failure> {
+        let world = input::read_world(path)?;
+        let marker = match (arguments.marker, run.map_or("", |run| &*run.marker)) {
+            (Some(marker), _) => marker,
+            (None, "") => &toposlam_model::marker::Directional,
+            (None, name) => toposlam_model::marker::named(name)
+                .map_err(|error| Failure::at("the log", error))?,
+        };
+        let start = match arguments.start.as_deref() {
+            Some(ANY) => None,
+            Some(_) => Some(input::start_of(&world, arguments.start.as_deref())?),
+            None => run.and_then(|run| told(&world, run)).or(world.start),
+        };
+        let states = match start {
+            None => anywhere(&world.graph, &marker),
+            Some(facing) => vec![GraphWorld::with_marker(&world.graph, marker, facing).state()],
+        };
+        let reachable = trace::reachable(&world.graph);
+        let forms = forms(&world);
+        Ok(Self { world, marker, start, states, reachable, forms })
+    }
+
+    pub(super) fn question(&self) -> KnownWorld<'_> {
+        let Self { world, marker, states, .. } = self;
+        KnownWorld { graph: &world.graph, marker: *marker, states: states.clone() }
+    }
+
+    /// Says so where a log says that it was made in another world.
+    pub(super) fn warn(&self, log: &Path, run: &Run) {
+        let told = &run.world_hash;
+        let other =
+            self.world.graph.darts().all(|dart| world_hash(&self.world.graph, dart) != *told);
+        if !told.is_empty() && other {
+            eprintln!(
+                "{}: it says that it was made in another world, {}",
+                log.display(),
+                run.world
+            );
+        }
+    }
+
+    /// A pose in words.
+    pub(super) fn pose(&self, pose: Dart) -> String {
+        format!("at {}, having come from {}", self.world.at_text(pose), self.world.leads_to(pose))
+    }
+}
+
+/// The start that a log tells, where it was made in this world.
+fn told(world: &NamedWorld, run: &Run) -> Option<Dart> {
+    let start = world.start_from_text(&run.start).ok()?;
+    (world_hash(&world.graph, start) == run.world_hash).then_some(start)
+}
+
+/// What the junctions of a floor plan look like, from each of their entries.
+fn forms(world: &NamedWorld) -> Option<Vec<Form>> {
+    let plan = world.plan.as_ref()?;
+    let graph = plan.graph();
+    let form = |dart| {
+        let position = plan.junction(graph.vertex(dart)).position;
+        let heading = angle(plan.direction(dart).reversed());
+        JunctionTruth::of(plan, graph.vertex(dart), Pose { position, heading }).form
+    };
+    Some(graph.darts().filter_map(form).collect())
+}

@@ -1,0 +1,156 @@
+//! A shorter log that diverges in the same way, and the command that judges it.
+
+use std::{f64::consts::PI, path::Path};
+
+use toposlam_model::{driving::odometry::Odometry, percept::Sighting};
+use toposlam_robot::{
+    conform::{Event, Events, Kind, Perceived, Shorter, direction, shorter},
+    log::{
+        entries::UNTOLD,
+        messages::{Door, Own, Percept, Run, Stamp},
+        recorder::ODOM,
+        standard,
+        writer::{LogWriter, WriteError},
+    },
+};
+
+use super::{Arguments, Failure, Judged};
+use crate::cli::output;
+
+/// A shorter log.
+pub(super) struct Minimised {
+    pub(super) events: Events,
+    /// The command that judges it, where it was written.
+    pub(super) command: Option<String>,
+}
+
+/// A robot that left a junction drove on so far, in metres.
+const ON: f64 = 2.0;
+
+impl Arguments {
+    /// A shorter log, written where that is asked for.
+    pub(super) fn shorter(
+        &self,
+        log: &Path,
+        judged: &Judged,
+    ) -> Result<Option<Minimised>, Failure> {
+        let question = self.question(judged.known.as_ref());
+        let Some(Shorter { events, by_itself }) = shorter(&judged.judgement, &question, &()) else {
+            if let Some(path) = &self.minimise {
+                let why = match judged.judgement.divergence {
+                    None => "there is no divergence to show",
+                    Some(_) => "it does not diverge in less than all of it",
+                };
+                eprintln!("{}: not written: {why}", path.display());
+            }
+            return Ok(None);
+        };
+        let Some(path) = &self.minimise else {
+            return Ok(Some(Minimised { events, command: None }));
+        };
+        let bytes = write(&events, judged.opened.run.as_ref());
+        let bytes = bytes.map_err(|error| Failure::in_file(path, error))?;
+        output::write_whole(path, &bytes)?;
+        let command = Some(self.command(path, log, judged, by_itself));
+        Ok(Some(Minimised { events, command }))
+    }
+
+    /// The command that judges a shorter log as this one was judged.
+    fn command(&self, path: &Path, _: &Path, judged: &Judged, by_itself: bool) -> String {
+        let mut words =
+            vec!["toposlam".to_owned(), "conform".to_owned(), path.display().to_string()];
+        if by_itself {
+            words.extend(["--driver", "anyone"].map(str::to_owned));
+            return words.join(" ");
+        }
+        if let (Some(known), Some(world)) = (&judged.known, &self.world) {
+            let start = known.start.map_or("any".to_owned(), |start| known.world.start_text(start));
+            words.extend(["--world".to_owned(), world.display().to_string()]);
+            words.extend(["--start".to_owned(), start]);
+        }
+        if self.driver == super::Who::Anyone {
+            words.extend(["--driver", "anyone"].map(str::to_owned));
+        }
+        words.join(" ")
+    }
+}
+
+/// Events as a log tells them: percepts, doors, and odometry where a door was not the one that was
+/// taken, or the entry not where the robot came from.
+fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
+    let mut log = LogWriter::new(Vec::new())?;
+    let run = run.cloned().unwrap_or_default();
+    // What the pictures need is no longer needed.
+    log.write(Run::TOPIC, 0, &Run { calibration: String::new(), colours: String::new(), ..run })?;
+    let begun = events.events.first().map_or(0, |event| event.source.time);
+    let mut at = Odometry::default();
+    let mut told = Told::default();
+    for Event { source, kind } in &events.events {
+        let time = source.time.saturating_sub(begun);
+        let stamp = Stamp::of(time);
+        match kind {
+            Kind::Perceived(perceived) => {
+                if let Some(way) = told.way(perceived) {
+                    // By where the robot is and where it came from odometry tells the entry door.
+                    for forward in [0.0, ON] {
+                        let there =
+                            Odometry { position: at.position, heading: way }.moved(0.0, forward);
+                        log.write(ODOM, time, &odometry(stamp, &there))?;
+                        if forward > 0.0 {
+                            at = there;
+                        }
+                    }
+                }
+                log.write(Percept::TOPIC, time, &percept(stamp, perceived))?;
+                told = Told { perceived: Some(perceived.clone()), left: None };
+            }
+            Kind::Left { door, number, off } => {
+                let r#move = number.unwrap_or(UNTOLD);
+                log.write(Door::TOPIC, time, &Door { stamp, r#move, door: door.0 })?;
+                let standing = told.perceived.as_ref();
+                let entered = standing.and_then(|p| Some((p.form?, p.entry?)));
+                let leads = entered.and_then(|(form, entry)| direction(form, entry, *door));
+                told.left = leads.zip(*off);
+            }
+            Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided => {}
+        }
+    }
+    log.finish()
+}
+
+/// What was told of the last junction.
+#[derive(Default)]
+struct Told {
+    perceived: Option<Perceived>,
+    /// The direction of the door that was taken, and by how much the robot drove aside of it.
+    left: Option<(f64, f64)>,
+}
+
+impl Told {
+    /// In which direction the robot drove to where it perceives something; `None` where it does not
+    /// matter.
+    fn way(&self, now: &Perceived) -> Option<f64> {
+        let by_door = self.left.map(|(leads, off)| leads + off);
+        let by_entry = now.entry.zip(now.entry_off).map(|(entry, off)| entry + off + PI);
+        by_door.or(by_entry)
+    }
+}
+
+fn percept(stamp: Stamp, perceived: &Perceived) -> Percept {
+    let Perceived { percept, number, form, entry, .. } = perceived;
+    Percept {
+        stamp,
+        r#move: number.unwrap_or(UNTOLD),
+        degree: percept.degree,
+        marker: match percept.sighting {
+            Sighting::Pointing(door) => i32::try_from(door.0).unwrap_or(i32::MAX),
+            _ => -1,
+        },
+        form: form.map_or([false; 4], |form| form.0),
+        entry: entry.unwrap_or(f64::NAN),
+    }
+}
+
+fn odometry(stamp: Stamp, at: &Odometry) -> standard::Odometry {
+    standard::Odometry::new(stamp, at, standard::Twist::default())
+}

@@ -1,0 +1,219 @@
+//! A report on the terminal, and as JSON.
+
+use std::{collections::BTreeMap, io::Write};
+
+use serde::Serialize;
+use toposlam::report::{Covered, Report, Told};
+use toposlam_robot::conform::{Culprit, Judgement, Verdict};
+
+use super::Failure;
+use crate::cli::{columns::print_hanging, json::print_object, words::counted};
+
+/// So many steps are told before a divergence.
+const BEFORE: usize = 6;
+/// So many events of a shorter log are told.
+const SHORT: usize = 12;
+
+/// What `--json` prints for a log.
+#[derive(Serialize)]
+struct Line<'r> {
+    schema: u32,
+    log: &'r str,
+    verdict: &'static str,
+    event: Option<usize>,
+    class: Option<&'static str>,
+    events: usize,
+    candidates: usize,
+    coverage: BTreeMap<&'r str, u64>,
+    unreachable: Vec<&'r str>,
+    cause: Option<&'static str>,
+    condition: Option<&'r str>,
+    allowed: &'r [String],
+    time: Option<f64>,
+    message: Option<u64>,
+    offset: Option<u64>,
+    facts: BTreeMap<&'static str, &'r str>,
+    remarks: &'r [String],
+    tolerated: BTreeMap<&'r str, usize>,
+    shorter: &'r [String],
+    command: Option<&'r str>,
+}
+
+/// What `--json` prints for several logs together.
+#[derive(Serialize)]
+struct Together<'r> {
+    schema: u32,
+    logs: usize,
+    conform: usize,
+    diverged: usize,
+    incomplete: usize,
+    coverage: BTreeMap<&'r str, u64>,
+    classes: BTreeMap<&'static str, usize>,
+}
+
+pub(super) fn json(
+    out: &mut dyn Write,
+    report: &Report,
+    judgement: &Judgement,
+) -> Result<(), Failure> {
+    let told = report.divergence.as_ref();
+    let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
+    let line = Line {
+        schema: 1,
+        log: &report.log,
+        verdict: report.verdict.name(),
+        event: told.map(|told| told.event),
+        class: told.map(|told| told.culprit.name()),
+        events: report.events.len(),
+        candidates: judgement.candidates(),
+        coverage: counts(&report.coverage),
+        unreachable: unreachable.map(|covered| &*covered.case).collect(),
+        cause: told.map(|told| told.cause),
+        condition: told.map(|told| &*told.why),
+        allowed: told.map_or(&[], |told| &told.allowed),
+        time: told.map(|told| told.time),
+        message: told.and_then(|told| told.message).map(|(message, _)| message),
+        offset: told.and_then(|told| told.message).map(|(_, offset)| offset),
+        facts: report.facts.iter().map(|(name, fact)| (*name, &**fact)).collect(),
+        remarks: &report.remarks,
+        tolerated: report
+            .tolerated
+            .iter()
+            .map(|(name, _, events)| (&**name, events.len()))
+            .collect(),
+        shorter: &report.shorter,
+        command: report.command.as_deref(),
+    };
+    print_object(out, &line)
+}
+
+fn counts(coverage: &[Covered]) -> BTreeMap<&str, u64> {
+    coverage.iter().map(|covered| (&*covered.case, covered.count)).collect()
+}
+
+pub(super) fn text(out: &mut dyn Write, report: &Report) -> Result<(), Failure> {
+    match &report.divergence {
+        None => writeln!(out, "{}: {}", report.log, in_words(report.verdict))?,
+        Some(told) => diverged(out, report, told)?,
+    }
+    for remark in &report.remarks {
+        print_hanging(out, "  ", remark)?;
+    }
+    for (name, fact) in &report.facts {
+        print_hanging(out, &format!("  {name:<10} "), fact)?;
+    }
+    let covered = covered(&report.coverage);
+    print_hanging(out, &format!("  {:<10} ", "covered"), &covered)?;
+    for (name, reason, events) in &report.tolerated {
+        let times = match events.len() {
+            1 => "once".to_owned(),
+            times => format!("{times} times"),
+        };
+        print_hanging(
+            out,
+            &format!("  {:<10} ", "tolerated"),
+            &format!("{name}, {times}: {reason}"),
+        )?;
+    }
+    Ok(())
+}
+
+fn in_words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Conforms => "conforms",
+        Verdict::Diverged => "diverges",
+        Verdict::Incomplete => "incomplete: it conforms as far as it goes",
+    }
+}
+
+fn diverged(out: &mut dyn Write, report: &Report, told: &Told) -> Result<(), Failure> {
+    let Told { event, time, message, culprit, what, why, allowed, .. } = told;
+    writeln!(
+        out,
+        "{}: diverges at event {event} of {}, at {time:.1} s: {culprit}",
+        report.log,
+        report.events.len()
+    )?;
+    print_hanging(out, "  ", &format!("{what}: {why}"))?;
+    if let Some((message, offset)) = message {
+        writeln!(out, "  message {message} of the log, at byte {offset}")?;
+    }
+    if !allowed.is_empty() {
+        writeln!(out, "  allowed there:")?;
+    }
+    for allowed in allowed {
+        print_hanging(out, "    ", allowed)?;
+    }
+    let first = event.saturating_sub(1 + BEFORE);
+    let before = report.events.iter().skip(first).take(event.saturating_sub(1 + first));
+    let before: Vec<_> = before.collect();
+    if !before.is_empty() {
+        writeln!(out, "  the last steps before it, which fit:")?;
+    }
+    for line in before {
+        let then = if line.then.is_empty() { "" } else { " -> " };
+        writeln!(out, "    {:>5}  {}{then}{}", line.number, line.what, line.then)?;
+    }
+    if !report.shorter.is_empty() {
+        let mut events: Vec<_> = report.shorter.iter().take(SHORT).cloned().collect();
+        if let Some(more) = report.shorter.len().checked_sub(SHORT + 1) {
+            events.push(format!("and {} more", more + 1));
+        }
+        let head = format!("  the same in {}: ", counted(report.shorter.len(), "event"));
+        print_hanging(out, &head, &events.join("; "))?;
+    }
+    if let Some(command) = &report.command {
+        writeln!(out, "  {command}")?;
+    }
+    Ok(())
+}
+
+/// The cases that were gone through, those that were not, and those that cannot be.
+fn covered(coverage: &[Covered]) -> String {
+    let possible = |covered: &&Covered| covered.reachable != Some(false);
+    let all = coverage.iter().filter(possible).count();
+    let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
+    let told: Vec<_> =
+        seen.iter().map(|covered| format!("{} {}", covered.case, covered.count)).collect();
+    let missed: Vec<_> = coverage
+        .iter()
+        .filter(possible)
+        .filter(|covered| covered.count == 0)
+        .map(|covered| &*covered.case)
+        .collect();
+    let missed = match missed.len() {
+        0 => String::new(),
+        _ => format!("; not {}", missed.join(", ")),
+    };
+    let told = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
+    format!("{} of {all} cases{told}{missed}", seen.len())
+}
+
+/// What is said of several logs together.
+pub(super) fn together(
+    out: &mut dyn Write,
+    reports: &[Report],
+    as_json: bool,
+) -> Result<(), Failure> {
+    let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
+    let [conform, diverged, incomplete] =
+        [Verdict::Conforms, Verdict::Diverged, Verdict::Incomplete].map(count);
+    let coverage = Report::coverage_of(reports);
+    let culprits = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.culprit));
+    if as_json {
+        let mut classes: BTreeMap<_, _> = Culprit::ALL.map(|one| (one.name(), 0)).into();
+        for culprit in culprits {
+            *classes.entry(culprit.name()).or_default() += 1;
+        }
+        let (coverage, logs) = (counts(&coverage), reports.len());
+        let line = Together { schema: 1, logs, conform, diverged, incomplete, coverage, classes };
+        return print_object(out, &line);
+    }
+    writeln!(
+        out,
+        "{}: {conform} conform, {diverged} diverge, {incomplete} incomplete",
+        counted(reports.len(), "log")
+    )?;
+    print_hanging(out, &format!("  {:<10} ", "covered"), &covered(&coverage))?;
+    Ok(())
+}
