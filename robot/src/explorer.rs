@@ -39,6 +39,9 @@ pub enum Unreadable {
     /// It is of another camera.
     #[error(transparent)]
     Size(#[from] WrongSize),
+    /// There is nothing to look at it with.
+    #[error("neither the camera nor the colours of the building are known")]
+    NoEyes,
 }
 
 /// The file of a photograph is decoded and sensed.
@@ -280,7 +283,9 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         let at = self.robot.odometry();
         let picture = self.robot.capture().map_err(|error| match error {
             RobotError::NoPicture => Unusable::Missing,
-            error @ RobotError::NotRecorded { .. } => Unusable::Robot(error),
+            error @ (RobotError::NotRecorded { .. } | RobotError::EndOfLog) => {
+                Unusable::Robot(error)
+            }
         })?;
         if picture.taken < at.time {
             return Err(Unusable::Stale);

@@ -13,6 +13,7 @@ pub mod fuzz;
 pub mod log;
 pub mod pose;
 pub mod recording;
+pub mod replay;
 pub mod robot;
 pub mod run;
 pub mod simulator;

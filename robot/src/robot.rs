@@ -74,6 +74,9 @@ pub enum RobotError {
     /// The camera gave no picture; the next may come.
     #[error("the camera gives no picture")]
     NoPicture,
+    /// There are no more pictures in the log.
+    #[error("the log has no more pictures")]
+    EndOfLog,
     /// A recorded robot was asked for something else than what is recorded.
     #[error("entry {entry} of the recording is {recorded}; what is asked for is {asked}")]
     NotRecorded {

@@ -3,7 +3,6 @@
 mod described;
 mod known;
 mod minimised;
-mod opened;
 mod tell;
 
 use std::{
@@ -23,9 +22,13 @@ use toposlam_robot::conform::{
     Quirks, Verdict, gather, judge,
 };
 
-use super::{Failure, Outcome, input, marker_kinds, output, progress::Progress};
+use super::{
+    Failure, Outcome, input, marker_kinds,
+    opened::{Opened, Sources},
+    output,
+    progress::Progress,
+};
 use known::Known;
-use opened::Opened;
 
 /// Hold logs of runs against the specification: do they conform, and if not, where, why, whose fault
 ///
@@ -65,18 +68,11 @@ pub(super) struct Arguments {
     /// Without a known world: up to how many edges; where Algorithm 1 knows more, 4 beyond that
     #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world")]
     edges: usize,
-    /// Which topics carry what [default: as their types tell; see `toposlam info`]
-    #[arg(long, value_name = "FILE")]
-    mapping: Option<PathBuf>,
+    #[command(flatten)]
+    sources: Sources,
     /// Of what events are made [default: the first of these that the log has]
     #[arg(long, value_enum, value_name = "WHAT")]
     events: Option<Made>,
-    /// The calibration of the camera, where pictures are looked at [default: as the log says]
-    #[arg(long, value_name = "FILE")]
-    calibration: Option<PathBuf>,
-    /// The colours of the building, where pictures are looked at [default: as the log says]
-    #[arg(long, value_name = "FILE")]
-    colours: Option<PathBuf>,
     /// Divergences that are known and tolerated
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
@@ -182,7 +178,11 @@ impl Arguments {
 
     /// Reads a log and judges it.
     fn judge(&self, path: &Path, quirks: &Quirks) -> Result<Judged, Failure> {
-        let opened = Opened::new(path, self)?;
+        let opened = Opened::new(path, &self.sources)?;
+        let evidence = match self.events {
+            Some(made) => made.into(),
+            None => opened.evidence(path)?,
+        };
         let known = match &self.world {
             None => None,
             Some(world) => Some(Known::new(world, self, opened.run.as_ref())?),
@@ -200,7 +200,7 @@ impl Arguments {
         let gathered = gather(
             &opened.log,
             &opened.mapping,
-            opened.evidence,
+            evidence,
             sensor.as_ref(),
             marker.name() == "directional",
             &progress,

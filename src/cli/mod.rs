@@ -15,6 +15,7 @@ mod info;
 mod input;
 mod json;
 mod movable;
+mod opened;
 mod outcome;
 mod output;
 mod paper;
@@ -22,6 +23,7 @@ mod picture_file;
 mod progress;
 mod proofs;
 mod render;
+mod replay;
 mod scene;
 mod sense;
 mod simulate;
@@ -76,6 +78,7 @@ enum Verb {
     Evaluate(evaluate::Arguments),
     Info(info::Arguments),
     Conform(conform::Arguments),
+    Replay(replay::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -160,6 +163,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Evaluate(verb)) => verb.run(&mut out),
         Some(Verb::Info(verb)) => verb.run(&mut out),
         Some(Verb::Conform(verb)) => verb.run(&mut out),
+        Some(Verb::Replay(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
         None => help(&mut out),
     };

@@ -17,6 +17,7 @@ pub use cause::{Cause, Culprit, Divergence};
 pub use derived::{Derivation, NEAR};
 pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Source};
 pub use gathered::{Evidence, Gathered, Looking, NoEvents, gather};
+pub(crate) use judgement::in_numbers;
 pub use judgement::{Coverage, Driver, Judgement, KnownWorld, NotJudged, Question, Verdict, judge};
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use shorter::{Shorter, shorter};

@@ -1,10 +1,10 @@
-//! A log as it is judged: what its topics carry, of what its events are made, with which eyes.
+//! A log, open: what its topics carry, and with which eyes its pictures are looked at.
 
 use std::path::{Path, PathBuf};
 
 use toposlam_model::marker::{self, Marker};
 use toposlam_robot::{
-    conform::Evidence,
+    conform::{Evidence, NoEvents},
     log::{
         entries::{Content, Picture},
         mapping::{Mapping, MappingError, Role},
@@ -20,16 +20,28 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{Arguments, Failure};
-use crate::cli::input;
+use super::{Failure, input};
+
+/// What a log does not tell itself.
+#[derive(clap::Args)]
+pub(super) struct Sources {
+    /// Which topics carry what [default: as their types tell; see `toposlam info`]
+    #[arg(long, value_name = "FILE")]
+    mapping: Option<PathBuf>,
+    /// The calibration of the camera, where pictures are looked at [default: as the log says]
+    #[arg(long, value_name = "FILE")]
+    calibration: Option<PathBuf>,
+    /// The colours of the building, where pictures are looked at [default: as the log says]
+    #[arg(long, value_name = "FILE")]
+    colours: Option<PathBuf>,
+}
 
 /// A log, open.
-pub(in crate::cli) struct Opened {
-    pub(in crate::cli) log: Log,
-    pub(in crate::cli) mapping: Mapping,
+pub(super) struct Opened {
+    pub(super) log: Log,
+    pub(super) mapping: Mapping,
     mapping_path: Option<PathBuf>,
-    pub(in crate::cli) evidence: Evidence,
-    pub(in crate::cli) run: Option<Run>,
+    pub(super) run: Option<Run>,
     eyes: Option<(Camera, ColourModel)>,
 }
 
@@ -37,23 +49,36 @@ pub(in crate::cli) struct Opened {
 const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
 
 impl Opened {
-    pub(super) fn new(path: &Path, arguments: &Arguments) -> Result<Self, Failure> {
+    pub(super) fn new(path: &Path, sources: &Sources) -> Result<Self, Failure> {
         let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
-        let mapping = read_mapping(path, &log, arguments.mapping.as_deref())?;
-        let evidence = arguments.events.map(Evidence::from).or_else(|| Evidence::of(&mapping));
-        let evidence = evidence.ok_or_else(|| nothing(path, &log))?;
-        let run = head(path, &log, &mapping)?;
-        let mut opened = Self {
-            log,
-            mapping,
-            mapping_path: arguments.mapping.clone(),
-            evidence,
-            run,
-            eyes: None,
+        let mapping = match &sources.mapping {
+            None => Mapping::unambiguous(&log),
+            Some(file) => {
+                Mapping::read(&input::read(file)?).map_err(|error| Failure::in_file(file, error))?
+            }
         };
+        let run = head(path, &log, &mapping)?;
+        let mapping_path = sources.mapping.clone();
+        let mut opened = Self { log, mapping, mapping_path, run, eyes: None };
         opened.eyes =
-            opened.eyes(path, arguments.calibration.as_deref(), arguments.colours.as_deref())?;
+            opened.eyes(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
         Ok(opened)
+    }
+
+    /// Of what events can be made.
+    ///
+    /// Where that is nothing because several topics could carry the same, this says so.
+    pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, Failure> {
+        if let Some(evidence) = Evidence::of(&self.mapping) {
+            return Ok(evidence);
+        }
+        if self.log.messages_total() == 0 {
+            return Err(Failure::in_file(path, "it is empty: there is no message in it"));
+        }
+        if self.mapping_path.is_none() {
+            Mapping::from_log(&self.log).map_err(|error| Failure::in_file(path, error))?;
+        }
+        Err(Failure::in_file(path, NoEvents::NothingMapped))
     }
 
     /// The camera and the colours: as they are given, or else as the log says.
@@ -89,7 +114,7 @@ impl Opened {
     }
 
     /// What makes scenes of its pictures.
-    pub(in crate::cli) fn sensor(&self) -> Option<Sensor> {
+    pub(super) fn sensor(&self) -> Option<Sensor> {
         self.eyes.as_ref().map(|(camera, colours)| Sensor::new(camera, colours))
     }
 
@@ -101,7 +126,7 @@ impl Opened {
     }
 
     /// A mapping that does not fit its log.
-    pub(in crate::cli) fn wrong_mapping(&self, log: &Path, error: &MappingError) -> Failure {
+    pub(super) fn wrong_mapping(&self, log: &Path, error: &MappingError) -> Failure {
         match &self.mapping_path {
             Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
             None => Failure::in_file(log, error),
@@ -142,31 +167,6 @@ impl Opened {
         drawn.write_with_encoder(image::codecs::jpeg::JpegEncoder::new(&mut bytes)).ok()?;
         Some(bytes)
     }
-}
-
-/// The mapping of a file, or else what the types of the topics say.
-fn read_mapping(path: &Path, log: &Log, file: Option<&Path>) -> Result<Mapping, Failure> {
-    match file {
-        Some(file) => {
-            Mapping::read(&input::read(file)?).map_err(|error| Failure::in_file(file, error))
-        }
-        None => {
-            let mapping = Mapping::unambiguous(log);
-            if Evidence::of(&mapping).is_none() {
-                // Where that is because several topics could carry the same, this says so.
-                Mapping::from_log(log).map_err(|error| Failure::in_file(path, error))?;
-            }
-            Ok(mapping)
-        }
-    }
-}
-
-/// There is nothing in a log that could be judged.
-fn nothing(path: &Path, log: &Log) -> Failure {
-    if log.messages_total() == 0 {
-        return Failure::in_file(path, "it is empty: there is no message in it");
-    }
-    Failure::in_file(path, toposlam_robot::conform::NoEvents::NothingMapped)
 }
 
 /// What a log says of itself at its beginning.
