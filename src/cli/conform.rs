@@ -142,7 +142,7 @@ impl Arguments {
             let judged = self.judge(path, &quirks)?;
             all.include(&judged.judgement.coverage);
             worst = worse(worst, judged.judgement.verdict());
-            let shorter = self.shorter(path, &judged)?;
+            let shorter = self.shorter(&judged)?;
             let report = judged.report(path, &quirks, shorter, self.html.is_some());
             if self.json {
                 tell::json(out, &report, &judged.judgement)?;

@@ -14,7 +14,7 @@ use toposlam_vision::{
 
 use super::{
     Derivation, Telling,
-    events::{Ending, Events, Head, Source},
+    events::{Ending, Event, Events, Head, Source},
 };
 use crate::log::{
     entries::{Content, Entry, Picture},
@@ -45,10 +45,23 @@ pub struct Gathered {
     pub evidence: Evidence,
     /// The head of the log, where it has one.
     pub run: Option<messages::Run>,
+    /// What was seen, and where, where events are derived from it.
+    pub seen: Vec<Seen>,
     /// How many pictures were looked at.
     pub pictures: u64,
     /// How many of them are no images.
     pub unreadable: u64,
+}
+
+/// What was seen in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Where it, or its scene, stands in the log.
+    pub source: Source,
+    /// What it shows.
+    pub scene: Scene,
+    /// Where the robot was when it was taken.
+    pub odometry: Odometry,
 }
 
 /// Why there are no events.
@@ -157,19 +170,26 @@ pub fn gather(
     }
     gathering.look()?;
     let Gathering { telling, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
+    let placed = |(source, time, scene)| {
+        let odometry = at(&track, time)?;
+        Some(Seen { source, scene, odometry })
+    };
+    let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
     events.events = match evidence {
         Evidence::Told => telling.finish(),
-        Evidence::Scenes | Evidence::Pictures => {
-            let mut derivation = Derivation::new(marked);
-            for (source, time, scene) in &seen {
-                if let Some(odometry) = at(&track, *time) {
-                    derivation.see(*source, scene, &odometry);
-                }
-            }
-            derivation.finish()
-        }
+        Evidence::Scenes | Evidence::Pictures => derived(&seen, marked),
     };
-    Ok(Gathered { events, evidence, run, pictures, unreadable })
+    Ok(Gathered { events, evidence, run, seen, pictures, unreadable })
+}
+
+/// The events of what was seen.
+#[must_use]
+pub fn derived(seen: &[Seen], marked: bool) -> Vec<Event> {
+    let mut derivation = Derivation::new(marked);
+    for Seen { source, scene, odometry } in seen {
+        derivation.see(*source, scene, odometry);
+    }
+    derivation.finish()
 }
 
 struct Gathering<'w, W> {
@@ -266,7 +286,7 @@ fn sense(sensor: &mut Sensor, picture: &Picture) -> Option<Result<Scene, WrongSi
     match picture {
         Picture::Pixels(image) => Some(sensor.sense(image)),
         Picture::File(bytes) => {
-            let image = ImageFile::open(bytes).and_then(|file| file.image()).ok()?;
+            let image = ImageFile::open(bytes).and_then(ImageFile::image).ok()?;
             Some(sensor.sense(&image))
         }
     }

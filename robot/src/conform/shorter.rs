@@ -1,5 +1,7 @@
 //! A log that diverges in the same way as another, and is shorter.
 
+use std::mem::discriminant;
+
 use toposlam_model::{
     enumerate::Watch,
     trace::{self, Trace, shortened},
@@ -8,6 +10,7 @@ use toposlam_model::{
 use super::{
     cause::{Cause, Divergence},
     events::{Event, Events, Kind, Perceived, Source},
+    gathered::{Seen, derived},
     judgement::{Driver, Judgement, Question, judge},
     quirks::Quirks,
 };
@@ -60,6 +63,25 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
         }
     }
 }
+
+/// The least that was seen of which the event at a place among those derived from all is derived; `None`
+/// where it cannot be derived but with all, or is none that shows in what was seen alone.
+#[must_use]
+pub fn shorter_seen<'s>(seen: &'s [Seen], event: &Event) -> Option<&'s [Seen]> {
+    let alone = matches!(event.kind, Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided);
+    let end = seen.partition_point(|seen| seen.source <= event.source);
+    let shows = |first: &usize| {
+        let events = derived(&seen[*first..end], false);
+        let is = |kind: &Kind| discriminant(kind) == discriminant(&event.kind);
+        let stands = |event: &Event| matches!(event.kind, Kind::Perceived(_));
+        events.last().is_some_and(|last| is(&last.kind)) && events.iter().any(stands)
+    };
+    let first = (0..end).rev().take(FAR).find(shows).filter(|_| alone)?;
+    Some(&seen[first..end])
+}
+
+/// So many pictures back is far enough to look for what led to an event.
+const FAR: usize = 400;
 
 /// Whether two divergences are alike: the same cause, and where that is what was perceived the same
 /// expectation.

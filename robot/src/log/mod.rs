@@ -22,5 +22,6 @@ mod world_hash;
 pub mod writer;
 
 pub use container::{Format, MOST_GROWTH};
+pub use told::scene as scene_message;
 pub(crate) use told::scene_of;
 pub use world_hash::world_hash;

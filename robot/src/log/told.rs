@@ -33,7 +33,8 @@ pub(super) fn count(count: u64) -> u32 {
 }
 
 /// What sensing told of a picture that was taken then.
-pub(super) fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
+#[must_use]
+pub fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
     let mut told = Scene { stamp, marker_door: NONE, ..Scene::default() };
     match &scene.place {
         Place::Hallway(hallway) => {

@@ -4,12 +4,12 @@ use std::{f64::consts::PI, path::Path};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Sighting};
 use toposlam_robot::{
-    conform::{Event, Events, Kind, Perceived, Shorter, direction, shorter},
+    conform::{Event, Events, Kind, Perceived, Seen, Shorter, direction, shorter, shorter_seen},
     log::{
         entries::UNTOLD,
-        messages::{Door, Own, Percept, Run, Stamp},
+        messages::{Door, Own, Percept, Run, Scene, Stamp},
         recorder::ODOM,
-        standard,
+        scene_message, standard,
         writer::{LogWriter, WriteError},
     },
 };
@@ -48,15 +48,22 @@ impl Arguments {
         let Some(path) = &self.minimise else {
             return Ok(Some(Minimised { events, command: None }));
         };
-        let bytes = write(&events, judged.opened.run.as_ref());
+        let run = judged.opened.run.as_ref();
+        let divergence = judged.judgement.divergence.as_ref();
+        let event = divergence.and_then(|found| judged.judgement.events.events.get(found.event));
+        let seen = event.and_then(|event| shorter_seen(&judged.gathered.seen, event));
+        let bytes = match seen {
+            Some(seen) => write_seen(seen, run),
+            None => write(&events, run),
+        };
         let bytes = bytes.map_err(|error| Failure::in_file(path, error))?;
         output::write_whole(path, &bytes)?;
-        let command = Some(self.command(path, log, judged, by_itself));
+        let command = Some(self.command(path, judged, by_itself));
         Ok(Some(Minimised { events, command }))
     }
 
     /// The command that judges a shorter log as this one was judged.
-    fn command(&self, path: &Path, _: &Path, judged: &Judged, by_itself: bool) -> String {
+    fn command(&self, path: &Path, judged: &Judged, by_itself: bool) -> String {
         let mut words =
             vec!["toposlam".to_owned(), "conform".to_owned(), path.display().to_string()];
         if by_itself {
@@ -78,10 +85,7 @@ impl Arguments {
 /// Events as a log tells them: percepts, doors, and odometry where a door was not the one that was
 /// taken, or the entry not where the robot came from.
 fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
-    let mut log = LogWriter::new(Vec::new())?;
-    let run = run.cloned().unwrap_or_default();
-    // What the pictures need is no longer needed.
-    log.write(Run::TOPIC, 0, &Run { calibration: String::new(), colours: String::new(), ..run })?;
+    let mut log = begin(run)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
     let mut told = Told::default();
@@ -116,6 +120,27 @@ fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
         }
     }
     log.finish()
+}
+
+/// What was seen, as a log tells it: scenes and odometry.
+fn write_seen(seen: &[Seen], run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
+    let mut log = begin(run)?;
+    let begun = seen.first().map_or(0, |seen| seen.source.time);
+    for Seen { source, scene, odometry: there } in seen {
+        let time = source.time.saturating_sub(begun);
+        let stamp = Stamp::of(time);
+        log.write(ODOM, time, &odometry(stamp, there))?;
+        log.write(Scene::TOPIC, time, &scene_message(stamp, scene))?;
+    }
+    log.finish()
+}
+
+/// A log with the head of another; what its pictures needed is no longer needed.
+fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, WriteError> {
+    let mut log = LogWriter::new(Vec::new())?;
+    let run = run.cloned().unwrap_or_default();
+    log.write(Run::TOPIC, 0, &Run { calibration: String::new(), colours: String::new(), ..run })?;
+    Ok(log)
 }
 
 /// What was told of the last junction.
