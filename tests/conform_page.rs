@@ -120,9 +120,7 @@ fn diverged(log: &str, events: usize, at: usize) -> Report {
         ]
         .map(str::to_owned)
         .into(),
-        command: Some(
-            "toposlam conform shorter.mcap --world worlds/shape-6.toml".to_owned(),
-        ),
+        command: Some("toposlam conform shorter.mcap --world worlds/shape-6.toml".to_owned()),
         picture: Some(picture()),
         ..conforming(log, events)
     }

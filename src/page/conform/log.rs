@@ -13,16 +13,19 @@ const FEW: usize = 12;
 /// All that is said of a log, by its number among the logs.
 pub(super) fn section(report: &Report, number: usize, level: Level) -> String {
     let beneath = level.beneath();
-    let left = [
-        allowed(report, beneath),
-        before(report, number, beneath),
-        shorter(report, beneath),
-        tolerated(report, number, beneath),
-        facts(report, beneath),
-    ];
-    let right = [picture(report, beneath), world(report, beneath), covered(report, beneath)];
+    let covered = covered(report, beneath);
+    let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
+    let seen = [picture(report, beneath), world(report, beneath)].concat();
+    // Where nothing diverged there is room on the left.
+    let (left, right) = if report.divergence.is_some() {
+        let led =
+            [allowed(report, beneath), before(report, number, beneath), shorter(report, beneath)];
+        (led.concat() + &judged, seen + &covered)
+    } else {
+        (judged + &covered, seen)
+    };
     // A column without anything gives its room to the other.
-    let column = |panels: &[String]| format!("<div>{}</div>\n", panels.concat());
+    let column = |panels: &str| format!("<div>{panels}</div>\n");
     format!(
         "<section id=\"log-{number}\">\n{}<div class=\"columns\">\n{}{}</div>\n{}</section>\n",
         verdict(report, number, level),
@@ -41,12 +44,15 @@ fn verdict(report: &Report, log: usize, level: Level) -> String {
         words::sentence(name).trim_end_matches('.'),
         escaped(&report.log),
     ));
-    let because =
-        report.divergence.as_ref().map_or_else(String::new, |told| because(told, report, log));
+    let because = match &report.divergence {
+        Some(told) => because(told, report, log),
+        None => format!("<p>{}</p>\n", words::fits(report)),
+    };
     let remarks =
         each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&words::sentence(remark))));
     format!(
-        "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{remarks}</div>\n</div>\n"
+        "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{remarks}\
+         </div>\n</div>\n"
     )
 }
 

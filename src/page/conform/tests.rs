@@ -134,6 +134,7 @@ fn each_verdict_has_its_word_sign_and_colour() {
     });
     assert_eq!(BTreeSet::from(paths).len(), 3);
     assert!(pages[1].contains("At none of the 2 poses left in the known world this is so.</p>"));
+    assert!(pages[0].contains("<p>All 4 events fit.</p>"));
     assert!(pages[2].contains("The log ends before the map is complete.</p>"));
 }
 
@@ -190,6 +191,7 @@ fn what_is_tolerated_leads_to_its_events() {
     let quirk = ("glare".to_owned(), "the sun stands low".to_owned(), at);
     let page = conform_page(&[Report { tolerated: vec![quirk], ..conforming(5) }]);
     assert!(page.contains("<b>glare</b>, 3 times: The sun stands low."));
+    assert!(page.contains("<p>All 5 events fit, but for 3 that are tolerated.</p>"));
     for event in [2, 4] {
         assert!(page.contains(&format!("<a href=\"#event-1-{event}\">{event}</a>")));
         assert!(page.contains(&format!("<tr class=let id=event-1-{event}>")));

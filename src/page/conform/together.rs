@@ -47,7 +47,9 @@ fn row(report: &Report, number: usize) -> String {
         Some(Told { event, culprit, what, .. }) => {
             format!("<span class=\"chip\">{culprit}</span> event {event}: {}", escaped(what))
         }
-        None => report.remarks.first().map_or_else(String::new, |remark| escaped(remark)),
+        None => {
+            report.remarks.first().map_or_else(|| words::fits(report), |remark| escaped(remark))
+        }
     };
     format!(
         "<tr><th scope=\"row\"><a href=\"#log-{number}\">{}</a></th>\

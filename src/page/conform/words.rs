@@ -1,5 +1,7 @@
 //! What the page says of a report, in words and signs.
 
+use std::collections::BTreeSet;
+
 use base64::{Engine, engine::general_purpose::STANDARD};
 use toposlam_robot::conform::{Culprit, Verdict};
 
@@ -56,6 +58,21 @@ pub(super) fn sentence(words: &str) -> String {
     let sentence = first.unwrap_or_default() + letters.as_str();
     let ended = sentence.is_empty() || sentence.ends_with(['.', '!', '?', ':']);
     if ended { sentence } else { sentence + "." }
+}
+
+/// What is to be said of the events where none diverged.
+pub(super) fn fits(report: &Report) -> String {
+    let all = match report.events.len() {
+        0 => return "There are no events.".to_owned(),
+        1 => "The only event fits".to_owned(),
+        count => format!("All {count} events fit"),
+    };
+    let tolerated = report.tolerated.iter().flat_map(|(_, _, events)| events);
+    match tolerated.collect::<BTreeSet<_>>().len() {
+        0 => all + ".",
+        1 => all + ", but for one that is tolerated.",
+        count => format!("{all}, but for {count} that are tolerated."),
+    }
 }
 
 /// What a culprit did.
