@@ -1,3 +1,5 @@
+//! What stands on the page, and what cannot get out of its place there.
+
 use std::{cell::RefCell, collections::BTreeSet};
 
 use toposlam_robot::conform::{Culprit, Verdict};
@@ -240,7 +242,7 @@ fn a_long_list_is_folded() {
         if let Some(divergence) = &mut report.divergence {
             divergence.allowed = told(count);
         }
-        let page = conform_page(&[report.clone()]);
+        let page = conform_page(std::slice::from_ref(&report));
         assert_eq!(page.matches("<li>door ").count(), count);
         assert_eq!(summary.is_some_and(|summary| page.contains(summary)), summary.is_some());
         assert_eq!(page.contains(" more</summary>"), summary.is_some());
