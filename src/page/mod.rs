@@ -1,14 +1,16 @@
-//! Pages for a browser: a walk in two worlds at once ([`page`]), and the run of a simulated robot
-//! ([`run_page`]).
+//! Pages for a browser: a walk in two worlds at once ([`page`]), the run of a simulated robot
+//! ([`run_page`]), and what the specification says of logs ([`conform_page`]).
 //!
 //! Each is one self-contained HTML document that asks nothing of the network. What happens in the
 //! browser is in `browser/`.
 
+mod conform;
 mod run;
 mod walk;
 
 use serde_json::Value;
 
+pub use conform::conform_page;
 pub use run::run_page;
 
 /// A page of reports.
@@ -38,4 +40,23 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
 /// JSON that can stand inside a `script` element: nothing in it ends the element or begins a comment.
 fn in_script(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
+}
+
+/// Minutes and seconds.
+fn clock(seconds: f64) -> String {
+    let tenths = (seconds * 10.0).round().max(0.0) as u64;
+    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_in_minutes() {
+        assert_eq!(
+            [0.0, 59.96, 61.25, 754.3].map(clock),
+            ["0:00.0", "1:00.0", "1:01.3", "12:34.3"]
+        );
+    }
 }

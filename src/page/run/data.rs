@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::words;
 use crate::{
     journal::{Call, Journal, Round},
-    page::in_script,
+    page::{clock, in_script},
     picture::Drawn,
 };
 
@@ -53,7 +53,7 @@ impl<'a> Album<'a> {
 
 fn round<'a>(round: &'a Round, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
     json!({
-        "time": words::clock(round.time),
+        "time": clock(round.time),
         "x": rounded(x),
         "y": rounded(y),
         // Clockwise on the screen, in degrees.

@@ -3,6 +3,7 @@
 use crate::{
     journal::Journal,
     model::driving::algorithm2::{Command, State},
+    page::clock,
 };
 
 /// How the run ended, and how long it was.
@@ -16,12 +17,6 @@ pub(super) fn about(journal: &Journal) -> String {
         return format!("{ending}. {pictures}.");
     };
     format!("{ending}. {pictures}, {} min of simulated time.", clock(last.time))
-}
-
-/// Minutes and seconds.
-pub(super) fn clock(seconds: f64) -> String {
-    let tenths = (seconds * 10.0).round().max(0.0) as u64;
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }
 
 pub(super) fn state(state: State) -> &'static str {
@@ -62,13 +57,5 @@ mod tests {
         assert_eq!(told(0.001, 0.25), "go 0.25 m ahead");
         assert_eq!(told(0.0, 0.0), "take another picture");
         assert_eq!(command(None), "nothing more: the path ends");
-    }
-
-    #[test]
-    fn times_are_told_in_minutes() {
-        assert_eq!(
-            [0.0, 59.96, 61.25, 754.3].map(clock),
-            ["0:00.0", "1:00.0", "1:01.3", "12:34.3"]
-        );
     }
 }

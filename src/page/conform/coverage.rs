@@ -1,0 +1,102 @@
+//! Which cases were gone through, and how often.
+
+use super::each;
+use crate::{picture::escaped, report::Covered};
+
+/// A table of the cases.
+pub(super) fn table(cases: &[Covered]) -> String {
+    let most = cases.iter().map(|case| case.count).max().unwrap_or(0).max(1);
+    format!(
+        "<table class=\"coverage\">\n<thead class=\"unseen\"><tr><th scope=\"col\">Case</th>\
+         <th scope=\"col\">Count</th><th scope=\"col\">Share</th></tr></thead>\n<tbody>\n{}</tbody>\n\
+         </table>\n",
+        each(cases, |case| row(case, most))
+    )
+}
+
+fn row(case: &Covered, most: u64) -> String {
+    let name = escaped(&case.case);
+    let (class, told) = match (case.count, case.reachable) {
+        (0, Some(false)) => ("beyond", "<td colspan=\"2\">not reachable</td>".to_owned()),
+        (0, _) => ("missed", "<td colspan=\"2\">not reached</td>".to_owned()),
+        (count, reachable) => {
+            let part = 100.0 * count as f64 / most as f64;
+            let bar = format!("<span class=\"bar\" style=\"--part:{part:.1}%\"></span>");
+            // A run that diverged may go through what its world does not have.
+            let note = match reachable {
+                Some(false) => "<span class=\"faint\">not in the known world</span>",
+                _ => "",
+            };
+            let cells = format!(
+                "<td class=\"right number\">{count}</td><td class=\"many\">{bar}{note}</td>"
+            );
+            ("met", cells)
+        }
+    };
+    format!("<tr class=\"{class}\"><th scope=\"row\">{name}</th>{told}</tr>\n")
+}
+
+/// How many of the cases that can be gone through were.
+pub(super) fn summary(cases: &[Covered]) -> String {
+    let met = cases.iter().filter(|case| case.count > 0).count();
+    let beyond = cases.iter().filter(|case| case.count == 0 && case.reachable == Some(false));
+    let beyond = beyond.count();
+    let of = cases.len() - beyond;
+    let besides = match beyond {
+        0 => String::new(),
+        _ => format!("; {beyond} cannot be reached in the known world"),
+    };
+    format!("<p class=\"faint\">{met} of {of} cases reached{besides}.</p>\n")
+}
+
+/// What several logs cover together, the cases in the order in which they come.
+pub(super) fn together<'a>(logs: impl Iterator<Item = &'a [Covered]>) -> Vec<Covered> {
+    let mut all: Vec<Covered> = Vec::new();
+    for case in logs.flatten() {
+        match all.iter_mut().find(|other| other.case == case.case) {
+            Some(same) => {
+                same.count = same.count.saturating_add(case.count);
+                same.reachable = either(same.reachable, case.reachable);
+            }
+            None => all.push(case.clone()),
+        }
+    }
+    all
+}
+
+/// Whether a case can be gone through in one of two worlds.
+fn either(one: Option<bool>, other: Option<bool>) -> Option<bool> {
+    match (one, other) {
+        (Some(true), _) | (_, Some(true)) => Some(true),
+        (Some(false), Some(false)) => Some(false),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(case: &str, count: u64, reachable: Option<bool>) -> Covered {
+        Covered { case: case.to_owned(), count, reachable }
+    }
+
+    #[test]
+    fn several_logs_reach_what_one_of_them_reaches() {
+        let one = [case("a", 2, Some(true)), case("b", 0, Some(false)), case("c", 0, Some(false))];
+        let other = [case("b", 0, None), case("a", 3, None), case("c", 0, Some(false))];
+        let sum = [case("a", 5, Some(true)), case("b", 0, None), case("c", 0, Some(false))];
+        assert_eq!(together([&one[..], &other[..]].into_iter()), sum);
+        assert!(summary(&sum).contains("1 of 2 cases reached; 1 cannot be reached"));
+    }
+
+    #[test]
+    fn a_case_is_reached_or_not_or_cannot_be() {
+        let of = |count, reachable| row(&case("x", count, reachable), 8);
+        assert!(of(4, Some(true)).contains("--part:50.0%"));
+        assert!(of(0, Some(true)).contains("\"missed\""));
+        assert!(of(0, None).contains(">not reached<"));
+        assert!(of(0, Some(false)).contains(">not reachable<"));
+        assert!(of(8, Some(false)).contains("not in the known world"));
+    }
+}

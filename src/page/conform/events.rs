@@ -1,0 +1,102 @@
+//! The events of a log: the last ones before it diverged, and all of them.
+
+use std::collections::BTreeSet;
+
+use toposlam_robot::conform::Verdict;
+
+use super::{each, words};
+use crate::{
+    page::clock,
+    picture::escaped,
+    report::{Line, Report},
+};
+
+/// So many steps led to a divergence.
+const BEFORE: usize = 3;
+/// So many events stand in one table: the browser lays out those tables that are on the screen.
+const LEAF: usize = 100;
+
+/// The steps before the divergence, and it.
+pub(super) fn before(report: &Report) -> Option<String> {
+    let told = report.divergence.as_ref()?;
+    let earlier = report.events.partition_point(|line| line.number < told.event);
+    let last = report.events.get(earlier.saturating_sub(BEFORE)..earlier)?;
+    let here = report.events.get(earlier).filter(|line| line.number == told.event);
+    let rows = each(last, |line| row(line, "", ""));
+    let time = here.map_or(told.time, |line| line.time);
+    Some(table(&(rows + &diverging(told.event, time, &told.what, ""))))
+}
+
+/// All events, in a part of the page that a reader has to open.
+pub(super) fn all(report: &Report, log: usize) -> String {
+    let off = report.divergence.as_ref().map(|told| told.event);
+    let let_pass: BTreeSet<_> =
+        report.tolerated.iter().flat_map(|(_, _, events)| events).copied().collect();
+    let row = |line: &Line| {
+        if off == Some(line.number) {
+            let id = id(log, line.number);
+            return diverging(line.number, line.time, &line.what, &id);
+        }
+        if let_pass.contains(&line.number) {
+            return row(line, " class=let", &id(log, line.number));
+        }
+        row(line, "", "")
+    };
+    let leaf = |lines: &[Line]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
+    // What is missing at the end has no line of its own.
+    let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
+    let missing = missing.map_or_else(String::new, |told| {
+        table(&diverging(told.event, told.time, &told.what, &id(log, told.event)))
+    });
+    let summary = match report.events.len() {
+        0 => "No event".to_owned(),
+        1 => "The only event".to_owned(),
+        count => format!("All {count} events"),
+    };
+    format!(
+        "<details class=\"all\">\n<summary>{summary}</summary>\n{}{missing}</details>\n",
+        each(report.events.chunks(LEAF), leaf),
+    )
+}
+
+/// A link to an event among all.
+pub(super) fn link(log: usize, event: usize, words: &str) -> String {
+    format!("<a href=\"#event-{log}-{event}\">{words}</a>")
+}
+
+fn id(log: usize, event: usize) -> String {
+    format!(" id=event-{log}-{event}")
+}
+
+fn has_divergence(report: &Report) -> bool {
+    let off = report.divergence.as_ref().map(|told| told.event);
+    report.events.iter().any(|line| off == Some(line.number))
+}
+
+fn table(rows: &str) -> String {
+    format!(
+        "<table class=\"events\">\n<thead><tr><th scope=\"col\">Event</th><th scope=\"col\">Time</th>\
+         <th scope=\"col\">What happened</th><th scope=\"col\">What is different then</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n"
+    )
+}
+
+/// A line. End tags may be left out, and there are many of them.
+fn row(line: &Line, class: &str, id: &str) -> String {
+    format!(
+        "<tr{class}{id}><td>{}<td>{}<td>{}<td>{}\n",
+        line.number,
+        clock(line.time),
+        escaped(&line.what),
+        escaped(&line.then),
+    )
+}
+
+fn diverging(event: usize, time: f64, what: &str, id: &str) -> String {
+    format!(
+        "<tr class=off{id}><td>{event}<td>{}<td>{}<td>{} does not fit\n",
+        clock(time),
+        escaped(what),
+        words::sign(Verdict::Diverged),
+    )
+}

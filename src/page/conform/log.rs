@@ -1,0 +1,202 @@
+//! What is said of one log.
+
+use super::{Level, coverage, each, events, panel, short_list, words};
+use crate::{
+    page::clock,
+    picture::escaped,
+    report::{Report, Told},
+};
+
+/// So much of a list is shown at once.
+const FEW: usize = 12;
+
+/// All that is said of a log, by its number among the logs.
+pub(super) fn section(report: &Report, number: usize, level: Level) -> String {
+    let beneath = level.beneath();
+    let covered = covered(report, beneath);
+    let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
+    let seen = [picture(report, beneath), world(report, beneath)].concat();
+    // Where nothing diverged there is room on the left.
+    let (left, right) = if report.divergence.is_some() {
+        let led =
+            [allowed(report, beneath), before(report, number, beneath), shorter(report, beneath)];
+        (led.concat() + &judged, seen + &covered)
+    } else {
+        (judged + &covered, seen)
+    };
+    // A column without anything gives its room to the other.
+    let column = |panels: &str| format!("<div>{panels}</div>\n");
+    format!(
+        "<section id=\"log-{number}\">\n{}<div class=\"columns\">\n{}{}</div>\n{}</section>\n",
+        verdict(report, number, level),
+        column(&left),
+        column(&right),
+        events::all(report, number),
+    )
+}
+
+/// The verdict and why.
+fn verdict(report: &Report, log: usize, level: Level) -> String {
+    let name = report.verdict.name();
+    let heading = level.heading(&format!(
+        "{}<strong>{}</strong> <span class=\"of\">{}</span>",
+        words::sign(report.verdict),
+        words::sentence(name).trim_end_matches('.'),
+        escaped(&report.log),
+    ));
+    let because = match &report.divergence {
+        Some(told) => because(told, report, log),
+        None => format!("<p>{}</p>\n", words::fits(report)),
+    };
+    let remarks =
+        each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&words::sentence(remark))));
+    format!(
+        "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{remarks}\
+         </div>\n</div>\n"
+    )
+}
+
+/// Where the run diverged, how, and whose fault that is.
+fn because(told: &Told, report: &Report, log: usize) -> String {
+    let Told { event, time, message, culprit, cause, what, why, .. } = told;
+    let of = report.events.len();
+    let place = if *event > of {
+        format!("After all {of} events")
+    } else {
+        format!("Event {event} of {of}")
+    };
+    let message = message.map_or_else(String::new, |(number, offset)| {
+        format!(" \u{b7} message {number} of the log, byte {offset}")
+    });
+    format!(
+        "<p class=\"what\"><b>{}</b> {}</p>\n\
+         <p><span class=\"chip\">{culprit}</span> {}</p>\n\
+         <p class=\"faint\">{} \u{b7} {} min{message} \u{b7} cause <code>{}</code></p>\n",
+        escaped(&words::sentence(what)),
+        escaped(&words::sentence(why)),
+        words::sentence(words::did(*culprit)),
+        events::link(log, *event, &place),
+        clock(*time),
+        escaped(cause),
+    )
+}
+
+fn allowed(report: &Report, level: Level) -> String {
+    let allowed = report.divergence.as_ref().map(|told| &told.allowed);
+    let Some(allowed) = allowed.filter(|allowed| !allowed.is_empty()) else {
+        return String::new();
+    };
+    let list = short_list(allowed, FEW, |it| format!("<li>{}</li>\n", escaped(it)));
+    panel(level, "allowed", "What would have been allowed here", &list)
+}
+
+fn before(report: &Report, log: usize, level: Level) -> String {
+    let Some(table) = events::before(report) else {
+        return String::new();
+    };
+    let all = match &report.divergence {
+        Some(told) => events::link(log, told.event, "among all events"),
+        None => String::new(),
+    };
+    let more = format!("<p class=\"faint\">{all}</p>\n");
+    panel(level, "before", "What led there", &(table + &more))
+}
+
+fn shorter(report: &Report, level: Level) -> String {
+    let events = each(&report.shorter, |event| format!("<li>{}</li>\n", escaped(event)));
+    let events = match report.shorter.len() {
+        0 => String::new(),
+        1..=FEW => format!("<ol class=\"shorter\">\n{events}</ol>\n"),
+        count => format!(
+            "<details><summary>{}</summary>\n<ol class=\"shorter\">\n{events}</ol>\n</details>\n",
+            words::counted(count, "event")
+        ),
+    };
+    let command = report.command.as_ref().map_or_else(String::new, |command| {
+        format!(
+            "<div class=\"command\"><pre><code>{}</code></pre>\
+             <button type=\"button\" class=\"copy\" hidden>Copy</button></div>\n",
+            escaped(command)
+        )
+    });
+    if events.is_empty() && command.is_empty() {
+        return String::new();
+    }
+    panel(level, "late", "A shorter log that diverges in the same way", &(events + &command))
+}
+
+fn tolerated(report: &Report, log: usize, level: Level) -> String {
+    if report.tolerated.is_empty() {
+        return String::new();
+    }
+    let last = report.events.last().map_or(0, |line| line.number);
+    let quirk = |(name, reason, at): &(String, String, Vec<usize>)| {
+        let (first, rest) = at.split_at(at.len().min(FEW));
+        let place = |&event: &usize| {
+            let words = event.to_string();
+            if event > last { words } else { events::link(log, event, &words) }
+        };
+        let mut places: Vec<_> = first.iter().map(place).collect();
+        if !rest.is_empty() {
+            places.push(format!("{} more", rest.len()));
+        }
+        let places = if places.is_empty() {
+            "not met".to_owned()
+        } else {
+            format!("at {} {}", if at.len() == 1 { "event" } else { "events" }, places.join(", "))
+        };
+        format!(
+            "<li><b>{}</b>, {}: {} <span class=\"faint\">{places}</span></li>\n",
+            escaped(name),
+            match at.len() {
+                1 => "once".to_owned(),
+                times => format!("{times} times"),
+            },
+            escaped(&words::sentence(reason)),
+        )
+    };
+    let list = format!("<ul>\n{}</ul>\n", each(&report.tolerated, quirk));
+    panel(level, "late", "Known, and tolerated", &list)
+}
+
+fn facts(report: &Report, level: Level) -> String {
+    if report.facts.is_empty() {
+        return String::new();
+    }
+    let row = |(name, fact): &(&str, String)| {
+        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(fact))
+    };
+    let table = format!(
+        "<table class=\"facts\">\n<tbody>\n{}</tbody>\n</table>\n",
+        each(&report.facts, row)
+    );
+    panel(level, "late", "What was judged", &table)
+}
+
+fn picture(report: &Report, level: Level) -> String {
+    let Some(address) = report.picture.as_deref().and_then(words::picture_address) else {
+        return String::new();
+    };
+    let image = format!("<img alt=\"The picture of the robot's camera\" src=\"{address}\">\n");
+    panel(level, "camera", "What the camera saw", &image)
+}
+
+fn world(report: &Report, level: Level) -> String {
+    let Some(svg) = &report.world else {
+        return String::new();
+    };
+    // Only of a known world is it known what can be reached.
+    let known = report.coverage.iter().any(|case| case.reachable.is_some());
+    let name = if known { "The known world" } else { "The smallest world that explains the log" };
+    let address = words::svg_address(svg);
+    let image = format!("<img class=\"world\" alt=\"A drawing of the world\" src=\"{address}\">\n");
+    panel(level, "", name, &image)
+}
+
+fn covered(report: &Report, level: Level) -> String {
+    if report.coverage.is_empty() {
+        return String::new();
+    }
+    let content = coverage::summary(&report.coverage) + &coverage::table(&report.coverage);
+    panel(level, "late", "What was covered", &content)
+}

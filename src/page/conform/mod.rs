@@ -1,0 +1,89 @@
+//! A page of what the specification says of one log or several: the verdict, where a run first diverged
+//! and what would have been allowed there, what led there, what was covered. Sections 2 and 6.
+//!
+//! All of it can be read without a script.
+
+mod coverage;
+mod events;
+mod log;
+mod together;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+use super::{PAGE_STYLE, filled};
+use crate::{picture::escaped, report::Report};
+
+const PAGE: &str = include_str!("../browser/conform.html");
+const STYLE: [&str; 2] = [PAGE_STYLE, include_str!("../browser/conform.css")];
+const SCRIPT: &str = include_str!("../browser/conform.js");
+
+/// The page of these reports as an HTML document, in their order; of several, with what is said of them
+/// together above. The same reports give the same bytes.
+#[must_use]
+pub fn conform_page(reports: &[Report]) -> String {
+    let alone = matches!(reports, [_]);
+    let numbered: Vec<_> = reports.iter().zip(1..).collect();
+    filled(PAGE, |place| match place {
+        "title" => escaped(&words::title(reports)),
+        "icon" => words::icon(words::worst(reports)),
+        "style" => STYLE.concat(),
+        "together" if !alone => together::section(reports),
+        "logs" => each(&numbered, |(report, number)| {
+            log::section(report, *number, if alone { Level::First } else { Level::Second })
+        }),
+        "script" => SCRIPT.to_owned(),
+        _ => String::new(),
+    })
+}
+
+/// How deep in the page a heading stands.
+#[derive(Clone, Copy)]
+enum Level {
+    First,
+    Second,
+    Third,
+}
+
+impl Level {
+    fn beneath(self) -> Self {
+        match self {
+            Self::First => Self::Second,
+            Self::Second | Self::Third => Self::Third,
+        }
+    }
+
+    /// A heading; its content is HTML.
+    fn heading(self, content: &str) -> String {
+        let name = match self {
+            Self::First => "h1",
+            Self::Second => "h2",
+            Self::Third => "h3",
+        };
+        format!("<{name}>{content}</{name}>\n")
+    }
+}
+
+/// What is written of each, one after another.
+fn each<T>(items: impl IntoIterator<Item = T>, of: impl Fn(T) -> String) -> String {
+    items.into_iter().map(of).collect()
+}
+
+/// A list, of which a reader has to ask for what is beyond the first few.
+fn short_list<T>(items: &[T], few: usize, of: impl Fn(&T) -> String) -> String {
+    let list = |items: &[T]| format!("<ul>\n{}</ul>\n", each(items, &of));
+    // One more is no longer than to say so.
+    if items.len() <= few + 1 {
+        return list(items);
+    }
+    let (first, rest) = items.split_at(few);
+    let more =
+        format!("<details><summary>{} more</summary>\n{}</details>\n", rest.len(), list(rest));
+    list(first) + &more
+}
+
+/// A frame with a heading around some HTML.
+fn panel(level: Level, class: &str, name: &str, content: &str) -> String {
+    format!("<section class=\"panel {class}\">\n{}{content}</section>\n", level.heading(name))
+}

@@ -1,0 +1,250 @@
+//! What stands on the page, and what cannot get out of its place there.
+
+use std::{cell::RefCell, collections::BTreeSet};
+
+use toposlam_robot::conform::{Culprit, Verdict};
+
+use super::*;
+use crate::report::{Covered, Line, Told};
+
+fn line(number: usize) -> Line {
+    Line {
+        number,
+        time: number as f64 / 2.0,
+        what: if number % 2 == 1 {
+            "perceives 3 doors, the marker at door 2".to_owned()
+        } else {
+            "leaves by door 1, the second clockwise from the entry door".to_owned()
+        },
+        then: "in one of 12 poses of the known world".to_owned(),
+    }
+}
+
+fn conforming(events: usize) -> Report {
+    Report {
+        log: "logs/shape-6.mcap".to_owned(),
+        verdict: Verdict::Conforms,
+        remarks: Vec::new(),
+        facts: vec![("world", "shape-6".to_owned()), ("driver", "Algorithm 1".to_owned())],
+        events: (1..=events).map(line).collect(),
+        divergence: None,
+        coverage: [("new-vertex", 9, true), ("confirmed", 0, true), ("marker-missed", 0, false)]
+            .map(|(case, count, can)| Covered {
+                case: case.to_owned(),
+                count,
+                reachable: Some(can),
+            })
+            .into(),
+        tolerated: Vec::new(),
+        shorter: Vec::new(),
+        command: None,
+        picture: None,
+        world: None,
+    }
+}
+
+fn diverged(events: usize, at: usize) -> Report {
+    Report {
+        verdict: Verdict::Diverged,
+        divergence: Some(Told {
+            event: at,
+            time: at as f64 / 2.0,
+            message: Some((4711, 1_234_567)),
+            culprit: Culprit::Perception,
+            cause: "percept",
+            what: "perceives 4 doors".to_owned(),
+            why: "at none of the 2 poses left in the known world this is so".to_owned(),
+            allowed: vec!["3 doors, at tee".to_owned(), "2 doors, at corner".to_owned()],
+        }),
+        shorter: vec!["perceives 2 doors".to_owned()],
+        command: Some("toposlam conform shorter.mcap --world shape-6.toml".to_owned()),
+        picture: Some(b"\xff\xd8\xff\xe0".to_vec()),
+        world: Some("<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned()),
+        ..conforming(events)
+    }
+}
+
+fn incomplete() -> Report {
+    Report {
+        verdict: Verdict::Incomplete,
+        remarks: vec!["the log ends before the map is complete".to_owned()],
+        ..conforming(5)
+    }
+}
+
+/// The table of the steps that led to the divergence.
+fn led_there(page: &str) -> &str {
+    let (_, from) = page.split_once("What led there").unwrap();
+    from.split_once("</table>").unwrap().0
+}
+
+#[test]
+fn every_place_of_the_template_is_filled() {
+    let places = RefCell::new(BTreeSet::new());
+    filled(PAGE, |place| {
+        places.borrow_mut().insert(place.to_owned());
+        String::new()
+    });
+    let known = ["icon", "logs", "script", "style", "title", "together"];
+    assert_eq!(places.into_inner(), known.map(str::to_owned).into());
+}
+
+#[test]
+fn words_of_a_log_are_text_wherever_they_stand() {
+    let nasty = || "</script><script>alert('1')</script><i a=\"&{{logs}}".to_owned();
+    let mut report = diverged(3, 2);
+    report.log = nasty();
+    report.remarks = vec![nasty()];
+    report.facts = vec![("world", nasty())];
+    report.events.iter_mut().for_each(|line| (line.what, line.then) = (nasty(), nasty()));
+    report.coverage[0].case = nasty();
+    report.tolerated = vec![(nasty(), nasty(), vec![1])];
+    report.shorter = vec![nasty()];
+    report.command = Some(nasty());
+    report.world = Some(nasty());
+    if let Some(told) = &mut report.divergence {
+        (told.what, told.why, told.allowed) = (nasty(), nasty(), vec![nasty(); 20]);
+    }
+    let quiet = Report { log: nasty(), remarks: vec![nasty()], ..conforming(0) };
+    for reports in [vec![report.clone()], vec![report, quiet]] {
+        let page = conform_page(&reports);
+        assert_eq!(page.matches("<script").count(), 1, "the template's own");
+        assert_eq!(page.matches("</script").count(), 1);
+        assert!(!page.contains("<i "));
+        // What is put in is not searched for places.
+        assert!(page.contains("{{logs}}"));
+        assert_eq!(page.matches("<main>").count(), 1);
+    }
+}
+
+#[test]
+fn each_verdict_has_its_word_sign_and_colour() {
+    let of = |report: Report| conform_page(&[report]);
+    let pages = [of(conforming(4)), of(diverged(4, 3)), of(incomplete())];
+    for (page, [name, word]) in pages.iter().zip([
+        ["conforms", "Conforms"],
+        ["diverged", "Diverged"],
+        ["incomplete", "Incomplete"],
+    ]) {
+        assert!(page.contains(&format!("<div class=\"verdict {name}\">\n<h1><svg class=\"sign\"")));
+        assert!(page.contains(&format!("<strong>{word}</strong>")));
+        assert!(page.contains(&format!("<title>logs/shape-6.mcap: {name}</title>")));
+    }
+    let paths = pages.each_ref().map(|page| {
+        let (_, from) = page.split_once("<path d=\"").unwrap();
+        from.split_once('"').unwrap().0
+    });
+    assert_eq!(BTreeSet::from(paths).len(), 3);
+    assert!(pages[1].contains("At none of the 2 poses left in the known world this is so.</p>"));
+    assert!(pages[0].contains("<p>All 4 events fit.</p>"));
+    assert!(pages[2].contains("The log ends before the map is complete.</p>"));
+}
+
+#[test]
+fn a_divergence_is_told_with_what_led_there_and_would_have_been_allowed() {
+    let page = conform_page(&[diverged(9, 7)]);
+    for part in [
+        "<b>Perceives 4 doors.</b>",
+        "<span class=\"chip\">perception</span>",
+        "<a href=\"#event-1-7\">Event 7 of 9</a> \u{b7} 0:03.5 min \u{b7} message 4711 of the log, \
+         byte 1234567 \u{b7} cause <code>percept</code>",
+        "<li>3 doors, at tee</li>",
+        "src=\"data:image/jpeg;base64,/9j/4A==\"",
+        "src=\"data:image/svg+xml;base64,",
+        "<code>toposlam conform shorter.mcap --world shape-6.toml</code>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let steps = led_there(&page);
+    assert_eq!(steps.matches("<tr>").count() - 1, 3, "the head's besides");
+    assert!(steps.contains("<tr><td>4<td>0:02.0") && !steps.contains("<tr><td>3<"));
+    assert!(steps.contains("<tr class=off><td>7<td>0:03.5<td>perceives 4 doors<td>"));
+    assert_eq!(page.matches(" id=event-1-7>").count(), 1);
+}
+
+#[test]
+fn a_divergence_may_be_the_first_event_or_missing_at_the_end() {
+    let first = conform_page(&[diverged(4, 1)]);
+    assert!(led_there(&first).contains("<tbody>\n<tr class=off><td>1<"));
+    let missing = conform_page(&[diverged(4, 5)]);
+    assert!(missing.contains(">After all 4 events</a>"));
+    assert!(led_there(&missing).contains("<tr><td>4<td>0:02.0"));
+    assert_eq!(missing.matches(" id=event-1-5>").count(), 1);
+    let nothing = conform_page(&[diverged(0, 1)]);
+    assert_eq!(nothing.matches(" id=event-1-1>").count(), 1);
+}
+
+#[test]
+fn what_there_is_not_takes_no_room() {
+    let page = conform_page(&[conforming(2)]);
+    assert!(!page.contains("<img"));
+    for name in ["What the camera saw", "What led there", "tolerated", "A shorter log"] {
+        assert!(!page.contains(name), "{name}");
+    }
+    let odd = Report { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
+    assert_eq!(conform_page(&[odd]), page);
+    let png = Report { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
+    assert!(conform_page(&[png]).contains("src=\"data:image/png;base64,"));
+}
+
+#[test]
+fn what_is_tolerated_leads_to_its_events() {
+    let at = vec![2, 4, 6];
+    let quirk = ("glare".to_owned(), "the sun stands low".to_owned(), at);
+    let page = conform_page(&[Report { tolerated: vec![quirk], ..conforming(5) }]);
+    assert!(page.contains("<b>glare</b>, 3 times: The sun stands low."));
+    assert!(page.contains("<p>All 5 events fit, but for 3 that are tolerated.</p>"));
+    for event in [2, 4] {
+        assert!(page.contains(&format!("<a href=\"#event-1-{event}\">{event}</a>")));
+        assert!(page.contains(&format!("<tr class=let id=event-1-{event}>")));
+    }
+    // One that is missing at the end is no line to lead to.
+    assert!(!page.contains("#event-1-6"));
+}
+
+#[test]
+fn many_events_make_a_page_that_is_not_large() {
+    let page = conform_page(&[diverged(10_000, 7_000)]);
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    assert!(page.contains("<summary>All 10000 events</summary>"));
+    assert_eq!(page.matches("<div class=\"leaf\">").count(), 100);
+}
+
+#[test]
+fn several_logs_are_summed_up_above() {
+    let logs = [conforming(3), diverged(9, 7), incomplete()];
+    let page = conform_page(&logs);
+    assert!(page.contains("<title>3 logs: 1 diverged, 1 incomplete, 1 conforms</title>"));
+    assert!(page.contains("<div class=\"verdict diverged\">\n<h1>"), "the worst of all");
+    assert_eq!(page.matches("<h1>").count(), 1);
+    for number in 1..=3 {
+        assert!(page.contains(&format!("<a href=\"#log-{number}\">")));
+        assert!(page.contains(&format!("<section id=\"log-{number}\">")));
+    }
+    let (above, _) = page.split_once("<section id=\"log-1\">").unwrap();
+    assert!(above.contains(">27</td>"), "what all of them cover");
+    assert!(page.contains("#event-2-7"));
+    assert_eq!(page, conform_page(&logs));
+}
+
+#[test]
+fn no_log_does_not_conform() {
+    let page = conform_page(&[]);
+    assert!(page.contains("<div class=\"verdict incomplete\">"));
+    assert!(page.contains("<strong>No log was judged</strong>"));
+}
+
+#[test]
+fn a_long_list_is_folded() {
+    let mut report = diverged(3, 2);
+    let told = |count: usize| (0..count).map(|at| format!("door {at}")).collect::<Vec<_>>();
+    for (count, summary) in [(13, None), (40, Some("<summary>28 more</summary>"))] {
+        if let Some(divergence) = &mut report.divergence {
+            divergence.allowed = told(count);
+        }
+        let page = conform_page(std::slice::from_ref(&report));
+        assert_eq!(page.matches("<li>door ").count(), count);
+        assert_eq!(summary.is_some_and(|summary| page.contains(summary)), summary.is_some());
+        assert_eq!(page.contains(" more</summary>"), summary.is_some());
+    }
+}

@@ -1,0 +1,62 @@
+//! What is said of several logs together.
+
+use super::{Level, coverage, each, panel, words};
+use crate::{
+    picture::escaped,
+    report::{Report, Told},
+};
+
+/// The verdicts, each with a link to its log, and what all logs cover.
+pub(super) fn section(reports: &[Report]) -> String {
+    let worst = words::worst(reports);
+    let heading = Level::First.heading(&format!(
+        "{}<strong>{}</strong>",
+        words::sign(worst),
+        words::sentence(&words::tally(reports)).trim_end_matches('.'),
+    ));
+    let verdict = worst.name();
+    let numbered: Vec<_> = reports.iter().zip(1..).collect();
+    let table = if reports.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "<div class=\"because\"><table class=\"logs\">\n<thead><tr><th scope=\"col\">Log</th>\
+             <th scope=\"col\">Verdict</th><th scope=\"col\">Why</th>\
+             <th scope=\"col\" class=\"right\">Events</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\
+             </div>\n",
+            each(&numbered, |(report, number)| row(report, *number))
+        )
+    };
+    let cases = coverage::together(reports.iter().map(|report| &*report.coverage));
+    let covered = if cases.is_empty() {
+        String::new()
+    } else {
+        let content = coverage::summary(&cases) + &coverage::table(&cases);
+        let panel = panel(Level::Second, "", "What all of them cover together", &content);
+        format!("<div class=\"columns\">\n<div>{panel}</div>\n<div></div>\n</div>\n")
+    };
+    format!(
+        "<section id=\"together\">\n<div class=\"verdict {verdict}\">\n{heading}{table}</div>\n{covered}\
+         </section>\n"
+    )
+}
+
+fn row(report: &Report, number: usize) -> String {
+    let verdict = report.verdict.name();
+    let why = match &report.divergence {
+        Some(Told { event, culprit, what, .. }) => {
+            format!("<span class=\"chip\">{culprit}</span> event {event}: {}", escaped(what))
+        }
+        None => {
+            report.remarks.first().map_or_else(|| words::fits(report), |remark| escaped(remark))
+        }
+    };
+    format!(
+        "<tr><th scope=\"row\"><a href=\"#log-{number}\">{}</a></th>\
+         <td class=\"is {verdict}\">{}{verdict}</td><td>{why}</td>\
+         <td class=\"right number\">{}</td></tr>\n",
+        escaped(&report.log),
+        words::sign(report.verdict),
+        report.events.len(),
+    )
+}

@@ -1,0 +1,137 @@
+//! What the page says of a report, in words and signs.
+
+use std::collections::BTreeSet;
+
+use base64::{Engine, engine::general_purpose::STANDARD};
+use toposlam_robot::conform::{Culprit, Verdict};
+
+use crate::report::Report;
+
+/// The worst verdict of all; where there is none, nothing is known.
+pub(super) fn worst(reports: &[Report]) -> Verdict {
+    let any = |verdict| reports.iter().any(|report| report.verdict == verdict);
+    if any(Verdict::Diverged) {
+        Verdict::Diverged
+    } else if any(Verdict::Incomplete) || reports.is_empty() {
+        Verdict::Incomplete
+    } else {
+        Verdict::Conforms
+    }
+}
+
+/// What a window is called.
+pub(super) fn title(reports: &[Report]) -> String {
+    match reports {
+        [report] => format!("{}: {}", report.log, report.verdict.name()),
+        _ => tally(reports),
+    }
+}
+
+/// How many logs have which verdict, the worst first.
+pub(super) fn tally(reports: &[Report]) -> String {
+    if reports.is_empty() {
+        return "no log was judged".to_owned();
+    }
+    let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
+    let told = [Verdict::Diverged, Verdict::Incomplete, Verdict::Conforms]
+        .map(|verdict| (count(verdict), verdict));
+    let told: Vec<_> = told
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, verdict)| match (verdict, count) {
+            (Verdict::Conforms, 2..) => format!("{count} conform"),
+            _ => format!("{count} {}", verdict.name()),
+        })
+        .collect();
+    format!("{}: {}", counted(reports.len(), "log"), told.join(", "))
+}
+
+/// A number of things.
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// What happened or was found, as a sentence.
+pub(super) fn sentence(words: &str) -> String {
+    let mut letters = words.trim().chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    let sentence = first.unwrap_or_default() + letters.as_str();
+    let ended = sentence.is_empty() || sentence.ends_with(['.', '!', '?', ':']);
+    if ended { sentence } else { sentence + "." }
+}
+
+/// What is to be said of the events where none diverged.
+pub(super) fn fits(report: &Report) -> String {
+    let all = match report.events.len() {
+        0 => return "There are no events.".to_owned(),
+        1 => "The only event fits".to_owned(),
+        count => format!("All {count} events fit"),
+    };
+    let tolerated = report.tolerated.iter().flat_map(|(_, _, events)| events);
+    match tolerated.collect::<BTreeSet<_>>().len() {
+        0 => all + ".",
+        1 => all + ", but for one that is tolerated.",
+        count => format!("{all}, but for {count} that are tolerated."),
+    }
+}
+
+/// What a culprit did.
+pub(super) fn did(culprit: Culprit) -> &'static str {
+    match culprit {
+        Culprit::Perception => "the robot perceived what is not so",
+        Culprit::Motion => "the robot did not go where it was told to go",
+        Culprit::Algorithm => {
+            "the robot was told to go where Algorithm 1 does not go, or its map is wrong"
+        }
+        Culprit::Log => "the log does not agree with itself",
+    }
+}
+
+/// The lines of a verdict's sign: a tick, a cross, three dots.
+fn strokes(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Conforms => "M4 13l5.5 5.5L20 6",
+        Verdict::Diverged => "M5.5 5.5l13 13m0-13l-13 13",
+        Verdict::Incomplete => "M4.5 12h.01M12 12h.01M19.5 12h.01",
+    }
+}
+
+/// A verdict's sign, as an element of the page.
+pub(super) fn sign(verdict: Verdict) -> String {
+    let strokes = strokes(verdict);
+    format!(
+        "<svg class=\"sign\" viewBox=\"0 0 24 24\" aria-hidden=\"true\"><path d=\"{strokes}\"/></svg>"
+    )
+}
+
+/// A verdict's sign, as the address of an image.
+pub(super) fn icon(verdict: Verdict) -> String {
+    let (ground, ink) = match verdict {
+        Verdict::Conforms => ("#00684f", "#fff"),
+        Verdict::Diverged => ("#b23a00", "#fff"),
+        Verdict::Incomplete => ("#ffcf33", "#2b2100"),
+    };
+    svg_address(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-4 -4 32 32\">\
+         <circle cx=\"12\" cy=\"12\" r=\"16\" fill=\"{ground}\"/><path d=\"{}\" fill=\"none\" \
+         stroke=\"{ink}\" stroke-width=\"4\" stroke-linecap=\"round\"/></svg>",
+        strokes(verdict)
+    ))
+}
+
+/// A drawing as the address of an image: as such it can neither act nor share names with the page.
+pub(super) fn svg_address(svg: &str) -> String {
+    format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg))
+}
+
+/// A JPEG or PNG file as the address of an image, where it is one.
+pub(super) fn picture_address(file: &[u8]) -> Option<String> {
+    let kind = if file.starts_with(b"\xff\xd8\xff") {
+        "jpeg"
+    } else if file.starts_with(b"\x89PNG\r\n\x1a\n") {
+        "png"
+    } else {
+        return None;
+    };
+    Some(format!("data:image/{kind};base64,{}", STANDARD.encode(file)))
+}

@@ -1,0 +1,66 @@
+// Reads the pages of what the specification says of logs.
+//
+//   node conform_page.mjs CHROMIUM conforms=FILE diverged=FILE several=FILE
+//
+// conforms, diverged: of one log; several: of three.
+
+import assert from "node:assert/strict";
+import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+
+const VERDICTS = {
+  conforms: ["Conforms"],
+  diverged: ["Diverged"],
+  several: ["3 logs: 1 diverged, 1 incomplete, 1 conforms", "Conforms", "Diverged", "Incomplete"],
+};
+
+/** Follows a link within the page; what it leads to is then on the screen. */
+async function follow(page, link) {
+  await link.click();
+  const seen = await page.waitForFunction(() => {
+    const named = document.getElementById(location.hash.slice(1));
+    const { top } = named.getBoundingClientRect();
+    return named.checkVisibility() && top >= 0 && top < innerHeight && named.textContent;
+  });
+  return seen.jsonValue();
+}
+
+async function photographAll(page, file) {
+  await page.evaluate(() => scrollTo(0, 0));
+  await photograph(page, file, "light");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await photograph(page, file, "dark");
+  await page.emulateMedia({ colorScheme: "light" });
+  await assertFitsPhone(page);
+  await photograph(page, file, "phone");
+  await page.setViewportSize(DESK);
+}
+
+async function visit(page, kind, file) {
+  assert.deepEqual(await page.locator(".verdict strong").allTextContents(), VERDICTS[kind]);
+  assert.equal(await page.locator("h1").count(), 1);
+  for (const image of await page.locator("img").all()) {
+    const wide = await image.evaluate((element) => element.decode().then(() => element.naturalWidth));
+    assert.ok(wide > 0, "an image is not shown");
+  }
+  await photographAll(page, file);
+  if (kind === "conforms") return {};
+  if (kind === "several") {
+    const logs = await page.locator(".logs a").allTextContents();
+    for (const log of logs) {
+      const section = await follow(page, page.getByRole("link", { name: log, exact: true }));
+      assert.ok(section.includes(log));
+    }
+  }
+  const row = await follow(page, page.getByRole("link", { name: "Event 7003 of 10000" }));
+  assert.match(row, /^7003.*does not fit/s);
+  const copy = page.getByRole("button", { name: "Copy" });
+  await copy.click();
+  await page.getByRole("button", { name: /Copied|Marked/ }).waitFor();
+  assert.equal(
+    await page.evaluate(() => getSelection().toString()),
+    await page.locator(".command code").textContent(),
+  );
+  return { events: await page.locator(".leaf tbody tr").count() };
+}
+
+await visitAll(["conforms", "diverged", "several"], visit);

@@ -1,0 +1,155 @@
+//! The page of what the specification says of logs, in a browser.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod browser;
+
+use std::{fs, io::Cursor, path::Path};
+
+use toposlam::{
+    model::format::world_file,
+    page::conform_page,
+    picture::{Picture, svg},
+    report::{Covered, Line, Report, Told},
+};
+use toposlam_robot::conform::{Culprit, Verdict};
+
+/// What a camera under a mirror might see.
+fn picture() -> Vec<u8> {
+    let pixel = |x: u32, y: u32| {
+        let (right, down) = (f64::from(x) - 320.0, f64::from(y) - 240.0);
+        match right.hypot(down) {
+            225.0.. => image::Rgb([20, 20, 24]),
+            ..50.0 => image::Rgb([60, 60, 70]),
+            _ if right.abs() < 70.0 || (down.abs() < 60.0 && right > 0.0) => {
+                image::Rgb([60, 190, 90])
+            }
+            _ => image::Rgb([200, 190, 180]),
+        }
+    };
+    let mut file = Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(640, 480, pixel);
+    image.write_to(&mut file, image::ImageFormat::Jpeg).unwrap();
+    file.into_inner()
+}
+
+fn conforming(log: &str, events: usize) -> Report {
+    let line = |number: usize| {
+        let (what, then) = if number % 2 == 1 {
+            ("perceives 3 doors, no marker", "2 poses are left: corner:0, tee:1")
+        } else {
+            ("leaves by door 1", "it is in a hallway; the same 2 poses are left")
+        };
+        let time = number as f64 * 4.7;
+        Line { number, time, what: what.to_owned(), then: then.to_owned() }
+    };
+    let cases = [
+        ("new-vertex", 12, true),
+        ("confirmed", 7, true),
+        ("rejected-at-once", 31, true),
+        ("rejected-on-the-way", 2, true),
+        ("rejected-at-the-end", 0, false),
+        ("marker-seen", 4, true),
+        ("marker-missed", 0, true),
+        ("junction: dead end", 6, true),
+        ("junction: T entered by the stem", 5, true),
+        ("junction: L to the left", 0, false),
+    ];
+    Report {
+        log: log.to_owned(),
+        verdict: Verdict::Conforms,
+        remarks: Vec::new(),
+        facts: [
+            ("format", "MCAP, zstd, 4811 messages on 6 topics, 12.4 MB"),
+            ("world", "worlds/shape-6.toml: 6 junctions, 6 hallways"),
+            ("marker", "directional, at the start"),
+            ("driver", "Algorithm 1, every choice it leaves open"),
+            ("events from", "the messages of the algorithm's own topics /percept and /door"),
+        ]
+        .map(|(name, fact)| (name, fact.to_owned()))
+        .into(),
+        events: (1..=events).map(line).collect(),
+        divergence: None,
+        coverage: cases
+            .map(|(case, count, reachable)| Covered {
+                case: case.to_owned(),
+                count,
+                reachable: Some(reachable),
+            })
+            .into(),
+        tolerated: vec![(
+            "glare".to_owned(),
+            "the sun stands low in the window at the east end until ten".to_owned(),
+            vec![3, 5],
+        )],
+        shorter: Vec::new(),
+        command: None,
+        picture: None,
+        world: Some(world()),
+    }
+}
+
+fn world() -> String {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-6.toml");
+    let world = world_file::read(&fs::read(file).unwrap()).unwrap();
+    svg(&Picture::from(&world))
+}
+
+fn diverged(log: &str, events: usize, at: usize) -> Report {
+    Report {
+        verdict: Verdict::Diverged,
+        divergence: Some(Told {
+            event: at,
+            time: at as f64 * 4.7,
+            message: Some((4711, 1_234_567)),
+            culprit: Culprit::Perception,
+            cause: "percept",
+            what: "perceives 4 doors, no marker".to_owned(),
+            why: "at none of the 2 poses left in the known world this is so".to_owned(),
+            allowed: [
+                "3 doors, no marker: for tee:1",
+                "2 doors, the marker at door 1: for corner:0",
+            ]
+            .map(str::to_owned)
+            .into(),
+        }),
+        shorter: [
+            "perceives 2 doors, the marker at door 1",
+            "leaves by door 1",
+            "perceives 4 doors",
+        ]
+        .map(str::to_owned)
+        .into(),
+        command: Some("toposlam conform shorter.mcap --world worlds/shape-6.toml".to_owned()),
+        picture: Some(picture()),
+        ..conforming(log, events)
+    }
+}
+
+fn incomplete(log: &str) -> Report {
+    Report {
+        verdict: Verdict::Incomplete,
+        remarks: vec!["the log ends before the map is complete: its recorder stopped".to_owned()],
+        tolerated: Vec::new(),
+        ..conforming(log, 31)
+    }
+}
+
+#[test]
+fn the_page_of_a_report_opens_and_leads_to_its_events() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let right = conforming("logs/monday.mcap", 211);
+    let wrong = diverged("logs/tuesday.mcap", 10_000, 7_003);
+    let cut = incomplete("logs/wednesday-<b>of-the-second-floor</b>-2026-11-22-08-15.mcap");
+    let pages = [
+        ("conforms", vec![right.clone()]),
+        ("diverged", vec![wrong.clone()]),
+        ("several", vec![right, wrong, cut]),
+    ];
+    let pages = pages.map(|(name, reports)| {
+        let file = folder.join(format!("conform-{name}.html"));
+        fs::write(&file, conform_page(&reports)).unwrap();
+        format!("{name}={}", file.display())
+    });
+    browser::open("conform_page.mjs", &pages);
+}
