@@ -42,9 +42,10 @@ impl Report {
             match together.iter_mut().find(|known| known.case == covered.case) {
                 None => together.push(covered.clone()),
                 Some(known) => {
-                    known.count += covered.count;
+                    known.count = known.count.saturating_add(covered.count);
                     known.reachable = match (known.reachable, covered.reachable) {
-                        (Some(one), Some(other)) => Some(one || other),
+                        (Some(true), _) | (_, Some(true)) => Some(true),
+                        (Some(false), Some(false)) => Some(false),
                         _ => None,
                     };
                 }

@@ -57,9 +57,11 @@ impl Opened {
                 Mapping::read(&input::read(file)?).map_err(|error| Failure::in_file(file, error))?
             }
         };
-        let run = head(path, &log, &mapping)?;
         let mapping_path = sources.mapping.clone();
-        let mut opened = Self { log, mapping, mapping_path, run, eyes: None };
+        let mut opened = Self { log, mapping, mapping_path, run: None, eyes: None };
+        let bound = opened.mapping.bind(&opened.log);
+        bound.map_err(|error| opened.wrong_mapping(path, &error))?;
+        opened.run = head(path, &opened.log, &opened.mapping)?;
         opened.eyes =
             opened.eyes(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
         Ok(opened)

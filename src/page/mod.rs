@@ -12,12 +12,6 @@ use serde_json::Value;
 
 pub use conform::conform_page;
 pub use run::run_page;
-
-/// A page of reports.
-#[must_use]
-pub fn conform_page(_: &[crate::report::Report]) -> String {
-    String::new()
-}
 pub use walk::{WalkPage, page};
 
 /// How all pages look.

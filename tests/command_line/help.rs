@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 15] = [
+const VERBS: [(&str, &[&str]); 17] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -41,6 +41,11 @@ const VERBS: [(&str, &[&str]); 15] = [
         &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
     ),
     ("info", &["--mapping", "--write-mapping", "--json"]),
+    (
+        "conform",
+        &["--world", "--start", "--driver", "--quirks", "--minimise", "--html", "--json", "any"],
+    ),
+    ("replay", &["--calibration", "--colours", "--mapping", "--map", "--json"]),
     ("completions", &[]),
 ];
 

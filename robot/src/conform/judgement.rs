@@ -174,6 +174,8 @@ fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool
     match place.and_then(|place| events.events.get_mut(place)).map(|event| &mut event.kind) {
         Some(Kind::Perceived(perceived)) => {
             perceived.percept = expected;
+            // What it looked like is what is tolerated.
+            perceived.form = None;
             true
         }
         _ => false,

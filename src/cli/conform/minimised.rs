@@ -29,11 +29,7 @@ const ON: f64 = 2.0;
 
 impl Arguments {
     /// A shorter log, written where that is asked for.
-    pub(super) fn shorter(
-        &self,
-        log: &Path,
-        judged: &Judged,
-    ) -> Result<Option<Minimised>, Failure> {
+    pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, Failure> {
         let question = self.question(judged.known.as_ref());
         let Some(Shorter { events, by_itself }) = shorter(&judged.judgement, &question, &()) else {
             if let Some(path) = &self.minimise {

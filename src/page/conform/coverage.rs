@@ -49,30 +49,6 @@ pub(super) fn summary(cases: &[Covered]) -> String {
     format!("<p class=\"faint\">{met} of {of} cases reached{besides}.</p>\n")
 }
 
-/// What several logs cover together, the cases in the order in which they come.
-pub(super) fn together<'a>(logs: impl Iterator<Item = &'a [Covered]>) -> Vec<Covered> {
-    let mut all: Vec<Covered> = Vec::new();
-    for case in logs.flatten() {
-        match all.iter_mut().find(|other| other.case == case.case) {
-            Some(same) => {
-                same.count = same.count.saturating_add(case.count);
-                same.reachable = either(same.reachable, case.reachable);
-            }
-            None => all.push(case.clone()),
-        }
-    }
-    all
-}
-
-/// Whether a case can be gone through in one of two worlds.
-fn either(one: Option<bool>, other: Option<bool>) -> Option<bool> {
-    match (one, other) {
-        (Some(true), _) | (_, Some(true)) => Some(true),
-        (Some(false), Some(false)) => Some(false),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,11 +58,8 @@ mod tests {
     }
 
     #[test]
-    fn several_logs_reach_what_one_of_them_reaches() {
-        let one = [case("a", 2, Some(true)), case("b", 0, Some(false)), case("c", 0, Some(false))];
-        let other = [case("b", 0, None), case("a", 3, None), case("c", 0, Some(false))];
+    fn what_cannot_be_reached_is_not_asked_for() {
         let sum = [case("a", 5, Some(true)), case("b", 0, None), case("c", 0, Some(false))];
-        assert_eq!(together([&one[..], &other[..]].into_iter()), sum);
         assert!(summary(&sum).contains("1 of 2 cases reached; 1 cannot be reached"));
     }
 

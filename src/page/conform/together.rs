@@ -27,7 +27,7 @@ pub(super) fn section(reports: &[Report]) -> String {
             each(&numbered, |(report, number)| row(report, *number))
         )
     };
-    let cases = coverage::together(reports.iter().map(|report| &*report.coverage));
+    let cases = Report::coverage_of(reports);
     let covered = if cases.is_empty() {
         String::new()
     } else {

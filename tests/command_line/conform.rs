@@ -1,0 +1,191 @@
+//! `toposlam conform`: what is said of a log, with which exit code, and what is written.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use serde_json::Value;
+
+use crate::{folder, objects, run, said, stderr, stdout};
+
+const SHAPE_6: &str = "worlds/shape-6.toml";
+const SHAPE_8: &str = "worlds/shape-8.toml";
+
+/// The log of a run without pictures.
+fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
+    let log = folder.join("run.mcap");
+    let simulate = ["simulate", world, "--by-scene", "--json", "--log", log.to_str().unwrap()];
+    run([&simulate[..], arguments].concat());
+    log
+}
+
+/// The exit code and what `--json` says.
+fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
+    let conform = ["conform", log.to_str().unwrap(), "--json"];
+    let output = run([&conform[..], arguments].concat());
+    let code = output.status.code();
+    assert!(code != Some(2), "{}", stderr(&output));
+    (code, objects(&stdout(&output)).remove(0))
+}
+
+#[test]
+fn a_good_log_conforms_to_its_world_to_some_world_and_by_what_was_seen() {
+    let log = logged(&folder("conform-good"), SHAPE_6, &["--seed", "3"]);
+    for arguments in [
+        &["--world", SHAPE_6][..],
+        &["--world", SHAPE_6, "--start", "any"],
+        &["--world", SHAPE_6, "--events", "scenes"],
+        &[],
+        &["--class", "corridor"],
+        &["--driver", "anyone"],
+    ] {
+        let (code, told) = judged(&log, arguments);
+        assert_eq!((code, &told["verdict"]), (Some(0), &"conforms".into()), "{arguments:?} {told}");
+        assert_eq!((&told["event"], &told["class"]), (&Value::Null, &Value::Null));
+        assert_eq!((&told["candidates"], &told["events"]), (&1.into(), &15.into()), "{told}");
+        // The end is the only dead end of shape 6, and one loop is closed.
+        assert_eq!(told["coverage"]["dead-end"], 1);
+        if !arguments.contains(&"anyone") {
+            assert_eq!(told["coverage"]["confirmed"], 1);
+        }
+    }
+    let text = said(["conform", log.to_str().unwrap(), "--world", SHAPE_6]);
+    assert!(text.contains("run.mcap: conforms\n"), "{text}");
+    assert!(text.contains("the robot is at end, having come from corner"), "{text}");
+}
+
+#[test]
+fn a_log_of_another_world_diverges_where_that_shows_and_in_a_shorter_log_too() {
+    let folder = folder("conform-other");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let short = folder.join("short.mcap");
+    let page = folder.join("report.html");
+    let written = ["--minimise", short.to_str().unwrap(), "--html", page.to_str().unwrap()];
+    let (code, told) = judged(&log, &[&["--world", SHAPE_8][..], &written].concat());
+    assert_eq!((code, &told["verdict"]), (Some(1), &"diverged".into()));
+    // After the first move there is a T, and after the second a corner instead of the other T.
+    assert_eq!((&told["event"], &told["class"]), (&5.into(), &"perception".into()), "{told}");
+    assert_eq!(told["allowed"], serde_json::json!(["at e, having come from w: 3 doors"]));
+    assert_eq!(told["shorter"].as_array().unwrap().len(), 3);
+    let command = told["command"].as_str().unwrap();
+    let words: Vec<_> = command.split(' ').skip(1).chain(["--json"]).collect();
+    let output = run(&words);
+    assert_eq!(output.status.code(), Some(1), "{command}");
+    let again = objects(&stdout(&output)).remove(0);
+    assert_eq!((&again["event"], &again["class"]), (&3.into(), &"perception".into()), "{again}");
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("diverge") && page.contains("at e, having come from w"), "no page");
+}
+
+#[test]
+fn a_cut_log_is_incomplete_and_one_that_was_given_up_says_so() {
+    let folder = folder("conform-cut");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let bytes = fs::read(&log).unwrap();
+    fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
+    let (code, told) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!((code, &told["verdict"]), (Some(3), &"incomplete".into()), "{told}");
+    assert!(told["remarks"][0].as_str().unwrap().starts_with("the log is truncated at byte "));
+    let log = logged(&folder, SHAPE_6, &["--fault", "lights-out@20"]);
+    let (code, told) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!((code, &told["verdict"]), (Some(3), &"incomplete".into()), "{told}");
+    assert!(told["remarks"][0].as_str().unwrap().starts_with("the run was given up: "), "{told}");
+}
+
+#[test]
+fn a_robot_that_was_carried_does_not_conform() {
+    let folder = folder("conform-carried");
+    // A map of shape 8 that is wrong.
+    let carried = (0..20).find_map(|seed| {
+        let seed = seed.to_string();
+        let log = logged(&folder, SHAPE_8, &["--seed", &seed, "--fault", "carried@30"]);
+        let (code, told) = judged(&log, &["--world", SHAPE_8]);
+        (code == Some(1)).then_some(told)
+    });
+    let told = carried.unwrap();
+    assert!(["perception", "motion"].contains(&told["class"].as_str().unwrap()), "{told}");
+}
+
+#[test]
+fn several_logs_are_told_together() {
+    let folder = folder("conform-several");
+    let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let other = folder.join("other.mcap");
+    fs::copy(&good, &other).unwrap();
+    let paths = [good.to_str().unwrap(), other.to_str().unwrap()];
+    let output = run([&["conform", "--json"][..], &paths].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = objects(&stdout(&output));
+    assert_eq!((told.len(), &told[2]["logs"], &told[2]["conform"]), (3, &2.into(), &2.into()));
+    let [one, all] = [&told[0], &told[2]].map(|told| told["coverage"]["new-vertex"].as_u64());
+    assert_eq!(all, one.map(|one| 2 * one));
+    let text = said([&["conform"][..], &paths].concat());
+    assert!(text.contains("2 logs: 2 conform, 0 diverge, 0 incomplete"), "{text}");
+}
+
+#[test]
+fn a_quirk_is_tolerated_and_counted() {
+    let folder = folder("conform-quirk");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let quirks = folder.join("quirks.toml");
+    let quirk =
+        "[[quirk]]\nname = \"rebuilt\"\ncause = \"percept\"\nreason = \"the wall is new\"\n";
+    fs::write(&quirks, quirk).unwrap();
+    let arguments =
+        ["--world", SHAPE_8, "--driver", "anyone", "--quirks", quirks.to_str().unwrap()];
+    let (_, told) = judged(&log, &arguments);
+    assert!(told["tolerated"]["rebuilt"].as_u64().unwrap() > 0, "{told}");
+    // What is tolerated is not where it diverges.
+    let (_, without) = judged(&log, &arguments[..4]);
+    assert_ne!(told["event"], without["event"]);
+}
+
+#[test]
+fn bad_input_is_one_message_and_exit_code_2() {
+    let folder = folder("conform-bad");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let log = log.to_str().unwrap();
+    let text = folder.join("text.mcap");
+    fs::write(&text, "not a log").unwrap();
+    let quirks = folder.join("quirks.toml");
+    fs::write(&quirks, "[[quirk]]\nname = \"x\"\ncause = \"door\"\nreason = \"y\"\n").unwrap();
+    let mapping = folder.join("mapping.toml");
+    fs::write(&mapping, "[percept]\ntopic = \"/nowhere\"\n").unwrap();
+    let [text, quirks, mapping] = [&text, &quirks, &mapping].map(|path| path.to_str().unwrap());
+    for (arguments, cause) in [
+        (&["missing.mcap"][..], "missing.mcap: "),
+        (&[text], "text.mcap: "),
+        (&[log, "--quirks", quirks], "cannot be tolerated"),
+        (&[log, "--mapping", mapping], "/nowhere"),
+        (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
+        (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
+        (&[log, "--minimise", "x.bag"], "x.bag"),
+        (&[log, "--events", "pictures"], "there is no topic"),
+    ] {
+        let output = run([&["conform"][..], arguments].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?} {said}");
+        assert!(said.starts_with("error: ") && said.contains(cause), "{arguments:?} {said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+/// Real bags, recorded by ROS itself: there is nothing in them that could be judged.
+#[test]
+fn logs_without_what_could_be_judged_are_refused() {
+    let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/logs");
+    if !logs.is_dir() {
+        eprintln!("skipped: there are no bags in {}", logs.display());
+        return;
+    }
+    for (name, cause) in [
+        ("example.bag", "2 topics could carry odometry: /turtle1/pose, /turtle2/pose"),
+        ("example-unsorted-chunks.bag", "it has neither percepts and doors, nor scenes"),
+        ("no-messages.bag", "it is empty: there is no message in it"),
+    ] {
+        let output = run(["conform", logs.join(name).to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(stderr(&output).contains(cause), "{name}: {}", stderr(&output));
+    }
+}

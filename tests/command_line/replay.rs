@@ -1,0 +1,50 @@
+//! `toposlam replay`: what the off-line version makes of a log.
+
+use std::fs;
+
+use crate::{folder, objects, read_world, run, said, stderr, stdout};
+
+// paper: exp.off-line-time
+#[test]
+fn a_log_gives_the_same_map_again_in_less_time() {
+    let folder = folder("replay");
+    let log = folder.join("run.mcap");
+    let log = log.to_str().unwrap();
+    let few = ["--size", "640x480", "--effects", "none"];
+    let shape = ["simulate", "worlds/shapes/shape-2.toml", "--json", "--log", log];
+    let simulated = objects(&said([&shape[..], &few].concat())).remove(0);
+    let map = folder.join("map.toml");
+    let arguments = ["replay", log, "--json", "--map", map.to_str().unwrap()];
+    let told = objects(&said(arguments)).remove(0);
+    assert_eq!((&told["map"], &told["difference"]), (&true.into(), &serde_json::Value::Null));
+    assert_eq!(told["moves"], simulated["moves"]);
+    for what in ["scenes", "commands", "percepts", "doors"] {
+        assert_eq!(told[what][0], told[what][1], "{what}");
+        assert!(told[what][1].as_u64().unwrap() > 0, "{what}");
+    }
+    // The time that computing takes is a small part of the robot's.
+    let [computed, recorded] = ["compute_seconds", "recorded_seconds"].map(|s| told[s].as_f64());
+    assert!(computed < recorded);
+    let edges = read_world(&map).graph.edge_count();
+    assert_eq!(told["edges"], edges);
+}
+
+#[test]
+fn a_cut_log_is_replayed_as_far_as_it_goes_and_one_without_commands_is_refused() {
+    let folder = folder("replay-cut");
+    let log = folder.join("run.mcap");
+    let path = log.to_str().unwrap();
+    said(["simulate", "worlds/shape-6.toml", "--by-scene", "--json", "--log", path]);
+    let bytes = fs::read(&log).unwrap();
+    let mapping = folder.join("mapping.toml");
+    fs::write(&mapping, "[odometry]\ntopic = \"/odom\"\n").unwrap();
+    let output = run(["replay", path, "--mapping", mapping.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("it has neither pictures nor scenes"), "{}", stderr(&output));
+    fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
+    let output = run(["replay", path, "--json"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let told = objects(&stdout(&output)).remove(0);
+    assert_eq!(told["complete"], false);
+    assert!(told["error"].as_str().unwrap().contains("the log has no more pictures"), "{told}");
+}
