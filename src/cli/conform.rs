@@ -180,7 +180,11 @@ impl Arguments {
     fn judge(&self, path: &Path, quirks: &Quirks) -> Result<Judged, Failure> {
         let opened = Opened::new(path, &self.sources)?;
         let evidence = match self.events {
-            Some(made) => made.into(),
+            Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
+            Some(_) => {
+                let cause = "what this needs is not in the log, as far as the mapping tells";
+                return Err(Failure::at("--events", format!("{cause} ({})", path.display())));
+            }
             None => opened.evidence(path)?,
         };
         let known = match &self.world {

@@ -249,10 +249,11 @@ fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Resu
     if mapping.is_empty() {
         return Err(Failure::in_file(path, "there is nothing that only one topic could carry"));
     }
-    let mut text = mapping.to_toml();
-    for (role, topics) in carriers.iter().filter(|(_, topics)| topics.len() > 1) {
+    let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
+    let comments = several.map(|(role, topics)| {
         let topics: Vec<_> = topics.iter().map(|topic| shown(topic)).collect();
-        text += &format!("\n# [{role}]\n# topic = {}\n", topics.join(" or "));
-    }
+        format!("\n# [{role}]\n# topic = {}\n", topics.join(" or "))
+    });
+    let text = mapping.to_toml() + &comments.collect::<String>();
     output::write_whole(path, text.as_bytes())
 }

@@ -161,7 +161,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
-        (&[log, "--events", "pictures"], "there is no topic"),
+        (&[log, "--events", "pictures"], "--events: what this needs"),
     ] {
         let output = run([&["conform"][..], arguments].concat());
         let said = stderr(&output);

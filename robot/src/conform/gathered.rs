@@ -115,16 +115,18 @@ impl Evidence {
     /// What events can be made of where such things are mapped: the first in the order of this list.
     #[must_use]
     pub fn of(mapping: &Mapping) -> Option<Self> {
-        let has = |role| mapping.carrier(role).is_some();
-        if has(Role::Percept) && has(Role::Door) {
-            Some(Self::Told)
-        } else if has(Role::Scene) && has(Role::Odometry) {
-            Some(Self::Scenes)
-        } else if has(Role::Image) && has(Role::Odometry) {
-            Some(Self::Pictures)
-        } else {
-            None
-        }
+        [Self::Told, Self::Scenes, Self::Pictures].into_iter().find(|one| one.is_in(mapping))
+    }
+
+    /// Whether events can be made of it where such things are mapped.
+    #[must_use]
+    pub fn is_in(self, mapping: &Mapping) -> bool {
+        let needed = match self {
+            Self::Told => [Role::Percept, Role::Door],
+            Self::Scenes => [Role::Scene, Role::Odometry],
+            Self::Pictures => [Role::Image, Role::Odometry],
+        };
+        needed.iter().all(|role| mapping.carrier(*role).is_some())
     }
 
     fn roles(self) -> &'static [Role] {
