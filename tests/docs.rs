@@ -24,11 +24,11 @@ fn toposlam(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_readme_shows_what_check_counterexample_and_train_print() {
+fn the_readme_shows_what_check_counterexample_train_and_conform_print() {
     let readme = read("README.md");
     let shown = blocks(&readme, "text");
     let [check, counterexample] = ["check", "counterexample"].map(|verb| toposlam(&[verb]));
-    assert_eq!(shown, [check, counterexample, trained(&readme)]);
+    assert_eq!(shown, [check, counterexample, trained(&readme), conform(&readme)]);
 }
 
 fn blocks<'t>(text: &'t str, kind: &str) -> Vec<&'t str> {
@@ -71,6 +71,29 @@ fn trained(readme: &str) -> String {
         assert!(same, "docs/sensing/{} is not what is drawn", name.display());
     }
     trained.unwrap()
+}
+
+/// What the README's third line of `conform` prints.
+fn conform(readme: &str) -> String {
+    let lines: Vec<_> = blocks(readme, "sh").into_iter().flat_map(str::lines).collect();
+    let line = |begin: &str| lines.iter().find(|line| line.contains(begin)).unwrap();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs-conform");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("worlds")).unwrap();
+    for world in ["worlds/shape-6.toml", "worlds/shape-8.toml"] {
+        fs::write(folder.join(world), read(world)).unwrap();
+    }
+    let commands = [
+        line("simulate worlds/shape-6.toml --log"),
+        line("conform shape-6.mcap --world worlds/shape-8"),
+    ];
+    let printed = commands.map(|command| {
+        let words = command.split(" || ").next().unwrap().split(' ').skip(1);
+        let mut toposlam = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+        String::from_utf8(toposlam.args(words).current_dir(&folder).output().unwrap().stdout)
+            .unwrap()
+    });
+    printed[1].clone()
 }
 
 /// Draw them again with the commands of the README, look at them, and commit them.

@@ -177,6 +177,7 @@ impl Arguments {
                 difference.found
             )?;
         }
+        // paper: exp.off-line-time
         let ratio = (replay.recorded_seconds / seconds.max(1e-9)) as u128;
         writeln!(
             out,
