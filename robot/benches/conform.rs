@@ -9,15 +9,22 @@ use toposlam_model::{
     enumerate::Class,
     mapping::{Event, Exploration, Journey, Nearest, map_world},
     marker::Directional,
+    percept::{Percept, Sighting},
     trace::{self, Search, Trace, anywhere, follow, smallest},
     world::GraphWorld,
 };
 use toposlam_robot::{
     conform::{
-        Driver, Event as LogEvent, Events, Kind, KnownWorld, Perceived, Question, Quirks, Source,
-        judge,
+        Driver, Event as LogEvent, Events, Evidence, Kind, KnownWorld, Perceived, Question, Quirks,
+        Source, gather, judge,
     },
     evaluation::random_plan::random_plan_with,
+    log::{
+        mapping::Mapping,
+        messages::{self, Own, Stamp},
+        reading::Log,
+        writer::LogWriter,
+    },
 };
 
 fn main() {
@@ -64,6 +71,46 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
     let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
     let question = Question { world, driver: Driver::Algorithm1, search, dart_bound: 1000 };
     bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
+}
+
+/// A log of 10,000 events in memory: opened, read, and held against its world.
+#[divan::bench(sample_count = 10)]
+fn ten_thousand_events(bencher: divan::Bencher) {
+    let plan = random_plan_with(1, 100).unwrap();
+    let trace = trace(&plan).up_to(9_999);
+    let mut log = LogWriter::new(Vec::new()).unwrap();
+    for (place, event) in trace.events().enumerate() {
+        let (time, moves) = (place as u64 * 1_000_000_000, place as u32 / 2);
+        match event {
+            trace::Event::Perceived(Percept { degree, sighting }) => {
+                let marker = match sighting {
+                    Sighting::Pointing(door) => door.0.cast_signed(),
+                    _ => -1,
+                };
+                let (form, entry) = ([false; 4], f64::NAN);
+                let stamp = Stamp::of(time);
+                let told = messages::Percept { stamp, r#move: moves, degree, marker, form, entry };
+                log.write(messages::Percept::TOPIC, time, &told).unwrap();
+            }
+            trace::Event::Left(door) => {
+                let (stamp, r#move) = (Stamp::of(time), moves + 1);
+                let told = messages::Door { stamp, r#move, door: door.0 };
+                log.write(messages::Door::TOPIC, time, &told).unwrap();
+            }
+        }
+    }
+    let bytes = log.finish().unwrap();
+    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    let states = anywhere(plan.graph(), &Directional);
+    let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
+    let question = Question { world, driver: Driver::Algorithm1, search, dart_bound: 1000 };
+    bencher.bench_local(|| {
+        let log = Log::of_bytes(bytes.clone()).unwrap();
+        let mapping = Mapping::unambiguous(&log);
+        let gathered = gather(&log, &mapping, Evidence::Told, None, true, &()).unwrap();
+        let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
+        assert!(judgement.divergence.is_none() && judgement.places.len() == 10_000);
+    });
 }
 
 /// The smallest world for half of a run, as far as the search goes where nobody says otherwise.

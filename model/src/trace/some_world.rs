@@ -73,7 +73,10 @@ pub fn smallest(
     let known = known.filter(|map| map.vertex_count() > 0);
     let darts = darts.max(known.map_or(1, |map| map.dart_count() as u64));
     let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX);
-    for edges in least..=search.edges {
+    if least > MOST_EDGES {
+        return Smallest::Unfinished { edges: least - 1 };
+    }
+    for edges in least..=search.edges.min(MOST_EDGES) {
         growing.edges = edges;
         if growing.begin(known) {
             let (graph, marker) = (growing.world.graph(), growing.world.marker.map(Dart));
@@ -83,8 +86,14 @@ pub fn smallest(
             return Smallest::Unfinished { edges: edges - 1 };
         }
     }
+    if search.edges > MOST_EDGES {
+        return Smallest::Unfinished { edges: MOST_EDGES };
+    }
     Smallest::None { event: growing.farthest }
 }
+
+/// Worlds with more edges are not tried: the search is as deep as a world has edges.
+const MOST_EDGES: usize = 1000;
 
 /// A world in the making, and the way it was explained so far.
 struct Growing<'t, W> {

@@ -170,7 +170,8 @@ fn diverged(out: &mut dyn Write, report: &Report, told: &Told) -> Result<(), Fai
 
 /// The cases that were gone through, those that were not, and those that cannot be.
 fn covered(coverage: &[Covered]) -> String {
-    let possible = |covered: &&Covered| covered.reachable != Some(false);
+    // A run that diverged may go through what its world does not have.
+    let possible = |covered: &&Covered| covered.count > 0 || covered.reachable != Some(false);
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
     let told: Vec<_> =
