@@ -96,7 +96,7 @@ pub enum RobotError {
         cause: String,
     },
     /// Nothing comes from the robot any more.
-    #[error("nothing has come on {topic} for {seconds} s{}", unread(*.unread))]
+    #[error("nothing has come on {topic} for {seconds} s{}", unreadable(*.unread))]
     Silent {
         /// The topic on which nothing came.
         topic: String,
@@ -128,7 +128,7 @@ pub enum RobotError {
     Stopped,
 }
 
-fn unread(messages: u64) -> String {
+fn unreadable(messages: u64) -> String {
     match messages {
         0 => String::new(),
         messages => format!("; {messages} messages there are of another type"),

@@ -5,7 +5,7 @@ mod ending;
 #[cfg(feature = "ros1")]
 mod live;
 
-use std::{io::Write, path::PathBuf};
+use std::path::PathBuf;
 
 use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
 
@@ -74,7 +74,7 @@ fn patience(text: &str) -> Result<f64, String> {
 impl Arguments {
     #[cfg(not(feature = "ros1"))]
     #[expect(clippy::unused_self, reason = "with the feature it is used")]
-    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, Failure> {
         Err(super::without_ros())
     }
 }

@@ -3,13 +3,14 @@
 
 use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    thread::sleep,
     time::{Duration, Instant},
 };
 
 use roslibrust::ros1::{NodeHandle, PublisherAny};
 use tokio::{
     runtime::{Builder, Runtime},
-    time::{sleep, timeout},
+    time::timeout,
 };
 
 use super::messages::Kind;
@@ -25,7 +26,6 @@ const UNDER_WAY: usize = 16;
 const LENGTH: usize = 4;
 
 /// A node. Dropped, it takes its leave of the master; whoever speaks through it is to be dropped before.
-#[derive(Debug)]
 pub(super) struct Node {
     handle: Option<NodeHandle>,
     /// There until it is dropped.
@@ -111,13 +111,13 @@ impl Node {
 
 impl Drop for Node {
     fn drop(&mut self) {
-        self.runner.block_on(sleep(LEAVE));
+        sleep(LEAVE);
         {
             let _inside = self.runner.enter();
             self.handle = None;
         }
         if let Some(runtime) = self.runtime.take() {
-            runtime.block_on(sleep(LEAVE));
+            sleep(LEAVE);
             runtime.shutdown_timeout(LEAVE);
         }
     }

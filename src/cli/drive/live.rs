@@ -18,7 +18,7 @@ use toposlam_model::{
 use toposlam_robot::{
     explorer::{Explorer, Observer, Round},
     log::{messages, recorder, world_hash, writer::WriteError},
-    robot::Robot,
+    robot::{Robot, RobotError},
     ros1::{LiveRobot, Topics},
 };
 use toposlam_vision::{
@@ -66,8 +66,11 @@ impl Arguments {
             wheels: self.cmd_vel_topic.clone(),
         };
         let patience = Duration::from_secs_f64(self.patience);
-        let robot = LiveRobot::connect(&topics, patience, move || stop.stop())
-            .map_err(|error| Failure::at("--ros", error))?;
+        let robot = match LiveRobot::connect(&topics, patience, move || stop.stop()) {
+            Ok(robot) => robot,
+            Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
+            Err(error) => return Err(Failure::at("--ros", error)),
+        };
         let log = self.recorder(world.as_ref(), &camera)?;
         self.explore(robot, sensor, world.as_ref(), log, progress, out)
     }
