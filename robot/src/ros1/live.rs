@@ -66,7 +66,7 @@ impl LiveRobot {
         let fresh = |photograph: Photograph| {
             let taken = base.seconds(photograph.stamp);
             behind = Some(ended - taken);
-            (taken > ended).then(|| Picture { taken, view: photograph.file })
+            (taken > ended).then_some(Picture { taken, view: photograph.file })
         };
         let picture = self.pictures.wait(base.patience(), base.stop(), fresh);
         picture.map_err(|error| match (error, behind) {

@@ -24,8 +24,8 @@ use crate::{
 const TICK: f64 = 0.05;
 /// Of so many ticks, one is told by odometry: ten times a second.
 const READING: u64 = 2;
-/// A picture is taken every half second, or as often as the camera can.
-const PICTURE_EVERY: f64 = 0.5;
+/// A picture is taken every second, or as often as the camera can: to render one is most of the work.
+const PICTURE_EVERY: f64 = 1.0;
 /// The simulated time goes by at most so many times as fast as the real one: faster, a motion would be
 /// over before it is known of.
 pub const MOST_SPEED: f64 = 20.0;

@@ -52,8 +52,7 @@ impl Wheels {
                 stands(&before, &now).then_some(())
             };
             match self.odometry.wait(AGAIN, &|| false, &mut stood) {
-                Ok(()) => break,
-                Err(RobotError::Closed { .. }) => break,
+                Ok(()) | Err(RobotError::Closed { .. }) => break,
                 Err(_) => {}
             }
         }

@@ -41,8 +41,9 @@ impl Ending<'_> {
     pub(super) fn outcome(&self) -> Outcome {
         match self.error {
             None => Outcome::Holds,
-            Some(MappingError::Bound { .. }) => Outcome::Incomplete,
-            Some(MappingError::World(ExplorerError::Stopped { .. })) => Outcome::Incomplete,
+            Some(
+                MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }),
+            ) => Outcome::Incomplete,
             Some(_) => Outcome::Violated,
         }
     }

@@ -72,7 +72,7 @@ impl Arguments {
             Err(error) => return Err(Failure::at("--ros", error)),
         };
         let log = self.recorder(world.as_ref(), &camera)?;
-        self.explore(robot, sensor, world.as_ref(), log, progress, out)
+        self.explore(robot, sensor, world.as_ref(), log, &progress, out)
     }
 
     fn explore(
@@ -81,7 +81,7 @@ impl Arguments {
         sensor: Sensor,
         world: Option<&(NamedWorld, Dart)>,
         log: Option<Recorder>,
-        progress: Rc<Progress>,
+        progress: &Rc<Progress>,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let mut lines = Lines(if self.json { None } else { Some(&mut *out) });
