@@ -23,6 +23,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::{
     camera::{Camera, calibration},
+    colour::ColourModel,
     sensing::Sensor,
 };
 
@@ -45,7 +46,8 @@ impl Arguments {
             output::check_world_place(map, false)?;
         }
         let camera = input::read_camera(&self.calibration)?;
-        let sensor = Sensor::new(&camera, &input::read_colours(&self.colours)?);
+        let colours = input::read_colours(&self.colours)?;
+        let sensor = Sensor::new(&camera, &colours);
         let world = match &self.plan {
             Some(path) => {
                 let world = input::read_world(path)?;
@@ -71,7 +73,7 @@ impl Arguments {
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
             Err(error) => return Err(Failure::at("--ros", error)),
         };
-        let log = self.recorder(world.as_ref(), &camera)?;
+        let log = self.recorder(world.as_ref(), &camera, &colours)?;
         self.explore(robot, sensor, world.as_ref(), log, &progress, out)
     }
 
@@ -125,6 +127,7 @@ impl Arguments {
         &self,
         world: Option<&(NamedWorld, Dart)>,
         camera: &Camera,
+        colours: &ColourModel,
     ) -> Result<Option<Recorder>, Failure> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
@@ -141,6 +144,7 @@ impl Arguments {
             marker: "directional".to_owned(),
             seed: 0,
             calibration: calibration::to_toml(camera),
+            colours: colours.to_toml(),
             command: self.command(),
         };
         let recorder = Recorder::new(output::grow(path)?, &run, Some(camera.clone()));
