@@ -242,6 +242,8 @@ fn the_whole_of_shape_6_is_mapped_through_ros() {
     assert!(compared.contains("\"isomorphic\":true"), "{compared}");
     assert!(compared.contains("\"distinguishable\":false"), "{compared}");
     assert!(stage.end().contains("mapped\0"), "{}", stage.end());
+    let judged = said(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
+    assert!(judged.contains("conforms"), "{judged}");
     stage.was_safe();
     stage.robot.interrupt();
     assert!(stage.robot.ends_within(20).unwrap().success());
