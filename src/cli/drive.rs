@@ -22,7 +22,7 @@ use super::{Failure, Outcome, simulate::MAX_DARTS};
 /// own bumpers and its stop in reach.
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
-#[cfg_attr(not(feature = "ros1"), expect(dead_code, reason = "there is no robot to drive"))]
+#[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
 pub(super) struct Arguments {
     /// The master of ROS 1, as in http://127.0.0.1:11311
     #[arg(long, value_name = "URI")]
