@@ -255,11 +255,19 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
                 Step::Go(command) => command,
             };
             if command.turn != 0.0 {
-                self.robot.turn(command.turn)?;
+                self.robot.turn(command.turn).map_err(|error| self.disobeyed(error))?;
             }
             if command.forward != 0.0 {
-                self.robot.forward(command.forward)?;
+                self.robot.forward(command.forward).map_err(|error| self.disobeyed(error))?;
             }
+        }
+    }
+
+    /// Why the run ends where the robot does not obey.
+    fn disobeyed(&self, error: RobotError) -> ExplorerError {
+        match error {
+            RobotError::Stopped => ExplorerError::Stopped { moves: self.moves },
+            error => error.into(),
         }
     }
 
@@ -270,7 +278,7 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         for _ in 0..RETAKES {
             match self.picture() {
                 Ok(seen) => return Ok(seen),
-                Err(Unusable::Robot(error)) => return Err(error.into()),
+                Err(Unusable::Robot(error)) => return Err(self.disobeyed(error)),
                 Err(unusable) => last = unusable,
             }
         }
@@ -283,9 +291,8 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         let at = self.robot.odometry();
         let picture = self.robot.capture().map_err(|error| match error {
             RobotError::NoPicture => Unusable::Missing,
-            error @ (RobotError::NotRecorded { .. } | RobotError::EndOfLog) => {
-                Unusable::Robot(error)
-            }
+            RobotError::StalePicture { .. } => Unusable::Stale,
+            error => Unusable::Robot(error),
         })?;
         if picture.taken < at.time {
             return Err(Unusable::Stale);

@@ -15,6 +15,8 @@ pub mod pose;
 pub mod recording;
 pub mod replay;
 pub mod robot;
+#[cfg(feature = "ros1")]
+pub mod ros1;
 pub mod run;
 pub mod simulator;
 pub mod superscout;

@@ -87,4 +87,50 @@ pub enum RobotError {
         /// What the robot was asked for.
         asked: String,
     },
+    /// There is nobody at the other end.
+    #[error("there is no master of ROS at {master}: {cause}")]
+    Unreachable {
+        /// The address.
+        master: String,
+        /// What happened.
+        cause: String,
+    },
+    /// Nothing comes from the robot any more.
+    #[error("nothing has come on {topic} for {seconds} s{}", unreadable(*.unread))]
+    Silent {
+        /// The topic on which nothing came.
+        topic: String,
+        /// For how long.
+        seconds: f64,
+        /// How many messages came of another type.
+        unread: u64,
+    },
+    /// The connection is closed.
+    #[error("the connection to {topic} is closed")]
+    Closed {
+        /// The topic.
+        topic: String,
+    },
+    /// Pictures come, and all were taken before the robot stood still.
+    #[error("the last picture is {behind:.3} s older than the end of the last motion")]
+    StalePicture {
+        /// By so many seconds.
+        behind: f64,
+    },
+    /// The robot was told to stop, and did not.
+    #[error("by its odometry the robot still moves {seconds} s after it was told to stop")]
+    StillMoving {
+        /// For how long.
+        seconds: f64,
+    },
+    /// Somebody ended the run.
+    #[error("the run was ended")]
+    Stopped,
+}
+
+fn unreadable(messages: u64) -> String {
+    match messages {
+        0 => String::new(),
+        messages => format!("; {messages} messages there are of another type"),
+    }
 }

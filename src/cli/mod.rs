@@ -9,6 +9,7 @@ mod completions;
 mod conform;
 mod counterexample;
 mod draw;
+mod drive;
 mod evaluate;
 mod explore;
 mod info;
@@ -71,6 +72,7 @@ enum Verb {
     Paper(paper::Arguments),
     Proofs(proofs::Arguments),
     Simulate(simulate::Arguments),
+    Drive(drive::Arguments),
     Render(render::Arguments),
     Calibrate(calibrate::Arguments),
     Train(train::Arguments),
@@ -143,6 +145,14 @@ fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
     pool.build_global().map_err(|error| Failure::at("--threads", error))
 }
 
+/// What a program says that was built without ROS 1.
+#[cfg(not(feature = "ros1"))]
+fn without_ros() -> Failure {
+    let cause = "this program was built without ROS 1; build it with it: \
+                 cargo build --release --features ros1";
+    Failure::at("--ros", cause)
+}
+
 /// Runs the verb that the command line names.
 pub(crate) fn run() -> ExitCode {
     let arguments = Arguments::parse();
@@ -156,6 +166,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Paper(verb)) => verb.run(&mut out),
         Some(Verb::Proofs(verb)) => verb.run(&mut out),
         Some(Verb::Simulate(verb)) => verb.run(&mut out),
+        Some(Verb::Drive(verb)) => verb.run(&mut out),
         Some(Verb::Render(verb)) => verb.run(&mut out),
         Some(Verb::Calibrate(verb)) => verb.run(&mut out),
         Some(Verb::Train(verb)) => verb.run(&mut out),

@@ -16,6 +16,9 @@ use super::Failure;
 /// Whether somebody wants the work to end.
 static STOP: AtomicBool = AtomicBool::new(false);
 
+/// Whether it ends in good order however often somebody wants it.
+static PATIENT: AtomicBool = AtomicBool::new(false);
+
 /// A bar on standard error, hidden where that is no terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -42,6 +45,20 @@ impl Progress {
         let style = ProgressStyle::with_template("{prefix} {spinner}  {msg}  {elapsed} done")
             .map_err(|error| Failure::at("progress bar", error))?;
         Ok(Self { bar: progress.bar.with_style(style), ..progress })
+    }
+
+    /// The same for work that is never to end at once, as it would leave a robot on its way; it ends
+    /// soon.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn always_in_good_order(self) -> Self {
+        PATIENT.store(true, Ordering::Relaxed);
+        self
+    }
+
+    /// Takes the bar away where somebody else still asks whether the work is to end.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn clear(&self) {
+        self.bar.finish_and_clear();
     }
 
     /// The same without a bar, where the work tells of itself.
@@ -84,7 +101,7 @@ fn watch_for_interrupt() -> Result<(), Failure> {
     let mut result = Ok(());
     SET.call_once(|| {
         result = ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) {
+            if STOP.swap(true, Ordering::Relaxed) && !PATIENT.load(Ordering::Relaxed) {
                 process::exit(3);
             }
         });

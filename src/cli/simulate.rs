@@ -5,6 +5,8 @@ mod chronicle;
 mod ending;
 mod feasible;
 mod log;
+#[cfg(feature = "ros1")]
+mod node;
 
 use std::{
     cell::RefCell,
@@ -39,7 +41,9 @@ use super::{
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
 use ending::Ending;
-use log::{MAX_DARTS, Recorder};
+use log::Recorder;
+
+pub(super) use log::MAX_DARTS;
 
 /// Let a simulated SuperScout map a floor plan by Algorithm 1, from what its camera sees
 ///
@@ -99,10 +103,19 @@ pub(super) struct Arguments {
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
+    /// Do not explore: let the robot be driven through topics of ROS 1, at this master
+    #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
+    ros: Option<String>,
+    /// With --ros, let the simulated time go by so many times as fast as the real one
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed, requires = "ros")]
+    speed: f64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
+
+/// What a run leaves; a robot that is driven by somebody else makes none.
+const NOT_DRIVEN: [&str; 7] = ["by_scene", "log", "svg", "html", "frames", "map", "json"];
 
 /// What is simulated.
 struct Simulation {
@@ -116,6 +129,10 @@ struct Simulation {
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        #[cfg(not(feature = "ros1"))]
+        if self.ros.is_some() {
+            return Err(super::without_ros());
+        }
         self.check_places()?;
         let begun = Instant::now();
         let world = input::read_world(&self.plan)?;
@@ -140,6 +157,10 @@ impl Arguments {
         let eyes = self.eyes(&camera)?;
         feasible::check_marker(&simulation.plan, facing, &eyes, self.appearance.look)?;
         let robot = simulation.robot(&eyes, &self.appearance, &effects);
+        #[cfg(feature = "ros1")]
+        if let Some(master) = &self.ros {
+            return node::run(robot, master, self.speed, out);
+        }
         let eye = || eyes.sensor(self.appearance.look);
         let log =
             self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
@@ -287,6 +308,13 @@ fn seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| "write a number of seconds from 0 to 60".to_owned())
 }
 
+/// Reads how fast time goes by: at most so many times as fast that a motion is not over before it is
+/// known of.
+fn speed(text: &str) -> Result<f64, String> {
+    let times = text.parse().ok().filter(|times: &f64| (0.1..=20.0).contains(times));
+    times.ok_or_else(|| "write a number from 0.1 to 20".to_owned())
+}
+
 /// What can go wrong, and examples.
 fn after_help() -> String {
     let faults = FAULTS
@@ -304,6 +332,7 @@ Examples:
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/building-12.toml --start north-west:north --seed 3 --json
   toposlam simulate worlds/shape-6.toml --fault blocked@40
+  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 
 Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input,
 3 ended by Ctrl-C or at --max-darts."

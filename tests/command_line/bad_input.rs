@@ -300,3 +300,20 @@ fn a_folder_that_cannot_be_made_is_refused_before_the_work() {
         }
     }
 }
+
+#[cfg(not(feature = "ros1"))]
+#[test]
+fn without_ros_the_program_says_how_it_is_built_with_it() {
+    let master = "http://127.0.0.1:11311";
+    let drive = ["drive", "--ros", master, "--calibration", "c.toml", "--colours", "d.toml"];
+    for arguments in [&drive[..], &["simulate", WORLD, "--ros", master]] {
+        let message = refusal(arguments);
+        assert!(message.contains("cargo build --release --features ros1"), "{message}");
+    }
+}
+
+#[test]
+fn a_robot_that_is_driven_by_somebody_else_makes_no_map() {
+    let message = refusal(&["simulate", WORLD, "--ros", "http://127.0.0.1:1", "--map", "x.toml"]);
+    assert!(message.contains("cannot be used with"), "{message}");
+}

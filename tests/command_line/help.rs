@@ -4,7 +4,7 @@ use std::{io::Read, process::Stdio};
 
 use crate::{run, said, stderr, toposlam};
 
-const VERBS: [(&str, &[&str]); 17] = [
+const VERBS: [(&str, &[&str]); 18] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -34,7 +34,13 @@ const VERBS: [(&str, &[&str]); 17] = [
             "--html",
             "blocked",
             ".mcap",
+            "--ros",
+            "--speed",
         ],
+    ),
+    (
+        "drive",
+        &["--ros", "--calibration", "--log", "--map", "/cmd_vel", "conform", "--features ros1"],
     ),
     (
         "render",

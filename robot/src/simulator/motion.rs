@@ -154,8 +154,21 @@ impl SimulatedBase {
         self.sample();
     }
 
+    /// From now on its wheels turn so; time does not go by.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn command(&mut self, wheels: WheelSpeeds) {
+        self.wheels = wheels;
+        self.silent = 0.0;
+    }
+
+    /// How its wheels turn.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn wheels(&self) -> WheelSpeeds {
+        self.wheels
+    }
+
     /// A new motion begins: its wheels slip in their own way. Whether it will be carried out.
-    pub(super) fn begin(&mut self) -> bool {
+    pub(crate) fn begin(&mut self) -> bool {
         let slip = self.slip_deviation;
         self.slip = [(); 2].map(|()| slip * standard(&mut self.chance));
         if self.deaf == 0 {

@@ -67,24 +67,8 @@ impl<C: Camera> SimulatedRobot<C> {
         self.pictures
     }
 
-    fn begin(&mut self, fault: &Fault) {
-        match fault.kind {
-            FaultKind::Ignored => self.base.ignore(fault.lasting),
-            FaultKind::LightsOut => self.camera.lights_out(),
-            FaultKind::Blocked => self.base.put(across_hallway(self.pose(), &self.plan)),
-            FaultKind::Carried => {
-                let pose = elsewhere(&self.plan, self.seed, fault.picture);
-                self.base.carry(pose);
-            }
-            _ => {}
-        }
-    }
-}
-
-impl<C: Camera> Robot for SimulatedRobot<C> {
-    type View = C::View;
-
-    fn capture(&mut self) -> Result<Picture<C::View>, RobotError> {
+    /// The picture of the next number, as it is now, unless it does not come.
+    pub(crate) fn expose(&mut self) -> Option<Picture<C::View>> {
         self.pictures += 1;
         let number = self.pictures;
         let begin: Vec<Fault> =
@@ -105,12 +89,46 @@ impl<C: Camera> Robot for SimulatedRobot<C> {
             }
         };
         let dropped = spoilt(FaultKind::Dropped);
-        self.base.wait(self.picture_time);
         if dropped {
-            return Err(RobotError::NoPicture);
+            return None;
         }
         self.last = Some(picture.clone());
-        Ok(picture)
+        Some(picture)
+    }
+
+    /// How long a picture takes, in seconds.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn picture_time(&self) -> f64 {
+        self.picture_time
+    }
+
+    /// The base, for whoever tells its wheels themselves.
+    #[cfg(feature = "ros1")]
+    pub(crate) fn base(&mut self) -> &mut SimulatedBase {
+        &mut self.base
+    }
+
+    fn begin(&mut self, fault: &Fault) {
+        match fault.kind {
+            FaultKind::Ignored => self.base.ignore(fault.lasting),
+            FaultKind::LightsOut => self.camera.lights_out(),
+            FaultKind::Blocked => self.base.put(across_hallway(self.pose(), &self.plan)),
+            FaultKind::Carried => {
+                let pose = elsewhere(&self.plan, self.seed, fault.picture);
+                self.base.carry(pose);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl<C: Camera> Robot for SimulatedRobot<C> {
+    type View = C::View;
+
+    fn capture(&mut self) -> Result<Picture<C::View>, RobotError> {
+        let picture = self.expose();
+        self.base.wait(self.picture_time);
+        picture.ok_or(RobotError::NoPicture)
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {

@@ -16,6 +16,12 @@ pub trait Base {
     /// What was last read.
     fn reading(&self) -> Reading;
 
+    /// By how much a command outlasts its period before the next one takes over, in seconds: what is
+    /// known of it is that old, and the last step of a motion is shorter by as much.
+    fn lag(&self) -> f64 {
+        0.0
+    }
+
     /// How far from its body a sonar hears something, in metres; infinite for nothing.
     fn sonar(&self, sonar: usize) -> f64;
 }
@@ -52,6 +58,7 @@ impl<B: Base> Drive<'_, B> {
     pub fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
         let angle = wrapped(angle);
         let begun = self.0.reading().odometry;
+        let lasting = PERIOD + self.0.lag();
         let mut turned = 0.0;
         let mut last = begun;
         for _ in 0..periods(angle.abs() / TURN_RATE) {
@@ -59,7 +66,7 @@ impl<B: Base> Drive<'_, B> {
             if left.abs() <= NEAR_ANGLE {
                 break;
             }
-            let now = self.0.drive(WheelSpeeds::of(0.0, left / PERIOD))?.odometry;
+            let now = self.0.drive(WheelSpeeds::of(0.0, left / lasting))?.odometry;
             turned += wrapped(now.heading - last.heading);
             last = now;
         }
@@ -73,6 +80,7 @@ impl<B: Base> Drive<'_, B> {
     /// The base's.
     pub fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
         let distance = distance.clamp(0.0, COMMAND);
+        let lasting = PERIOD + self.0.lag();
         let begun = self.0.reading().odometry;
         for _ in 0..periods(distance / SPEED) {
             let odometry = self.0.reading().odometry;
@@ -82,7 +90,7 @@ impl<B: Base> Drive<'_, B> {
                 break;
             }
             let off = wrapped(begun.heading - odometry.heading);
-            self.0.drive(WheelSpeeds::of(most / PERIOD, MEND * off / PERIOD))?;
+            self.0.drive(WheelSpeeds::of(most / lasting, MEND * off / PERIOD))?;
         }
         self.stop()
     }

@@ -41,13 +41,14 @@ pub(crate) struct Story<'o, W> {
 
 impl<'o, W: Write> Story<'o, W> {
     pub(crate) fn new(out: &'o mut W, world: &NamedWorld, facing: Dart, detail: Detail) -> Self {
-        let result = writeln!(
-            out,
-            "{}, from {} with its back to the door {}.",
-            world.name,
-            world.at_text(facing),
-            world.facing_text(facing)
-        );
+        let (at, back) = (world.at_text(facing), world.facing_text(facing));
+        let head = format!("{}, from {at} with its back to the door {back}.", world.name);
+        Self::under(out, &head, detail)
+    }
+
+    /// The story of a run, under a head that says where it is.
+    pub(crate) fn under(out: &'o mut W, head: &str, detail: Detail) -> Self {
+        let result = writeln!(out, "{head}");
         Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
     }
 

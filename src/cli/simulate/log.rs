@@ -12,7 +12,7 @@ use toposlam_vision::{
 };
 
 use super::{Arguments, Failure, Simulation};
-use crate::cli::output;
+use crate::cli::{output, words::quoted};
 
 /// Writes a log to a file, as the run goes.
 pub(super) type Recorder = recorder::Recorder<File>;
@@ -83,17 +83,7 @@ impl Arguments {
 }
 
 /// So many darts are enough unless something else is said.
-pub(super) const MAX_DARTS: usize = 1000;
-
-/// A word as a shell takes it for one.
-fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./:=,@+%".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
+pub(in crate::cli) const MAX_DARTS: usize = 1000;
 
 #[cfg(test)]
 mod tests {

@@ -1,0 +1,224 @@
+//! A node of ROS 1 for a program that waits: topics on which it speaks, and the last message of those to
+//! which it listens.
+
+use std::{
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use roslibrust::ros1::{NodeHandle, PublisherAny};
+use tokio::{
+    runtime::{Builder, Runtime},
+    time::timeout,
+};
+
+use super::messages::Kind;
+use crate::robot::RobotError;
+
+/// The master answers within this, or is taken not to be there.
+const ANSWER: Duration = Duration::from_secs(10);
+/// Before a node is gone, what it said last goes out.
+const LEAVE: Duration = Duration::from_millis(200);
+/// So many messages of a topic may be under way; older ones are dropped.
+const UNDER_WAY: usize = 16;
+/// A message begins with its length.
+const LENGTH: usize = 4;
+
+/// A node. Dropped, it takes its leave of the master; whoever speaks through it is to be dropped before.
+pub(super) struct Node {
+    handle: Option<NodeHandle>,
+    /// There until it is dropped.
+    runtime: Option<Runtime>,
+    runner: tokio::runtime::Handle,
+    master: String,
+}
+
+impl Node {
+    /// A node of this master, under this name and the number of the process.
+    pub(super) fn new(master: &str, name: &str) -> Result<Self, RobotError> {
+        let unreachable =
+            |cause: String| RobotError::Unreachable { master: master.to_owned(), cause };
+        let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build();
+        let runtime = runtime.map_err(|error| unreachable(error.to_string()))?;
+        let name = format!("{name}_{}", std::process::id());
+        let joined = async { timeout(ANSWER, NodeHandle::new(master, &name)).await };
+        let handle = match runtime.block_on(joined) {
+            Ok(Ok(handle)) => handle,
+            Ok(Err(error)) => return Err(unreachable(error.to_string())),
+            Err(_) => return Err(unreachable("it does not answer".to_owned())),
+        };
+        let runner = runtime.handle().clone();
+        let master = master.to_owned();
+        Ok(Self { handle: Some(handle), runtime: Some(runtime), runner, master })
+    }
+
+    /// Says that it will speak on a topic.
+    pub(super) fn speak(&self, topic: &str, kind: Kind) -> Result<Speaker, RobotError> {
+        let handle = self.handle(topic)?;
+        let advertised = async {
+            let Kind { name, definition } = kind;
+            timeout(ANSWER, handle.advertise_any(topic, name, definition, UNDER_WAY, false)).await
+        };
+        let publisher = match self.runner.block_on(advertised) {
+            Ok(Ok(publisher)) => publisher,
+            Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
+            Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
+        };
+        Ok(Speaker { publisher, runner: self.runner.clone(), topic: topic.to_owned() })
+    }
+
+    /// Listens to a topic. What cannot be read is counted, and left.
+    pub(super) fn listen<T: Send + 'static>(
+        &self,
+        topic: &str,
+        read: fn(&[u8]) -> Option<T>,
+    ) -> Result<Heard<T>, RobotError> {
+        let handle = self.handle(topic)?;
+        let subscribed = async { timeout(ANSWER, handle.subscribe_any(topic, UNDER_WAY)).await };
+        let mut subscriber = match self.runner.block_on(subscribed) {
+            Ok(Ok(subscriber)) => subscriber,
+            Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
+            Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
+        };
+        let last = Last { message: None, unread: 0, closed: false };
+        let shared = Arc::new(Shared { last: Mutex::new(last), news: Condvar::new() });
+        let heard = Heard { shared: shared.clone(), topic: topic.to_owned() };
+        self.runner.spawn(async move {
+            while let Some(message) = subscriber.next().await {
+                // That some were dropped is no error: the newer ones follow.
+                let Ok(bytes) = message else { continue };
+                let message = bytes.get(LENGTH..).and_then(read);
+                shared.hear(|last| match message {
+                    Some(message) => last.message = Some(message),
+                    None => last.unread += 1,
+                });
+            }
+            shared.hear(|last| last.closed = true);
+        });
+        Ok(heard)
+    }
+
+    fn handle(&self, topic: &str) -> Result<&NodeHandle, RobotError> {
+        let closed = || RobotError::Closed { topic: topic.to_owned() };
+        self.handle.as_ref().filter(|handle| handle.is_ok()).ok_or_else(closed)
+    }
+
+    fn unreachable(&self, cause: String) -> RobotError {
+        RobotError::Unreachable { master: self.master.clone(), cause }
+    }
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        sleep(LEAVE);
+        {
+            let _inside = self.runner.enter();
+            self.handle = None;
+        }
+        if let Some(runtime) = self.runtime.take() {
+            sleep(LEAVE);
+            runtime.shutdown_timeout(LEAVE);
+        }
+    }
+}
+
+/// A topic on which a node speaks.
+pub(super) struct Speaker {
+    publisher: PublisherAny,
+    runner: tokio::runtime::Handle,
+    topic: String,
+}
+
+impl Speaker {
+    /// Says the body of a message to all who listen.
+    pub(super) fn say(&self, body: &[u8]) -> Result<(), RobotError> {
+        let length = (body.len() as u32).to_le_bytes();
+        let message = [&length[..], body].concat();
+        let said = self.runner.block_on(self.publisher.publish(message));
+        said.map_err(|_| RobotError::Closed { topic: self.topic.clone() })
+    }
+}
+
+/// A topic to which a node listens.
+#[derive(Debug)]
+pub(super) struct Heard<T> {
+    shared: Arc<Shared<T>>,
+    topic: String,
+}
+
+impl<T> Clone for Heard<T> {
+    fn clone(&self) -> Self {
+        Self { shared: self.shared.clone(), topic: self.topic.clone() }
+    }
+}
+
+#[derive(Debug)]
+struct Shared<T> {
+    last: Mutex<Last<T>>,
+    news: Condvar,
+}
+
+#[derive(Debug)]
+struct Last<T> {
+    message: Option<T>,
+    /// How many messages could not be read.
+    unread: u64,
+    closed: bool,
+}
+
+impl<T> Shared<T> {
+    fn last(&self) -> MutexGuard<'_, Last<T>> {
+        // What it guards is right at any time.
+        self.last.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn hear(&self, change: impl FnOnce(&mut Last<T>)) {
+        change(&mut self.last());
+        self.news.notify_all();
+    }
+}
+
+/// Whoever waits looks up so often whether somebody ends the run.
+const LOOK_UP: Duration = Duration::from_millis(20);
+
+impl<T> Heard<T> {
+    /// Takes the last message, if there is one that nobody took.
+    pub(super) fn take(&self) -> Option<T> {
+        self.shared.last().message.take()
+    }
+
+    /// Waits for messages, each of which is shown, up to one that is wanted.
+    ///
+    /// # Errors
+    /// [`RobotError::Silent`] where none is in that time, [`RobotError::Stopped`] where somebody ends
+    /// the run, [`RobotError::Closed`] where there will be none any more.
+    pub(super) fn wait<W>(
+        &self,
+        patience: Duration,
+        stop: &dyn Fn() -> bool,
+        mut wanted: impl FnMut(T) -> Option<W>,
+    ) -> Result<W, RobotError> {
+        let until = Instant::now() + patience;
+        let mut last = self.shared.last();
+        loop {
+            if stop() {
+                return Err(RobotError::Stopped);
+            }
+            if let Some(found) = last.message.take().and_then(&mut wanted) {
+                return Ok(found);
+            }
+            let topic = || self.topic.clone();
+            if last.closed {
+                return Err(RobotError::Closed { topic: topic() });
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                let (seconds, unread) = (patience.as_secs_f64(), last.unread);
+                return Err(RobotError::Silent { topic: topic(), seconds, unread });
+            }
+            let waited = self.shared.news.wait_timeout(last, left.min(LOOK_UP));
+            last = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}

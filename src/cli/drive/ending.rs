@@ -1,0 +1,101 @@
+//! How a run of a live robot ended.
+
+use std::io::Write;
+
+use serde::Serialize;
+use toposlam_model::{
+    format::named_world::NamedWorld,
+    mapping::{Exploration, FACING, MappingError},
+};
+use toposlam_robot::explorer::ExplorerError;
+
+use super::{Failure, Outcome};
+use crate::cli::{json::print_object, words::sentence};
+
+/// How a run ended.
+pub(super) struct Ending<'a> {
+    /// Where it was, where that is known.
+    pub(super) world: &'a str,
+    pub(super) exploration: &'a Exploration,
+    pub(super) error: Option<&'a MappingError<ExplorerError>>,
+    /// How long it took by the robot's clock.
+    pub(super) seconds: f64,
+    pub(super) pictures: u64,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Line<'a> {
+    schema: u32,
+    world: &'a str,
+    ending: &'a str,
+    error: Option<String>,
+    moves: u64,
+    vertices: usize,
+    edges: usize,
+    seconds: f64,
+    frames: u64,
+}
+
+impl Ending<'_> {
+    pub(super) fn outcome(&self) -> Outcome {
+        match self.error {
+            None => Outcome::Holds,
+            Some(
+                MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }),
+            ) => Outcome::Incomplete,
+            Some(_) => Outcome::Violated,
+        }
+    }
+
+    /// The map as a world, where it is complete.
+    pub(super) fn map(&self) -> Option<NamedWorld> {
+        let graph = self.exploration.map().complete()?;
+        let moves = self.exploration.moves();
+        let (name, of) = match self.world {
+            "" => ("map".to_owned(), "where it was"),
+            world => (format!("{world}-map"), world),
+        };
+        let about = format!("The map of {of}, made by a live robot in {moves} moves");
+        Some(NamedWorld::numbered(&name, &about, graph.clone(), Some(FACING)))
+    }
+
+    /// How many edges are known from end to end.
+    fn edges(&self) -> usize {
+        let map = self.exploration.map();
+        (map.dart_count() - map.unexplored_count() as usize) / 2
+    }
+
+    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let (moves, vertices) = (self.exploration.moves(), self.exploration.map().vertex_count());
+        let ended = match self.error {
+            None => format!("the map is complete, made in {moves} moves"),
+            Some(error) => format!("the robot gave up: {error}"),
+        };
+        writeln!(out, "\n{}", sentence(&ended))?;
+        writeln!(out, "  known              {vertices} vertices, {} edges", self.edges())?;
+        let minutes = self.seconds / 60.0;
+        writeln!(out, "  the robot's time   {minutes:.1} minutes, {} pictures", self.pictures)?;
+        Ok(())
+    }
+
+    pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        let ending = match (self.outcome(), self.error) {
+            (Outcome::Holds, _) => "mapped",
+            (_, Some(MappingError::World(ExplorerError::Stopped { .. }))) => "stopped",
+            _ => "gave-up",
+        };
+        let line = Line {
+            schema: 1,
+            world: self.world,
+            ending,
+            error: self.error.map(ToString::to_string),
+            moves: self.exploration.moves(),
+            vertices: self.exploration.map().vertex_count(),
+            edges: self.edges(),
+            seconds: (self.seconds * 1e3).round() / 1e3,
+            frames: self.pictures,
+        };
+        print_object(out, &line)
+    }
+}

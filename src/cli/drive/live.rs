@@ -1,0 +1,238 @@
+//! A run of a live robot: what is read before it, what is told and written of it.
+
+use std::{
+    fs::File,
+    io::{self, IsTerminal, Write},
+    rc::Rc,
+    time::Duration,
+};
+
+use toposlam_model::{
+    driving::algorithm2::Standing,
+    embedded_graph::Dart,
+    enumerate::Watch,
+    format::named_world::NamedWorld,
+    mapping::{self, Event, Exploration, Journey, Nearest, map_world},
+    percept::Door,
+};
+use toposlam_robot::{
+    explorer::{Explorer, Observer, Round},
+    log::{messages, recorder, world_hash, writer::WriteError},
+    robot::{Robot, RobotError},
+    ros1::{LiveRobot, Topics},
+};
+use toposlam_vision::{
+    camera::{Camera, calibration},
+    colour::ColourModel,
+    sensing::Sensor,
+};
+
+use super::{Arguments, Failure, MAX_DARTS, Outcome, ending::Ending};
+use crate::cli::{
+    explore::story::{Detail, Story},
+    input, output,
+    progress::Progress,
+    words::quoted,
+};
+
+type Recorder = recorder::Recorder<File>;
+
+impl Arguments {
+    pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        if let Some(log) = &self.log {
+            output::check_place(log, &["mcap"])?;
+        }
+        if let Some(map) = &self.map {
+            output::check_world_place(map, false)?;
+        }
+        let camera = input::read_camera(&self.calibration)?;
+        let colours = input::read_colours(&self.colours)?;
+        let sensor = Sensor::new(&camera, &colours);
+        let world = match &self.plan {
+            Some(path) => {
+                let world = input::read_world(path)?;
+                let facing = input::start_of(&world, self.start.as_deref())?;
+                Some((world, facing))
+            }
+            None => None,
+        };
+        let progress = Progress::endless("exploring", "pictures")?.always_in_good_order();
+        // On a terminal the story shows how far the run is.
+        let told = !self.json && io::stdout().is_terminal();
+        let progress = Rc::new(if told { progress.hidden() } else { progress });
+        let stop = progress.clone();
+        let topics = Topics {
+            master: self.ros.clone(),
+            pictures: self.image_topic.clone(),
+            odometry: self.odom_topic.clone(),
+            wheels: self.cmd_vel_topic.clone(),
+        };
+        let patience = Duration::from_secs_f64(self.patience);
+        let robot = match LiveRobot::connect(&topics, patience, move || stop.stop()) {
+            Ok(robot) => robot,
+            Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
+            Err(error) => return Err(Failure::at("--ros", error)),
+        };
+        let log = self.recorder(world.as_ref(), &camera, &colours)?;
+        self.explore(robot, sensor, world.as_ref(), log, &progress, out)
+    }
+
+    fn explore(
+        &self,
+        robot: LiveRobot,
+        sensor: Sensor,
+        world: Option<&(NamedWorld, Dart)>,
+        log: Option<Recorder>,
+        progress: &Rc<Progress>,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
+        let mut lines = Lines(if self.json { None } else { Some(&mut *out) });
+        let detail = Detail { every_hypothesis: false, doors: false };
+        let story = match world {
+            Some((world, facing)) => Story::new(&mut lines, world, *facing, detail),
+            None => Story::under(&mut lines, &format!("A robot at {}.", self.ros), detail),
+        };
+        let mut telling = Telling { story, log: log.clone() };
+        let watching = Watching { log: log.clone(), progress: progress.clone() };
+        let mut explorer = Explorer::new(robot, sensor, watching);
+        let mut exploration = Exploration::new(self.max_darts);
+        let error = map_world(&mut explorer, &mut Nearest, &mut exploration, &mut telling).err();
+        let (robot, _) = explorer.into_parts();
+        let logged = log.map_or(Ok(()), |log| log.end(&robot, exploration.moves(), error.as_ref()));
+        let (seconds, pictures) = (robot.odometry().time, robot.pictures());
+        // It stands before anything else is said.
+        drop(robot);
+        progress.clear();
+        telling.story.finish()?;
+        logged.map_err(|error| self.unwritten(&error))?;
+        let name = world.map_or("", |(world, _)| &world.name);
+        let error = error.as_ref();
+        let ending = Ending { world: name, exploration: &exploration, error, seconds, pictures };
+        if self.json {
+            ending.tell_json(out)?;
+        } else {
+            ending.tell(out)?;
+        }
+        if let Some(path) = &self.map {
+            match ending.map() {
+                Some(map) => output::write_world(path, &map)?,
+                None => eprintln!("the map is not complete, and is not written"),
+            }
+        }
+        Ok(ending.outcome())
+    }
+
+    /// The log, where one is wanted. What is not known of the world is left empty.
+    fn recorder(
+        &self,
+        world: Option<&(NamedWorld, Dart)>,
+        camera: &Camera,
+        colours: &ColourModel,
+    ) -> Result<Option<Recorder>, Failure> {
+        let Some(path) = &self.log else { return Ok(None) };
+        let known = world.map(|(world, facing)| {
+            let hash = world_hash(&world.graph, *facing);
+            (world.name.clone(), hash, world.start_text(*facing))
+        });
+        let (world, world_hash, start) = known.unwrap_or_default();
+        let run = messages::Run {
+            stamp: messages::Stamp::default(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            world,
+            world_hash,
+            start,
+            marker: "directional".to_owned(),
+            seed: 0,
+            calibration: calibration::to_toml(camera),
+            colours: colours.to_toml(),
+            command: self.command(),
+        };
+        let recorder = Recorder::new(output::grow(path)?, &run, Some(camera.clone()));
+        recorder.map(Some).map_err(|error| self.unwritten(&error))
+    }
+
+    fn unwritten(&self, error: &WriteError) -> Failure {
+        let path = self.log.clone().unwrap_or_default();
+        Failure::in_file(&path, format!("cannot be written: {error}"))
+    }
+
+    /// The command of this run: all but where its results go.
+    fn command(&self) -> String {
+        let path = |path: &std::path::PathBuf| path.display().to_string();
+        let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
+        let told = [
+            ("--ros", Some(self.ros.clone())),
+            ("--calibration", Some(path(&self.calibration))),
+            ("--colours", Some(path(&self.colours))),
+            ("--image-topic", unless(&self.image_topic, recorder::IMAGE)),
+            ("--odom-topic", unless(&self.odom_topic, recorder::ODOM)),
+            ("--cmd-vel-topic", unless(&self.cmd_vel_topic, recorder::CMD_VEL)),
+            ("--plan", self.plan.as_ref().map(path)),
+            ("--start", self.start.clone()),
+            ("--max-darts", (self.max_darts != MAX_DARTS).then(|| self.max_darts.to_string())),
+        ];
+        let told = told.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
+        let words = ["toposlam".to_owned(), "drive".to_owned()];
+        let words = words.into_iter().chain(told.flatten());
+        words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Where the story goes: line by line, for a person who follows the run; or nowhere.
+struct Lines<'o>(Option<&'o mut dyn Write>);
+
+impl Write for Lines<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some(out) = &mut self.0 {
+            out.write_all(bytes)?;
+            if bytes.ends_with(b"\n") {
+                out.flush()?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.as_mut().map_or(Ok(()), Write::flush)
+    }
+}
+
+/// Watches the robot.
+struct Watching {
+    log: Option<Recorder>,
+    progress: Rc<Progress>,
+}
+
+impl Observer<LiveRobot> for Watching {
+    fn round(&mut self, robot: &LiveRobot, round: &Round<Vec<u8>>) {
+        self.log.round(robot, round);
+        self.progress.part_done(1);
+    }
+
+    fn leaving(&mut self, robot: &LiveRobot, door: Door) {
+        self.log.leaving(robot, door);
+    }
+
+    fn arrived(&mut self, robot: &LiveRobot, door: Option<Door>, at: &Standing) {
+        self.log.arrived(robot, door, at);
+    }
+
+    fn stop(&self) -> bool {
+        self.progress.stop() || self.log.as_ref().is_some_and(Recorder::failed)
+    }
+}
+
+/// Tells the story of Algorithm 1, and logs it.
+struct Telling<'o, 'l> {
+    story: Story<'l, Lines<'o>>,
+    log: Option<Recorder>,
+}
+
+impl mapping::Observer for Telling<'_, '_> {
+    fn event(&mut self, journey: &Journey, event: Event) {
+        self.story.event(journey, event);
+        if let Some(log) = &mut self.log {
+            log.event(journey, event);
+        }
+    }
+}

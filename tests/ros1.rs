@@ -1,0 +1,281 @@
+//! A robot behind a real master of ROS 1: `toposlam drive` drives the simulated one of `toposlam simulate
+//! --ros`, and ROS's own client library listens. Sections 2.5 and 6.
+//!
+//! Everything is on loopback. Where ROS 1 is not installed the tests are skipped, with a message, unless
+//! `TOPOSLAM_ROS` is `required`.
+
+#![cfg(all(feature = "ros1", unix))]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{
+    env,
+    ffi::OsStr,
+    fs,
+    net::{Ipv4Addr, TcpListener, TcpStream},
+    path::{Path, PathBuf},
+    process::{Child, Command, ExitStatus, Stdio},
+    sync::{Mutex, MutexGuard, PoisonError},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use mcap::MessageStream;
+
+/// ROS's client library belongs to the system's Python.
+const PYTHON: &str = "/usr/bin/python3";
+/// The simulated time goes by so many times as fast as the real one.
+const SPEED: &str = "8";
+
+/// A program that ends with the test.
+struct Running(Child);
+
+impl Running {
+    fn new(command: &mut Command) -> Self {
+        Self(command.spawn().unwrap())
+    }
+
+    /// As Ctrl-C does.
+    fn interrupt(&self) {
+        let id = self.0.id().to_string();
+        assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    }
+
+    fn ends_within(&mut self, seconds: u64) -> Option<ExitStatus> {
+        let until = Instant::now() + Duration::from_secs(seconds);
+        while Instant::now() < until {
+            if let Some(status) = self.0.try_wait().unwrap() {
+                return Some(status);
+            }
+            sleep(Duration::from_millis(20));
+        }
+        None
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Ok(None) = self.0.try_wait() {
+            // It takes its own children with it, where it is asked.
+            self.interrupt();
+            if self.ends_within(20).is_none() {
+                let _ = self.0.kill();
+            }
+        }
+        let _ = self.0.wait();
+    }
+}
+
+/// A master, somebody who listens, a simulated robot, and where they leave what they write.
+struct Stage {
+    // Dropped in this order.
+    robot: Running,
+    _listener: Running,
+    _master: Running,
+    address: String,
+    folder: PathBuf,
+    _alone: MutexGuard<'static, ()>,
+}
+
+/// Two robots at a time would be too slow.
+static ALONE: Mutex<()> = Mutex::new(());
+
+fn toposlam(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments);
+    command.env("ROS_IP", "127.0.0.1").stdin(Stdio::null());
+    command
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = toposlam(arguments).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn until(what: &str, holds: impl Fn() -> bool) {
+    let until = Instant::now() + Duration::from_secs(60);
+    while !holds() {
+        assert!(Instant::now() < until, "{what}: not within a minute");
+        sleep(Duration::from_millis(50));
+    }
+}
+
+/// Whether ROS 1 is here.
+fn has_ros() -> bool {
+    let paths = env::var_os("PATH").unwrap_or_default();
+    let here = env::split_paths(&paths).any(|folder| folder.join("roscore").is_file());
+    if !here {
+        assert_ne!(env::var("TOPOSLAM_ROS").as_deref(), Ok("required"), "there is no roscore");
+        eprintln!("skipped: there is no roscore");
+    }
+    here
+}
+
+impl Stage {
+    /// `None` where ROS 1 is not installed.
+    fn new(name: &str) -> Option<Self> {
+        if !has_ros() {
+            return None;
+        }
+        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ros1").join(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let path = |name: &str| folder.join(name).display().to_string();
+        let port =
+            TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port();
+        let address = format!("http://127.0.0.1:{port}");
+        let ros = |program: &str, arguments: &[&OsStr]| {
+            let mut command = Command::new(program);
+            command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null());
+            command.stderr(Stdio::null()).env("ROS_MASTER_URI", &address);
+            command.env("ROS_IP", "127.0.0.1").env("ROS_HOME", &folder);
+            Running::new(&mut command)
+        };
+        let master = ros("roscore", &["-p".as_ref(), port.to_string().as_ref()]);
+        until("the master", || TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_ok());
+        let listener = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros1/listener.py");
+        let listener = ros(PYTHON, &[listener.as_ref(), path("heard").as_ref()]);
+        see(&folder);
+        let [camera, colours] = [path("camera.toml"), path("colours.toml")];
+        let simulate = ["simulate", "worlds/shape-6.toml", "--seed", "3", "--ros", &address];
+        let seen = ["--speed", SPEED, "--calibration", &camera, "--colours", &colours];
+        let told = fs::File::create(folder.join("robot")).unwrap();
+        let robot = Running::new(toposlam(&[&simulate[..], &seen].concat()).stdout(told));
+        let stage =
+            Self { robot, _listener: listener, _master: master, address, folder, _alone: alone };
+        until("odometry and pictures", || stage.heard("/odom") && stage.heard("/camera"));
+        Some(stage)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.join(name).display().to_string()
+    }
+
+    fn lines(&self, topic: &str) -> Vec<String> {
+        let heard = fs::read_to_string(self.folder.join("heard")).unwrap_or_default();
+        heard.lines().filter(|line| line.starts_with(topic)).map(str::to_owned).collect()
+    }
+
+    fn heard(&self, topic: &str) -> bool {
+        !self.lines(topic).is_empty()
+    }
+
+    /// What the wheels were told: how fast ahead, and to turn.
+    fn wheels(&self) -> Vec<[f64; 2]> {
+        let number = |word: Option<&str>| word.unwrap().parse().unwrap();
+        let lines = self.lines("/cmd_vel").into_iter().map(|line| {
+            let mut words = line.split(' ').skip(1);
+            [number(words.next()), number(words.next())]
+        });
+        lines.collect()
+    }
+
+    fn moves(&self) -> bool {
+        self.wheels().last().is_some_and(|wheels| wheels.iter().any(|speed| speed.abs() > 0.0))
+    }
+
+    /// Somebody drives the robot.
+    fn drive(&self) -> Running {
+        let [camera, colours] = [self.path("camera.toml"), self.path("colours.toml")];
+        let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
+        let drive = ["drive", "--ros", &self.address, "--calibration", &camera];
+        let written = ["--colours", &colours, "--log", &log, "--map", &map, "--json"];
+        let told = fs::File::create(self.folder.join("told")).unwrap();
+        Running::new(toposlam(&[&drive[..], &written].concat()).stdout(told))
+    }
+
+    /// The last message of the log.
+    fn end(&self) -> String {
+        let log = fs::read(self.folder.join("run.mcap")).unwrap();
+        let last = MessageStream::new(&log).unwrap().map(Result::unwrap).last().unwrap();
+        assert_eq!(last.channel.topic, "/toposlam/end");
+        String::from_utf8_lossy(&last.data).into_owned()
+    }
+
+    /// The robot never went faster than it may, and the last that its wheels were told is to stand.
+    fn was_safe(&self) {
+        // What was said last is written down soon.
+        sleep(Duration::from_secs(1));
+        let wheels = self.wheels();
+        assert!(!wheels.is_empty() && !self.moves());
+        for [speed, turning] in wheels {
+            assert!(speed.abs() <= 0.2 + 1e-9 && turning.abs() <= 0.3491, "{speed} {turning}");
+        }
+    }
+}
+
+/// The camera, and the colours of the building as they are learned from a few labelled pictures.
+fn see(folder: &Path) {
+    let path = |name: &str| folder.join(name).display().to_string();
+    for inside in ["images", "labels"] {
+        fs::create_dir(folder.join(inside)).unwrap();
+    }
+    let camera = toposlam_vision::camera::Camera::superscout().sized([640, 480]);
+    let camera = toposlam_vision::camera::calibration::to_toml(&camera);
+    fs::write(folder.join("camera.toml"), camera).unwrap();
+    for n in 1..=7 {
+        let pose = format!("0,{n},{}", 50 * n);
+        let [image, labels] = [path(&format!("images/{n}.png")), path(&format!("labels/{n}.png"))];
+        let render = ["render", "worlds/shape-8.toml", "--marker", "--size", "640x480"];
+        let seed = n.to_string();
+        let view = ["--pose", &pose, "--seed", &seed, "--out", &image, "--labels", &labels];
+        said(&[&render[..], &view].concat());
+    }
+    let [images, labels] = [path("images"), path("labels")];
+    let [camera, colours] = [path("camera.toml"), path("colours.toml")];
+    let train = ["train", "--images", &images, "--labels", &labels];
+    said(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
+}
+
+// paper: hardware.ros
+#[test]
+fn the_whole_of_shape_6_is_mapped_through_ros() {
+    let Some(mut stage) = Stage::new("mapped") else { return };
+    let begun = Instant::now();
+    let status = stage.drive().ends_within(600).unwrap();
+    eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
+    let told = fs::read_to_string(stage.folder.join("told")).unwrap();
+    assert_eq!(status.code(), Some(0), "{told}");
+    let compared = said(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
+    assert!(compared.contains("\"isomorphic\":true"), "{compared}");
+    assert!(compared.contains("\"distinguishable\":false"), "{compared}");
+    assert!(stage.end().contains("mapped\0"), "{}", stage.end());
+    let judged = said(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
+    assert!(judged.contains("conforms"), "{judged}");
+    stage.was_safe();
+    stage.robot.interrupt();
+    assert!(stage.robot.ends_within(20).unwrap().success());
+    eprintln!("{told}{}", fs::read_to_string(stage.folder.join("robot")).unwrap());
+}
+
+#[test]
+fn after_ctrl_c_the_robot_stands() {
+    let Some(stage) = Stage::new("stopped") else { return };
+    let mut drive = stage.drive();
+    until("the robot moves", || stage.moves());
+    drive.interrupt();
+    // However impatient somebody is.
+    drive.interrupt();
+    assert_eq!(drive.ends_within(10).unwrap().code(), Some(3));
+    stage.was_safe();
+    assert!(stage.end().contains("stopped\0"), "{}", stage.end());
+}
+
+#[test]
+fn where_the_robot_falls_silent_it_is_told_to_stand() {
+    let Some(stage) = Stage::new("silent") else { return };
+    let mut drive = stage.drive();
+    until("the robot moves", || stage.moves());
+    // Its process stands still; nothing is closed.
+    let robot = stage.robot.0.id().to_string();
+    let signal = |name: &str| Command::new("kill").args([name, &robot]).status().unwrap();
+    assert!(signal("-STOP").success());
+    let status = drive.ends_within(30);
+    assert!(signal("-CONT").success());
+    assert_eq!(status.unwrap().code(), Some(1));
+    stage.was_safe();
+    let end = stage.end();
+    assert!(end.contains("gave-up\0") && end.contains("nothing has come on /odom"), "{end}");
+}
