@@ -1,11 +1,19 @@
 //! `toposlam conform`: what is said of a log, with which exit code, and what is written.
 
 use std::{
+    f64::consts::PI,
     fs,
     path::{Path, PathBuf},
 };
 
 use serde_json::Value;
+use toposlam_model::driving;
+use toposlam_robot::log::{
+    messages::{Door, Own, Percept, Scene, Stamp},
+    recorder::ODOM,
+    standard::{Odometry, Twist},
+    writer::LogWriter,
+};
 
 use crate::{folder, objects, run, said, stderr, stdout};
 
@@ -169,6 +177,68 @@ fn bad_input_is_one_message_and_exit_code_2() {
         assert!(said.starts_with("error: ") && said.contains(cause), "{arguments:?} {said}");
         assert!(output.stdout.is_empty());
     }
+}
+
+#[test]
+fn events_out_of_order_are_an_error() {
+    let log = folder("conform-order").join("run.mcap");
+    let mut writer = LogWriter::new(Vec::new()).unwrap();
+    let at = |second| Stamp { sec: second, nanosec: 0 };
+    let form = [true, false, false, false];
+    let percept = Percept { stamp: at(2), degree: 1, marker: 0, form, ..Percept::default() };
+    writer.write(Percept::TOPIC, 2, &percept).unwrap();
+    let door = Door { stamp: at(1), r#move: 1, door: 0 };
+    writer.write(Door::TOPIC, 3, &door).unwrap();
+    fs::write(&log, writer.finish().unwrap()).unwrap();
+    let output = run(["conform", log.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(said.contains("message 2: the events are out of order: it is of 1.000 s"), "{said}");
+}
+
+/// Somebody drives a robot along x to an L, and then between its doors. The log has only scenes and
+/// odometry.
+#[test]
+fn what_was_seen_before_a_robot_strayed_is_a_shorter_log() {
+    let folder = folder("conform-strayed");
+    let log = folder.join("run.mcap");
+    let mut writer = LogWriter::new(Vec::new()).unwrap();
+    let mut see = |second: i32, x: f64, heading: f64, doors: &[f64]| {
+        let stamp = Stamp { sec: second, nanosec: 0 };
+        let time = stamp.nanoseconds();
+        let at = driving::odometry::Odometry { position: [x, 0.0], heading };
+        let odometry = Odometry::new(stamp, &at, Twist::default());
+        writer.write(ODOM, time, &odometry).unwrap();
+        let mut scene =
+            Scene { stamp, place: "hallway".into(), status: "clear".into(), ..Scene::default() };
+        if !doors.is_empty() {
+            scene = Scene { stamp, place: "junction".into(), ..Scene::default() };
+            (scene.doors, scene.turning_point) = (doors.to_vec(), [-x, 0.0]);
+        }
+        writer.write(Scene::TOPIC, time, &scene).unwrap();
+    };
+    let l = [PI, PI / 2.0];
+    for second in 0..20 {
+        see(second, -12.0 + 0.5 * f64::from(second), 0.0, &[]);
+    }
+    see(20, -0.5, 0.0, &l);
+    see(21, -0.2, 0.0, &l);
+    see(22, 0.9, PI / 4.0, &[]);
+    fs::write(&log, writer.finish().unwrap()).unwrap();
+    let short = folder.join("short.mcap");
+    let arguments = ["--driver", "anyone", "--minimise", short.to_str().unwrap()];
+    let (code, told) = judged(&log, &arguments);
+    assert_eq!(
+        (code, &told["class"], &told["cause"]),
+        (Some(1), &"motion".into(), &"aside".into())
+    );
+    assert_eq!(told["condition"], "the robot drove off 45 degrees from the door");
+    let words: Vec<_> = told["command"].as_str().unwrap().split(' ').skip(1).collect();
+    let output = run([&words[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let again = objects(&stdout(&output)).remove(0);
+    assert_eq!((&again["cause"], &again["event"]), (&told["cause"], &told["event"]));
+    assert!(fs::metadata(&short).unwrap().len() < fs::metadata(&log).unwrap().len());
 }
 
 /// Real bags, recorded by ROS itself: there is nothing in them that could be judged.

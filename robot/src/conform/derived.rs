@@ -201,3 +201,122 @@ fn in_frame([x, y]: [f64; 2], odometry: &Odometry) -> [f64; 2] {
     let [east, north] = odometry.position;
     [east + x * cosine - y * sine, north + x * sine + y * cosine]
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_4, PI};
+
+    use toposlam_model::driving::scene::{CentreLine, HallwayView, Reason, Status};
+
+    use super::*;
+    use crate::conform::{Seen, derived, shorter_seen};
+
+    /// What a robot sees that looks along x and has come along it; the junction has a door behind it and
+    /// one to its left.
+    fn junction(ahead: f64) -> Place {
+        let through = [ahead, 0.0];
+        let line = |direction| CentreLine { through, direction };
+        let doors = vec![line(PI), line(FRAC_PI_2)];
+        Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
+    }
+
+    fn hallway() -> Place {
+        let (heading, left, right) = (0.0, 0.8, 0.8);
+        Place::Hallway(HallwayView { heading, left, right, status: Status::Clear, confidence: 1.0 })
+    }
+
+    /// Places that are seen from somewhere, in turn.
+    fn seen(places: &[(Place, [f64; 2], f64)]) -> Vec<Seen> {
+        let seen = |(message, (place, position, heading)): (usize, &(Place, [f64; 2], f64))| Seen {
+            source: Source { time: message as u64, message: message as u64, offset: 0 },
+            scene: Scene { place: place.clone(), marker: None },
+            odometry: Odometry { position: *position, heading: *heading },
+        };
+        places.iter().enumerate().map(seen).collect()
+    }
+
+    fn kinds(places: &[(Place, [f64; 2], f64)], marked: bool) -> Vec<&'static str> {
+        let name = |event: &Event| match event.kind {
+            Kind::Perceived(_) => "percept",
+            Kind::Left { .. } => "door",
+            Kind::Aside { .. } => "aside",
+            Kind::TurnedBack => "turned back",
+            Kind::Undecided => "undecided",
+        };
+        derived(&seen(places), marked).iter().map(name).collect()
+    }
+
+    /// A robot that comes along x to a junction at the origin, and visits it.
+    fn visit() -> Vec<(Place, [f64; 2], f64)> {
+        let from = |x: f64| (junction(-x), [x, 0.0], 0.0);
+        vec![(hallway(), [-2.0, 0.0], 0.0), from(-0.8), from(-0.5), from(-0.2)]
+    }
+
+    #[test]
+    fn a_visit_is_a_percept_and_the_door_by_which_it_ends() {
+        let away = (hallway(), [0.0, 1.0], FRAC_PI_2);
+        let places = [visit(), vec![away]].concat();
+        assert_eq!(kinds(&places, false), ["percept", "door"]);
+        let events = derived(&seen(&places), false);
+        let Kind::Left { door, off: Some(off), .. } = events[1].kind else { panic!("{events:?}") };
+        assert_eq!(door, Door(1));
+        assert!(off < 1e-9);
+        // What cannot be made out, and a hallway beside the turning point, change nothing.
+        let unknown = (Place::Unknown(Reason::NothingFits), [0.0; 2], 0.0);
+        let beside = (hallway(), [0.0, 0.1], 0.0);
+        let mut places = places;
+        places.splice(4..4, [unknown, beside]);
+        assert_eq!(kinds(&places, false), ["percept", "door"]);
+    }
+
+    #[test]
+    fn whoever_leaves_between_the_doors_takes_none() {
+        let aside = (hallway(), [0.7, 0.7], FRAC_PI_4);
+        let places = [visit(), vec![aside]].concat();
+        assert_eq!(kinds(&places, false), ["percept", "door", "aside"]);
+    }
+
+    #[test]
+    fn turning_back_without_a_visit_is_told() {
+        let mut places = visit();
+        // In a hallway.
+        places.push((hallway(), [0.0, 2.0], FRAC_PI_2));
+        places.push((hallway(), [0.0, 1.9], -FRAC_PI_2));
+        assert_eq!(kinds(&places, false), ["percept", "door", "turned back"]);
+        // Before a junction.
+        let mut places = visit()[..3].to_vec();
+        places.push((hallway(), [-0.7, 0.0], PI));
+        assert_eq!(kinds(&places, false), ["turned back"]);
+    }
+
+    #[test]
+    fn a_junction_that_is_passed_or_seen_once_is_not_made_out() {
+        let passed = [visit()[..2].to_vec(), vec![(hallway(), [0.7, 0.0], 0.0)]].concat();
+        assert_eq!(kinds(&passed, false), ["undecided"]);
+        let once = vec![(junction(0.2), [-0.2, 0.0], 0.0), (hallway(), [0.0, 1.0], FRAC_PI_2)];
+        assert_eq!(kinds(&once, false), ["undecided"]);
+    }
+
+    #[test]
+    fn a_robot_that_begins_with_a_marker_has_it_along_its_entry() {
+        let here = (junction(0.0), [0.0; 2], 0.0);
+        let places = [here.clone(), here, (hallway(), [-1.0, 0.0], PI)];
+        // Without a marker it would have to be looked at from farther off.
+        assert_eq!(kinds(&places, true), ["percept", "door"]);
+        assert_eq!(kinds(&places, false), ["undecided"]);
+    }
+
+    #[test]
+    fn what_led_to_an_event_is_the_least_that_was_seen() {
+        let aside = (hallway(), [0.7, 0.7], FRAC_PI_4);
+        let long = vec![(hallway(), [-2.0, 0.0], 0.0); 50];
+        let seen = seen(&[long, visit(), vec![aside]].concat());
+        let events = derived(&seen, false);
+        let least = shorter_seen(&seen, events.last().unwrap()).unwrap();
+        // Two pictures of the junction, and where the robot went.
+        assert_eq!(least.len(), 3);
+        assert!(matches!(derived(least, false).last().unwrap().kind, Kind::Aside { .. }));
+        // A percept does not show in what was seen alone.
+        assert_eq!(shorter_seen(&seen, &events[0]), None);
+    }
+}

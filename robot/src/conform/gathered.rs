@@ -92,6 +92,16 @@ pub enum NoEvents {
         /// What is wrong with it.
         cause: WrongSize,
     },
+    /// A percept or a door says that it was before the one ahead of it.
+    #[error("message {message}: the events are out of order: it is of {:.3} s, the one before it of {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
+    OutOfOrder {
+        /// Which message, counted from 1.
+        message: u64,
+        /// When it says that it was, in nanoseconds.
+        time: u64,
+        /// When the one before it was.
+        before: u64,
+    },
     /// A scene that is none.
     #[error("message {message}: there is no such scene")]
     Scene {
@@ -161,6 +171,7 @@ pub fn gather(
         seen: Vec::new(),
         waiting: Vec::new(),
         run: None,
+        last: 0,
         events: Events { truncated: log.truncation().is_some(), ..Events::default() },
         sensors,
         watch,
@@ -203,6 +214,8 @@ struct Gathering<'w, W> {
     /// Pictures that have not been looked at.
     waiting: Vec<(Source, u64, Picture)>,
     run: Option<messages::Run>,
+    /// When the last percept or door was.
+    last: u64,
     events: Events,
     /// One for each thread.
     sensors: Vec<Sensor>,
@@ -216,6 +229,12 @@ impl<W: Looking> Gathering<'_, W> {
         let Entry { time, offset, number, stamp, content, .. } = entry;
         let source = Source { time, message: number, offset };
         let stamp = stamp.nanoseconds();
+        if matches!(content, Content::Percept(_) | Content::Door(_)) {
+            let before = std::mem::replace(&mut self.last, stamp);
+            if stamp < before {
+                return Err(NoEvents::OutOfOrder { message: number, time: stamp, before });
+            }
+        }
         match content {
             Content::Percept(percept) => self.telling.perceived(source, &percept),
             Content::Door(door) => self.telling.left(source, &door),
