@@ -25,7 +25,7 @@ pub const TARGETS: &[Target] = &[
     ("log_mapping", log_mapping),
 ];
 
-/// Any bytes are a ROS 1 bag: see [`mcap`].
+/// Any bytes are a ROS 1 bag: see [`mcap()`].
 ///
 /// # Panics
 /// Where that does not hold.
