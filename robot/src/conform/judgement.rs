@@ -6,22 +6,19 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 use toposlam_model::{
     driving::visit::Form,
-    embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
-    isomorphism::code,
-    mapping::{Contradiction, FACING, PartialMap},
-    marker::Marker,
+    mapping::{Contradiction, FACING},
     percept::Percept,
     trace::{
         self, Departure, Followed, Misfit, NotInTurn, Poses, Purpose, Reached, Search, Smallest,
         Trace, Why, follow, poses, smallest,
     },
-    world::State,
 };
 
 use super::{
-    cause::{Cause, Culprit, Divergence, OFF},
-    events::{Ending, Event, Events, Kind, OutOfOrder, Perceived},
+    cause::{Cause, Culprit, Divergence},
+    events::{Event, Events, Kind, OutOfOrder, Perceived},
+    known_world::KnownWorld,
     quirks::Quirks,
 };
 
@@ -36,17 +33,6 @@ pub struct Question<'w> {
     pub search: Search,
     /// How many darts Algorithm 1 may come to know.
     pub dart_bound: usize,
-}
-
-/// A known world, and how the robot may stand in it at first.
-#[derive(Clone, Debug)]
-pub struct KnownWorld<'w> {
-    /// The embedded graph.
-    pub graph: &'w EmbeddedGraph,
-    /// The kind of marker.
-    pub marker: &'static dyn Marker,
-    /// All the ways in which the robot may stand, and the marker lie, at first.
-    pub states: Vec<State>,
 }
 
 /// Who takes the doors.
@@ -350,150 +336,8 @@ impl Found<'_> {
     }
 }
 
-impl KnownWorld<'_> {
-    /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
-    /// perceived this one thing wrongly, it is motion's.
-    fn culprit(&self, trace: &Trace, misfit: &Misfit) -> Culprit {
-        if !misfit.event.is_multiple_of(2) {
-            return Culprit::Algorithm;
-        }
-        let moves = misfit.event / 2;
-        let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
-            let Why::Percept { expected } = why else { return None };
-            Some(self.fitting(&ahead(trace, moves, expected), &[state]))
-        });
-        let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
-        let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
-        let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
-        let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
-        let came_elsewhere =
-            self.fitting(&ahead(trace, moves, trace.percepts()[moves]), &elsewhere);
-        if came_elsewhere > perceived_wrongly { Culprit::Motion } else { Culprit::Perception }
-    }
-
-    /// How many events fit.
-    fn fitting(&self, trace: &Trace, states: &[State]) -> usize {
-        poses(self.graph, &self.marker, states, trace).left.len()
-    }
-
-    /// Whether a map is that of this world, from one of the starts.
-    fn has(&self, map: &EmbeddedGraph) -> bool {
-        let of_map = code(map, FACING);
-        let is = |state: &State| state.placed.is_some_and(|dart| code(self.graph, dart) == of_map);
-        self.states.iter().any(is)
-    }
-}
-
 /// Where Algorithm 1 knows a part of a world, worlds with so many more edges are tried at least.
 const BEYOND: usize = 4;
-
-/// So many events are looked at to tell whose fault a misfit is.
-const AHEAD: usize = 12;
-
-/// What follows some moves, with another first percept.
-fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
-    let first = trace::Event::Perceived(first);
-    let rest = trace.events().skip(2 * moves + 1).take(AHEAD);
-    // They take turns as before, whatever the first percept is.
-    Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
-}
-
-impl Events {
-    /// What each event contradicts by itself, in order.
-    fn own_faults(&self) -> Vec<(usize, Cause)> {
-        let mut faults = Vec::new();
-        let mut moves = 0;
-        for (place, event) in self.events.iter().enumerate() {
-            let mut fault = |cause| faults.push((place, cause));
-            match &event.kind {
-                Kind::Perceived(perceived) => {
-                    let Perceived { percept, number, form, entry_off, .. } = perceived;
-                    if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(Cause::Number { expected: moves, told });
-                    }
-                    let doors = form.map_or(percept.degree, Form::degree);
-                    if doors != percept.degree {
-                        fault(Cause::Form { degree: percept.degree, doors });
-                    }
-                    if let Some(off) = entry_off.filter(|&off| off > OFF) {
-                        fault(Cause::Entry { off });
-                    }
-                }
-                Kind::Left { number, off, .. } => {
-                    moves += 1;
-                    if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(Cause::Number { expected: moves, told });
-                    }
-                    // Where a robot went aside, an event of its own says so.
-                    let own = self.events.get(place + 1).map(|event| &event.kind);
-                    let told = matches!(own, Some(Kind::Aside { .. }));
-                    if let Some(off) = off.filter(|&off| off > OFF && !told) {
-                        fault(Cause::Aside { off });
-                    }
-                }
-                Kind::Aside { off } => fault(Cause::Aside { off: *off }),
-                Kind::TurnedBack => fault(Cause::TurnedBack),
-                Kind::Undecided => fault(Cause::Undecided),
-            }
-        }
-        faults
-    }
-
-    /// What is false in how the log says that the run ended, given what Algorithm 1 makes of it.
-    fn false_ending(&self, followed: &Followed, known: Option<&KnownWorld>) -> Vec<Cause> {
-        let map = followed.exploration.map();
-        let mapped = self.ending.as_ref().is_some_and(Ending::is_mapped);
-        let mut faults = Vec::new();
-        match (&followed.reached, map.complete()) {
-            (Reached::EndOfTrace, _) if mapped => {
-                faults.push(Cause::Unfinished { unexplored: map.unexplored_count() });
-            }
-            (Reached::Mapped, Some(graph)) => {
-                if self.map.as_ref().is_some_and(|told| *told != in_numbers(map)) {
-                    faults.push(Cause::Map);
-                }
-                if known.is_some_and(|known| !known.has(graph)) {
-                    faults.push(Cause::WrongMap);
-                }
-            }
-            _ => {}
-        }
-        faults
-    }
-
-    /// Whether the log says another number of moves than it has.
-    fn false_moves(&self, trace: &Trace) -> Option<Cause> {
-        let made = trace.percepts().len() - 1;
-        let told = self.ending.as_ref()?.moves;
-        (made != told as usize).then_some(Cause::Moves { made, told })
-    }
-
-    /// Whether this is all of a run; of one that Algorithm 1 drives, to its end.
-    fn is_whole(&self, driven: bool) -> bool {
-        let ended = match (&self.head, &self.ending) {
-            (_, Some(ending)) => ending.is_mapped() || !driven,
-            (Some(_), None) => false,
-            // A log of somebody else's does not tell.
-            (None, None) => true,
-        };
-        ended && !self.truncated
-    }
-}
-
-impl Ending {
-    fn is_mapped(&self) -> bool {
-        self.ending == "mapped"
-    }
-}
-
-/// A map as a log tells it.
-pub(crate) fn in_numbers(map: &PartialMap) -> (Vec<u32>, Vec<i32>) {
-    let degrees = map.vertices().map(|vertex| map.degree(vertex)).collect();
-    let opposite = |dart: u32| {
-        map.opposite(Dart(dart)).and_then(|other| i32::try_from(other.0).ok()).unwrap_or(-1)
-    };
-    (degrees, (0..map.dart_count() as u32).map(opposite).collect())
-}
 
 /// How often each kind of junction was perceived, from each of its entries.
 fn junctions(events: &Events) -> BTreeMap<Form, u64> {
