@@ -408,30 +408,14 @@ impl Observer<Replayed<'_>> for Comparison {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{self, Write};
-
     use super::*;
     use crate::{
         evaluation::{plans, runs::starts_of},
         explorer::Told as Teller,
-        log::recorder::Recorder,
+        log::{recorder::Recorder, shared::Shared},
         run::run,
         simulator::Setting,
     };
-
-    /// What the clones of a recorder wrote.
-    #[derive(Clone, Default)]
-    struct Shared(Rc<RefCell<Vec<u8>>>);
-
-    impl Write for Shared {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.borrow_mut().write(bytes)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
 
     fn recorded(seed: u64) -> (Log, Exploration) {
         let (_, plan) = plans().unwrap().swap_remove(2);

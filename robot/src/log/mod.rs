@@ -13,6 +13,8 @@ mod own;
 mod picture;
 pub mod reading;
 pub mod recorder;
+#[cfg(test)]
+pub(crate) mod shared;
 mod source;
 pub mod standard;
 mod told;

@@ -275,23 +275,10 @@ mod tests {
     use crate::{
         evaluation::{plans, runs::starts_of},
         explorer::Told,
+        log::shared::Shared,
         run::{Run, run},
         simulator::{Fault, FaultKind, Setting},
     };
-
-    /// What the clones of a recorder wrote.
-    #[derive(Clone, Default)]
-    struct Shared(Rc<RefCell<Vec<u8>>>);
-
-    impl Write for Shared {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.borrow_mut().write(bytes)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
 
     /// A run on shape 6, where something may go wrong, and its log.
     fn logged(fault: Option<Fault>, judge: impl Fn(&Run)) -> Vec<u8> {

@@ -1,0 +1,69 @@
+//! A world in which a log is known to have been made, and whose fault it is where a percept does not fit it.
+
+use toposlam_model::{
+    embedded_graph::EmbeddedGraph,
+    isomorphism::code,
+    mapping::FACING,
+    marker::Marker,
+    percept::Percept,
+    trace::{self, Misfit, Trace, Why, poses},
+    world::State,
+};
+
+use super::cause::Culprit;
+
+/// A known world, and how the robot may stand in it at first.
+#[derive(Clone, Debug)]
+pub struct KnownWorld<'w> {
+    /// The embedded graph.
+    pub graph: &'w EmbeddedGraph,
+    /// The kind of marker.
+    pub marker: &'static dyn Marker,
+    /// All the ways in which the robot may stand, and the marker lie, at first.
+    pub states: Vec<State>,
+}
+
+impl KnownWorld<'_> {
+    /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
+    /// perceived this one thing wrongly, it is motion's.
+    pub(super) fn culprit(&self, trace: &Trace, misfit: &Misfit) -> Culprit {
+        if !misfit.event.is_multiple_of(2) {
+            return Culprit::Algorithm;
+        }
+        let moves = misfit.event / 2;
+        let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
+            let Why::Percept { expected } = why else { return None };
+            Some(self.fitting(&ahead(trace, moves, expected), &[state]))
+        });
+        let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
+        let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
+        let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
+        let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
+        let came_elsewhere =
+            self.fitting(&ahead(trace, moves, trace.percepts()[moves]), &elsewhere);
+        if came_elsewhere > perceived_wrongly { Culprit::Motion } else { Culprit::Perception }
+    }
+
+    /// How many events fit.
+    fn fitting(&self, trace: &Trace, states: &[State]) -> usize {
+        poses(self.graph, &self.marker, states, trace).left.len()
+    }
+
+    /// Whether a map is that of this world, from one of the starts.
+    pub(super) fn has(&self, map: &EmbeddedGraph) -> bool {
+        let of_map = code(map, FACING);
+        let is = |state: &State| state.placed.is_some_and(|dart| code(self.graph, dart) == of_map);
+        self.states.iter().any(is)
+    }
+}
+
+/// So many events are looked at to tell whose fault a misfit is.
+const AHEAD: usize = 12;
+
+/// What follows some moves, with another first percept.
+fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
+    let first = trace::Event::Perceived(first);
+    let rest = trace.events().skip(2 * moves + 1).take(AHEAD);
+    // They take turns as before, whatever the first percept is.
+    Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
+}
