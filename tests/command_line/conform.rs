@@ -4,6 +4,7 @@ use std::{
     f64::consts::PI,
     fs,
     path::{Path, PathBuf},
+    process::Command,
 };
 
 use serde_json::Value;
@@ -194,6 +195,30 @@ fn events_out_of_order_are_an_error() {
     assert_eq!(output.status.code(), Some(2));
     let said = stderr(&output);
     assert!(said.contains("message 2: the events are out of order: it is of 1.000 s"), "{said}");
+}
+
+/// PyPI's `rosbags` makes a ROS 1 bag of a log.
+#[test]
+fn a_log_that_went_by_way_of_ros_1_conforms_and_is_replayed_all_the_same() {
+    let folder = folder("conform-ros1");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let bag = folder.join("run.bag");
+    let mut convert = Command::new("rosbags-convert");
+    match convert.arg("--src").arg(&log).arg("--dst").arg(&bag).output() {
+        Ok(output) => assert!(output.status.success(), "{}", stderr(&output)),
+        Err(_) => {
+            let required = std::env::var("TOPOSLAM_PYTHON_LOGS").is_ok_and(|is| is == "required");
+            assert!(!required, "there is no rosbags-convert");
+            return eprintln!("skipped: there is no rosbags-convert of PyPI's rosbags");
+        }
+    }
+    let (code, told) = judged(&bag, &["--world", SHAPE_6]);
+    assert_eq!(
+        (code, &told["verdict"], &told["events"]),
+        (Some(0), &"conforms".into(), &15.into())
+    );
+    let replayed = objects(&said(["replay", bag.to_str().unwrap(), "--json"])).remove(0);
+    assert_eq!((&replayed["map"], &replayed["difference"]), (&true.into(), &Value::Null));
 }
 
 /// Somebody drives a robot along x to an L, and then between its doors. The log has only scenes and
