@@ -75,6 +75,7 @@ fn a_log_of_another_world_diverges_where_that_shows_and_in_a_shorter_log_too() {
     assert_eq!((code, &told["verdict"]), (Some(1), &"diverged".into()));
     // After the first move there is a T, and after the second a corner instead of the other T.
     assert_eq!((&told["event"], &told["class"]), (&5.into(), &"perception".into()), "{told}");
+    assert_eq!(told["matched"], 4);
     assert_eq!(told["allowed"], serde_json::json!(["at e, having come from w: 3 doors"]));
     assert_eq!(told["shorter"].as_array().unwrap().len(), 3);
     let command = told["command"].as_str().unwrap();

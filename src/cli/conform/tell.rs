@@ -23,6 +23,8 @@ struct Line<'r> {
     event: Option<usize>,
     class: Option<&'static str>,
     events: usize,
+    /// How many events fit, from the first.
+    matched: usize,
     candidates: usize,
     coverage: BTreeMap<&'r str, u64>,
     unreachable: Vec<&'r str>,
@@ -65,6 +67,7 @@ pub(super) fn json(
         event: told.map(|told| told.event),
         class: told.map(|told| told.culprit.name()),
         events: report.events.len(),
+        matched: told.map_or(report.events.len(), |told| told.event - 1),
         candidates: judgement.candidates(),
         coverage: counts(&report.coverage),
         unreachable: unreachable.map(|covered| &*covered.case).collect(),
