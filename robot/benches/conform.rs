@@ -10,7 +10,7 @@ use toposlam_model::{
     mapping::{Event, Exploration, Journey, Nearest, map_world},
     marker::Directional,
     percept::{Percept, Sighting},
-    trace::{self, Search, Trace, anywhere, follow, smallest},
+    trace::{self, Claim, Search, Trace, anywhere, follow, smallest},
     world::GraphWorld,
 };
 use toposlam_robot::{
@@ -119,7 +119,7 @@ fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let known = follow(&half, 1000).exploration.map().clone();
+    let known = follow(&half, Claim::Part, 1000).exploration.map().clone();
     let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
     bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
 }

@@ -205,14 +205,12 @@ fn a_log_that_went_by_way_of_ros_1_conforms_and_is_replayed_all_the_same() {
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let bag = folder.join("run.bag");
     let mut convert = Command::new("rosbags-convert");
-    match convert.arg("--src").arg(&log).arg("--dst").arg(&bag).output() {
-        Ok(output) => assert!(output.status.success(), "{}", stderr(&output)),
-        Err(_) => {
-            let required = std::env::var("TOPOSLAM_PYTHON_LOGS").is_ok_and(|is| is == "required");
-            assert!(!required, "there is no rosbags-convert");
-            return eprintln!("skipped: there is no rosbags-convert of PyPI's rosbags");
-        }
-    }
+    let Ok(output) = convert.arg("--src").arg(&log).arg("--dst").arg(&bag).output() else {
+        let required = std::env::var("TOPOSLAM_PYTHON_LOGS").is_ok_and(|is| is == "required");
+        assert!(!required, "there is no rosbags-convert");
+        return eprintln!("skipped: there is no rosbags-convert of PyPI's rosbags");
+    };
+    assert!(output.status.success(), "{}", stderr(&output));
     let (code, told) = judged(&bag, &["--world", SHAPE_6]);
     assert_eq!(
         (code, &told["verdict"], &told["events"]),

@@ -163,10 +163,19 @@ impl World for Recorded<'_> {
     }
 }
 
+/// What a trace is said to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// A run to its end: of choices that lead along it those count first that end there, too.
+    Whole,
+    /// Perhaps a part of one.
+    Part,
+}
+
 /// Follows a trace by Algorithm 1, with the default choices for as long as they lead along it, and
 /// otherwise with any that do. At most `bound` darts may become known.
 #[must_use]
-pub fn follow(trace: &Trace, bound: usize) -> Followed {
+pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
     let mut world = Recorded { trace, moves: 0 };
     let mut exploration = Exploration::new(bound);
     let mut coverage = Coverage::default();
@@ -176,16 +185,25 @@ pub fn follow(trace: &Trace, bound: usize) -> Followed {
         Err(MappingError::World(Unlike::End)) => Some(Reached::EndOfTrace),
         _ => None,
     };
-    if let Some(reached) = reached {
+    let to_the_end = reached == Some(Reached::Mapped);
+    let part = reached == Some(Reached::EndOfTrace);
+    let mut search = Search { claim, ..Search::default() };
+    // Other choices may take the same doors, and be at the end of a run where these are not.
+    let found = if to_the_end || (part && claim == Claim::Part) {
+        None
+    } else {
+        search.run(trace, bound).filter(|(found, _)| !part || *found == Reached::Mapped)
+    };
+    if let (Some(reached), None) = (reached, &found) {
         let choosing = Choosing::Default;
         return Followed { choosing, reached, exploration, coverage, script: None };
     }
+    // Where the default choices go along, it is their end that is another.
     let from = match run {
+        Err(MappingError::World(Unlike::End)) => trace.len(),
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * world.moves,
         _ => 2 * world.moves + 1,
     };
-    let mut search = Search::default();
-    let found = search.run(trace, bound);
     let (reached, script) = found.unwrap_or_else(|| search.departure());
     let choosing = match &reached {
         Reached::Departure(departure) if departure.event == from => Choosing::Default,
@@ -244,8 +262,10 @@ struct Way<'t> {
 type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
 
 /// All choices, depth first.
-#[derive(Default)]
 struct Search {
+    claim: Claim,
+    /// The choices of the first way that goes along with all of a trace, but is not at its end there.
+    part: Option<Script>,
     seen: HashSet<Known>,
     /// The first event that none of the ways would have that came farthest,
     farthest: usize,
@@ -253,6 +273,19 @@ struct Search {
     allowed: Vec<Allowed>,
     /// and the choices of the first of them.
     script: Script,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            claim: Claim::Part,
+            part: None,
+            seen: HashSet::new(),
+            farthest: 0,
+            allowed: Vec::new(),
+            script: Script::default(),
+        }
+    }
 }
 
 impl Search {
@@ -278,21 +311,24 @@ impl Search {
             if !self.seen.insert(known) {
                 continue;
             }
-            let next = if way.within_round { self.line_8(&way) } else { self.line_4(&way) };
+            let next = if way.within_round { Ok(self.line_8(&way)) } else { self.line_4(&way) };
             match next {
                 // The first choice is tried first.
                 Ok(next) => ways.extend(next.into_iter().rev()),
-                Err(end) => return Some(end),
+                Err(whole) => return Some((Reached::Mapped, whole)),
+            }
+            if self.claim == Claim::Part && self.part.is_some() {
+                break;
             }
         }
-        None
+        self.part.take().map(|part| (Reached::EndOfTrace, part))
     }
 
-    /// Every choice at line 5 that leads along the trace; an error where the trace ends.
-    fn line_4<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, (Reached, Script)> {
+    /// Every choice at line 5 that leads along the trace; an error where the run ends with it.
+    fn line_4<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, Script> {
         if way.exploration.map().unexplored_is_empty() {
             if way.world.moves == way.world.trace.doors().len() {
-                return Err((Reached::Mapped, way.script.clone()));
+                return Err(way.script.clone());
             }
             let done = Allowed { door: None, purpose: Purpose::Done };
             self.departed(2 * way.world.moves + 1, done, &way.script);
@@ -305,7 +341,7 @@ impl Search {
             match way.exploration.explore(edge, &mut way.world, &mut ()) {
                 Ok(()) => next.push(Way { within_round: true, ..way }),
                 Err(MappingError::World(Unlike::End)) => {
-                    return Err((Reached::EndOfTrace, way.script));
+                    self.part.get_or_insert(way.script);
                 }
                 Err(error) => {
                     let map = way.exploration.map();
@@ -317,15 +353,15 @@ impl Search {
         Ok(next)
     }
 
-    /// Every choice at line 9 that leads along the trace; an error where the trace ends.
-    fn line_8<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, (Reached, Script)> {
+    /// Every choice at line 9 that leads along the trace.
+    fn line_8<'t>(&mut self, way: &Way<'t>) -> Vec<Way<'t>> {
         if way.exploration.hypotheses().is_empty() {
             let mut way = Way { within_round: false, ..way.clone() };
             if let Err(error) = way.exploration.add_place(&mut ()) {
                 self.ended(&way, &error, Purpose::Bound);
-                return Ok(Vec::new());
+                return Vec::new();
             }
-            return Ok(vec![way]);
+            return vec![way];
         }
         let mut next: Vec<Way<'t>> = Vec::new();
         let mut rejected = HashSet::new();
@@ -346,7 +382,7 @@ impl Search {
                 Ok(Verdict::Rejected) if rejected.insert(way.world.moves) => next.push(way),
                 Ok(Verdict::Rejected) => {}
                 Err(MappingError::World(Unlike::End)) => {
-                    return Err((Reached::EndOfTrace, way.script));
+                    self.part.get_or_insert(way.script);
                 }
                 Err(error) => {
                     let map = way.exploration.map();
@@ -355,7 +391,7 @@ impl Search {
                 }
             }
         }
-        Ok(next)
+        next
     }
 
     /// A way ended before the trace.
@@ -455,7 +491,7 @@ mod tests {
         let graph = lollipop();
         // At the fork the robot goes back where it came from, while nothing is left there.
         let trace = walked(&graph, Dart(0), &[Door(0), Door(0)]);
-        let followed = follow(&trace, 100);
+        let followed = follow(&trace, Claim::Whole, 100);
         let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
         assert_eq!(departure.event, 3);
@@ -475,7 +511,7 @@ mod tests {
         let mut doors = explored(&graph, Dart(0)).doors().to_vec();
         let moves = doors.len();
         doors.push(Door(0));
-        let followed = follow(&walked(&graph, Dart(0), &doors), 100);
+        let followed = follow(&walked(&graph, Dart(0), &doors), Claim::Whole, 100);
         let done = Allowed { door: None, purpose: Purpose::Done };
         let departure = Departure { event: 2 * moves + 1, allowed: vec![done] };
         assert_eq!(followed.reached, Reached::Departure(departure));
@@ -485,7 +521,7 @@ mod tests {
     #[test]
     fn a_start_without_the_marker_departs_at_once() {
         let percept = Percept { degree: 2, sighting: Sighting::Nothing };
-        let followed = follow(&Trace::new([Event::Perceived(percept)]).unwrap(), 100);
+        let followed = follow(&Trace::new([Event::Perceived(percept)]).unwrap(), Claim::Part, 100);
         let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         assert_eq!(departure.event, 0);
         let contradiction = Contradiction::Start { perceived: percept };
@@ -495,7 +531,9 @@ mod tests {
     #[test]
     fn more_darts_than_the_bound_depart() {
         let trace = explored(&lollipop(), Dart(0));
-        let Reached::Departure(departure) = follow(&trace, 3).reached else { panic!() };
+        let Reached::Departure(departure) = follow(&trace, Claim::Part, 3).reached else {
+            panic!()
+        };
         assert_eq!(departure.allowed[0].purpose, Purpose::Bound);
     }
 
@@ -503,7 +541,7 @@ mod tests {
         #[test]
         fn every_run_is_followed_to_its_map(graph in any_graph(Class::Multigraph, 30)) {
             let trace = explored(&graph, Dart(0));
-            let followed = follow(&trace, 100);
+            let followed = follow(&trace, Claim::Whole, 100);
             prop_assert_eq!(followed.choosing, Choosing::Default);
             prop_assert_eq!(&followed.reached, &Reached::Mapped);
             let map = followed.exploration.map().complete().unwrap();
@@ -516,7 +554,7 @@ mod tests {
         ) {
             let trace = explored(&graph, Dart(0));
             let event = part.index(trace.len() - 1);
-            let followed = follow(&trace.up_to(event), 100);
+            let followed = follow(&trace.up_to(event), Claim::Part, 100);
             prop_assert_eq!(followed.reached, Reached::EndOfTrace);
         }
 
@@ -526,7 +564,7 @@ mod tests {
             numbers in prop::collection::vec(any::<u8>(), 1..40),
         ) {
             let trace = chosen(&graph, &numbers);
-            let followed = follow(&trace, 100);
+            let followed = follow(&trace, Claim::Whole, 100);
             prop_assert_eq!(&followed.reached, &Reached::Mapped);
             let same = trace == explored(&graph, Dart(0));
             prop_assert_eq!(followed.choosing == Choosing::Default, same);
@@ -543,7 +581,7 @@ mod tests {
             // The doors up to there, and then one that is not there.
             let mut false_door = trace.up_to(2 * moves + 1);
             false_door.doors[moves] = Door(1000);
-            let Reached::Departure(departure) = follow(&false_door, 100).reached else {
+            let Reached::Departure(departure) = follow(&false_door, Claim::Whole, 100).reached else {
                 panic!("it is followed")
             };
             prop_assert_eq!(departure.event, 2 * moves + 1);

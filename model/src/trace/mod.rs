@@ -10,7 +10,7 @@ mod some_world;
 use thiserror::Error;
 
 pub use coverage::{Case, Coverage, reachable};
-pub use followed::{Allowed, Choosing, Departure, Followed, Purpose, Reached, follow};
+pub use followed::{Allowed, Choosing, Claim, Departure, Followed, Purpose, Reached, follow};
 pub use known_world::{Misfit, Poses, Why, anywhere, poses};
 pub use shortened::shortened;
 pub use some_world::{Search, Smallest, smallest};

@@ -412,7 +412,7 @@ mod tests {
         isomorphism::code,
         marker::Directional,
         trace::{
-            Event, follow, poses,
+            Claim, Event, follow, poses,
             tests::{explored, lollipop, walked},
         },
         world::{GraphWorld, State},
@@ -490,7 +490,7 @@ mod tests {
         ) {
             let trace = explored(&graph, Dart(0));
             let trace = trace.up_to(part.index(trace.len()));
-            let known = follow(&trace, 100).exploration.map().clone();
+            let known = follow(&trace, Claim::Part, 100).exploration.map().clone();
             let edges = |known| match smallest(&trace, known, search(Class::Multigraph, 6), &()) {
                 Smallest::World { graph, marker } => {
                     assert!(explains(&graph, marker, &trace));

@@ -61,7 +61,7 @@ impl Events {
         known: Option<&KnownWorld>,
     ) -> Vec<Cause> {
         let map = followed.exploration.map();
-        let mapped = self.ending.as_ref().is_some_and(Ending::is_mapped);
+        let mapped = self.is_said_whole();
         let mut faults = Vec::new();
         match (&followed.reached, map.complete()) {
             (Reached::EndOfTrace, _) if mapped => {
@@ -78,6 +78,11 @@ impl Events {
             _ => {}
         }
         faults
+    }
+
+    /// Whether the log says that the map was complete at its end.
+    pub(super) fn is_said_whole(&self) -> bool {
+        self.ending.as_ref().is_some_and(Ending::is_mapped)
     }
 
     /// Whether the log says another number of moves than it has.

@@ -10,8 +10,8 @@ use toposlam_model::{
     mapping::{Contradiction, FACING},
     percept::Percept,
     trace::{
-        self, Departure, Followed, Misfit, NotInTurn, Poses, Purpose, Reached, Search, Smallest,
-        Trace, Why, follow, poses, smallest,
+        self, Claim, Departure, Followed, Misfit, NotInTurn, Poses, Purpose, Reached, Search,
+        Smallest, Trace, Why, follow, poses, smallest,
     },
 };
 
@@ -235,7 +235,8 @@ impl Judgement {
         }
         let mut explored = None;
         if question.driver == Driver::Algorithm1 {
-            let followed = follow(trace, question.dart_bound);
+            let claim = if events.is_said_whole() { Claim::Whole } else { Claim::Part };
+            let followed = follow(trace, claim, question.dart_bound);
             match &followed.reached {
                 Reached::Departure(departure) => {
                     found.note(at(departure.event), Cause::Algorithm(departure.clone()));

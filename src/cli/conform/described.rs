@@ -135,6 +135,10 @@ impl Judged {
             let from = |event: usize| judgement.places.get(event).map_or(0, |place| place + 1);
             let choices = match followed.choosing {
                 Choosing::Default => "those of Algorithm 1, with the default choices".to_owned(),
+                Choosing::Other { from: event } if event >= judgement.places.len() => {
+                    "some that Algorithm 1 may take; by its default choices it would go on"
+                        .to_owned()
+                }
                 Choosing::Other { from: event } => format!(
                     "some that Algorithm 1 may take; not its default choices from event {} on",
                     from(event)
