@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, io::Cursor};
 
 use mcap::{WriteOptions, records::MessageHeader};
 use toposlam_robot::log::{
-    entries::{Content, Entry, Picture},
+    entries::{Content, Entry, Picture, UNTOLD},
     mapping::{Guess, Mapping, Role, guess},
     messages::Stamp,
     reading::Log,
@@ -147,7 +147,7 @@ fn messages_of_others_are_read_through_paths_and_units() {
     let entries = entries(&log, &Mapping::read(mapping.as_bytes()).unwrap());
     let [percept, door, odometry, lost, _] = &entries[..] else { panic!("{entries:?}") };
     let Content::Percept(percept) = &percept.content else { panic!() };
-    assert_eq!((percept.r#move, percept.degree, percept.marker), (0, 4, 2));
+    assert_eq!((percept.r#move, percept.degree, percept.marker), (UNTOLD, 4, 2));
     assert!(percept.entry.is_nan() && percept.form == [false; 4]);
     let Content::Door(door) = &door.content else { panic!() };
     assert_eq!((door.door, door.stamp), (4, Stamp { sec: 1, nanosec: 0 }));
