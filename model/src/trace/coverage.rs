@@ -130,7 +130,11 @@ pub fn reachable(graph: &EmbeddedGraph) -> Coverage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{embedded_graph::Dart, trace::tests::lollipop};
+    use crate::{
+        embedded_graph::Dart,
+        percept::{Door, Percept},
+        trace::tests::lollipop,
+    };
 
     #[test]
     fn cases_are_counted() {
@@ -147,6 +151,24 @@ mod tests {
         let mut twice = coverage.clone();
         twice.include(&coverage);
         assert_eq!(Case::ALL.map(|case| twice.count(case)), counts.map(|count| 2 * count));
+    }
+
+    #[test]
+    fn a_marker_that_points_elsewhere_is_not_missed() {
+        let percept = |sighting| Percept { degree: 2, sighting };
+        let [along, aside] = [0, 1].map(|door| percept(Sighting::Pointing(Door(door))));
+        let none = percept(Sighting::Nothing);
+        for (expected, perceived, counts) in [
+            (along, aside, [0, 1, 0]),
+            (along, none, [0, 1, 1]),
+            (none, percept(Sighting::Lying(1)), [1, 0, 0]),
+        ] {
+            let mut coverage = Coverage::default();
+            let event = Event::Rejected { hypothesis: Dart(1), followed: 1, expected, perceived };
+            coverage.event(Exploration::new(0).journey(), event);
+            let cases = [Case::RejectedOnTheWay, Case::RejectedAtTheEnd, Case::MarkerMissed];
+            assert_eq!(cases.map(|case| coverage.count(case)), counts);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use std::{
     collections::{HashSet, VecDeque},
-    fmt,
+    fmt, mem,
 };
 
 use thiserror::Error;
@@ -364,7 +364,7 @@ impl Search {
             return vec![way];
         }
         let mut next: Vec<Way<'t>> = Vec::new();
-        let mut rejected = HashSet::new();
+        let mut rejected = false;
         // The default is the last.
         for place in (0..way.exploration.hypotheses().len()).rev() {
             let mut way = way.clone();
@@ -377,9 +377,10 @@ impl Search {
                     way.exploration.close_loop(dart, &mut ());
                     next.push(Way { within_round: false, ..way });
                 }
-                // Two hypotheses that fall after the same moves are alike: whichever is tried later
-                // falls after the same moves again.
-                Ok(Verdict::Rejected) if rejected.insert(way.world.moves) => next.push(way),
+                // Two that fall along the trace fall after the same moves, for the way back begins with
+                // door 0, by which no shortest path goes on. They are alike: whichever is tried later falls
+                // after the same moves again.
+                Ok(Verdict::Rejected) if !mem::replace(&mut rejected, true) => next.push(way),
                 Ok(Verdict::Rejected) => {}
                 Err(MappingError::World(Unlike::End)) => {
                     self.part.get_or_insert(way.script);
@@ -556,6 +557,10 @@ mod tests {
             let event = part.index(trace.len() - 1);
             let followed = follow(&trace.up_to(event), Claim::Part, 100);
             prop_assert_eq!(followed.reached, Reached::EndOfTrace);
+            // Where no choices are at their end there, the default ones count all the same.
+            let followed = follow(&trace.up_to(event), Claim::Whole, 100);
+            let default = followed.choosing == Choosing::Default;
+            prop_assert_eq!(followed.reached == Reached::EndOfTrace, default);
         }
 
         #[test]

@@ -475,6 +475,16 @@ mod tests {
     }
 
     #[test]
+    fn there_is_one_marker() {
+        let percept =
+            |degree| Event::Perceived(Percept { degree, sighting: Sighting::Pointing(Door::BACK) });
+        // An end and a corner are not one vertex.
+        let trace = Trace::new([percept(1), Event::Left(Door(0)), percept(2)]).unwrap();
+        let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
+        assert_eq!(found, Smallest::None { event: 2 });
+    }
+
+    #[test]
     fn a_search_that_is_cut_short_says_so() {
         let trace = explored(&lollipop(), Dart(0));
         let short = Search { steps: 3, ..search(Class::Multigraph, 6) };
