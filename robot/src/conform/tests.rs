@@ -431,6 +431,12 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
     false_percept[3].degree = 5;
     let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
     assert_eq!((divergence.event, divergence.culprit), (6, Culprit::Perception));
+    // Nothing follows that could tell: a percept that is so elsewhere is false all the same.
+    let mut last = right.clone();
+    let degree = &mut last.last_mut().unwrap().degree;
+    *degree = if *degree == 2 { 3 } else { 2 };
+    let divergence = judged(&events(&last), &question).divergence.unwrap();
+    assert_eq!((divergence.event, divergence.culprit), (16, Culprit::Perception));
     // One door was not the one that was told; everything after it is of another place.
     let mut made = told;
     made[2] = Door(0);
