@@ -1,0 +1,201 @@
+(** Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
+
+    The numbers are those of the printed lines. What the paper leaves open is left open: the edge of line
+    5, the hypothesis of line 9, the paths of lines 6 and 10 are chosen, and the default is what toposlam
+    does when nobody says otherwise. Definitions only. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Program.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * The map S *)
+
+(** What is known of a dart: the first dart of its vertex, by which the robot first came there; the degree
+    of its vertex; and the other end of its edge, if that is explored.
+
+    Darts are numbered as they become known: those of a vertex together, clockwise from the first. The
+    start vertex has the first numbers, from the facing dart, which is dart 0. A vertex is named by its
+    first dart. *)
+Record known := Known { first_of : nat; doors_of : nat; other_of : option nat }.
+
+Definition partial_map := seq known.
+
+Section Map.
+
+Variable S : partial_map.
+
+Definition nowhere := Known 0 0 None.
+Definition vertex d := first_of (nth nowhere S d).
+Definition doors d := doors_of (nth nowhere S d).
+Definition other d := other_of (nth nowhere S d).
+
+(** U, the unexplored darts. *)
+Definition unexplored := [seq d <- iota 0 (size S) | other d == None].
+
+(** The number of known vertices. *)
+Definition known_vertices := count (fun d => vertex d == d) (iota 0 (size S)).
+
+(** The door that leads to the dart [d] for a robot that came in by [pose], at the same vertex. *)
+Definition door_to pose d : door := (d + doors pose - pose) %% doors pose.
+
+(** What the robot expects to perceive when it comes in by this dart. *)
+Definition expected pose : percept :=
+  (doors pose, if vertex pose == 0 then Pointing (door_to pose 0) else Nothing).
+
+(** Whether leaving vertex after vertex by these darts leads from one vertex to another. *)
+Fixpoint leads v darts v' :=
+  if darts is d :: darts' then
+    (vertex d == v) && (if other d is Some d' then leads (vertex d') darts' v' else false)
+  else v == v'.
+
+(** The pose behind these darts. *)
+Definition pose_behind pose darts := foldl (fun pose d => odflt pose (other d)) pose darts.
+
+(** The doors by which a robot with this pose takes these darts. *)
+Fixpoint doors_along pose darts : seq door :=
+  if darts is d :: darts' then door_to pose d :: doors_along (odflt pose (other d)) darts' else [::].
+
+(** With one more vertex, all darts of which are unexplored. *)
+Definition with_vertex degree : partial_map := S ++ nseq degree (Known (size S) degree None).
+
+Definition set_other d d' : partial_map := set_nth nowhere S d (Known (vertex d) (doors d) (Some d')).
+
+(** * Shortest paths *)
+
+(** A tree of shortest paths, breadth-first: for each vertex reached the dart there that leads towards the
+    root, in the order in which they were reached; at its head stands the root itself. *)
+Definition look_around (tree : seq nat) v :=
+  foldl (fun tree d =>
+           if other d is Some d' then
+             if vertex d' \in map vertex tree then tree else rcons tree d'
+           else tree)
+    tree (iota v (doors v)).
+
+Fixpoint grow fuel i tree :=
+  if fuel is fuel'.+1 then
+    if i < size tree then grow fuel' i.+1 (look_around tree (vertex (nth 0 tree i))) else tree
+  else tree.
+
+Definition tree_from root := grow (size S) 0 [:: root].
+
+(** The darts by which to leave the vertices on the way from [v] to the root. *)
+Fixpoint up fuel tree v :=
+  if fuel is fuel'.+1 then
+    let i := index v (map vertex tree) in
+    if i == 0 then [::]
+    else let d := nth 0 tree i in d :: up fuel' tree (vertex (odflt 0 (other d)))
+  else [::].
+
+Definition to_root tree v := up (size tree) tree v.
+
+(** And on the way from the root to [v]. *)
+Definition from_root tree v := rev [seq odflt 0 (other d) | d <- to_root tree v].
+
+(** Of these darts the one whose vertex is fewest edges from the root; of several the first. *)
+Definition nearest tree darts :=
+  foldl (fun best d =>
+           if size (to_root tree (vertex d)) < size (to_root tree (vertex best)) then d else best)
+    (head 0 darts) darts.
+
+End Map.
+
+(** With two darts made the ends of one edge. *)
+Definition with_edge (S : partial_map) d d' : partial_map := set_other (set_other S d d') d' d.
+
+(** * The algorithm *)
+
+Section Algorithm1.
+
+(** Which paths through the map may be chosen at lines 6 and 10, of those that lead where they should. *)
+Variable allowed : partial_map -> seq nat -> bool.
+
+(** How a hypothesis ended: confirmed, the robot having come to the marker by this dart of the map; or
+    rejected, the robot being back, turned by this door. *)
+Inductive verdict := Confirmed of nat | Rejected of door.
+
+(** What became of the robot's new place: the dart of a confirmed hypothesis, and the robot's pose; or no
+    known place, the robot being there, turned by this door. *)
+Inductive outcome := Loop of nat & nat | New of door.
+
+(** Lines 11 to 17. The robot should be at [pose], and is to leave by these darts. It stands at a vertex of
+    this degree, turned by [turned]; [taken] are the doors that it took since it set out, with the degrees
+    of the vertices there. *)
+Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdict :=
+  if darts is d :: darts' then
+    let i := door_to S pose d in
+    let pose' := odflt 0 (other S d) in
+    (* 11: try to traverse the path. *)
+    let* seen := move ((i + degree - turned) %% degree) in
+    let taken' := rcons taken (i, degree) in
+    (* 12, 13: compare what is perceived with what is expected. *)
+    if seen == expected S pose' then follow S seen.1 0 pose' darts' taken'
+    (* 14, 15: reject the hypothesis, retrace the path. *)
+    else (moves (retrace taken') ;; Return (Rejected (head (0, 0) taken').1))
+  (* 16, 17: confirm the hypothesis. *)
+  else Return (Confirmed pose).
+
+(** Lines 8 to 17, for hypotheses [H]; each is the unexplored dart by which the robot would have come in. *)
+Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
+  let tree := tree_from S 0 in
+  (* 8: while H is not empty. *)
+  if H is [::] then Return (New turned) else
+  if fuel is fuel'.+1 then
+    (* 9: remove a hypothesis from H. *)
+    let* h := choose (fun h => h \in H) (nearest S tree H) in
+    (* 10: a path to v0. *)
+    let* path := choose (fun path => leads S (vertex S h) path 0 && allowed S path)
+              (to_root S tree (vertex S h)) in
+    (* 11 to 17. *)
+    let* ended := follow S degree turned h path [::] in
+    match ended with
+    | Confirmed pose => Return (Loop h pose)
+    | Rejected turned' => try_all fuel' S degree turned' (rem h H)
+    end
+  else Return (New turned).
+
+(** Lines 5 to 23: one round. The robot is at [pose] in the map [S]. *)
+Definition explore (S : partial_map) pose : program (partial_map * nat) :=
+  let U := unexplored S in
+  let tree := tree_from S (vertex S pose) in
+  (* 5: remove an unexplored edge from U. *)
+  let* e := choose (fun e => e \in U) (nearest S tree U) in
+  (* 6: traverse S to its known end, then follow it to its unknown end. *)
+  let* path := choose (fun path => leads S (vertex S pose) path (vertex S e) && allowed S path)
+            (from_root S tree (vertex S e)) in
+  moves (doors_along S pose path) ;;
+  let* seen := move (door_to S (pose_behind S pose path) e) in
+  (* 7: the hypotheses, but those that the percept contradicts at once. *)
+  let H := [seq h <- U | (h != e) && (expected S h == seen)] in
+  (* 8 to 17. *)
+  let* became := try_all (size H) S seen.1 0 H in
+  match became with
+  (* 18, 19, 20: a loop was closed. *)
+  | Loop h pose' => Return (with_edge S e h, pose')
+  (* 21, 22, 23: a new place. *)
+  | New turned => Return (with_edge (with_vertex S seen.1) e (size S), size S + turned)
+  end.
+
+(** Lines 4 to 23: while U is not empty. A robot that is lied to could go on for ever, so the number of
+    rounds is bounded; [None] is the answer if they do not suffice. *)
+Fixpoint rounds bound (S : partial_map) pose : program (option (partial_map * nat)) :=
+  if unexplored S is [::] then Return (Some (S, pose)) else
+  if bound is bound'.+1 then
+    let* after := explore S pose in
+    rounds bound' after.1 after.2
+  else Return None.
+
+(** The marker lies at v0 (line 1), where the robot perceives [seen]: S is v0 (line 2), U its edges (line
+    3). The answer is the map S, with the robot's pose in it. *)
+Definition algorithm1 bound (seen : percept) : program (option (partial_map * nat)) :=
+  rounds bound (with_vertex [::] seen.1) 0.
+
+End Algorithm1.
+
+(** Any path will do. *)
+Definition any_path : partial_map -> seq nat -> bool := fun _ _ => true.
+
+(** No more than it takes to visit every other vertex. *)
+Definition short_paths : partial_map -> seq nat -> bool := fun S path => size path < known_vertices S.
