@@ -1,0 +1,170 @@
+(** What every walk in a world has: turns are counted round and round, a walk can be undone, and some walk
+    leads from every pose to every other. Stands for what Sections 2.1 and 2.2 of the paper take as plain. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** The doors that a walk takes, each with the degree of the vertex at which it is taken. *)
+Fixpoint taken (G : embedded_graph) (pose : G) (doors : seq door) : seq (door * nat) :=
+  if doors is i :: others then (i, degree pose) :: taken (traverse pose i) others else [::].
+
+Section Walks.
+
+Variable G : embedded_graph.
+Implicit Types (p q r : G) (i j : door) (ds : seq door).
+
+Lemma opposite_inj : injective (@opposite G).
+Proof. exact: inv_inj (@opposite_involutive G). Qed.
+
+(** * Vertices and turns *)
+
+Lemma same_vertex_refl p : same_vertex p p.
+Proof. exact: connect0. Qed.
+
+Lemma same_vertex_sym p q : same_vertex p q = same_vertex q p.
+Proof. exact: fconnect_sym (@clockwise_injective G) p q. Qed.
+
+Lemma same_vertex_trans p q r : same_vertex p q -> same_vertex q r -> same_vertex p r.
+Proof. exact: connect_trans. Qed.
+
+Lemma same_vertex_turn p i : same_vertex p (turn p i).
+Proof. exact: fconnect_iter. Qed.
+
+Lemma same_vertexP p q : reflect (exists i, q = turn p i) (same_vertex p q).
+Proof.
+apply: (iffP idP) => [pq | [i ->]]; last exact: same_vertex_turn.
+by exists (findex clockwise p q); rewrite /turn iter_findex.
+Qed.
+
+Lemma degree_gt0 p : 0 < degree p.
+Proof. exact: order_gt0. Qed.
+
+Lemma same_vertex_degree p q : same_vertex p q -> degree p = degree q.
+Proof.
+move=> pq; apply: eq_card; exact: same_connect (fconnect_sym (@clockwise_injective G)) _ _ pq.
+Qed.
+
+Lemma degree_turn p i : degree (turn p i) = degree p.
+Proof. by rewrite -(same_vertex_degree (same_vertex_turn p i)). Qed.
+
+Lemma turn0 p : turn p 0 = p.
+Proof. by []. Qed.
+
+Lemma turn_add p i j : turn p (i + j) = turn (turn p i) j.
+Proof. by rewrite /turn addnC iterD. Qed.
+
+Lemma turn_inj i : injective (fun p => turn p i).
+Proof. by elim: i => [|i IH] p q //= /(@clockwise_injective G) /IH. Qed.
+
+Lemma turn_degree p : turn p (degree p) = p.
+Proof. exact: iter_order (@clockwise_injective G) p. Qed.
+
+Lemma turn_mod p i : turn p (i %% degree p) = turn p i.
+Proof.
+rewrite [in RHS](divn_eq i (degree p)) turn_add; congr turn.
+by elim: (i %/ _) => // k IH; rewrite mulSn turn_add turn_degree.
+Qed.
+
+Lemma turn_inverse_door p i : turn (turn p i) (inverse_door (degree p) i) = p.
+Proof.
+rewrite -(turn_mod p i) -[in inverse_door _ _](degree_turn p (i %% degree p)) /inverse_door turn_mod.
+by rewrite degree_turn -turn_add subnKC ?turn_degree // ltnW // ltn_pmod // degree_gt0.
+Qed.
+
+(** * Walks *)
+
+Lemma traverse_inj i : injective (fun p => traverse p i).
+Proof. by move=> p q /opposite_inj /turn_inj. Qed.
+
+Lemma traverse_mod p i : traverse p (i %% degree p) = traverse p i.
+Proof. by rewrite /traverse turn_mod. Qed.
+
+Lemma walk_cat p ds es : walk p (ds ++ es) = walk (walk p ds) es.
+Proof. exact: foldl_cat. Qed.
+
+Lemma walk_rcons p ds i : walk p (rcons ds i) = traverse (walk p ds) i.
+Proof. by rewrite -cats1 walk_cat. Qed.
+
+(** The same doors never lead two poses together. *)
+Lemma walk_inj ds : injective (fun p => walk p ds).
+Proof. by elim: ds => [|i ds IH] p q //= /IH /traverse_inj. Qed.
+
+Lemma walk_opposite p : walk p [:: 0] = opposite p.
+Proof. by []. Qed.
+
+Lemma walk_clockwise p : walk p [:: 1; 0] = clockwise p.
+Proof. exact: opposite_involutive. Qed.
+
+(** Everything can be reached. *)
+Lemma walk_anywhere p q : exists ds, walk p ds = q.
+Proof.
+have /connectP[s path_s ->] := connected p q; elim: s p path_s => [|r s IH] p /=; first by exists [::].
+case/andP=> step /IH[ds <-]; case/orP: step => /eqP->; first by exists (0 :: ds).
+by exists ([:: 1; 0] ++ ds); rewrite walk_cat walk_clockwise.
+Qed.
+
+(** * The way back *)
+
+Lemma size_taken p ds : size (taken p ds) = size ds.
+Proof. by elim: ds p => //= i ds IH p; rewrite IH. Qed.
+
+Lemma taken_cat p ds es : taken p (ds ++ es) = taken p ds ++ taken (walk p ds) es.
+Proof. by elim: ds p => //= i ds IH p; rewrite IH. Qed.
+
+Lemma taken_rcons p ds i : taken p (rcons ds i) = rcons (taken p ds) (i, degree (walk p ds)).
+Proof. by rewrite -!cats1 taken_cat. Qed.
+
+(** The way back ends where the walk began, facing its first door. *)
+Lemma retrace_walk p ds : walk (walk p ds) (retrace (taken p ds)) = turn p (head 0 ds).
+Proof.
+case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first exact: opposite_involutive.
+pose p' := traverse p i; pose back := retrace (taken p' (j :: ds)).
+have -> : retrace (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
+  by rewrite /back /= rev_cons.
+rewrite walk_rcons [walk _ _]IH /traverse turn_inverse_door; exact: opposite_involutive.
+Qed.
+
+Lemma retrace_same_vertex p ds : same_vertex p (walk (walk p ds) (retrace (taken p ds))).
+Proof. by rewrite retrace_walk same_vertex_turn. Qed.
+
+End Walks.
+
+(** * Percepts *)
+
+Section Percepts.
+
+Variables (M : marker) (W : start).
+Implicit Types (p : W) (ds es : seq door).
+
+Lemma size_percepts p ds : size (percepts M p ds) = (size ds).+1.
+Proof. by elim: ds p => //= i ds IH p; rewrite IH. Qed.
+
+(** The pose in the middle is perceived once. *)
+Lemma percepts_cat p ds es :
+  percepts M p (ds ++ es) = percepts M p ds ++ behead (percepts M (W := W) (walk p ds) es).
+Proof. by elim: ds p => [|i ds IH] p /=; [case: es | rewrite IH]. Qed.
+
+Lemma percepts_rcons p ds i :
+  percepts M p (rcons ds i) = rcons (percepts M p ds) (perceive M (W := W) (walk p (rcons ds i))).
+Proof. by rewrite walk_rcons -!cats1 percepts_cat. Qed.
+
+Lemma head_percepts x p ds : head x (percepts M p ds) = perceive M p.
+Proof. by case: ds. Qed.
+
+Lemma last_percepts x p ds : last x (percepts M p ds) = perceive M (W := W) (walk p ds).
+Proof. by elim: ds x p => //= i ds IH x p; rewrite IH. Qed.
+
+(** The percepts along two door sequences are the same as soon as those at the ends always are. *)
+Lemma eq_percepts V (q : graph V) p :
+  (forall ds, perceive M (W := V) (walk q ds) = perceive M (W := W) (walk p ds)) ->
+  forall ds, percepts M q ds = percepts M p ds.
+Proof.
+move=> same ds; elim: ds p q same => [|i ds IH] p q same /=; first by rewrite (same [::]).
+by rewrite (same [::]) (IH (traverse p i) (traverse q i)) // => es; exact: (same (i :: es)).
+Qed.
+
+End Percepts.
