@@ -1,0 +1,34 @@
+(** No robot maps both of two worlds that it cannot tell apart: without a marker the cycles of 3 and 4
+    edges, with an undirected one the two worlds of Figure 1. Section 2.2 of the paper. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Bisimulation Figures.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** Whatever it is, the robot gives the same map in both. *)
+Theorem bisimilar_maps M (robot : strategy embedded_graph) V W :
+  bisimilar M V W -> maps M robot V -> maps M robot W -> isomorphic V W.
+Proof.
+move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_unique answers_map answers_map').
+Qed.
+
+Corollary bisimilar_impossible M V W :
+  bisimilar M V W -> ~ isomorphic V W ->
+  forall robot : strategy embedded_graph, ~ (maps M robot V /\ maps M robot W).
+Proof. by move=> VW not_iso robot [/(bisimilar_maps VW) both /both]. Qed.
+
+Theorem no_marker_impossible (robot : strategy embedded_graph) :
+  ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
+Proof. exact: bisimilar_impossible cycles_bisimilar cycles_not_isomorphic robot. Qed.
+
+Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
+  ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
+  ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
+Proof.
+split; first exact: bisimilar_impossible figure_1_bisimilar figure_1_not_isomorphic robot.
+exact: bisimilar_impossible smallest_bisimilar smallest_not_isomorphic robot.
+Qed.

@@ -1,0 +1,220 @@
+(** What one round of Algorithm 1 does, and what all of them do, however the choices are made. Section
+    2.3, lines 4 to 23. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Always Maps Paths Embedding.
+From toposlam Require Import Validation.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+Section Rounds.
+
+Variable allowed : partial_map -> seq nat -> bool.
+
+(** The paths that may be chosen include the short ones, so that there is always one. *)
+Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
+
+Variable W : start.
+
+Lemma size_doors_along S pose path : size (doors_along S pose path) = size path.
+Proof. by elim: path pose => //= d path IH pose; rewrite IH. Qed.
+
+Section OneRound.
+
+Variables (S : partial_map) (place : nat -> W).
+Hypothesis em : embeds S place.
+
+Let wf := em_wf em.
+
+(** No path that may be chosen is longer than this. *)
+Definition longest B := forall path, allowed S path -> size path <= B.
+
+(** Lines 8 to 17, for a robot that came to [t]. *)
+Lemma try_all_spec (t : W) n turned H :
+  size H = n -> {subset H <= unexplored S} ->
+  (forall h, h \in H -> expected S h = perceive directional t) ->
+  turned < degree t -> (turned = 0 \/ directional t = Nothing) ->
+  always directional (try_all allowed n S (degree t) turned H) (turn t turned)
+    (fun became r k =>
+       (forall B, longest B -> k <= n * (2 * B)) /\
+       match became with
+       | Loop h pose => [/\ h \in H, place h = t, pose < size S & r = place pose]
+       | New i => [/\ r = turn t i, i < degree t & forall h, h \in H -> place h <> t]
+       end).
+Proof.
+elim: n turned H => [|n IH] turned H /=; first by move/size0nil=> -> _ _ lt _ /=; split.
+case: H => // h0 H0; set H := h0 :: H0 => sizeH sub fits turned_lt unmarked; split.
+  exact: nearest_in.
+move=> h inH; have := sub h inH; rewrite mem_unexplored => /andP[h_lt _].
+have v_lt := vertex_lt wf h_lt; split.
+  rewrite to_root_leads ?wf_first ?wf_some //=.
+  by apply/allowed_short/to_root_short; rewrite ?wf_first ?wf_some.
+move=> path /andP[path_ok path_allowed]; apply: always_bind.
+have tE : t = walk t [::] by [].
+have empty : path = [::] -> turned = 0.
+  move=> empty; rewrite empty /= in path_ok; case: unmarked => // unmarked.
+  by have := fits h inH; rewrite /perceive unmarked /expected path_ok.
+apply: always_weaken (follow_spec em h_lt path_ok tE (ltnW turned_lt) empty _ (esym (fits h inH))) => //.
+case=> [pose|i] r k [].
+  move=> placed pose_lt -> k_le /=; rewrite addn0; split=> // B /(_ path path_allowed) le.
+  by rewrite mulSn mul2n -addnn -addnA; apply: leq_trans k_le (leq_trans le (leq_addr _ _)).
+move=> wrong -> i_lt; rewrite addn0 => k_le.
+have rest_fits g : g \in rem h H -> expected S g = perceive directional t by move/mem_rem/fits.
+have rest_sub : {subset rem h H <= unexplored S} by move=> g /mem_rem/sub.
+have rest_size : size (rem h H) = n by rewrite size_rem // sizeH.
+have still_unmarked : directional t = Nothing.
+  have := fits h inH; rewrite /perceive /expected; case: eqP => [at_start _|_ []//].
+  by case: wrong; apply: (sighting_tells_pose em); rewrite ?fits.
+apply: always_weaken (IH i _ rest_size rest_sub rest_fits i_lt (or_intror still_unmarked)).
+move=> became r' l [bound came]; split.
+  move=> B longest; have le := longest path path_allowed; have := bound B longest.
+  by move=> l_le; rewrite mulSn; apply: leq_add l_le; apply: leq_trans k_le _; rewrite leq_mul2l.
+case: became came {bound} => [g pose|j] [].
+  by move/mem_rem.
+move=> -> j_lt none; split=> // g.
+by rewrite (perm_mem (perm_to_rem inH)) inE => /predU1P[-> //|/none].
+Qed.
+
+(** A dart of the world that is known at both ends was so before it was walked. *)
+Lemma unexplored_opposite e d : e \in unexplored S -> d < size S ->
+  place d = opposite (place e) -> (d \in unexplored S) && (d != e).
+Proof.
+rewrite !mem_unexplored => /andP[e_lt /eqP e_free] d_lt placed; rewrite d_lt /=.
+apply/andP; split; last first.
+  by apply/eqP=> de; have := opposite_moves (place e); rewrite -placed de eqxx.
+case dd': (other S d) => [d'|//].
+have [d'_lt _ back] := wf_other wf dd'.
+have /(em_inj em d'_lt e_lt) d'e : place d' = place e.
+  by rewrite (em_other em dd') placed opposite_involutive.
+by rewrite d'e e_free in back.
+Qed.
+
+End OneRound.
+
+(** A loop is closed. *)
+Lemma embeds_with_edge S place e h :
+  embeds S place -> e \in unexplored S -> h \in unexplored S -> h != e ->
+  place h = opposite (place e) -> @embeds (with_edge S e h) W place.
+Proof.
+move=> em eU hU he placed; have wf := em_wf em.
+have := eU; rewrite mem_unexplored => /andP[e_lt _].
+have := hU; rewrite mem_unexplored => /andP[h_lt _].
+split; rewrite ?size_with_edge //; first exact: well_formed_with_edge.
+- exact: em_facing em.
+- exact: em_inj em.
+- by move=> d lt; rewrite doors_with_edge; apply: em_doors em d lt.
+- by move=> d lt; rewrite vertex_with_edge; apply: em_turn em d lt.
+- move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
+    by case=> <-; rewrite placed opposite_involutive.
+  by case: eqP => [->|_]; [case=> <- | apply: em_other em d d'].
+Qed.
+
+(** A new place is added. *)
+Lemma embeds_with_vertex S place e :
+  embeds S place -> e \in unexplored S ->
+  let t := opposite (place e) in
+  (forall d, d < size S -> place d <> t) ->
+  @embeds (with_edge (with_vertex S (degree t)) e (size S)) W
+    (fun d => if d < size S then place d else turn t (d - size S)).
+Proof.
+move=> em eU t new; have wf := em_wf em.
+have := eU; rewrite mem_unexplored => /andP[e_lt _].
+set T := with_vertex S (degree t); have szT : size T = size S + degree t := size_with_vertex _ _.
+have e_ltT : e < size T by rewrite szT ltn_addr.
+have s_ltT : size S < size T by rewrite szT -[X in X < _]addn0 ltn_add2l degree_gt0.
+have parts d : d < size T -> d < size S \/ size S <= d < size S + degree t.
+  by rewrite szT => lt; case: (ltnP d (size S)); [left | right].
+have old_new d i : d < size S -> place d <> turn t i.
+  move=> lt placed; have [d' [d'_lt _]] := turn_known em (inverse_door (degree t) i) lt.
+  by rewrite placed turn_inverse_door => /new; apply.
+split; rewrite ?size_with_edge //; first exact: well_formed_with_vertex.
+- by rewrite (wf_some wf); apply: em_facing em.
+- move=> d d' /parts[lt|/andP[ge lt]] /parts[lt'|/andP[ge' lt']].
+  + by rewrite lt lt'; apply: em_inj em d d' lt lt'.
+  + by rewrite lt ltnNge ge' /= => /(old_new _ _ lt).
+  + by rewrite lt' ltnNge ge /= => /esym/(old_new _ _ lt').
+  rewrite !ltnNge ge ge' /= => same.
+  have /eqP : d - size S = d' - size S.
+    have small x : size S <= x -> x < size S + degree t -> x - size S < degree t.
+      by move=> ? ?; rewrite ltn_subLR.
+    by rewrite -(findex_iter (small d ge lt)) -(findex_iter (small d' ge' lt')) -!/(turn _ _) same.
+  by rewrite eqn_sub2rE // => /eqP.
+- move=> d /parts[lt|range]; rewrite doors_with_edge.
+    by have [_ -> _] := old_with_vertex (degree t) lt; rewrite lt; apply: em_doors em d lt.
+  have [_ -> _] := new_with_vertex range; case/andP: range => ge _.
+  by rewrite ltnNge ge degree_turn.
+- move=> d /parts[lt|range]; rewrite vertex_with_edge.
+    have [-> _ _] := old_with_vertex (degree t) lt.
+    by rewrite lt (vertex_lt wf lt); apply: em_turn em d lt.
+  have [-> _ _] := new_with_vertex range; case/andP: range => ge _.
+  by rewrite ltnn subnn ltnNge ge.
+- move=> d d'; rewrite other_with_edge; case: eqP => [->|_].
+    by case=> <-; rewrite ltnn subnn e_lt /t opposite_involutive.
+  case: eqP => [->|_]; first by case=> <-; rewrite ltnn subnn e_lt.
+  move=> dd'; have /parts[lt|range] := other_known dd'; last first.
+    by have [_ _] := new_with_vertex range; rewrite -/T dd'.
+  move: dd'; have [_ _ ->] := old_with_vertex (degree t) lt => dd'.
+  by have [lt' _ _] := wf_other wf dd'; rewrite lt lt'; apply: em_other em d d' dd'.
+Qed.
+
+(** Line 5 to 23: a round explores one edge more, and the map stays a part of the world. *)
+Lemma explore_spec S place pose :
+  embeds S place -> pose < size S -> unexplored S != [::] ->
+  always directional (explore allowed S pose) (place pose)
+    (fun after r k =>
+       (exists place' : nat -> W,
+          [/\ embeds after.1 place', after.2 < size after.1, r = place' after.2
+            & (size S + size (unexplored after.1)).+2 = size after.1 + size (unexplored S)]) /\
+       forall B, longest S B -> k <= B + 1 + (size (unexplored S)).-1 * (2 * B)).
+Proof.
+move=> em pose_lt some; have wf := em_wf em; split; first exact: nearest_in.
+move=> e eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
+have root_lt := vertex_lt wf pose_lt; have root := vertex_idem wf pose_lt; split.
+  by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
+move=> path /andP[path_ok path_allowed]; apply: always_moves_bind.
+have [lt at_e ->] := walk_known em pose_lt path_ok; set near := pose_behind S pose path in lt at_e *.
+rewrite /= -/near.
+have -> : traverse (place near) (door_to S near e) = opposite (place e).
+  by rewrite /traverse (turn_door_to em).
+set t := opposite (place e); set H := [seq h <- _ | _].
+have inH h : (h \in H) = [&& h != e, expected S h == perceive directional t & h \in unexplored S].
+  by rewrite mem_filter andbA.
+apply: always_bind.
+have sub : {subset H <= unexplored S} by move=> h; rewrite inH => /and3P[].
+have fits h : h \in H -> expected S h = perceive directional t by rewrite inH => /and3P[_ /eqP].
+have := try_all_spec em (erefl (size H)) sub fits (degree_gt0 t) (or_introl erefl).
+apply: always_weaken => became r k [cost came].
+have sizeH : size H <= (size (unexplored S)).-1.
+  rewrite -(size_rem eU); apply: uniq_leq_size => [|h]; first by rewrite !filter_uniq ?iota_uniq.
+  by rewrite inH mem_rem_uniq ?filter_uniq ?iota_uniq // inE => /and3P[-> _ ->].
+split; last first.
+  move=> B longest; rewrite size_doors_along.
+  have := longest path path_allowed; have := cost B longest.
+  have := leq_mul sizeH (leqnn (2 * B)); case: (became) => *; rewrite /= addn0; arithmetic.
+case: became came => [h pose'|i] [].
+  move=> hH placed pose'_lt ->; have hU := sub h hH; exists place => /=.
+  have he : h != e by move: hH; rewrite inH => /andP[].
+  have := hU; rewrite mem_unexplored => /andP[h_lt _].
+  split=> //; rewrite ?size_with_edge //; first exact: embeds_with_edge.
+  by rewrite (size_unexplored_with_edge eU hU he) addnS addnS.
+move=> -> i_lt none /=.
+have new d : d < size S -> place d <> t.
+  move=> lt placed; have /andP[dU de] := unexplored_opposite em eU lt placed.
+  by case: (none d) => //; rewrite inH de dU (expected_is_perceived em) // placed eqxx.
+eexists; split; first exact: embeds_with_vertex.
+- rewrite /= size_with_edge ?size_with_vertex ?ltn_add2l //; first by rewrite ltn_addr.
+  by rewrite -[X in X < _]addn0 ltn_add2l degree_gt0.
+- by rewrite /= ltnNge leq_addr /= addKn.
+have eU' : e \in unexplored (with_vertex S (degree t)) by rewrite unexplored_with_vertex mem_cat eU.
+have sU' : size S \in unexplored (with_vertex S (degree t)).
+  by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l degree_gt0 orbT.
+have se : size S != e by rewrite gtn_eqF.
+have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
+rewrite size_with_edge ?size_with_vertex ?ltn_addr //; last first.
+  by rewrite -[X in X < _]addn0 ltn_add2l degree_gt0.
+by move=> sizes; arithmetic.
+Qed.
+
+End Rounds.
