@@ -199,3 +199,55 @@ Definition any_path : partial_map -> seq nat -> bool := fun _ _ => true.
 
 (** No more than it takes to visit every other vertex. *)
 Definition short_paths : partial_map -> seq nat -> bool := fun S path => size path < known_vertices S.
+
+(** * The map as a world *)
+
+(** A world, and where the robot is in it. *)
+Record located := Located { world :> start; robot : world }.
+
+Section Drawn.
+
+Variable S : partial_map.
+
+Definition drawn_opposite (d : 'I_(size S)) : 'I_(size S) := insubd d (odflt (d : nat) (other S d)).
+Definition drawn_clockwise (d : 'I_(size S)) : 'I_(size S) :=
+  insubd d (vertex S d + (d - vertex S d).+1 %% doors S d).
+
+(** Whether the known darts are all the darts of some world. *)
+Definition is_drawn :=
+  [&& [forall d, drawn_opposite (drawn_opposite d) == d], [forall d, drawn_opposite d != d],
+      injectiveb drawn_clockwise
+    & [forall d, forall e,
+        connect (fun x y => (y == drawn_opposite x) || (y == drawn_clockwise x)) d e]].
+
+Lemma drawn_involutive : is_drawn -> involutive drawn_opposite.
+Proof. by case/and4P=> /forallP H _ _ _ d; apply/eqP. Qed.
+
+Lemma drawn_moves : is_drawn -> forall d, drawn_opposite d != d.
+Proof. by case/and4P=> _ /forallP. Qed.
+
+Lemma drawn_injective : is_drawn -> injective drawn_clockwise.
+Proof. by case/and4P=> _ _ /injectiveP. Qed.
+
+Lemma drawn_connected : is_drawn -> forall d e,
+  connect (fun x y => (y == drawn_opposite x) || (y == drawn_clockwise x)) d e.
+Proof. by case/and4P=> _ _ _ /forallP H d; apply/forallP. Qed.
+
+Definition drawn_graph (ok : is_drawn) : embedded_graph :=
+  EmbeddedGraph (drawn_involutive ok) (drawn_moves ok) (drawn_injective ok) (drawn_connected ok).
+
+(** The world that is drawn in a map, if there is one, and the robot where it believes to be. *)
+Definition drawn (pose : nat) : option located :=
+  match @idP is_drawn, @idP (0 < size S) with
+  | ReflectT ok, ReflectT begun =>
+      let facing : drawn_graph ok := Ordinal begun in
+      Some (@Located (@Start (drawn_graph ok) facing) (insubd facing pose))
+  | _, _ => None
+  end.
+
+End Drawn.
+
+(** The answer is a map isomorphic to the world as a start, and the robot is where it believes to be. *)
+Definition right_answer (W : start) (answer : option (partial_map * nat)) (pose : W) :=
+  exists S p map, [/\ answer = Some (S, p), drawn S p = Some map
+    & exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (robot map) = pose]].

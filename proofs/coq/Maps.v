@@ -162,6 +162,13 @@ Qed.
 
 End WithVertex.
 
+Lemma size_with_place S e g : e < size S -> 0 < g ->
+  size (with_edge (with_vertex S g) e (size S)) = size S + g.
+Proof.
+move=> e_lt g_gt0; rewrite size_with_edge size_with_vertex //; first exact: ltn_addr.
+by rewrite -[X in X < _]addn0 ltn_add2l.
+Qed.
+
 Lemma well_formed_start g : 0 < g -> well_formed (with_vertex [::] g).
 Proof.
 move=> g_gt0; have sz := size_with_vertex [::] g; rewrite /= add0n in sz.

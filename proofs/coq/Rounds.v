@@ -129,18 +129,18 @@ have parts d : d < size T -> d < size S \/ size S <= d < size S + degree t.
 have old_new d i : d < size S -> place d <> turn t i.
   move=> lt placed; have [d' [d'_lt _]] := turn_known em (inverse_door (degree t) i) lt.
   by rewrite placed turn_inverse_door => /new; apply.
-split; rewrite ?size_with_edge //; first exact: well_formed_with_vertex.
+split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (degree_gt0 t)).
 - by rewrite (wf_some wf); apply: em_facing em.
 - move=> d d' /parts[lt|/andP[ge lt]] /parts[lt'|/andP[ge' lt']].
   + by rewrite lt lt'; apply: em_inj em d d' lt lt'.
   + by rewrite lt ltnNge ge' /= => /(old_new _ _ lt).
   + by rewrite lt' ltnNge ge /= => /esym/(old_new _ _ lt').
   rewrite !ltnNge ge ge' /= => same.
-  have /eqP : d - size S = d' - size S.
+  have : d - size S = d' - size S.
     have small x : size S <= x -> x < size S + degree t -> x - size S < degree t.
       by move=> ? ?; rewrite ltn_subLR.
     by rewrite -(findex_iter (small d ge lt)) -(findex_iter (small d' ge' lt')) -!/(turn _ _) same.
-  by rewrite eqn_sub2rE // => /eqP.
+  by move/(congr1 (addn^~ (size S))); rewrite /= !subnK.
 - move=> d /parts[lt|range]; rewrite doors_with_edge.
     by have [_ -> _] := old_with_vertex (degree t) lt; rewrite lt; apply: em_doors em d lt.
   have [_ -> _] := new_with_vertex range; case/andP: range => ge _.
@@ -188,32 +188,31 @@ have := try_all_spec em (erefl (size H)) sub fits (degree_gt0 t) (or_introl eref
 apply: always_weaken => became r k [cost came].
 have sizeH : size H <= (size (unexplored S)).-1.
   rewrite -(size_rem eU); apply: uniq_leq_size => [|h]; first by rewrite !filter_uniq ?iota_uniq.
-  by rewrite inH mem_rem_uniq ?filter_uniq ?iota_uniq // inE => /and3P[-> _ ->].
-split; last first.
-  move=> B longest; rewrite size_doors_along.
+  by rewrite inH (mem_rem_uniq _ (filter_uniq _ (iota_uniq _ _))) inE => /and3P[he _ hU]; rewrite he.
+have total B : longest S B ->
+    size (doors_along S pose path) + (k + 0).+1 <= B + 1 + (size (unexplored S)).-1 * (2 * B).
+  move=> longest; rewrite size_doors_along addn0.
   have := longest path path_allowed; have := cost B longest.
-  have := leq_mul sizeH (leqnn (2 * B)); case: (became) => *; rewrite /= addn0; arithmetic.
-case: became came => [h pose'|i] [].
-  move=> hH placed pose'_lt ->; have hU := sub h hH; exists place => /=.
+  by have := leq_mul sizeH (leqnn (2 * B)); move=> *; arithmetic.
+case: became came {cost} => [h pose'|i] [].
+  move=> hH placed pose'_lt ->; have hU := sub h hH; split=> //; exists place => /=.
   have he : h != e by move: hH; rewrite inH => /andP[].
   have := hU; rewrite mem_unexplored => /andP[h_lt _].
   split=> //; rewrite ?size_with_edge //; first exact: embeds_with_edge.
   by rewrite (size_unexplored_with_edge eU hU he) addnS addnS.
 move=> -> i_lt none /=.
 have new d : d < size S -> place d <> t.
-  move=> lt placed; have /andP[dU de] := unexplored_opposite em eU lt placed.
+  move=> d_lt placed; have /andP[dU de] := unexplored_opposite em eU d_lt placed.
   by case: (none d) => //; rewrite inH de dU (expected_is_perceived em) // placed eqxx.
-eexists; split; first exact: embeds_with_vertex.
-- rewrite /= size_with_edge ?size_with_vertex ?ltn_add2l //; first by rewrite ltn_addr.
-  by rewrite -[X in X < _]addn0 ltn_add2l degree_gt0.
+split=> //; eexists; split; first exact: embeds_with_vertex.
+- by rewrite /= size_with_place ?degree_gt0 // ltn_add2l.
 - by rewrite /= ltnNge leq_addr /= addKn.
 have eU' : e \in unexplored (with_vertex S (degree t)) by rewrite unexplored_with_vertex mem_cat eU.
 have sU' : size S \in unexplored (with_vertex S (degree t)).
   by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l degree_gt0 orbT.
 have se : size S != e by rewrite gtn_eqF.
 have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
-rewrite size_with_edge ?size_with_vertex ?ltn_addr //; last first.
-  by rewrite -[X in X < _]addn0 ltn_add2l degree_gt0.
+rewrite size_with_place ?degree_gt0 //.
 by move=> sizes; arithmetic.
 Qed.
 

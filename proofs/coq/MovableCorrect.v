@@ -1,0 +1,390 @@
+(** The algorithm with one movable marker maps every simple world, however its choices are made: what
+    place validation and back-link validation find out is so. Section 2.3, after Dudek, Jenkin, Milios
+    and Wilkes (1991). *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Walks Arithmetic Figures.
+From toposlam Require Import Algorithm1 Maps Paths Embedding Rounds Complete.
+From toposlam Require Import MovableMarker.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * How a program's runs are put together from those of its parts *)
+
+Section AlwaysHandling.
+
+Variable W : start.
+
+Variables A B : Type.
+Implicit Types (p : handling_program A) (pose : W) (Q R : A -> W -> marker_place W -> Prop).
+
+Lemma always_handling_weaken p pose lying Q R : (forall a q l, Q a q l -> R a q l) ->
+  always_handling p pose lying Q -> always_handling p pose lying R.
+Proof.
+move=> QR; elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying /=.
+- exact: QR.
+- exact: IH.
+- by case: lying => // spot [here /IH].
+- by case: lying => // /IH.
+- by case=> okd all; split=> // x /all; apply: IH.
+Qed.
+
+(** A part of a program that is known to end well, and the rest. *)
+Lemma and_then p (next : A -> handling_program B) pose lying Q (R : B -> W -> marker_place W -> Prop) :
+  always_handling p pose lying Q ->
+  (forall a q l, Q a q l -> always_handling (next a) q l R) ->
+  always_handling (let* a := p in next a) pose lying R.
+Proof.
+move=> pQ QR; suff: always_handling p pose lying (fun a q l => always_handling (next a) q l R).
+  elim: p pose lying {pQ} => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
+  - exact: IH.
+  - by case: lying => // spot [here /IH].
+  - by case: lying => // /IH.
+  - by case=> okd all; split=> // x /all; apply: IH.
+exact: always_handling_weaken QR pQ.
+Qed.
+
+Lemma always_handling_moves doors pose lying :
+  always_handling (moves doors) pose lying (fun _ q l => q = walk pose doors /\ l = lying).
+Proof. by elim: doors pose => [|i doors IH] pose //=; apply: IH. Qed.
+
+End AlwaysHandling.
+
+(** * Within the known map *)
+
+Section Correct.
+
+Variable allowed : partial_map -> seq nat -> bool.
+
+(** The paths that may be chosen include the short ones, so that there is always one. *)
+Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
+
+Variable W : start.
+
+Section OneRound.
+
+Variables (S : partial_map) (place : nat -> W).
+Hypothesis em : embeds S place.
+
+Let wf := em_wf em.
+
+Lemma choose_path_spec pose d (q : W) lying : pose < size S -> d < size S ->
+  always_handling (choose_path allowed S pose (vertex S d)) q lying
+    (fun path r l => [/\ leads S (vertex S pose) path (vertex S d), r = q & l = lying]).
+Proof.
+move=> pose_lt d_lt; have root := vertex_idem wf pose_lt; have root_lt := vertex_lt wf pose_lt.
+split; first by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
+by move=> path /andP[].
+Qed.
+
+Lemma travel_spec pose d lying : pose < size S -> d < size S ->
+  always_handling (travel allowed S pose (vertex S d)) (place pose) lying
+    (fun p r l => [/\ p < size S, vertex S p = vertex S d, r = place p & l = lying]).
+Proof.
+move=> pose_lt d_lt; apply: and_then (choose_path_spec _ _ pose_lt d_lt) _ => path _ _ [path_ok -> ->].
+apply: and_then (always_handling_moves _ _ _) _ => _ _ _ [-> ->].
+by have [] := walk_known em pose_lt path_ok.
+Qed.
+
+(** Over an edge of which one end is known. *)
+Lemma traverse_to pose e : pose < size S -> e < size S -> vertex S pose = vertex S e ->
+  traverse (place pose) (door_to S pose e) = opposite (place e).
+Proof. by move=> pose_lt e_lt same; rewrite /traverse (turn_door_to em). Qed.
+
+Lemma opposite_back e : traverse (opposite (place e)) 0 = place e.
+Proof. exact: opposite_involutive. Qed.
+
+(** ** The search for the marker *)
+
+Section Search.
+
+Variable spot : W.
+
+(** If the vertex where the marker lies is known, it is among the candidates. *)
+Definition all_candidates (C : seq nat) :=
+  forall d, d < size S -> same_vertex (place d) spot -> vertex S d \in C.
+
+Definition found_well p (r : W) := [/\ p < size S, r = place p & same_vertex (place p) spot].
+
+Definition missed_well p C (r : W) :=
+  [/\ p < size S, r = place p, ~~ same_vertex (place p) spot & all_candidates C].
+
+Lemma all_candidates_but p C : p < size S -> ~~ same_vertex (place p) spot ->
+  all_candidates C -> all_candidates [seq v <- C | v != vertex S p].
+Proof.
+move=> p_lt away all_C d d_lt here; rewrite mem_filter all_C // andbT.
+apply: contra away => /eqP same; apply: same_vertex_trans here.
+by rewrite (same_vertex_known em) // same.
+Qed.
+
+Lemma look_along_spec darts p v C : leads S (vertex S p) darts v -> missed_well p C (place p) ->
+  always_handling (look_along S p darts C) (place p) (Some spot)
+    (fun sought r l => l = Some spot /\
+       match sought with
+       | Found p' => found_well p' r
+       | Missed p' C' => [/\ missed_well p' C' r, subseq C' C & v \notin C']
+       end).
+Proof.
+elim: darts p C => [|d darts IH] p C /= path [p_lt _ away all_C].
+  split=> //; split; last by rewrite -(eqP path) mem_filter eqxx.
+    by split=> //; apply: all_candidates_but.
+  exact: filter_subseq.
+case/andP: path => /eqP same; case dd': (other S d) => [d'|//] /= path.
+have [d'_lt _ _] := wf_other wf dd'.
+rewrite (traverse_known em p_lt dd' same); case: ifP => // unseen.
+have away' : ~~ same_vertex (place d') spot by rewrite unseen.
+have := IH d' [seq w <- C | w != vertex S p] path.
+set P := always_handling _ _ _; move=> {}IH; apply: always_handling_weaken (IH _).
+  move=> [p'|p' C'] r l [-> well]; split=> //; case: well => well sub v_C'; split=> //.
+  exact: subseq_trans sub (filter_subseq _ _).
+by split=> //; apply: all_candidates_but.
+Qed.
+
+Lemma look_for_marker_spec n p C : size C <= n ->
+  {in C, forall v, v < size S /\ vertex S v = v} -> missed_well p C (place p) ->
+  always_handling (look_for_marker allowed n S p C) (place p) (Some spot)
+    (fun sought r l => l = Some spot /\
+       match sought with
+       | Found p' => found_well p' r
+       | Missed p' _ => missed_well p' [::] r
+       end).
+Proof.
+elim: n p C => [|n IH] p C /=; first by rewrite leqn0 => /nilP->.
+case: C => // c C0; set C := c :: C0 => size_C known_C well; have [p_lt _ _ _] := well.
+split; first exact: mem_head.
+move=> v vC; have [v_lt vv] := known_C v vC; rewrite -vv.
+apply: and_then (choose_path_spec _ _ p_lt v_lt) _ => path _ _ [path_ok -> ->].
+apply: and_then (look_along_spec path_ok well) _ => -[p'|p' C'] r l [-> ended]; first by split.
+case: ended => well' sub; rewrite vv => v_C'; have [_ -> _ _] := well'.
+apply: IH => [|w /(mem_subseq sub)/known_C//|]; last first.
+  by case: well' => *; split.
+rewrite -ltnS; apply: leq_trans size_C; have [le eq] := size_subseq_leqif sub.
+rewrite ltn_neqAle le andbT eq; apply: contra v_C' => /eqP->; exact: vC.
+Qed.
+
+End Search.
+
+(** ** An edge is explored, in a simple world *)
+
+Hypothesis simple_W : simple W.
+
+Variable e : nat.
+Hypothesis eU : e \in unexplored S.
+
+Let e_lt : e < size S.
+Proof. by move: eU; rewrite mem_unexplored => /andP[]. Qed.
+
+(** Where the edge leads. *)
+Let t : W := opposite (place e).
+
+Lemma end_is_elsewhere : ~~ same_vertex (place e) t.
+Proof. by have [no_loop _] := simple_W; apply: no_loop. Qed.
+
+(** If the unknown end is at a known vertex, then the dart there is known, and unexplored. *)
+Lemma end_known d : d < size S -> same_vertex (place d) t ->
+  exists2 h, h \in back_links S (vertex S d) & h != e /\ place h = t.
+Proof.
+move=> d_lt /same_vertexP[i tE]; have [h [h_lt same placed]] := turn_known em i d_lt.
+have /andP[hU he] := unexplored_opposite em eU h_lt (etrans placed (esym tE)).
+by exists h; [rewrite mem_filter same eqxx | rewrite placed -tE].
+Qed.
+
+Lemma candidates_complete : all_candidates t (candidates S e (degree t)).
+Proof.
+move=> d d_lt here; have [h h_link [he placed]] := end_known d_lt here.
+move: h_link; rewrite mem_filter => /andP[/eqP same hU].
+rewrite mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
+- by rewrite (em_doors em) ?vertex_lt // (degree_vertex em) // (em_doors em) //
+    (same_vertex_degree here).
+- apply: contra end_is_elsewhere => /eqP de; apply: same_vertex_trans here.
+  by rewrite (same_vertex_known em) // de.
+apply/hasP=> -[f _ /andP[/eqP fe]]; case ff': (other S f) => [f'|//] /eqP f'd.
+have [f'_lt _ _] := wf_other wf ff'; have f_lt := other_known ff'.
+have fE : f = e.
+  apply: (em_inj em) => //; have [_ no_parallel] := simple_W; apply: no_parallel.
+    by rewrite (same_vertex_known em) // fe.
+  by rewrite -(em_other em ff'); apply: same_vertex_trans here; rewrite (same_vertex_known em) // f'd.
+by move: eU; rewrite mem_unexplored -fE ff' andbF.
+Qed.
+
+Lemma candidates_known n : {in candidates S e n, forall v, v < size S /\ vertex S v = v}.
+Proof.
+move=> v; rewrite mem_filter mem_undup => /andP[_ /mapP[d]].
+by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_idem.
+Qed.
+
+Lemma no_dart_there : all_candidates t [::] -> forall d, d < size S -> place d <> t.
+Proof.
+by move=> none d d_lt placed; have := none d d_lt; rewrite placed => /(_ (same_vertex_refl _)).
+Qed.
+
+(** Place validation. *)
+Lemma validate_place_spec :
+  always_handling (validate_place allowed S e (degree t)) t None
+    (fun came r l =>
+       match came with
+       | NewPlace => [/\ r = t, l = None & forall d, d < size S -> place d <> t]
+       | KnownPlace p => found_well t p r /\ l = Some t
+       end).
+Proof.
+rewrite /validate_place; have := candidates_complete; have := @candidates_known (degree t).
+case: (candidates _ _ _) => [_ none|c C]; first by split=> //; apply: no_dart_there.
+move: (c :: C) => {c}C known_C all_C /=; rewrite opposite_back.
+have well : missed_well t e C (place e) by split=> //; apply: end_is_elsewhere.
+apply: and_then (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] r l [->] //.
+case=> p_lt -> _ none; apply: and_then (travel_spec _ p_lt e_lt) _ => p' _ _ [p'_lt at_e -> ->] /=.
+rewrite traverse_to // -/t; split; first exact: same_vertex_refl.
+by split=> //; apply: no_dart_there.
+Qed.
+
+(** Back-link validation. *)
+Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S ->
+  {in links, forall g, g < size S /\ vertex S g = vertex S p} ->
+  same_vertex (place e) spot -> h \in links -> place h = t ->
+  always_handling (try_back_links n S p links) (place p) (Some spot)
+    (fun found r l => [/\ found = Some h, r = place e & l = Some spot]).
+Proof.
+move=> size_l p_lt links_p here h_in placed.
+have [h_lt _] := links_p h h_in.
+elim: n p links size_l p_lt links_p h_in => [|n IH] p links /=.
+  by rewrite leqn0 => /nilP-> _ _.
+case: links => // g0 links0; set links := g0 :: links0 => size_l p_lt links_p h_in.
+split=> [|g g_in]; first exact: mem_head.
+clearbody links; have [g_lt g_p] := links_p g g_in; have [_ h_p] := links_p h h_in.
+rewrite /= traverse_to //; case: ifP => seen /=.
+  suff gh : g = h by rewrite gh placed /t opposite_involutive.
+  apply: (em_inj em) => //; have [_ no_parallel] := simple_W; apply: no_parallel.
+    by rewrite (same_vertex_known em) // g_p h_p.
+  by apply: same_vertex_trans seen _; rewrite same_vertex_sym placed /t opposite_involutive.
+rewrite opposite_back; apply: IH => //.
+- by rewrite size_rem // -subn1 leq_subLR.
+- by move=> f /mem_rem/links_p[f_lt ->].
+have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
+by move: seen; rewrite -hg placed /t opposite_involutive here.
+Qed.
+
+Lemma validate_back_link_spec p : p < size S -> same_vertex (place p) t ->
+  always_handling (validate_back_link allowed S p e) (place p) (Some t)
+    (fun link r l => exists h p',
+       [/\ link = Some (h, p'), h \in unexplored S, h != e, place h = t
+         & [/\ p' < size S, r = place p' & l = None]]).
+Proof.
+move=> p_lt here; split=> //; rewrite -/(bind _ _).
+have [h h_in [he placed]] := end_known p_lt here.
+have links_p : {in back_links S (vertex S p), forall g, g < size S /\ vertex S g = vertex S p}.
+  by move=> g; rewrite mem_filter mem_unexplored => /and3P[/eqP-> ->].
+have hU : h \in unexplored S by move: h_in; rewrite mem_filter => /andP[].
+have several : always_handling
+    (let* near := travel allowed S p (vertex S e) in drop ;;
+     let* far := travel allowed S near (vertex S p) in
+     let* found := try_back_links (size (back_links S (vertex S p))) S far (back_links S (vertex S p)) in
+     if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None) (place p) None
+    (fun link r l => exists h p',
+       [/\ link = Some (h, p'), h \in unexplored S, h != e, place h = t
+         & [/\ p' < size S, r = place p' & l = None]]).
+  apply: and_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+  apply: and_then (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
+  have e_near : same_vertex (place e) (place near) by rewrite (same_vertex_known em) // at_e.
+  apply: and_then (try_back_links_spec _ far_lt _ e_near h_in placed) _ => //.
+    by rewrite at_p.
+  by move=> _ _ _ [-> -> ->] /=; split=> //; exists h, e.
+move: h_in several; case: (back_links _ _) => // g [|g' links]; last by [].
+by rewrite inE => /eqP <- _; exists h, p.
+Qed.
+
+End OneRound.
+
+(** * All rounds *)
+
+Hypothesis simple_W : simple W.
+
+(** A new place, of so many doors, makes one edge more explored. *)
+Lemma unexplored_with_place S e g : e \in unexplored S -> 0 < g ->
+  let S' := with_edge (with_vertex S g) e (size S) in
+  (size S + size (unexplored S')).+2 = size S' + size (unexplored S).
+Proof.
+move=> eU g_gt0; have := eU; rewrite mem_unexplored => /andP[e_lt _].
+have eU' : e \in unexplored (with_vertex S g) by rewrite unexplored_with_vertex mem_cat eU.
+have sU' : size S \in unexplored (with_vertex S g).
+  by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l g_gt0 orbT.
+have se : size S != e by rewrite gtn_eqF.
+have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
+by rewrite size_with_place // => sizes; arithmetic.
+Qed.
+
+(** A round explores one edge more; the map stays a part of the world, and the marker in hand. *)
+Lemma explore_edge_spec S (place : nat -> W) pose :
+  embeds S place -> pose < size S -> unexplored S != [::] ->
+  always_handling (explore_edge allowed S pose) (place pose) None
+    (fun after r l => l = None /\ exists S' pose' (place' : nat -> W),
+       [/\ after = Some (S', pose'), embeds S' place', pose' < size S', r = place' pose'
+         & (size S + size (unexplored S')).+2 = size S' + size (unexplored S)]).
+Proof.
+move=> em pose_lt some; split=> [|e eU]; first exact: nearest_in.
+have := eU; rewrite mem_unexplored => /andP[e_lt _].
+apply: and_then (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+rewrite (traverse_to em near_lt) //.
+apply: and_then (validate_place_spec em simple_W eU) _ => -[|p] r l.
+  case=> -> -> new; split=> //; eexists _, (size S), _.
+  split; first by [].
+  - exact: (embeds_with_vertex em eU new).
+  - by rewrite size_with_place ?degree_gt0 // -[X in X < _]addn0 ltn_add2l degree_gt0.
+  - by rewrite /= ltnn subnn.
+  exact: (unexplored_with_place eU (degree_gt0 _)).
+case=> -[p_lt -> here] ->.
+apply: and_then (validate_back_link_spec em simple_W eU p_lt here) _ => link r' l'.
+case=> h [p' [-> hU he placed [p'_lt -> ->]]]; split=> //; exists (with_edge S e h), p', place.
+have := hU; rewrite mem_unexplored => /andP[h_lt _].
+rewrite !size_with_edge //; split=> //; first exact: embeds_with_edge.
+by rewrite (size_unexplored_with_edge eU hU he) !addnS.
+Qed.
+
+Lemma explore_edges_spec bound S (place : nat -> W) pose :
+  embeds S place -> pose < size S -> #|W| + size (unexplored S) <= size S + 2 * bound ->
+  always_handling (explore_edges allowed bound S pose) (place pose) None
+    (fun answer r l => l = None /\ exists S' pose' (place' : nat -> W),
+       [/\ answer = Some (S', pose'), embeds S' place', unexplored S' = [::], pose' < size S'
+         & r = place' pose']).
+Proof.
+elim: bound S place pose => [|bound IH] S place pose em pose_lt enough.
+  have none : unexplored S = [::].
+    by apply/nilP; rewrite /nilp -leqn0; have := size_known em => known; arithmetic.
+  by rewrite /= none; split=> //; exists S, pose, place.
+rewrite /explore_edges -/explore_edges; case some: {1}(unexplored S) => [|d U].
+  by split=> //; exists S, pose, place.
+have {}some : unexplored S != [::] by rewrite some.
+apply: and_then (explore_edge_spec em pose_lt some) _ => after r l [->].
+case=> S' [pose' [place' [-> em' lt -> sizes]]].
+by apply: IH => //; arithmetic.
+Qed.
+
+(** What is known at the start. *)
+Lemma embeds_begin : embeds (with_vertex [::] (degree (facing W))) (turn (facing W)).
+Proof.
+have sz := size_with_vertex [::] (degree (facing W)); rewrite add0n in sz.
+have new d (lt : d < degree (facing W)) := @new_with_vertex [::] _ d lt.
+split; rewrite ?sz //; first exact: (well_formed_start (degree_gt0 _)).
+- by move=> d e d_lt e_lt same; rewrite -(findex_iter d_lt) -(findex_iter e_lt) -!/(turn _ _) same.
+- by move=> d /new[_ -> _]; rewrite degree_turn.
+- by move=> d /new[-> _ _]; rewrite subn0.
+by move=> d d' dd'; have := other_known dd'; rewrite sz => /new[_ _]; rewrite dd'.
+Qed.
+
+(** Begun where the marker lies, the algorithm ends with a map that is the whole world, the robot being
+    where it believes to be, with the marker in hand. *)
+Theorem movable_marker_maps_simple_worlds bound : edges W <= bound ->
+  let begin := Some (facing W) in
+  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
+    (fun answer pose lying => lying = None /\ exists S p (place : nat -> W),
+       [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & pose = place p]).
+Proof.
+move=> enough; split; first exact: same_vertex_refl.
+apply: (explore_edges_spec embeds_begin (pose := 0)); rewrite size_with_vertex ?degree_gt0 //.
+by rewrite unexplored_with_vertex size_iota card_darts; arithmetic.
+Qed.
+
+End Correct.
+
+Print Assumptions movable_marker_maps_simple_worlds.

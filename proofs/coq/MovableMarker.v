@@ -1,0 +1,219 @@
+(** One marker that can be picked up and dropped: what a robot does with it, and the mapping algorithm
+    for simple worlds that uses it. Section 2.3, after Dudek, Jenkin, Milios and Wilkes, "Robotic
+    exploration as graph construction" (1991), the paper's reference 8.
+
+    What the algorithm leaves open is left open, as in [Algorithm1.v]: the edge to explore, the order in
+    which places and darts are tried, and the paths between them are chosen. Definitions only. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Algorithm1.
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * Programs of a robot that handles a marker *)
+
+(** As in [Program.v], and the robot may also pick the marker up, to carry it, and drop it. *)
+Inductive handling_program (A : Type) : Type :=
+  | Return of A
+  | Move of door & (percept -> handling_program A)
+  | PickUp of handling_program A
+  | Drop of handling_program A
+  | Choose (T : Type) of T -> bool & T & (T -> handling_program A).
+
+Fixpoint bind A B (first : handling_program A) (next : A -> handling_program B) : handling_program B :=
+  match first with
+  | Return a => next a
+  | Move i go => Move i (fun seen => bind (go seen) next)
+  | PickUp go => PickUp (bind go next)
+  | Drop go => Drop (bind go next)
+  | Choose T allowed default go => Choose allowed default (fun x => bind (go x) next)
+  end.
+
+Notation "'let*' x := first 'in' next" := (bind first (fun x => next))
+  (at level 200, x name, first at level 100, next at level 200, right associativity).
+Notation "first ;; next" := (bind first (fun=> next))
+  (at level 100, next at level 200, right associativity).
+
+Definition move (i : door) : handling_program percept := Move i (@Return percept).
+Definition pick_up : handling_program unit := PickUp (Return tt).
+Definition drop : handling_program unit := Drop (Return tt).
+Definition choose T (allowed : T -> bool) (default : T) : handling_program T :=
+  Choose allowed default (@Return T).
+
+(** Moves by one door after the other, whatever is perceived. *)
+Fixpoint moves (doors : seq door) : handling_program unit :=
+  if doors is i :: others then (move i ;; moves others) else Return tt.
+
+(** * Worlds with such a marker *)
+
+Section Handling.
+
+Variable W : start.
+
+(** Where the marker lies: at the vertex of a dart; or nowhere, if the robot carries it. *)
+Definition marker_place := option W.
+
+(** It is seen where it lies; in the robot's hand it is not. *)
+Definition perceive_lying (lying : marker_place) (pose : W) : percept :=
+  (degree pose,
+   if lying is Some spot then if same_vertex pose spot then Lying else Nothing else Nothing).
+
+(** Whatever is chosen: the program, begun at this pose with the marker there, comes to an end, with an
+    answer, at a pose, and with the marker at a place, of which [Q] holds. The robot never picks the
+    marker up where it does not lie, and never drops it when it does not carry it. *)
+Fixpoint always_handling A (p : handling_program A) (pose : W) (lying : marker_place)
+    (Q : A -> W -> marker_place -> Prop) : Prop :=
+  match p with
+  | Return a => Q a pose lying
+  | Move i go =>
+      always_handling (go (perceive_lying lying (traverse pose i))) (traverse pose i) lying Q
+  | PickUp go =>
+      if lying is Some spot then same_vertex pose spot /\ always_handling go pose None Q else False
+  | Drop go => if lying is None then always_handling go pose (Some pose) Q else False
+  | Choose T allowed default go =>
+      allowed default /\ forall x, allowed x -> always_handling (go x) pose lying Q
+  end.
+
+End Handling.
+
+(** * The algorithm *)
+
+(** Whether the map has an edge between these vertices. *)
+Definition joined (S : partial_map) v w :=
+  has (fun d => (vertex S d == v) && (if other S d is Some d' then vertex S d' == w else false))
+    (iota 0 (size S)).
+
+(** The known vertices that the unknown end of [e] may be, if so many doors are perceived there: those
+    that have as many, and an unexplored dart; but neither its known end, since there are no loops, nor
+    one that is joined to it already, since there are no parallel edges. *)
+Definition candidates (S : partial_map) e degree :=
+  [seq v <- undup [seq vertex S d | d <- unexplored S]
+     | [&& doors S v == degree, v != vertex S e & ~~ joined S (vertex S e) v]].
+
+(** The darts that may be the other end of the edge that led to vertex [v]. *)
+Definition back_links (S : partial_map) v := [seq h <- unexplored S | vertex S h == v].
+
+Section MovableMarker.
+
+(** Which paths through the map may be chosen, of those that lead where they should. *)
+Variable allowed : partial_map -> seq nat -> bool.
+
+(** What became of a search: the marker was seen, by a robot with this pose; or not, the robot is at
+    this pose, and these candidates are left. *)
+Inductive search := Found of nat | Missed of nat & seq nat.
+
+(** What the unknown end of an edge turned out to be: a new place, the robot being there with the marker
+    in hand; or a known one, the robot being there with this pose, and with the marker at its feet. *)
+Inductive arrival := NewPlace | KnownPlace of nat.
+
+(** A path through the map, for a robot at [pose], to vertex [v]. *)
+Definition choose_path (S : partial_map) pose v : handling_program (seq nat) :=
+  choose (fun path => leads S (vertex S pose) path v && allowed S path)
+    (from_root S (tree_from S (vertex S pose)) v).
+
+(** Goes to vertex [v]; answers the robot's pose there. *)
+Definition travel (S : partial_map) pose v : handling_program nat :=
+  let* path := choose_path S pose v in
+  moves (doors_along S pose path) ;;
+  Return (pose_behind S pose path).
+
+(** Goes by these darts, until it sees the marker. Candidates at which it does not lie are none. *)
+Fixpoint look_along (S : partial_map) pose darts C : handling_program search :=
+  let C' := [seq v <- C | v != vertex S pose] in
+  if darts is d :: darts' then
+    let pose' := odflt pose (other S d) in
+    let* seen := move (door_to S pose d) in
+    if seen.2 is Lying then Return (Found pose') else look_along S pose' darts' C'
+  else Return (Missed pose C').
+
+(** Visits the candidates [C] one after the other, until it sees the marker. *)
+Fixpoint look_for_marker fuel (S : partial_map) pose C : handling_program search :=
+  if C is [::] then Return (Missed pose C) else
+  if fuel is fuel'.+1 then
+    let* v := choose (fun v => v \in C) (head 0 C) in
+    let* path := choose_path S pose v in
+    let* sought := look_along S pose path C in
+    if sought is Missed pose' C' then look_for_marker fuel' S pose' C' else Return sought
+  else Return (Missed pose C).
+
+(** Place validation: is the unknown end of [e] a new place? The robot is there, with the marker in hand,
+    and perceives so many doors. *)
+Definition validate_place (S : partial_map) e degree : handling_program arrival :=
+  let C := candidates S e degree in
+  (* No known vertex can be it. *)
+  if C is [::] then Return NewPlace else
+  (* Drop the marker there, go back, and look for it everywhere that this may be. *)
+  drop ;;
+  move 0 ;;
+  let* sought := look_for_marker (size C) S e C in
+  match sought with
+  (* Found there: this is it. *)
+  | Found pose => Return (KnownPlace pose)
+  (* Not found: it is new. Go there again, for the marker. *)
+  | Missed pose _ =>
+      let* near := travel S pose (vertex S e) in
+      move (door_to S near e) ;;
+      pick_up ;;
+      Return NewPlace
+  end.
+
+(** Tries these darts of the robot's vertex one after the other, until it sees the marker behind one;
+    where it does not, it returns by door 0, the way back. *)
+Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (option nat) :=
+  if links is [::] then Return None else
+  if fuel is fuel'.+1 then
+    let* h := choose (fun h => h \in links) (head 0 links) in
+    let* seen := move (door_to S pose h) in
+    if seen.2 is Lying then Return (Some h) else
+    (move 0 ;; try_back_links fuel' S h (rem h links))
+  else Return None.
+
+(** Back-link validation: which dart of the robot's vertex is the other end of [e]? The marker lies at
+    the robot's feet; afterwards the robot carries it. Answers the dart, and the robot's pose; nothing
+    if there is no such dart, as cannot be in a simple world. *)
+Definition validate_back_link (S : partial_map) pose e : handling_program (option (nat * nat)) :=
+  let links := back_links S (vertex S pose) in
+  pick_up ;;
+  (* An only unexplored dart needs no validation. *)
+  if links is [:: only] then Return (Some (only, pose)) else
+  (* Carry the marker to the known end of the edge, drop it there, and return without it. *)
+  let* near := travel S pose (vertex S e) in
+  drop ;;
+  let* far := travel S near (vertex S pose) in
+  (* The dart behind which the marker lies is the other end. *)
+  let* found := try_back_links (size links) S far links in
+  if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None.
+
+(** One round: an edge is explored. The robot is at [pose] in the map [S], and carries the marker. *)
+Definition explore_edge (S : partial_map) pose : handling_program (option (partial_map * nat)) :=
+  (* Remove an unexplored edge from U. *)
+  let* e := choose (fun e => e \in unexplored S)
+              (nearest S (tree_from S (vertex S pose)) (unexplored S)) in
+  (* Carry the marker through S to its known end, and over it to its unknown end. *)
+  let* near := travel S pose (vertex S e) in
+  let* seen := move (door_to S near e) in
+  let* came := validate_place S e seen.1 in
+  match came with
+  | NewPlace => Return (Some (with_edge (with_vertex S seen.1) e (size S), size S))
+  | KnownPlace pose' =>
+      let* link := validate_back_link S pose' e in
+      Return (if link is Some (h, pose'') then Some (with_edge S e h, pose'') else None)
+  end.
+
+(** While U is not empty; but no more than so many rounds. *)
+Fixpoint explore_edges bound (S : partial_map) pose : handling_program (option (partial_map * nat)) :=
+  if unexplored S is [::] then Return (Some (S, pose)) else
+  if bound is bound'.+1 then
+    let* after := explore_edge S pose in
+    if after is Some (S', pose') then explore_edges bound' S' pose' else Return None
+  else Return None.
+
+(** The marker lies at v0, where the robot perceives [seen], and picks it up: S is v0, U its edges. The
+    answer is the map S, with the robot's pose in it; [None] if the rounds do not suffice, or if this is
+    seen to be no simple world. *)
+Definition movable bound (seen : percept) : handling_program (option (partial_map * nat)) :=
+  pick_up ;; explore_edges bound (with_vertex [::] seen.1) 0.
+
+End MovableMarker.
