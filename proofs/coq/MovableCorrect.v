@@ -4,7 +4,7 @@
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Arithmetic Figures.
-From toposlam Require Import Algorithm1 Maps Paths Embedding Rounds Complete.
+From toposlam Require Import Algorithm1 Maps Paths Embedding Rounds Complete Correct.
 From toposlam Require Import MovableMarker.
 
 Set Implicit Arguments.
@@ -15,9 +15,7 @@ Unset Printing Implicit Defensive.
 
 Section AlwaysHandling.
 
-Variable W : start.
-
-Variables A B : Type.
+Variables (W : start) (A B : Type).
 Implicit Types (p : handling_program A) (pose : W) (Q R : A -> W -> marker_place W -> Prop).
 
 Lemma always_handling_weaken p pose lying Q R : (forall a q l, Q a q l -> R a q l) ->
@@ -106,6 +104,7 @@ Variable spot : W.
 Definition all_candidates (C : seq nat) :=
   forall d, d < size S -> same_vertex (place d) spot -> vertex S d \in C.
 
+(** The robot sees the marker; or it does not, and it knows where else that may lie. *)
 Definition found_well p (r : W) := [/\ p < size S, r = place p & same_vertex (place p) spot].
 
 Definition missed_well p C (r : W) :=
@@ -220,7 +219,7 @@ Proof.
 by move=> none d d_lt placed; have := none d d_lt; rewrite placed => /(_ (same_vertex_refl _)).
 Qed.
 
-(** Place validation. *)
+(** Place validation: a place that is called new is new, and where the marker is found it was dropped. *)
 Lemma validate_place_spec :
   always_handling (validate_place allowed S e (degree t)) t None
     (fun came r l =>
@@ -239,7 +238,8 @@ rewrite traverse_to // -/t; split; first exact: same_vertex_refl.
 by split=> //; apply: no_dart_there.
 Qed.
 
-(** Back-link validation. *)
+(** Back-link validation: the marker is behind the dart [h] that is the other end of [e], and, as there
+    are no parallel edges, behind no other. *)
 Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S ->
   {in links, forall g, g < size S /\ vertex S g = vertex S p} ->
   same_vertex (place e) spot -> h \in links -> place h = t ->
@@ -265,32 +265,34 @@ have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
 by move: seen; rewrite -hg placed /t opposite_involutive here.
 Qed.
 
-Lemma validate_back_link_spec p : p < size S -> same_vertex (place p) t ->
-  always_handling (validate_back_link allowed S p e) (place p) (Some t)
-    (fun link r l => exists h p',
-       [/\ link = Some (h, p'), h \in unexplored S, h != e, place h = t
-         & [/\ p' < size S, r = place p' & l = None]]).
+(** The right dart is found, and the marker in hand. *)
+Definition linked_well (link : option (nat * nat)) (r : W) (l : marker_place W) :=
+  exists h p, [/\ link = Some (h, p), h \in unexplored S, h != e, place h = t
+                & [/\ p < size S, r = place p & l = None]].
+
+Lemma back_links_of p h : h \in back_links S (vertex S p) ->
+  [/\ h < size S, vertex S h = vertex S p & h \in unexplored S].
+Proof. by rewrite mem_filter mem_unexplored => /and3P[/eqP-> -> ->]. Qed.
+
+Lemma find_back_link_spec p : p < size S -> same_vertex (place p) t ->
+  always_handling (find_back_link allowed S p e (back_links S (vertex S p))) (place p) None linked_well.
 Proof.
-move=> p_lt here; split=> //; rewrite -/(bind _ _).
-have [h h_in [he placed]] := end_known p_lt here.
-have links_p : {in back_links S (vertex S p), forall g, g < size S /\ vertex S g = vertex S p}.
-  by move=> g; rewrite mem_filter mem_unexplored => /and3P[/eqP-> ->].
-have hU : h \in unexplored S by move: h_in; rewrite mem_filter => /andP[].
-have several : always_handling
-    (let* near := travel allowed S p (vertex S e) in drop ;;
-     let* far := travel allowed S near (vertex S p) in
-     let* found := try_back_links (size (back_links S (vertex S p))) S far (back_links S (vertex S p)) in
-     if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None) (place p) None
-    (fun link r l => exists h p',
-       [/\ link = Some (h, p'), h \in unexplored S, h != e, place h = t
-         & [/\ p' < size S, r = place p' & l = None]]).
-  apply: and_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
-  apply: and_then (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
-  have e_near : same_vertex (place e) (place near) by rewrite (same_vertex_known em) // at_e.
-  apply: and_then (try_back_links_spec _ far_lt _ e_near h_in placed) _ => //.
-    by rewrite at_p.
-  by move=> _ _ _ [-> -> ->] /=; split=> //; exists h, e.
-move: h_in several; case: (back_links _ _) => // g [|g' links]; last by [].
+move=> p_lt here; have [h h_in [he placed]] := end_known p_lt here.
+apply: and_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+apply: and_then (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
+have e_near : same_vertex (place e) (place near) by rewrite (same_vertex_known em) // at_e.
+apply: and_then (try_back_links_spec (leqnn _) far_lt _ e_near h_in placed) _.
+  by move=> g /back_links_of[g_lt -> _].
+move=> _ _ _ [-> -> ->] /=; split=> //.
+by have [_ _ hU] := back_links_of h_in; exists h, e.
+Qed.
+
+Lemma validate_back_link_spec p : p < size S -> same_vertex (place p) t ->
+  always_handling (validate_back_link allowed S p e) (place p) (Some t) linked_well.
+Proof.
+move=> p_lt here; split=> //; have [h h_in [he placed]] := end_known p_lt here.
+have [_ _ hU] := back_links_of h_in.
+move: h_in (find_back_link_spec p_lt here); case: (back_links _ _) => // g [|g' links] //.
 by rewrite inE => /eqP <- _; exists h, p.
 Qed.
 
@@ -314,7 +316,7 @@ have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex siz
 by rewrite size_with_place // => sizes; arithmetic.
 Qed.
 
-(** A round explores one edge more; the map stays a part of the world, and the marker in hand. *)
+(** A round explores one edge more: the map stays a part of the world, and the marker in hand. *)
 Lemma explore_edge_spec S (place : nat -> W) pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
   always_handling (explore_edge allowed S pose) (place pose) None
@@ -342,15 +344,14 @@ by rewrite (size_unexplored_with_edge eU hU he) !addnS.
 Qed.
 
 Lemma explore_edges_spec bound S (place : nat -> W) pose :
-  embeds S place -> pose < size S -> #|W| + size (unexplored S) <= size S + 2 * bound ->
+  embeds S place -> pose < size S -> 2 * edges W + size (unexplored S) <= size S + 2 * bound ->
   always_handling (explore_edges allowed bound S pose) (place pose) None
     (fun answer r l => l = None /\ exists S' pose' (place' : nat -> W),
        [/\ answer = Some (S', pose'), embeds S' place', unexplored S' = [::], pose' < size S'
          & r = place' pose']).
 Proof.
 elim: bound S place pose => [|bound IH] S place pose em pose_lt enough.
-  have none : unexplored S = [::].
-    by apply/nilP; rewrite /nilp -leqn0; have := size_known em => known; arithmetic.
+  have none : unexplored S = [::] by have known := size_known em; apply: size0nil; arithmetic.
   by rewrite /= none; split=> //; exists S, pose, place.
 rewrite /explore_edges -/explore_edges; case some: {1}(unexplored S) => [|d U].
   by split=> //; exists S, pose, place.
@@ -360,31 +361,28 @@ case=> S' [pose' [place' [-> em' lt -> sizes]]].
 by apply: IH => //; arithmetic.
 Qed.
 
-(** What is known at the start. *)
-Lemma embeds_begin : embeds (with_vertex [::] (degree (facing W))) (turn (facing W)).
-Proof.
-have sz := size_with_vertex [::] (degree (facing W)); rewrite add0n in sz.
-have new d (lt : d < degree (facing W)) := @new_with_vertex [::] _ d lt.
-split; rewrite ?sz //; first exact: (well_formed_start (degree_gt0 _)).
-- by move=> d e d_lt e_lt same; rewrite -(findex_iter d_lt) -(findex_iter e_lt) -!/(turn _ _) same.
-- by move=> d /new[_ -> _]; rewrite degree_turn.
-- by move=> d /new[-> _ _]; rewrite subn0.
-by move=> d d' dd'; have := other_known dd'; rewrite sz => /new[_ _]; rewrite dd'.
-Qed.
+Let begin := Some (facing W).
 
 (** Begun where the marker lies, the algorithm ends with a map that is the whole world, the robot being
     where it believes to be, with the marker in hand. *)
 Theorem movable_marker_maps_simple_worlds bound : edges W <= bound ->
-  let begin := Some (facing W) in
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     (fun answer pose lying => lying = None /\ exists S p (place : nat -> W),
        [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & pose = place p]).
 Proof.
 move=> enough; split; first exact: same_vertex_refl.
-apply: (explore_edges_spec embeds_begin (pose := 0)); rewrite size_with_vertex ?degree_gt0 //.
-by rewrite unexplored_with_vertex size_iota card_darts; arithmetic.
+apply: (explore_edges_spec (embeds_at_start W) (pose := 0)); rewrite size_with_vertex ?degree_gt0 //.
+by rewrite unexplored_at_start size_iota; arithmetic.
+Qed.
+
+(** The same of the world that is drawn in the map. *)
+Theorem movable_marker_answers_right bound : edges W <= bound ->
+  always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
+    (fun answer pose lying => lying = None /\ right_answer answer pose).
+Proof.
+move/movable_marker_maps_simple_worlds; apply: always_handling_weaken => answer pose lying [->].
+case=> S [p [place [-> em explored p_lt ->]]]; split=> //.
+by have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
 Qed.
 
 End Correct.
-
-Print Assumptions movable_marker_maps_simple_worlds.

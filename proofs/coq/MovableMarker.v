@@ -95,11 +95,6 @@ Definition candidates (S : partial_map) e degree :=
 (** The darts that may be the other end of the edge that led to vertex [v]. *)
 Definition back_links (S : partial_map) v := [seq h <- unexplored S | vertex S h == v].
 
-Section MovableMarker.
-
-(** Which paths through the map may be chosen, of those that lead where they should. *)
-Variable allowed : partial_map -> seq nat -> bool.
-
 (** What became of a search: the marker was seen, by a robot with this pose; or not, the robot is at
     this pose, and these candidates are left. *)
 Inductive search := Found of nat | Missed of nat & seq nat.
@@ -107,6 +102,11 @@ Inductive search := Found of nat | Missed of nat & seq nat.
 (** What the unknown end of an edge turned out to be: a new place, the robot being there with the marker
     in hand; or a known one, the robot being there with this pose, and with the marker at its feet. *)
 Inductive arrival := NewPlace | KnownPlace of nat.
+
+Section MovableMarker.
+
+(** Which paths through the map may be chosen, of those that lead where they should. *)
+Variable allowed : partial_map -> seq nat -> bool.
 
 (** A path through the map, for a robot at [pose], to vertex [v]. *)
 Definition choose_path (S : partial_map) pose v : handling_program (seq nat) :=
@@ -170,21 +170,24 @@ Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (op
     (move 0 ;; try_back_links fuel' S h (rem h links))
   else Return None.
 
+(** Carries the marker from the robot's vertex to the known end of [e], drops it there, and returns
+    without it: of these darts the one behind which the marker lies is the other end of [e]. Answers it,
+    and the robot's pose, then at the known end of [e], with the marker in hand; nothing if there is no
+    such dart, as cannot be in a simple world. *)
+Definition find_back_link (S : partial_map) pose e links : handling_program (option (nat * nat)) :=
+  let* near := travel S pose (vertex S e) in
+  drop ;;
+  let* far := travel S near (vertex S pose) in
+  let* found := try_back_links (size links) S far links in
+  if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None.
+
 (** Back-link validation: which dart of the robot's vertex is the other end of [e]? The marker lies at
-    the robot's feet; afterwards the robot carries it. Answers the dart, and the robot's pose; nothing
-    if there is no such dart, as cannot be in a simple world. *)
+    the robot's feet; afterwards the robot carries it. *)
 Definition validate_back_link (S : partial_map) pose e : handling_program (option (nat * nat)) :=
   let links := back_links S (vertex S pose) in
   pick_up ;;
   (* An only unexplored dart needs no validation. *)
-  if links is [:: only] then Return (Some (only, pose)) else
-  (* Carry the marker to the known end of the edge, drop it there, and return without it. *)
-  let* near := travel S pose (vertex S e) in
-  drop ;;
-  let* far := travel S near (vertex S pose) in
-  (* The dart behind which the marker lies is the other end. *)
-  let* found := try_back_links (size links) S far links in
-  if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None.
+  if links is [:: only] then Return (Some (only, pose)) else find_back_link S pose e links.
 
 (** One round: an edge is explored. The robot is at [pose] in the map [S], and carries the marker. *)
 Definition explore_edge (S : partial_map) pose : handling_program (option (partial_map * nat)) :=
