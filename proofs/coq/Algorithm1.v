@@ -133,7 +133,7 @@ Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdi
     (* 12, 13: compare what is perceived with what is expected. *)
     if seen == expected S pose' then follow S seen.1 0 pose' darts' taken'
     (* 14, 15: reject the hypothesis, retrace the path. *)
-    else (moves (retrace taken') ;; Return (Rejected (head (0, 0) taken').1))
+    else (moves (way_back taken') ;; Return (Rejected (head (0, 0) taken').1))
   (* 16, 17: confirm the hypothesis. *)
   else Return (Confirmed pose).
 

@@ -10,7 +10,7 @@ Unset Printing Implicit Defensive.
 
 (** * Bisimilar is indistinguishable *)
 
-Theorem bisimilar_iff_indistinguishable M V W : bisimilar M V W <-> indistinguishable M V W.
+Lemma bisimilar_iff_indistinguishable M V W : bisimilar M V W <-> indistinguishable M V W.
 Proof.
 split=> [[R [start_R R_step]] doors | same].
   elim: doors (facing V) (facing W) start_R => [|i doors IH] p q /R_step[pq next] /=; rewrite pq //.

@@ -5,17 +5,13 @@
     edges and vertices. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Walks Bisimulation.
+From toposlam Require Import Spec Walks Bisimulation.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** * Poses that are alike *)
-
-(** From both, every door sequence gives the same percepts. *)
-Definition alike (M : marker) (V W : start) (p : V) (q : W) :=
-  forall doors, percepts M p doors = percepts M q doors.
 
 Section Alike.
 
@@ -84,7 +80,7 @@ Qed.
 (** * All classes have one size *)
 
 (** A walk takes a class into a class, and no two poses to one. *)
-Theorem classes_same_size M (V W : start) (p p' : V) : #|class M W p| = #|class M W p'|.
+Lemma classes_same_size M (V W : start) (p p' : V) : #|class M W p| = #|class M W p'|.
 Proof.
 suff leq (r r' : V) : #|class M W r| <= #|class M W r'| by apply/eqP; rewrite eqn_leq !leq.
 have [doors <-] := walk_anywhere r r'.
@@ -104,7 +100,7 @@ move=> /alike_perceive [_]; rewrite /undirected.
 by case: (same_vertex p _); case: (same_vertex q _).
 Qed.
 
-Theorem class_size_divides (W : start) (p : W) : #|class undirected W p| %| degree (facing W).
+Lemma class_size_divides (W : start) (p : W) : #|class undirected W p| %| degree (facing W).
 Proof.
 pose marked := [set q : W | same_vertex (facing W) q].
 have -> : degree (facing W) = #|marked| by rewrite cardsE.
@@ -185,7 +181,7 @@ Qed.
 
 (** One size for all: of the classes of either, and of the poses of either that are alike to one of the
     other. *)
-Theorem indistinguishable_classes :
+Lemma indistinguishable_classes :
   exists size, [/\ size %| degree (facing V),
     forall p : V, #|class undirected V p| = size, forall q : W, #|class undirected W q| = size,
     forall p : V, #|class undirected W p| = size & forall q : W, #|class undirected V q| = size].
@@ -200,7 +196,7 @@ Qed.
 
 (** Whatever is perceived, equally many poses of both give it: so they have equally many edges and
     vertices. *)
-Theorem indistinguishable_card (A : pred percept) :
+Lemma indistinguishable_card (A : pred percept) :
   #|[pred p : V | A (perceive undirected p)]| = #|[pred q : W | A (perceive undirected q)]|.
 Proof.
 apply/eqP; rewrite -(eqn_pmul2r (class_gt0 undirected (facing V))) -/k {1}same_size.

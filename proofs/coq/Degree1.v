@@ -52,7 +52,7 @@ Proof. by split=> -[n answered]; exists n; rewrite -answered history_point. Qed.
 
 End Degree1.
 
-Theorem degree_1_marker_separates (V W : start) :
+Lemma degree_1_marker_separates (V W : start) :
   degree (facing V) = 1 -> degree (facing W) = 1 ->
   indistinguishable undirected V W -> isomorphic_starts V W.
 Proof.
@@ -60,7 +60,7 @@ move=> V_one W_one same; apply: directional_marker_separates => doors.
 by rewrite !percepts_point // same.
 Qed.
 
-Theorem degree_1_marker_suffices A (robot : strategy A) :
+Lemma degree_1_marker_suffices A (robot : strategy A) :
   exists robot' : strategy A, forall W : start, degree (facing W) = 1 ->
     forall a, answers robot' undirected W a <-> answers robot directional W a.
 Proof. by exists (pointing robot) => W one_door a; apply: answers_point. Qed.

@@ -168,11 +168,6 @@ Definition name_walk (x : name) (doors : seq door) : name :=
 Lemma val_walk d doors : val (walk d doors) = name_walk (val d) doors.
 Proof. by elim: doors d => // i doors IH d; rewrite [LHS]IH /= -val_turn. Qed.
 
-(** No loops and no parallel edges. *)
-Definition simple (G : embedded_graph) :=
-  (forall d : G, ~~ same_vertex d (opposite d)) /\
-  (forall d e : G, same_vertex d e -> same_vertex (opposite d) (opposite e) -> d = e).
-
 Lemma world_simple : simple world.
 Proof.
 split=> [d | d e]; rewrite !world_same_vertex.
@@ -266,10 +261,10 @@ Lemma cycle_4_sound : sound cycle_4_file. Proof. by vm_compute. Qed.
 Definition cycle_3 : start := start_at cycle_3_sound (erefl : (0, 1) \in names cycle_3_file).
 Definition cycle_4 : start := start_at cycle_4_sound (erefl : (0, 1) \in names cycle_4_file).
 
-Theorem cycles_not_isomorphic : ~ isomorphic cycle_3 cycle_4.
+Lemma cycles_not_isomorphic : ~ isomorphic cycle_3 cycle_4.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Theorem cycles_bisimilar : bisimilar no_marker cycle_3 cycle_4.
+Lemma cycles_bisimilar : bisimilar no_marker cycle_3 cycle_4.
 Proof. by apply: (@no_marker_bisimilar _ _ _ _ _ _ _ _ 12); vm_compute. Qed.
 
 (** * Figure 1 *)
@@ -301,10 +296,10 @@ Definition figure_1a : start := start_at figure_1a_sound (erefl : (0, 1) \in nam
 Definition figure_1b : start := start_at figure_1b_sound (erefl : (0, 1) \in names figure_1b_file).
 
 (** One of them has a triangle around which the robot goes by door 1 three times. *)
-Theorem figure_1_not_isomorphic : ~ isomorphic figure_1a figure_1b.
+Lemma figure_1_not_isomorphic : ~ isomorphic figure_1a figure_1b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Theorem figure_1_bisimilar : bisimilar undirected figure_1a figure_1b.
+Lemma figure_1_bisimilar : bisimilar undirected figure_1a figure_1b.
 Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 12); vm_compute. Qed.
 
 (** * The smallest simple pair *)
@@ -332,14 +327,14 @@ Lemma smallest_b_sound : sound smallest_b_file. Proof. by vm_compute. Qed.
 Definition smallest_a : start := start_at smallest_a_sound (erefl : (0, 1) \in names smallest_a_file).
 Definition smallest_b : start := start_at smallest_b_sound (erefl : (0, 1) \in names smallest_b_file).
 
-Theorem smallest_not_isomorphic : ~ isomorphic smallest_a smallest_b.
+Lemma smallest_not_isomorphic : ~ isomorphic smallest_a smallest_b.
 Proof. by apply: (@round_walk_not_isomorphic _ _ _ _ _ _ _ _ [:: 1; 1; 1]); vm_compute. Qed.
 
-Theorem smallest_bisimilar : bisimilar undirected smallest_a smallest_b.
+Lemma smallest_bisimilar : bisimilar undirected smallest_a smallest_b.
 Proof. by apply: (@undirected_bisimilar _ _ _ _ _ _ _ _ 24); vm_compute. Qed.
 
-Theorem figure_1_simple : simple figure_1a /\ simple figure_1b.
+Lemma figure_1_simple : simple figure_1a /\ simple figure_1b.
 Proof. by split; apply: world_simple. Qed.
 
-Theorem smallest_simple : simple smallest_a /\ simple smallest_b.
+Lemma smallest_simple : simple smallest_a /\ simple smallest_b.
 Proof. by split; apply: world_simple. Qed.

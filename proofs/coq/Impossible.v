@@ -9,7 +9,7 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** Whatever it is, the robot gives the same map in both. *)
-Theorem bisimilar_maps M (robot : strategy embedded_graph) V W :
+Lemma bisimilar_maps M (robot : strategy embedded_graph) V W :
   bisimilar M V W -> maps M robot V -> maps M robot W -> isomorphic V W.
 Proof.
 move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
@@ -21,11 +21,11 @@ Corollary bisimilar_impossible M V W :
   forall robot : strategy embedded_graph, ~ (maps M robot V /\ maps M robot W).
 Proof. by move=> VW not_iso robot [/(bisimilar_maps VW) both /both]. Qed.
 
-Theorem no_marker_impossible (robot : strategy embedded_graph) :
+Lemma no_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
 Proof. exact: bisimilar_impossible cycles_bisimilar cycles_not_isomorphic robot. Qed.
 
-Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
+Lemma undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
   ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
 Proof.

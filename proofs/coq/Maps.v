@@ -1,7 +1,7 @@
 (** What holds of every map that Algorithm 1 builds, whatever the world. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program Algorithm1.
+From toposlam Require Import Spec Arithmetic Program Algorithm1.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -167,6 +167,20 @@ Lemma size_with_place S e g : e < size S -> 0 < g ->
 Proof.
 move=> e_lt g_gt0; rewrite size_with_edge size_with_vertex //; first exact: ltn_addr.
 by rewrite -[X in X < _]addn0 ltn_add2l.
+Qed.
+
+(** A new place, of so many doors, makes one edge more explored. *)
+Lemma unexplored_with_place S e g : e \in unexplored S -> 0 < g ->
+  let S' := with_edge (with_vertex S g) e (size S) in
+  (size S + size (unexplored S')).+2 = size S' + size (unexplored S).
+Proof.
+move=> eU g_gt0; have := eU; rewrite mem_unexplored => /andP[e_lt _].
+have eU' : e \in unexplored (with_vertex S g) by rewrite unexplored_with_vertex mem_cat eU.
+have sU' : size S \in unexplored (with_vertex S g).
+  by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l g_gt0 orbT.
+have se : size S != e by rewrite gtn_eqF.
+have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
+by rewrite size_with_place // => sizes; arithmetic.
 Qed.
 
 Lemma well_formed_start g : 0 < g -> well_formed (with_vertex [::] g).

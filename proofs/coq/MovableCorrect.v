@@ -302,20 +302,6 @@ End OneRound.
 
 Hypothesis simple_W : simple W.
 
-(** A new place, of so many doors, makes one edge more explored. *)
-Lemma unexplored_with_place S e g : e \in unexplored S -> 0 < g ->
-  let S' := with_edge (with_vertex S g) e (size S) in
-  (size S + size (unexplored S')).+2 = size S' + size (unexplored S).
-Proof.
-move=> eU g_gt0; have := eU; rewrite mem_unexplored => /andP[e_lt _].
-have eU' : e \in unexplored (with_vertex S g) by rewrite unexplored_with_vertex mem_cat eU.
-have sU' : size S \in unexplored (with_vertex S g).
-  by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l g_gt0 orbT.
-have se : size S != e by rewrite gtn_eqF.
-have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
-by rewrite size_with_place // => sizes; arithmetic.
-Qed.
-
 (** A round explores one edge more: the map stays a part of the world, and the marker in hand. *)
 Lemma explore_edge_spec S (place : nat -> W) pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
@@ -365,7 +351,7 @@ Let begin := Some (facing W).
 
 (** Begun where the marker lies, the algorithm ends with a map that is the whole world, the robot being
     where it believes to be, with the marker in hand. *)
-Theorem movable_marker_maps_simple_worlds bound : edges W <= bound ->
+Lemma movable_marker_maps_simple_worlds bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     (fun answer pose lying => lying = None /\ exists S p (place : nat -> W),
        [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & pose = place p]).
@@ -376,7 +362,7 @@ by rewrite unexplored_at_start size_iota; arithmetic.
 Qed.
 
 (** The same of the world that is drawn in the map. *)
-Theorem movable_marker_answers_right bound : edges W <= bound ->
+Lemma movable_marker_answers_right bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     (fun answer pose lying => lying = None /\ right_answer answer pose).
 Proof.

@@ -55,14 +55,3 @@ Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
   | Move i go => if past is seen :: later then obey (go seen) later else Leave i
   | Choose T _ default go => obey (go default) past
   end.
-
-(** Percepts can be compared. *)
-Definition sighting_code (s : sighting) : option (option nat) :=
-  match s with Nothing => None | Lying => Some None | Pointing i => Some (Some i) end.
-Definition sighting_of_code (c : option (option nat)) : sighting :=
-  match c with None => Nothing | Some None => Lying | Some (Some i) => Pointing i end.
-
-Lemma sighting_codeK : cancel sighting_code sighting_of_code.
-Proof. by case. Qed.
-
-Canonical sighting_eqType := EqType sighting (CanEqMixin sighting_codeK).

@@ -207,13 +207,7 @@ have new d : d < size S -> place d <> t.
 split=> //; eexists; split; first exact: embeds_with_vertex.
 - by rewrite /= size_with_place ?degree_gt0 // ltn_add2l.
 - by rewrite /= ltnNge leq_addr /= addKn.
-have eU' : e \in unexplored (with_vertex S (degree t)) by rewrite unexplored_with_vertex mem_cat eU.
-have sU' : size S \in unexplored (with_vertex S (degree t)).
-  by rewrite unexplored_with_vertex mem_cat mem_iota leqnn -[X in X < _]addn0 ltn_add2l degree_gt0 orbT.
-have se : size S != e by rewrite gtn_eqF.
-have := size_unexplored_with_edge eU' sU' se; rewrite unexplored_with_vertex size_cat size_iota /=.
-rewrite size_with_place ?degree_gt0 //.
-by move=> sizes; arithmetic.
+exact: unexplored_with_place (degree_gt0 _).
 Qed.
 
 End Rounds.

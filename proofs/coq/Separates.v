@@ -26,7 +26,7 @@ Proof.
 by move=> V W f iso start_f p; rewrite /directional -start_f isomorphism_same_vertex // isomorphism_findex.
 Qed.
 
-Theorem isomorphic_starts_indistinguishable M V W :
+Lemma isomorphic_starts_indistinguishable M V W :
   invariant M -> isomorphic_starts V W -> indistinguishable M V W.
 Proof.
 move=> M_inv [f [iso start_f]] doors; apply: eq_percepts => {}doors.
@@ -69,7 +69,7 @@ Qed.
 
 End Bijection.
 
-Theorem directional_marker_separates V W : indistinguishable directional V W -> isomorphic_starts V W.
+Lemma directional_marker_separates V W : indistinguishable directional V W -> isomorphic_starts V W.
 Proof.
 move=> VW; have WV := indistinguishable_sym VW; exists (counterpart W); split.
   split=> [|p|p].

@@ -61,19 +61,37 @@ Definition walk (pose : G) (doors : seq door) : G := foldl traverse pose doors.
 
 End EmbeddedGraph.
 
+(** The doors that a walk takes, each with the degree of the vertex at which it is taken. *)
+Fixpoint taken (G : embedded_graph) (pose : G) (doors : seq door) : seq (door * nat) :=
+  if doors is i :: others then (i, degree pose) :: taken (traverse pose i) others else [::].
+
 (** The door that undoes door [i], at a vertex with so many doors. *)
 Definition inverse_door (doors : nat) (i : door) : door := (doors - i %% doors) %% doors.
 
 (** The way back along a path, from the doors that it took and the degrees of the vertices at which it
     took them: turn round, then undo every turn but the first, the last one first. *)
-Definition retrace (taken : seq (door * nat)) : seq door :=
+Definition way_back (taken : seq (door * nat)) : seq door :=
   if taken is _ :: others then 0 :: rev [seq inverse_door step.2 step.1 | step <- others] else [::].
+
+(** No loops, no parallel edges. *)
+Definition simple (G : embedded_graph) :=
+  (forall d : G, ~~ same_vertex d (opposite d)) /\
+  (forall d e : G, same_vertex d e -> same_vertex (opposite d) (opposite e) -> d = e).
 
 (** * Percepts and markers *)
 
 (** What a marker adds to a percept: nothing; an undirected marker lies here; a directional one does, and
     points along this door. *)
 Inductive sighting := Nothing | Lying | Pointing of door.
+
+(** Sightings can be compared. *)
+Definition sighting_code (s : sighting) : option (option nat) :=
+  match s with Nothing => None | Lying => Some None | Pointing i => Some (Some i) end.
+Definition sighting_of_code (c : option (option nat)) : sighting :=
+  match c with None => Nothing | Some None => Lying | Some (Some i) => Pointing i end.
+Lemma sighting_codeK : cancel sighting_code sighting_of_code.
+Proof. by case. Qed.
+Canonical sighting_eqType := EqType sighting (CanEqMixin sighting_codeK).
 
 (** What the robot senses where it comes in: the number of doors, and what the marker adds. *)
 Definition percept := (nat * sighting)%type.
@@ -143,9 +161,12 @@ Definition isomorphic (G H : embedded_graph) := exists f : G -> H, isomorphism f
 Definition isomorphic_starts (V W : start) :=
   exists f : V -> W, isomorphism f /\ f (facing V) = facing W.
 
-(** Every door sequence gives the same percepts. *)
-Definition indistinguishable (M : marker) (V W : start) :=
-  forall doors, percepts M (facing V) doors = percepts M (facing W) doors.
+(** From these poses every door sequence gives the same percepts. *)
+Definition alike (M : marker) (V W : start) (p : V) (q : W) :=
+  forall doors, percepts M p doors = percepts M q doors.
+
+(** Two starts that no robot can tell apart. *)
+Definition indistinguishable (M : marker) (V W : start) := alike M (facing V) (facing W).
 
 (** The certificate of that: a relation of poses that holds at the starts, within which the percepts are
     the same, and out of which no door leads. *)

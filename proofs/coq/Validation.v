@@ -68,10 +68,24 @@ have -> : (head (0, 0) (taken t (rcons before i))).1 = head 0 (rcons before i).
   by case: (before).
 split=> //.
   by move/goes_on => placed; apply: unlike; rewrite (expected_is_perceived em) // placed.
-have -> : size (retrace (taken t (rcons before i))) = (size before).+1.
-  by rewrite -[in RHS](size_taken t before) taken_rcons /retrace; case: (taken t before) => //= s l;
+have -> : size (way_back (taken t (rcons before i))) = (size before).+1.
+  by rewrite -[in RHS](size_taken t before) taken_rcons /way_back; case: (taken t before) => //= s l;
      rewrite size_rev size_map size_rcons.
 by arithmetic.
+Qed.
+
+(** From where a place was just reached. *)
+Lemma follow_once (t : W) h path :
+  h < size S -> leads S (vertex S h) path 0 -> expected S h = perceive directional t ->
+  always directional (follow S (degree t) 0 h path [::]) t
+    (fun ended r k =>
+       match ended with
+       | Confirmed pose => [/\ place h = t, pose < size S, r = place pose & k <= size path]
+       | Rejected i => [/\ place h <> t, r = turn t i, i < degree t & k <= 2 * size path + 0]
+       end).
+Proof.
+move=> lt leads_there fits.
+exact: (@follow_spec path t t h 0 [::]) lt leads_there erefl (leq0n _) (fun=> erefl) _ (esym fits).
 Qed.
 
 End Validation.

@@ -8,10 +8,6 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** The doors that a walk takes, each with the degree of the vertex at which it is taken. *)
-Fixpoint taken (G : embedded_graph) (pose : G) (doors : seq door) : seq (door * nat) :=
-  if doors is i :: others then (i, degree pose) :: taken (traverse pose i) others else [::].
-
 Section Walks.
 
 Variable G : embedded_graph.
@@ -119,16 +115,16 @@ Lemma taken_rcons p ds i : taken p (rcons ds i) = rcons (taken p ds) (i, degree 
 Proof. by rewrite -!cats1 taken_cat. Qed.
 
 (** The way back ends where the walk began, facing its first door. *)
-Lemma retrace_walk p ds : walk (walk p ds) (retrace (taken p ds)) = turn p (head 0 ds).
+Lemma retrace_walk p ds : walk (walk p ds) (way_back (taken p ds)) = turn p (head 0 ds).
 Proof.
 case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first exact: opposite_involutive.
-pose p' := traverse p i; pose back := retrace (taken p' (j :: ds)).
-have -> : retrace (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
+pose p' := traverse p i; pose back := way_back (taken p' (j :: ds)).
+have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
   by rewrite /back /= rev_cons.
 rewrite walk_rcons [walk _ _]IH /traverse turn_inverse_door; exact: opposite_involutive.
 Qed.
 
-Lemma retrace_same_vertex p ds : same_vertex p (walk (walk p ds) (retrace (taken p ds))).
+Lemma retrace_same_vertex p ds : same_vertex p (walk (walk p ds) (way_back (taken p ds))).
 Proof. by rewrite retrace_walk same_vertex_turn. Qed.
 
 End Walks.

@@ -1,0 +1,206 @@
+(** What is proved, for every world. Each statement stands under the sentence that it says; its words are
+    defined in [Spec.v], [Algorithm1.v] and [MovableMarker.v]. The proofs are in the other files. *)
+
+From mathcomp Require Import all_ssreflect.
+From toposlam Require Import Spec Program Algorithm1.
+From toposlam Require Walks Embedding Validation Bisimulation Figures Impossible Separates.
+From toposlam Require Correct Mapper Degree1 Classes MovableMarker MovableCorrect.
+
+Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
+Import Embedding(embeds).
+
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** * Walks *)
+
+(** The same doors never lead two poses of a world to one pose. Paper: Section 2.1. *)
+Theorem walk_inj (G : embedded_graph) (doors : seq door) :
+  injective (fun pose : G => walk pose doors).
+Proof. exact: Walks.walk_inj. Qed.
+
+(** The way back along a path ends at the vertex where it began, and the robot is then turned by the first
+    door of the path. Paper: Section 2.3, line 15. *)
+Theorem retrace (G : embedded_graph) (pose : G) (doors : seq door) :
+  walk (walk pose doors) (way_back (taken pose doors)) = turn pose (head 0 doors).
+Proof. exact: Walks.retrace_walk. Qed.
+
+(** * Markers that do not suffice, and one that does *)
+
+(** Two starts are indistinguishable, every door sequence giving the same percepts, exactly if there is a
+    bisimulation of their poses. Paper: Section 2.2, the proof about Figure 1. *)
+Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
+  bisimilar M V W <-> indistinguishable M V W.
+Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
+
+(** In bisimilar starts every robot has the same history, whatever its strategy, and so gives the same
+    answer. Paper: Section 2.2. *)
+Theorem bisimilar_same_history A (robot : strategy A) (M : marker) (V W : start) :
+  bisimilar M V W ->
+  (forall decisions, history robot M V decisions = history robot M W decisions) /\
+  (forall answer, answers robot M V answer <-> answers robot M W answer).
+Proof.
+by move=> same; split; [apply: Bisimulation.bisimilar_same_history
+                       | apply: Bisimulation.bisimilar_same_answers].
+Qed.
+
+(** Without a marker no robot maps both the cycle of 3 and the cycle of 4. Paper: Section 2.2. *)
+Theorem no_marker_impossible (robot : strategy embedded_graph) :
+  ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
+Proof. exact: Impossible.no_marker_impossible. Qed.
+
+(** The two worlds of Figure 1 have neither loops nor parallel edges and are not isomorphic, but bisimilar
+    with one undirected marker at the hub. Paper: Figure 1. *)
+Theorem figure_1_indistinguishable :
+  [/\ simple figure_1a, simple figure_1b, ~ isomorphic figure_1a figure_1b
+    & bisimilar undirected figure_1a figure_1b].
+Proof.
+have [simple_a simple_b] := Figures.figure_1_simple.
+split=> //; [exact: Figures.figure_1_not_isomorphic | exact: Figures.figure_1_bisimilar].
+Qed.
+
+(** So are two worlds of 6 edges, the smallest such pair that an exhaustive search finds. Paper: Section
+    2.2. *)
+Theorem smaller_pair_indistinguishable :
+  [/\ simple smallest_a, simple smallest_b, ~ isomorphic smallest_a smallest_b
+    & bisimilar undirected smallest_a smallest_b].
+Proof.
+have [simple_a simple_b] := Figures.smallest_simple.
+split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
+Qed.
+
+(** With one undirected immovable marker no robot maps both worlds of Figure 1, nor both of the smaller
+    pair. Paper: Section 2.2. *)
+Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
+  ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
+  ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
+Proof. exact: Impossible.undirected_marker_impossible. Qed.
+
+(** With a directional marker two starts are indistinguishable exactly if they are isomorphic, facing to
+    facing. Paper: Section 2.3. *)
+Theorem directional_marker_separates (V W : start) :
+  indistinguishable directional V W <-> isomorphic_starts V W.
+Proof. exact: Separates.indistinguishable_directional. Qed.
+
+(** * Algorithm 1 *)
+
+Section Validation.
+
+(** The known map [S] is the part of the world that [place] says; the robot has come to [t], and follows
+    a path from the hypothesis [h] to the marked vertex. *)
+Variables (S : partial_map) (W : start) (place : nat -> W) (t : W) (h : nat) (path : seq nat).
+Hypotheses (known : embeds S place) (h_known : h < size S) (path_leads : leads S (vertex S h) path 0).
+Hypothesis not_contradicted : expected S h = perceive directional t.
+
+(** A hypothesis that is confirmed is true: the robot did come in by the dart of the hypothesis; and it
+    is then where it believes to be. Paper: Section 2.3, lines 16 and 17. *)
+Theorem validation_sound :
+  always directional (follow S (degree t) 0 h path [::]) t
+    (fun ended pose _ => forall believed, ended = Confirmed believed ->
+       place h = t /\ place believed = pose).
+Proof.
+apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
+by case=> [believed|turned] pose k // [placed _ -> _] _ [<-].
+Qed.
+
+(** A hypothesis that is true is confirmed. Paper: Section 2.3, lines 12 to 17. *)
+Theorem validation_complete :
+  place h = t ->
+  always directional (follow S (degree t) 0 h path [::]) t
+    (fun ended _ _ => exists believed, ended = Confirmed believed).
+Proof.
+move=> true_h.
+apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
+by case=> [believed|turned] pose k; [exists believed | case].
+Qed.
+
+(** After a hypothesis that is rejected the robot is where it was, turned by a door that it knows. Paper:
+    Section 2.3, lines 14 and 15. *)
+Theorem rejection_returns :
+  always directional (follow S (degree t) 0 h path [::]) t
+    (fun ended pose _ => forall turned, ended = Rejected turned -> pose = turn t turned).
+Proof.
+apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
+by case=> [believed|turned] pose k // [_ -> _ _] _ [<-].
+Qed.
+
+End Validation.
+
+(** In every world and from every start Algorithm 1 ends, whatever edge it takes at line 5, whatever
+    hypothesis at line 9, and whatever paths through the known map at lines 6 and 10; its map is
+    isomorphic to the world, facing to facing, and the robot is where it believes to be. As many rounds
+    suffice as the world has edges. Paper: Section 2.3, Algorithm 1. *)
+Theorem algorithm1_correct (W : start) (bound : nat) :
+  edges W <= bound ->
+  always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
+    (fun answer pose _ => right_answer answer pose).
+Proof.
+move=> enough; have short S path : size path < known_vertices S -> any_path S path by [].
+by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
+Qed.
+
+(** With paths of at most n - 1 edges it takes at most m n + 2 m^2 (n - 1) moves, whatever else is chosen.
+    Paper: Section 2.3, the cost of Algorithm 1. *)
+Theorem algorithm1_cost (W : start) (bound : nat) :
+  let m := edges W in
+  let n := vertices W in
+  m <= bound ->
+  always directional (algorithm1 short_paths bound (perceive directional (facing W))) (facing W)
+    (fun _ _ moves => moves <= m * n + 2 * m ^ 2 * (n - 1)).
+Proof.
+move=> m n enough; have short S path : size path < known_vertices S -> short_paths S path by [].
+apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [_].
+by rewrite /Correct.cost -mulnn subn1; apply.
+Qed.
+
+(** So there is one robot that maps every world in which it is given a directional marker, and knows
+    nothing of it before. Paper: Sections 1 and 2.3. *)
+Theorem directional_marker_suffices :
+  exists robot : strategy start, forall W : start, maps_start directional robot W.
+Proof. by exists Mapper.mapper; apply: Mapper.mapper_maps. Qed.
+
+(** * More than the paper *)
+
+(** An undirected marker suffices if it lies at the end of a chain: at a vertex of degree 1. Paper:
+    beyond Section 2.2. *)
+Theorem undirected_marker_at_dead_end_suffices :
+  exists robot : strategy start, forall W : start,
+    degree (facing W) = 1 -> maps_start undirected robot W.
+Proof.
+have [robot same] := Degree1.degree_1_marker_suffices Mapper.mapper.
+exists robot => W dead_end; have [map answered iso] := Mapper.mapper_maps W.
+by exists map => //; apply/same.
+Qed.
+
+(** In two starts that are indistinguishable with one undirected marker, the poses that are alike form
+    classes of one size, in both worlds, which divides the degree of the marked vertex. Paper: beyond
+    Section 2.2. *)
+Theorem class_sizes (V W : start) :
+  indistinguishable undirected V W ->
+  exists size, size %| degree (facing V) /\
+    forall p : V,
+      (exists2 C : pred V, forall q, C q <-> alike undirected p q & #|C| = size) /\
+      (exists2 C : pred W, forall q, C q <-> alike undirected p q & #|C| = size).
+Proof.
+move=> same; have [size [divides inV _ inW _]] := Classes.indistinguishable_classes same.
+by exists size; split=> // p; split; [exists (Classes.class undirected V p)
+                                     | exists (Classes.class undirected W p)] => // q;
+   split=> /Classes.alikeP.
+Qed.
+
+(** With one marker that can be picked up and dropped the mapping algorithm of Dudek, Jenkin, Milios and
+    Wilkes maps every world without loops and parallel edges, whatever is chosen; the robot is then where
+    it believes to be, with the marker in hand. Paper: Section 2.3, "place validation" and "back-link
+    validation". *)
+Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
+  simple W -> edges W <= bound ->
+  let begin := Some (facing W) in
+  MovableMarker.always_handling
+    (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
+    (facing W) begin
+    (fun answer pose lying => lying = None /\ right_answer answer pose).
+Proof.
+move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
+exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
+Qed.
