@@ -1,7 +1,7 @@
 (** How a program's runs are put together from those of its parts. *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Program.
+From toposlam Require Import Spec Program Walks.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -15,7 +15,7 @@ Lemma always_weaken A (p : program A) (pose : W) (Q R : A -> W -> nat -> Prop) :
   (forall a q k, Q a q k -> R a q k) -> always M p pose Q -> always M p pose R.
 Proof.
 elim: p pose Q R => [a|i go IH|T ok default go IH] pose Q R QR /=; first exact: QR.
-- by apply: IH => a q k; apply: QR.
+- by case=> open_i all; split=> //; apply: IH all => a q k; apply: QR.
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
@@ -24,21 +24,21 @@ Lemma always_bind A B (p : program A) (next : A -> program B) (pose : W) Q :
   always M (let* a := p in next a) pose Q.
 Proof.
 elim: p pose Q => [a|i go IH|T ok default go IH] pose Q //=.
-- by move=> H; apply: IH; apply: always_weaken H.
+- by case=> open_i H; split=> //; apply: IH; apply: always_weaken H.
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
 Lemma always_moves doors (pose : W) (Q : unit -> W -> nat -> Prop) :
-  Q tt (walk pose doors) (size doors) -> always M (moves doors) pose Q.
+  passable pose doors -> Q tt (walk pose doors) (size doors) -> always M (moves doors) pose Q.
 Proof.
-elim: doors pose Q => [|i doors IH] pose Q //= HQ.
-by apply: IH.
+elim: doors pose Q => [|i doors IH] pose Q //= /andP[open_i open_doors] HQ.
+by split=> //; apply: IH.
 Qed.
 
 (** Moves at the beginning of a program. *)
 Lemma always_moves_bind B doors (next : unit -> program B) (pose : W) Q :
-  always M (next tt) (walk pose doors) (fun b r l => Q b r (size doors + l)) ->
+  passable pose doors -> always M (next tt) (walk pose doors) (fun b r l => Q b r (size doors + l)) ->
   always M (bind (moves doors) next) pose Q.
-Proof. by move=> H; apply: always_bind; apply: always_moves. Qed.
+Proof. by move=> open_doors H; apply: always_bind; apply: always_moves. Qed.
 
 End Always.

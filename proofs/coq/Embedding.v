@@ -93,12 +93,13 @@ Qed.
 (** A path through the map is a walk in the world. *)
 Lemma walk_known darts pose v' : pose < size S -> leads S (vertex S pose) darts v' ->
   let pose' := pose_behind S pose darts in
-  [/\ pose' < size S, vertex S pose' = v' & walk (place pose) (doors_along S pose darts) = place pose'].
+  [/\ pose' < size S, vertex S pose' = v', walk (place pose) (doors_along S pose darts) = place pose'
+    & passable (place pose) (doors_along S pose darts)].
 Proof.
 elim: darts pose => [|d darts IH] pose lt /=; first by move/eqP.
 case/andP=> /eqP same; case dd': (other S d) => [d'|//] /= path.
 have [lt' _ _] := wf_other wf dd'.
-by rewrite (traverse_known lt dd' same); apply: IH.
+rewrite (traverse_known lt dd' same) -(em_doors em lt) door_to_lt //; exact: IH.
 Qed.
 
 (** Whoever sees the marker as he should, where the map has it, is where he believes to be. *)

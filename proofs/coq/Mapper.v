@@ -84,7 +84,7 @@ Lemma always_heard p pose Q : always M p pose Q ->
   exists a r, obey p (heard p pose) = Answer a /\ Q a r (size (heard p pose)).
 Proof.
 elim: p pose Q => [a|i go IH|T ok default go IH] pose Q /=; first by exists a, pose.
-  by move/IH.
+  by case=> _ /IH.
 by case=> okd /(_ default okd)/IH.
 Qed.
 

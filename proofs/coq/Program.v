@@ -35,14 +35,15 @@ Definition choose T (allowed : T -> bool) (default : T) : program T := Choose al
 Fixpoint moves (doors : seq door) : program unit :=
   if doors is i :: others then (move i ;; moves others) else Return tt.
 
-(** Whatever is chosen: the program, begun at this pose, comes to an end, with an answer, at a pose, after
-    a number of moves, of which [Q] holds. *)
+(** Whatever is chosen: the program, begun at this pose, takes only doors that there are, and comes to an
+    end, with an answer, at a pose, after a number of moves, of which [Q] holds. *)
 Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> W -> nat -> Prop) : Prop :=
   match p with
   | Return a => Q a pose 0
   | Move i go =>
+      i < degree pose /\
       always M (go (perceive M (traverse pose i))) (traverse pose i)
-        (fun a end_ moves => Q a end_ moves.+1)
+        (fun a pose' moves => Q a pose' moves.+1)
   | Choose T allowed default go =>
       allowed default /\ forall x, allowed x -> always M (go x) pose Q
   end.

@@ -173,9 +173,10 @@ move=> em pose_lt some; have wf := em_wf em; split; first exact: nearest_in.
 move=> e eU; have := eU; rewrite mem_unexplored => /andP[e_lt _].
 have root_lt := vertex_lt wf pose_lt; have root := vertex_idem wf pose_lt; split.
   by rewrite from_root_leads //=; apply/allowed_short/from_root_short.
-move=> path /andP[path_ok path_allowed]; apply: always_moves_bind.
-have [lt at_e ->] := walk_known em pose_lt path_ok; set near := pose_behind S pose path in lt at_e *.
-rewrite /= -/near.
+move=> path /andP[path_ok path_allowed].
+have [lt at_e walked open_doors] := walk_known em pose_lt path_ok.
+apply: always_moves_bind => //; rewrite {}walked; set near := pose_behind S pose path in lt at_e *.
+rewrite /= -/near; split; first by rewrite -(em_doors em lt) (door_to_lt em).
 have -> : traverse (place near) (door_to S near e) = opposite (place e).
   by rewrite /traverse (turn_door_to em).
 set t := opposite (place e); set H := [seq h <- _ | _].

@@ -47,7 +47,7 @@ have i_lt : i < degree q.
   by rewrite (door_to_lt em).
 have goes_on : place pose = q -> place d' = traverse q i.
   by move=> <-; rewrite (traverse_known em lt dd' same).
-rewrite traverse_turned //; set q' := traverse q i.
+rewrite traverse_turned // degree_turn ltn_pmod ?degree_gt0 //; split=> //; set q' := traverse q i.
 have q'E : q' = walk t (rcons before i) by rewrite walk_rcons -qE.
 have takenE : rcons (taken t before) (i, degree q) = taken t (rcons before i).
   by rewrite taken_rcons -qE.
@@ -62,7 +62,7 @@ rewrite takenE; case: eqP => [seen|unlike] /=.
     exact: traverse_known.
   move=> -> j_lt k_le; split=> //; first by move/goes_on/placed.
   by move: k_le; rewrite size_rcons => k_le; arithmetic.
-apply: always_moves_bind => /=.
+apply: always_moves_bind => /=; first by rewrite q'E way_back_passable.
 rewrite q'E retrace_walk.
 have -> : (head (0, 0) (taken t (rcons before i))).1 = head 0 (rcons before i).
   by case: (before).

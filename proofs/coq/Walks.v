@@ -124,8 +124,22 @@ have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p
 rewrite walk_rcons [walk _ _]IH /traverse turn_inverse_door; exact: opposite_involutive.
 Qed.
 
-Lemma retrace_same_vertex p ds : same_vertex p (walk (walk p ds) (way_back (taken p ds))).
-Proof. by rewrite retrace_walk same_vertex_turn. Qed.
+(** Whether the doors that a walk takes are less than the degrees there, as those of a real robot are. *)
+Fixpoint passable (pose : G) (doors : seq door) : bool :=
+  if doors is i :: others then (i < degree pose) && passable (traverse pose i) others else true.
+
+Lemma passable_rcons p ds i : passable p (rcons ds i) = passable p ds && (i < degree (walk p ds)).
+Proof. by elim: ds p => [|j ds IH] p /=; rewrite ?andbT // IH andbA. Qed.
+
+Lemma way_back_passable p ds : passable (walk p ds) (way_back (taken p ds)).
+Proof.
+case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first by rewrite /= degree_gt0.
+pose p' := traverse p i; pose back := way_back (taken p' (j :: ds)).
+have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p') j).
+  by rewrite /back /= rev_cons.
+have back_to : walk (walk p [:: i, j & ds]) back = turn p' j := retrace_walk p' (j :: ds).
+by rewrite passable_rcons [passable _ _]IH back_to degree_turn ltn_pmod ?degree_gt0.
+Qed.
 
 End Walks.
 
