@@ -35,7 +35,7 @@ fn embed_citations() -> Result<(), String> {
     for member in folder(&root, "")? {
         if root.join(&member).join("Cargo.toml").is_file() {
             println!("cargo:rerun-if-changed={member}");
-            for part in ["src", "tests"].map(|part| format!("{member}/{part}")) {
+            for part in ["src", "tests", "coq"].map(|part| format!("{member}/{part}")) {
                 if root.join(&part).is_dir() {
                     find_sources(&root, &part, &mut sources)?;
                 }
@@ -61,13 +61,13 @@ fn literal(citation: &Citation) -> String {
     format!("Citation {{ id: {id:?}, file: {file:?}, line: {line}, kind: Kind::{kind:?} }},\n")
 }
 
-/// Adds the Rust files in a folder of the workspace and below it.
+/// Adds the files of Rust and of Coq in a folder of the workspace and below it.
 fn find_sources(root: &Path, folder_name: &str, sources: &mut Vec<String>) -> Result<(), String> {
     for name in folder(root, folder_name)? {
         let path = format!("{folder_name}/{name}");
         if root.join(&path).is_dir() {
             find_sources(root, &path, sources)?;
-        } else if Path::new(&name).extension().is_some_and(|kind| kind == "rs") {
+        } else if Path::new(&name).extension().is_some_and(|kind| kind == "rs" || kind == "v") {
             sources.push(path);
         }
     }

@@ -3,9 +3,8 @@
     and Wilkes (1991). *)
 
 From mathcomp Require Import all_ssreflect.
-From toposlam Require Import Spec Walks Arithmetic Figures.
-From toposlam Require Import Algorithm1 Maps Paths Embedding Rounds Complete Correct.
-From toposlam Require Import MovableMarker.
+From toposlam Require Import Spec Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
+From toposlam Require Import Correct MovableMarker.
 
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -23,30 +22,33 @@ Lemma always_handling_weaken p pose lying Q R : (forall a q l, Q a q l -> R a q 
 Proof.
 move=> QR; elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying /=.
 - exact: QR.
-- exact: IH.
+- by case=> open_i all; split=> //; apply: IH.
 - by case: lying => // spot [here /IH].
 - by case: lying => // /IH.
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
-(** A part of a program that is known to end well, and the rest. *)
-Lemma and_then p (next : A -> handling_program B) pose lying Q (R : B -> W -> marker_place W -> Prop) :
+(** A part of a program of which it is known how it ends, and the rest. *)
+Lemma always_handling_bind p (next : A -> handling_program B) pose lying Q
+    (R : B -> W -> marker_place W -> Prop) :
   always_handling p pose lying Q ->
   (forall a q l, Q a q l -> always_handling (next a) q l R) ->
   always_handling (let* a := p in next a) pose lying R.
 Proof.
 move=> pQ QR; suff: always_handling p pose lying (fun a q l => always_handling (next a) q l R).
   elim: p pose lying {pQ} => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
-  - exact: IH.
+  - by case=> open_i all; split=> //; apply: IH.
   - by case: lying => // spot [here /IH].
   - by case: lying => // /IH.
   - by case=> okd all; split=> // x /all; apply: IH.
 exact: always_handling_weaken QR pQ.
 Qed.
 
-Lemma always_handling_moves doors pose lying :
+Lemma always_handling_moves doors pose lying : passable pose doors ->
   always_handling (moves doors) pose lying (fun _ q l => q = walk pose doors /\ l = lying).
-Proof. by elim: doors pose => [|i doors IH] pose //=; apply: IH. Qed.
+Proof.
+by elim: doors pose => [|i doors IH] pose //= /andP[open_i open_doors]; split=> //; apply: IH.
+Qed.
 
 End AlwaysHandling.
 
@@ -60,6 +62,7 @@ Variable allowed : partial_map -> seq nat -> bool.
 Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
 
 Variable W : start.
+Hypothesis simple_W : simple W.
 
 Section OneRound.
 
@@ -81,39 +84,55 @@ Lemma travel_spec pose d lying : pose < size S -> d < size S ->
   always_handling (travel allowed S pose (vertex S d)) (place pose) lying
     (fun p r l => [/\ p < size S, vertex S p = vertex S d, r = place p & l = lying]).
 Proof.
-move=> pose_lt d_lt; apply: and_then (choose_path_spec _ _ pose_lt d_lt) _ => path _ _ [path_ok -> ->].
-apply: and_then (always_handling_moves _ _ _) _ => _ _ _ [-> ->].
-by have [] := walk_known em pose_lt path_ok.
+move=> pose_lt d_lt.
+apply: always_handling_bind (choose_path_spec _ _ pose_lt d_lt) _ => path _ _ [path_ok -> ->].
+have [p_lt at_d walked open_doors] := walk_known em pose_lt path_ok.
+by apply: always_handling_bind (always_handling_moves _ open_doors) _ => _ _ _ [-> ->].
 Qed.
 
-(** Over an edge of which one end is known. *)
-Lemma traverse_to pose e : pose < size S -> e < size S -> vertex S pose = vertex S e ->
+(** From a known vertex over any of its edges: the door exists, and leads to the other end. *)
+Lemma leave_by pose e : pose < size S -> e < size S -> vertex S pose = vertex S e ->
+  door_to S pose e < degree (place pose) /\
   traverse (place pose) (door_to S pose e) = opposite (place e).
-Proof. by move=> pose_lt e_lt same; rewrite /traverse (turn_door_to em). Qed.
+Proof.
+move=> pose_lt e_lt same; rewrite -(em_doors em) // (door_to_lt em) //.
+by rewrite /traverse (turn_door_to em).
+Qed.
 
+(** And back by door 0. *)
 Lemma opposite_back e : traverse (opposite (place e)) 0 = place e.
 Proof. exact: opposite_involutive. Qed.
+
+(** No parallel edges, as the map has it. *)
+Lemma no_parallel_known d e : d < size S -> e < size S -> vertex S d = vertex S e ->
+  same_vertex (opposite (place d)) (opposite (place e)) -> d = e.
+Proof.
+move=> d_lt e_lt same far; apply: (em_inj em) => //; have [_ no_parallel] := simple_W.
+by apply: no_parallel far; rewrite (same_vertex_known em) // same.
+Qed.
 
 (** ** The search for the marker *)
 
 Section Search.
 
+(** Where the marker lies. *)
 Variable spot : W.
 
-(** If the vertex where the marker lies is known, it is among the candidates. *)
-Definition all_candidates (C : seq nat) :=
+(** If its vertex is known, then it is among these candidates. *)
+Definition enough_candidates (C : seq nat) :=
   forall d, d < size S -> same_vertex (place d) spot -> vertex S d \in C.
 
-(** The robot sees the marker; or it does not, and it knows where else that may lie. *)
+(** The robot sees the marker; or it does not, and knows where else that may lie. *)
 Definition found_well p (r : W) := [/\ p < size S, r = place p & same_vertex (place p) spot].
 
 Definition missed_well p C (r : W) :=
-  [/\ p < size S, r = place p, ~~ same_vertex (place p) spot & all_candidates C].
+  [/\ p < size S, r = place p, ~~ same_vertex (place p) spot & enough_candidates C].
 
-Lemma all_candidates_but p C : p < size S -> ~~ same_vertex (place p) spot ->
-  all_candidates C -> all_candidates [seq v <- C | v != vertex S p].
+(** A vertex at which the marker does not lie need not be a candidate. *)
+Lemma enough_without p C : p < size S -> ~~ same_vertex (place p) spot ->
+  enough_candidates C -> enough_candidates [seq v <- C | v != vertex S p].
 Proof.
-move=> p_lt away all_C d d_lt here; rewrite mem_filter all_C // andbT.
+move=> p_lt away enough d d_lt here; rewrite mem_filter enough // andbT.
 apply: contra away => /eqP same; apply: same_vertex_trans here.
 by rewrite (same_vertex_known em) // same.
 Qed.
@@ -126,19 +145,18 @@ Lemma look_along_spec darts p v C : leads S (vertex S p) darts v -> missed_well 
        | Missed p' C' => [/\ missed_well p' C' r, subseq C' C & v \notin C']
        end).
 Proof.
-elim: darts p C => [|d darts IH] p C /= path [p_lt _ away all_C].
+elim: darts p C => [|d darts IH] p C /= path [p_lt _ away enough].
   split=> //; split; last by rewrite -(eqP path) mem_filter eqxx.
-    by split=> //; apply: all_candidates_but.
+    by split=> //; apply: enough_without.
   exact: filter_subseq.
 case/andP: path => /eqP same; case dd': (other S d) => [d'|//] /= path.
 have [d'_lt _ _] := wf_other wf dd'.
-rewrite (traverse_known em p_lt dd' same); case: ifP => // unseen.
+have [open_d ->] := leave_by p_lt (other_known dd') (esym same).
+rewrite -(em_other em dd'); split=> //; case: ifP => // unseen.
 have away' : ~~ same_vertex (place d') spot by rewrite unseen.
-have := IH d' [seq w <- C | w != vertex S p] path.
-set P := always_handling _ _ _; move=> {}IH; apply: always_handling_weaken (IH _).
-  move=> [p'|p' C'] r l [-> well]; split=> //; case: well => well sub v_C'; split=> //.
-  exact: subseq_trans sub (filter_subseq _ _).
-by split=> //; apply: all_candidates_but.
+apply: always_handling_weaken (IH d' _ path _) => [[p'|p' C'] r l [-> well]|]; first by split.
+  by case: well => well sub v_C'; split=> //; split=> //; apply: subseq_trans sub (filter_subseq _ _).
+by split=> //; apply: enough_without.
 Qed.
 
 Lemma look_for_marker_spec n p C : size C <= n ->
@@ -154,20 +172,17 @@ elim: n p C => [|n IH] p C /=; first by rewrite leqn0 => /nilP->.
 case: C => // c C0; set C := c :: C0 => size_C known_C well; have [p_lt _ _ _] := well.
 split; first exact: mem_head.
 move=> v vC; have [v_lt vv] := known_C v vC; rewrite -vv.
-apply: and_then (choose_path_spec _ _ p_lt v_lt) _ => path _ _ [path_ok -> ->].
-apply: and_then (look_along_spec path_ok well) _ => -[p'|p' C'] r l [-> ended]; first by split.
-case: ended => well' sub; rewrite vv => v_C'; have [_ -> _ _] := well'.
-apply: IH => [|w /(mem_subseq sub)/known_C//|]; last first.
-  by case: well' => *; split.
+apply: always_handling_bind (choose_path_spec _ _ p_lt v_lt) _ => path _ _ [path_ok -> ->].
+apply: always_handling_bind (look_along_spec path_ok well) _ => -[p'|p' C'] r l [-> ended] //.
+case: ended => well' sub; rewrite vv => v_C'; have [p'_lt rE away enough] := well'; rewrite rE.
+apply: IH => [|w /(mem_subseq sub)/known_C//|]; last by split.
 rewrite -ltnS; apply: leq_trans size_C; have [le eq] := size_subseq_leqif sub.
-rewrite ltn_neqAle le andbT eq; apply: contra v_C' => /eqP->; exact: vC.
+by rewrite ltn_neqAle le andbT eq; apply: contra v_C' => /eqP->.
 Qed.
 
 End Search.
 
-(** ** An edge is explored, in a simple world *)
-
-Hypothesis simple_W : simple W.
+(** ** An edge is explored *)
 
 Variable e : nat.
 Hypothesis eU : e \in unexplored S.
@@ -190,7 +205,7 @@ have /andP[hU he] := unexplored_opposite em eU h_lt (etrans placed (esym tE)).
 by exists h; [rewrite mem_filter same eqxx | rewrite placed -tE].
 Qed.
 
-Lemma candidates_complete : all_candidates t (candidates S e (degree t)).
+Lemma candidates_enough : enough_candidates t (candidates S e (degree t)).
 Proof.
 move=> d d_lt here; have [h h_link [he placed]] := end_known d_lt here.
 move: h_link; rewrite mem_filter => /andP[/eqP same hU].
@@ -200,11 +215,10 @@ rewrite mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
 - apply: contra end_is_elsewhere => /eqP de; apply: same_vertex_trans here.
   by rewrite (same_vertex_known em) // de.
 apply/hasP=> -[f _ /andP[/eqP fe]]; case ff': (other S f) => [f'|//] /eqP f'd.
-have [f'_lt _ _] := wf_other wf ff'; have f_lt := other_known ff'.
+have [f'_lt _ _] := wf_other wf ff'.
 have fE : f = e.
-  apply: (em_inj em) => //; have [_ no_parallel] := simple_W; apply: no_parallel.
-    by rewrite (same_vertex_known em) // fe.
-  by rewrite -(em_other em ff'); apply: same_vertex_trans here; rewrite (same_vertex_known em) // f'd.
+  apply: no_parallel_known (other_known ff') e_lt fe _; rewrite -(em_other em ff').
+  by apply: same_vertex_trans here; rewrite (same_vertex_known em) // f'd.
 by move: eU; rewrite mem_unexplored -fE ff' andbF.
 Qed.
 
@@ -214,7 +228,7 @@ move=> v; rewrite mem_filter mem_undup => /andP[_ /mapP[d]].
 by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_idem.
 Qed.
 
-Lemma no_dart_there : all_candidates t [::] -> forall d, d < size S -> place d <> t.
+Lemma no_dart_there : enough_candidates t [::] -> forall d, d < size S -> place d <> t.
 Proof.
 by move=> none d d_lt placed; have := none d d_lt; rewrite placed => /(_ (same_vertex_refl _)).
 Qed.
@@ -228,13 +242,15 @@ Lemma validate_place_spec :
        | KnownPlace p => found_well t p r /\ l = Some t
        end).
 Proof.
-rewrite /validate_place; have := candidates_complete; have := @candidates_known (degree t).
+rewrite /validate_place; have := candidates_enough; have := @candidates_known (degree t).
 case: (candidates _ _ _) => [_ none|c C]; first by split=> //; apply: no_dart_there.
-move: (c :: C) => {c}C known_C all_C /=; rewrite opposite_back.
+move: (c :: C) => {c}C known_C enough; split; first exact: degree_gt0.
 have well : missed_well t e C (place e) by split=> //; apply: end_is_elsewhere.
-apply: and_then (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] r l [->] //.
-case=> p_lt -> _ none; apply: and_then (travel_spec _ p_lt e_lt) _ => p' _ _ [p'_lt at_e -> ->] /=.
-rewrite traverse_to // -/t; split; first exact: same_vertex_refl.
+rewrite opposite_back.
+apply: always_handling_bind (look_for_marker_spec (leqnn _) known_C well) _ => -[p|p C'] r l [->] //.
+case=> p_lt -> _ none.
+apply: always_handling_bind (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+have [open_e ->] := leave_by near_lt e_lt at_e; split=> //; split; first exact: same_vertex_refl.
 by split=> //; apply: no_dart_there.
 Qed.
 
@@ -247,25 +263,25 @@ Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S
     (fun found r l => [/\ found = Some h, r = place e & l = Some spot]).
 Proof.
 move=> size_l p_lt links_p here h_in placed.
-have [h_lt _] := links_p h h_in.
+have back : opposite (place h) = place e by rewrite placed /t opposite_involutive.
 elim: n p links size_l p_lt links_p h_in => [|n IH] p links /=.
   by rewrite leqn0 => /nilP-> _ _.
 case: links => // g0 links0; set links := g0 :: links0 => size_l p_lt links_p h_in.
 split=> [|g g_in]; first exact: mem_head.
-clearbody links; have [g_lt g_p] := links_p g g_in; have [_ h_p] := links_p h h_in.
-rewrite /= traverse_to //; case: ifP => seen /=.
-  suff gh : g = h by rewrite gh placed /t opposite_involutive.
-  apply: (em_inj em) => //; have [_ no_parallel] := simple_W; apply: no_parallel.
-    by rewrite (same_vertex_known em) // g_p h_p.
-  by apply: same_vertex_trans seen _; rewrite same_vertex_sym placed /t opposite_involutive.
+clearbody links; have [g_lt g_p] := links_p g g_in; have [h_lt h_p] := links_p h h_in.
+have [open_g /= ->] := leave_by p_lt g_lt (esym g_p); split=> //; case: ifP => seen /=.
+  suff -> : g = h by rewrite back.
+  apply: no_parallel_known => //; first by rewrite g_p.
+  by rewrite back; apply: same_vertex_trans seen _; rewrite same_vertex_sym.
+split; first exact: degree_gt0.
 rewrite opposite_back; apply: IH => //.
 - by rewrite size_rem // -subn1 leq_subLR.
 - by move=> f /mem_rem/links_p[f_lt ->].
 have := h_in; rewrite (perm_mem (perm_to_rem g_in)) inE => /predU1P[hg|//].
-by move: seen; rewrite -hg placed /t opposite_involutive here.
+by rewrite -hg back here in seen.
 Qed.
 
-(** The right dart is found, and the marker in hand. *)
+(** The right dart is found, the robot is where it believes to be, and carries the marker. *)
 Definition linked_well (link : option (nat * nat)) (r : W) (l : marker_place W) :=
   exists h p, [/\ link = Some (h, p), h \in unexplored S, h != e, place h = t
                 & [/\ p < size S, r = place p & l = None]].
@@ -278,12 +294,13 @@ Lemma find_back_link_spec p : p < size S -> same_vertex (place p) t ->
   always_handling (find_back_link allowed S p e (back_links S (vertex S p))) (place p) None linked_well.
 Proof.
 move=> p_lt here; have [h h_in [he placed]] := end_known p_lt here.
-apply: and_then (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
-apply: and_then (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
+apply: always_handling_bind (travel_spec _ p_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+apply: always_handling_bind (travel_spec _ near_lt p_lt) _ => far _ _ [far_lt at_p -> ->].
 have e_near : same_vertex (place e) (place near) by rewrite (same_vertex_known em) // at_e.
-apply: and_then (try_back_links_spec (leqnn _) far_lt _ e_near h_in placed) _.
+have links_far : {in back_links S (vertex S p), forall g, g < size S /\ vertex S g = vertex S far}.
   by move=> g /back_links_of[g_lt -> _].
-move=> _ _ _ [-> -> ->] /=; split=> //.
+have tried := try_back_links_spec (leqnn _) far_lt links_far e_near h_in placed.
+apply: always_handling_bind tried _ => _ _ _ [-> -> ->] /=; split=> //.
 by have [_ _ hU] := back_links_of h_in; exists h, e.
 Qed.
 
@@ -300,8 +317,6 @@ End OneRound.
 
 (** * All rounds *)
 
-Hypothesis simple_W : simple W.
-
 (** A round explores one edge more: the map stays a part of the world, and the marker in hand. *)
 Lemma explore_edge_spec S (place : nat -> W) pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
@@ -310,40 +325,42 @@ Lemma explore_edge_spec S (place : nat -> W) pose :
        [/\ after = Some (S', pose'), embeds S' place', pose' < size S', r = place' pose'
          & (size S + size (unexplored S')).+2 = size S' + size (unexplored S)]).
 Proof.
-move=> em pose_lt some; split=> [|e eU]; first exact: nearest_in.
+move=> em pose_lt some_left; split=> [|e eU]; first exact: nearest_in.
 have := eU; rewrite mem_unexplored => /andP[e_lt _].
-apply: and_then (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
-rewrite (traverse_to em near_lt) //.
-apply: and_then (validate_place_spec em simple_W eU) _ => -[|p] r l.
-  case=> -> -> new; split=> //; eexists _, (size S), _.
-  split; first by [].
-  - exact: (embeds_with_vertex em eU new).
-  - by rewrite size_with_place ?degree_gt0 // -[X in X < _]addn0 ltn_add2l degree_gt0.
+apply: always_handling_bind (travel_spec em _ pose_lt e_lt) _ => near _ _ [near_lt at_e -> ->] /=.
+have [open_e ->] := leave_by em near_lt e_lt at_e; split=> //.
+apply: always_handling_bind (validate_place_spec em eU) _ => -[|p] r l.
+  case=> -> -> new; split=> //; do 3!eexists.
+  split; [by [] | exact: (embeds_with_vertex em eU new) | | |].
+  - by rewrite size_with_place ?degree_gt0 // -addn1 leq_add2l degree_gt0.
   - by rewrite /= ltnn subnn.
-  exact: (unexplored_with_place eU (degree_gt0 _)).
+  exact: unexplored_with_place (degree_gt0 _).
 case=> -[p_lt -> here] ->.
-apply: and_then (validate_back_link_spec em simple_W eU p_lt here) _ => link r' l'.
+apply: always_handling_bind (validate_back_link_spec em eU p_lt here) _ => link r' l'.
 case=> h [p' [-> hU he placed [p'_lt -> ->]]]; split=> //; exists (with_edge S e h), p', place.
 have := hU; rewrite mem_unexplored => /andP[h_lt _].
 rewrite !size_with_edge //; split=> //; first exact: embeds_with_edge.
 by rewrite (size_unexplored_with_edge eU hU he) !addnS.
 Qed.
 
+(** The answer is a map in which nothing is unexplored, and the robot is where it believes to be. *)
+Definition explored_well (answer : option (partial_map * nat)) (r : W) (l : marker_place W) :=
+  l = None /\ exists S p (place : nat -> W),
+    [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & r = place p].
+
+(** As many rounds suffice as there are edges that are not explored yet. *)
 Lemma explore_edges_spec bound S (place : nat -> W) pose :
   embeds S place -> pose < size S -> 2 * edges W + size (unexplored S) <= size S + 2 * bound ->
-  always_handling (explore_edges allowed bound S pose) (place pose) None
-    (fun answer r l => l = None /\ exists S' pose' (place' : nat -> W),
-       [/\ answer = Some (S', pose'), embeds S' place', unexplored S' = [::], pose' < size S'
-         & r = place' pose']).
+  always_handling (explore_edges allowed bound S pose) (place pose) None explored_well.
 Proof.
 elim: bound S place pose => [|bound IH] S place pose em pose_lt enough.
   have none : unexplored S = [::] by have known := size_known em; apply: size0nil; arithmetic.
   by rewrite /= none; split=> //; exists S, pose, place.
-rewrite /explore_edges -/explore_edges; case some: {1}(unexplored S) => [|d U].
+rewrite /explore_edges -/explore_edges; case UE: (unexplored S) => [|d U].
   by split=> //; exists S, pose, place.
-have {}some : unexplored S != [::] by rewrite some.
-apply: and_then (explore_edge_spec em pose_lt some) _ => after r l [->].
-case=> S' [pose' [place' [-> em' lt -> sizes]]].
+have some_left : unexplored S != [::] by rewrite UE.
+apply: always_handling_bind (explore_edge_spec em pose_lt some_left) _ => after r l [->].
+case=> S' [pose' [place' [-> em' pose'_lt -> sizes]]].
 by apply: IH => //; arithmetic.
 Qed.
 
@@ -351,10 +368,9 @@ Let begin := Some (facing W).
 
 (** Begun where the marker lies, the algorithm ends with a map that is the whole world, the robot being
     where it believes to be, with the marker in hand. *)
-Lemma movable_marker_maps_simple_worlds bound : edges W <= bound ->
+Lemma movable_spec bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
-    (fun answer pose lying => lying = None /\ exists S p (place : nat -> W),
-       [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & pose = place p]).
+    explored_well.
 Proof.
 move=> enough; split; first exact: same_vertex_refl.
 apply: (explore_edges_spec (embeds_at_start W) (pose := 0)); rewrite size_with_vertex ?degree_gt0 //.
@@ -366,7 +382,7 @@ Lemma movable_marker_answers_right bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     (fun answer pose lying => lying = None /\ right_answer answer pose).
 Proof.
-move/movable_marker_maps_simple_worlds; apply: always_handling_weaken => answer pose lying [->].
+move/movable_spec; apply: always_handling_weaken => answer pose lying [->].
 case=> S [p [place [-> em explored p_lt ->]]]; split=> //.
 by have [map drawn_map iso] := drawn_isomorphic em explored p_lt; exists S, p, map.
 Qed.

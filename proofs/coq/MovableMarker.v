@@ -14,7 +14,8 @@ Unset Printing Implicit Defensive.
 
 (** * Programs of a robot that handles a marker *)
 
-(** As in [Program.v], and the robot may also pick the marker up, to carry it, and drop it. *)
+(** As in [Program.v], and the robot may also pick the marker up, to carry it, and drop it. That file is
+    not imported: its names stand here for the same with such a marker. *)
 Inductive handling_program (A : Type) : Type :=
   | Return of A
   | Move of door & (percept -> handling_program A)
@@ -55,19 +56,21 @@ Variable W : start.
 (** Where the marker lies: at the vertex of a dart; or nowhere, if the robot carries it. *)
 Definition marker_place := option W.
 
-(** It is seen where it lies; in the robot's hand it is not. *)
+(** The marker is seen by a robot at the vertex where it lies; in the robot's hand it is not seen. *)
 Definition perceive_lying (lying : marker_place) (pose : W) : percept :=
   (degree pose,
    if lying is Some spot then if same_vertex pose spot then Lying else Nothing else Nothing).
 
-(** Whatever is chosen: the program, begun at this pose with the marker there, comes to an end, with an
-    answer, at a pose, and with the marker at a place, of which [Q] holds. The robot never picks the
-    marker up where it does not lie, and never drops it when it does not carry it. *)
+(** Whatever is chosen: the program, begun at this pose with the marker there, takes only doors that
+    there are, picks the marker up only where it lies, drops it only when the robot carries it, and comes
+    to an end, with an answer, at a pose, and with the marker at a place, of which [Q] holds. That the
+    default is allowed says that there always is a choice. *)
 Fixpoint always_handling A (p : handling_program A) (pose : W) (lying : marker_place)
     (Q : A -> W -> marker_place -> Prop) : Prop :=
   match p with
   | Return a => Q a pose lying
   | Move i go =>
+      i < degree pose /\
       always_handling (go (perceive_lying lying (traverse pose i))) (traverse pose i) lying Q
   | PickUp go =>
       if lying is Some spot then same_vertex pose spot /\ always_handling go pose None Q else False
@@ -80,22 +83,20 @@ End Handling.
 
 (** * The algorithm *)
 
-(** Whether the map has an edge between these vertices. *)
-Definition joined (S : partial_map) v w :=
-  has (fun d => (vertex S d == v) && (if other S d is Some d' then vertex S d' == w else false))
-    (iota 0 (size S)).
+(** Whether the map has an edge between these vertices: some dart leads from the one to the other. *)
+Definition joined (S : partial_map) v w := has (fun d => leads S v [:: d] w) (iota 0 (size S)).
 
 (** The known vertices that the unknown end of [e] may be, if so many doors are perceived there: those
-    that have as many, and an unexplored dart; but neither its known end, since there are no loops, nor
-    one that is joined to it already, since there are no parallel edges. *)
+    that have as many doors, and an unexplored dart; but neither the known end of [e], since there are no
+    loops, nor a vertex that is joined to that already, since there are no parallel edges. *)
 Definition candidates (S : partial_map) e degree :=
   [seq v <- undup [seq vertex S d | d <- unexplored S]
      | [&& doors S v == degree, v != vertex S e & ~~ joined S (vertex S e) v]].
 
-(** The darts that may be the other end of the edge that led to vertex [v]. *)
+(** The darts of vertex [v] that may be the other end of the edge that led there, the back-link. *)
 Definition back_links (S : partial_map) v := [seq h <- unexplored S | vertex S h == v].
 
-(** What became of a search: the marker was seen, by a robot with this pose; or not, the robot is at
+(** What became of a search: the marker was seen, by a robot with this pose; or it was not, the robot has
     this pose, and these candidates are left. *)
 Inductive search := Found of nat | Missed of nat & seq nat.
 
@@ -119,7 +120,8 @@ Definition travel (S : partial_map) pose v : handling_program nat :=
   moves (doors_along S pose path) ;;
   Return (pose_behind S pose path).
 
-(** Goes by these darts, until it sees the marker. Candidates at which it does not lie are none. *)
+(** Leaves vertex after vertex by these darts, until it sees the marker. The vertices where it did not
+    see it, the first included, are candidates no longer. *)
 Fixpoint look_along (S : partial_map) pose darts C : handling_program search :=
   let C' := [seq v <- C | v != vertex S pose] in
   if darts is d :: darts' then
@@ -128,7 +130,8 @@ Fixpoint look_along (S : partial_map) pose darts C : handling_program search :=
     if seen.2 is Lying then Return (Found pose') else look_along S pose' darts' C'
   else Return (Missed pose C').
 
-(** Visits the candidates [C] one after the other, until it sees the marker. *)
+(** Visits the candidates [C] one after the other, until it sees the marker. Every visit leaves fewer
+    candidates, so that no more visits are needed than there are candidates now. *)
 Fixpoint look_for_marker fuel (S : partial_map) pose C : handling_program search :=
   if C is [::] then Return (Missed pose C) else
   if fuel is fuel'.+1 then
@@ -142,7 +145,7 @@ Fixpoint look_for_marker fuel (S : partial_map) pose C : handling_program search
     and perceives so many doors. *)
 Definition validate_place (S : partial_map) e degree : handling_program arrival :=
   let C := candidates S e degree in
-  (* No known vertex can be it. *)
+  (* No known vertex can be it: it is new. *)
   if C is [::] then Return NewPlace else
   (* Drop the marker there, go back, and look for it everywhere that this may be. *)
   drop ;;
@@ -159,8 +162,8 @@ Definition validate_place (S : partial_map) e degree : handling_program arrival 
       Return NewPlace
   end.
 
-(** Tries these darts of the robot's vertex one after the other, until it sees the marker behind one;
-    where it does not, it returns by door 0, the way back. *)
+(** Tries these darts of the robot's vertex one after the other, until it sees the marker behind one.
+    Where it does not, it returns by door 0, the way back, and so comes in by the dart that it tried. *)
 Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (option nat) :=
   if links is [::] then Return None else
   if fuel is fuel'.+1 then
@@ -171,9 +174,9 @@ Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (op
   else Return None.
 
 (** Carries the marker from the robot's vertex to the known end of [e], drops it there, and returns
-    without it: of these darts the one behind which the marker lies is the other end of [e]. Answers it,
-    and the robot's pose, then at the known end of [e], with the marker in hand; nothing if there is no
-    such dart, as cannot be in a simple world. *)
+    without it: of these darts the one behind which the marker lies is the other end of [e]. There the
+    robot, which has come in by [e], picks the marker up. Answers that dart, and the robot's pose; or
+    nothing if there is no such dart, as cannot be in a simple world. *)
 Definition find_back_link (S : partial_map) pose e links : handling_program (option (nat * nat)) :=
   let* near := travel S pose (vertex S e) in
   drop ;;
@@ -186,7 +189,7 @@ Definition find_back_link (S : partial_map) pose e links : handling_program (opt
 Definition validate_back_link (S : partial_map) pose e : handling_program (option (nat * nat)) :=
   let links := back_links S (vertex S pose) in
   pick_up ;;
-  (* An only unexplored dart needs no validation. *)
+  (* If only one dart can be it, it is. *)
   if links is [:: only] then Return (Some (only, pose)) else find_back_link S pose e links.
 
 (** One round: an edge is explored. The robot is at [pose] in the map [S], and carries the marker. *)

@@ -18,13 +18,17 @@ Unset Printing Implicit Defensive.
 (** The same doors never lead two poses of a world to one pose. Paper: Section 2.1. *)
 Theorem walk_inj (G : embedded_graph) (doors : seq door) :
   injective (fun pose : G => walk pose doors).
-Proof. exact: Walks.walk_inj. Qed.
+Proof. (* paper: motion.path *)
+exact: Walks.walk_inj.
+Qed.
 
 (** The way back along a path ends at the vertex where it began, and the robot is then turned by the first
     door of the path. Paper: Section 2.3, line 15. *)
 Theorem retrace (G : embedded_graph) (pose : G) (doors : seq door) :
   walk (walk pose doors) (way_back (taken pose doors)) = turn pose (head 0 doors).
-Proof. exact: Walks.retrace_walk. Qed.
+Proof. (* paper: alg1.15 *)
+exact: Walks.retrace_walk.
+Qed.
 
 (** * Markers that do not suffice, and one that does *)
 
@@ -40,7 +44,7 @@ Theorem bisimilar_same_history A (robot : strategy A) (M : marker) (V W : start)
   bisimilar M V W ->
   (forall decisions, history robot M V decisions = history robot M W decisions) /\
   (forall answer, answers robot M V answer <-> answers robot M W answer).
-Proof.
+Proof. (* paper: world.interface *)
 by move=> same; split; [apply: Bisimulation.bisimilar_same_history
                        | apply: Bisimulation.bisimilar_same_answers].
 Qed.
@@ -48,14 +52,16 @@ Qed.
 (** Without a marker no robot maps both the cycle of 3 and the cycle of 4. Paper: Section 2.2. *)
 Theorem no_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
-Proof. exact: Impossible.no_marker_impossible. Qed.
+Proof. (* paper: marker.none-insufficient, marker.none-cycles *)
+exact: Impossible.no_marker_impossible.
+Qed.
 
 (** The two worlds of Figure 1 have neither loops nor parallel edges and are not isomorphic, but bisimilar
     with one undirected marker at the hub. Paper: Figure 1. *)
 Theorem figure_1_indistinguishable :
   [/\ simple figure_1a, simple figure_1b, ~ isomorphic figure_1a figure_1b
     & bisimilar undirected figure_1a figure_1b].
-Proof.
+Proof. (* paper: fig1.different, fig1.step *)
 have [simple_a simple_b] := Figures.figure_1_simple.
 split=> //; [exact: Figures.figure_1_not_isomorphic | exact: Figures.figure_1_bisimilar].
 Qed.
@@ -75,7 +81,9 @@ Qed.
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
   ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
-Proof. exact: Impossible.undirected_marker_impossible. Qed.
+Proof. (* paper: marker.undirected-insufficient *)
+exact: Impossible.undirected_marker_impossible.
+Qed.
 
 (** With a directional marker two starts are indistinguishable exactly if they are isomorphic, facing to
     facing. Paper: Section 2.3. *)
@@ -99,7 +107,7 @@ Theorem validation_sound :
   always directional (follow S (degree t) 0 h path [::]) t
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
        place h = t /\ place believed = pose).
-Proof.
+Proof. (* paper: alg1.validation, alg1.17 *)
 apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
 by case=> [believed|turned] pose k // [placed _ -> _] _ [<-].
 Qed.
@@ -109,7 +117,7 @@ Theorem validation_complete :
   place h = t ->
   always directional (follow S (degree t) 0 h path [::]) t
     (fun ended _ _ => exists believed, ended = Confirmed believed).
-Proof.
+Proof. (* paper: alg1.16 *)
 move=> true_h.
 apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
 by case=> [believed|turned] pose k; [exists believed | case].
@@ -120,7 +128,7 @@ Qed.
 Theorem rejection_returns :
   always directional (follow S (degree t) 0 h path [::]) t
     (fun ended pose _ => forall turned, ended = Rejected turned -> pose = turn t turned).
-Proof.
+Proof. (* paper: alg1.14, alg1.15 *)
 apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
 by case=> [believed|turned] pose k // [_ -> _ _] _ [<-].
 Qed.
@@ -135,7 +143,7 @@ Theorem algorithm1_correct (W : start) (bound : nat) :
   edges W <= bound ->
   always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
     (fun answer pose _ => right_answer answer pose).
-Proof.
+Proof. (* paper: alg1.isomorphic, alg1.located, alg1.terminates, alg1.every-world *)
 move=> enough; have short S path : size path < known_vertices S -> any_path S path by [].
 by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
 Qed.
@@ -148,7 +156,7 @@ Theorem algorithm1_cost (W : start) (bound : nat) :
   m <= bound ->
   always directional (algorithm1 short_paths bound (perceive directional (facing W))) (facing W)
     (fun _ _ moves => moves <= m * n + 2 * m ^ 2 * (n - 1)).
-Proof.
+Proof. (* paper: cost.bound *)
 move=> m n enough; have short S path : size path < known_vertices S -> short_paths S path by [].
 apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [_].
 by rewrite /Correct.cost -mulnn subn1; apply.
@@ -158,7 +166,9 @@ Qed.
     nothing of it before. Paper: Sections 1 and 2.3. *)
 Theorem directional_marker_suffices :
   exists robot : strategy start, forall W : start, maps_start directional robot W.
-Proof. by exists Mapper.mapper; apply: Mapper.mapper_maps. Qed.
+Proof. (* paper: marker.directional-sufficient *)
+by exists Mapper.mapper; apply: Mapper.mapper_maps.
+Qed.
 
 (** * More than the paper *)
 
@@ -200,7 +210,7 @@ Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
     (MovableMarker.movable any_path bound (MovableMarker.perceive_lying begin (facing W)))
     (facing W) begin
     (fun answer pose lying => lying = None /\ right_answer answer pose).
-Proof.
+Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
 Qed.

@@ -7,7 +7,7 @@ pub enum Kind {
     /// In code.
     Code,
     /// In a test: in a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`,
-    /// or below the line `#[cfg(test)]` of a file.
+    /// below the line `#[cfg(test)]` of a file, or in a file of Coq, at what is proved.
     Test,
 }
 
@@ -25,31 +25,40 @@ pub struct Citation<'a> {
 }
 
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
-/// the end of a line: `// paper: id`, or several ids with commas between them.
+/// the end of a line: `// paper: id`, or several ids with commas between them; in a file of Coq,
+/// `(* paper: id *)`.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
-    let mut kind = if file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part)) {
-        Kind::Test
-    } else {
-        Kind::Code
-    };
+    let in_coq = file.ends_with(".v");
+    let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
+    let mut kind = if tested || in_coq { Kind::Test } else { Kind::Code };
+    let comment = if in_coq { in_coq_comment } else { in_rust_comment };
     text.lines().zip(1..).flat_map(move |(source, line)| {
         if source.starts_with("#[cfg(test)]") {
             kind = Kind::Test;
         }
         let kind = kind;
-        cited(source).map(move |id| Citation { id, file, line, kind })
+        cited(comment(source)).map(move |id| Citation { id, file, line, kind })
     })
 }
 
-/// The ids that one line of source cites.
-fn cited(source: &str) -> impl Iterator<Item = &str> {
-    source
-        .split_once("//")
-        .filter(|(before, _)| !is_in_string(before))
-        .and_then(|(_, comment)| comment.strip_prefix(" paper:"))
+/// The ids that a comment cites.
+fn cited(comment: Option<&str>) -> impl Iterator<Item = &str> {
+    comment
+        .and_then(|comment| comment.strip_prefix(" paper:"))
         .into_iter()
         .flat_map(|ids| ids.split(','))
         .map(str::trim)
+}
+
+/// The comment at the end of a line of Rust.
+fn in_rust_comment(source: &str) -> Option<&str> {
+    let (before, comment) = source.split_once("//")?;
+    (!is_in_string(before)).then_some(comment)
+}
+
+/// The comment at the end of a line of Coq.
+fn in_coq_comment(source: &str) -> Option<&str> {
+    source.split_once("(*")?.1.strip_suffix("*)")
 }
 
 /// Whether a string that began in this text has not ended in it.
@@ -83,6 +92,16 @@ mod tests {
         assert_eq!(kinds("model/src/a/tests.rs"), [Kind::Test, Kind::Test]);
         assert_eq!(kinds("proofs/src/lemmas/a.rs"), [Kind::Test, Kind::Test]);
         assert_eq!(kinds("src/latests/a.rs"), [Kind::Code, Kind::Test]);
+    }
+
+    #[test]
+    fn what_a_theorem_cites_is_checked() {
+        let text = "Theorem walk_inj : True. (* paper: motion.path, alg1.10 *)\nProof. by []. Qed.";
+        let ids = [("motion.path", 1, Kind::Test), ("alg1.10", 1, Kind::Test)];
+        assert_eq!(found("proofs/coq/Theorems.v", text), ids);
+        for none in ["(** Paper: 2.1. *)", "(* the paper: alg1.1 *)", "(* paper: alg1.1"] {
+            assert_eq!(found("proofs/coq/Theorems.v", none), [], "{none}");
+        }
     }
 
     #[test]

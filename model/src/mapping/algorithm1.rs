@@ -23,6 +23,7 @@ pub enum Verdict {
 /// The world's own; a contradiction, where no world could be so; or more known darts than the
 /// bound of the exploration. The exploration then tells how far it came.
 // paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21, alg1.return, alg1.terminates
+// paper: alg1.every-world
 pub fn map_world<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
