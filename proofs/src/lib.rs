@@ -15,6 +15,7 @@
 //! * [`hallways`]: where a robot drives, what it sees there, rightly or not, and where it gets;
 //! * [`lemma`]: what there is to know about a lemma, and how it is declared;
 //! * [`lemmas`]: the lemmas, a file for each theme;
+//! * [`theorems`]: what is proved in Coq, in `coq/`;
 //! * [`fuzz`]: what fuzzers try to break, on bytes of their own.
 //!
 //! How they make up the theorem is told in the README beside this crate.
@@ -31,9 +32,11 @@ pub mod odometer;
 pub mod replay;
 #[cfg(kani)]
 pub mod symbolic;
+pub mod theorems;
 
 pub use bytes::Bytes;
 pub use choose::{Case, Choose, Exhibit, Stop};
 pub use lemma::Lemma;
 pub use odometer::{Counterexample, Odometer};
 pub use replay::Replay;
+pub use theorems::Theorem;

@@ -12,7 +12,7 @@ mod tests;
 use std::{io::Write, num::ParseIntError, str::FromStr};
 
 use clap::ValueEnum;
-use toposlam_proofs::{Lemma, lemmas};
+use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 
 use super::{Failure, Outcome, progress::Progress, words::grouped};
 use again::Again;
@@ -21,7 +21,8 @@ use report::Report;
 
 /// List the lemmas on which the mapping rests; check them in every case within a bound
 ///
-/// The list tells what each lemma says, where it is in the paper, and which engines check it.
+/// The list tells what each lemma says, where it is in the paper, and which engines check it; and so
+/// for the theorems that are proved in Coq, for every world. Those are checked by proofs/coq/check.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -96,10 +97,21 @@ impl Engine {
 
 impl Arguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
-        self.run_with(&lemmas::all().collect::<Vec<_>>(), out)
+        let theorems: Vec<_> = theorems::all().collect();
+        self.run_with(&lemmas::all().collect::<Vec<_>>(), &theorems, out)
     }
 
-    fn run_with(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn run_with(
+        &self,
+        lemmas: &[&Lemma],
+        theorems: &[Theorem],
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
+        if let Some(theorem) = theorems.iter().find(|it| self.run.iter().any(|n| n == it.name)) {
+            let Theorem { name, .. } = theorem;
+            let cause = "is proved in Coq, for every world; to check it, run proofs/coq/check";
+            return Err(Failure::at("--run", format!("{name} {cause}")));
+        }
         match (&self.choices, self.run.as_slice()) {
             (Some(choices), [name]) if name != ALL => {
                 let Choices(choices) = choices;
@@ -110,7 +122,7 @@ impl Arguments {
                 Err(Failure::at("--choices", cause))
             }
             (None, []) => {
-                listing::list(lemmas, self.json, out)?;
+                listing::list(lemmas, theorems, self.json, out)?;
                 Ok(Outcome::Holds)
             }
             (None, names) => self.check(&wanted(lemmas, names)?, out),

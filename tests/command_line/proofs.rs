@@ -1,18 +1,20 @@
-//! `toposlam proofs`: the list, a check, one case made again. Nothing here depends on which lemmas
-//! there are; how one that fails is told is tested beside the verb.
+//! `toposlam proofs`: the list, a check, one case made again. Nothing here depends on which lemmas and
+//! theorems there are; how one that fails is told is tested beside the verb.
 
 use std::{fs, process::Output};
 
 use serde_json::Value;
 use toposlam_model::format::world_file;
-use toposlam_proofs::{Exhibit, Lemma, lemmas, replay::Misfit};
+use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::Misfit, theorems};
 
 use crate::{folder, objects, run, said, stderr, stdout};
 
-fn listed() -> (Vec<Value>, Value) {
+/// The lemmas, the theorems and the totals.
+fn listed() -> (Vec<Value>, Vec<Value>, Value) {
     let mut lines = objects(&said(["proofs", "--json"]));
     let totals = lines.pop().unwrap();
-    (lines, totals)
+    let (lemmas, theorems) = lines.into_iter().partition(|line| line.get("lemma").is_some());
+    (lemmas, theorems, totals)
 }
 
 /// The two lemmas with the fewest cases, or the only one.
@@ -61,7 +63,7 @@ fn refusal(output: &Output) -> String {
 
 #[test]
 fn every_lemma_is_listed_with_its_place_and_its_engines() {
-    let (lines, totals) = listed();
+    let (lines, proved, totals) = listed();
     let text = said(["proofs"]);
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     // As it was before it was broken into lines.
@@ -81,9 +83,23 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
     let cases: u64 = lines.iter().map(|line| line["exhaustive"]["cases"].as_u64().unwrap()).sum();
     assert_eq!((&totals["lemmas"], &totals["cases"]), (&lines.len().into(), &cases.into()));
     assert_eq!(lines.len(), lemmas::all().count());
+    for (line, Theorem { name, sentence, paper }) in proved.iter().zip(theorems::all()) {
+        assert_eq!(
+            (&line["theorem"], &line["coq"]["bound"]),
+            (&name.into(), &"every world".into())
+        );
+        assert_eq!((&line["sentence"], &line["paper"]), (&(&*sentence).into(), &(&*paper).into()));
+        assert!(fs::exists(line["file"].as_str().unwrap()).unwrap(), "{line}");
+        let entry =
+            format!("{name} {sentence} paper {paper} file {} Coq every world ", theorems::FILE);
+        assert!(flowing.contains(&entry), "{entry}");
+    }
+    assert_eq!(proved.len(), theorems::all().count());
+    assert_eq!(totals["theorems"], proved.len());
     assert!(flowing.contains("neither this program nor cargo test does it"), "{text}");
     let last = text.lines().last().unwrap();
     assert!(last.starts_with(&format!("{} lemma", lines.len())), "{last}");
+    assert!(last.contains(&format!("; {} theorem", proved.len())), "{last}");
 }
 
 #[test]

@@ -81,13 +81,18 @@ fn compile(library: &Path, output: &Path) -> Result<BTreeSet<String>, String> {
     Ok(unwound.iter().map(|(path, times)| format!("{} {times}", within(path))).collect())
 }
 
+/// Where the sources of a copy of the library are.
+fn sources(name: &str) -> PathBuf {
+    scratch(&format!("{name}/src"))
+}
+
 /// Compiles a copy of the library in which one file is otherwise.
 fn compile_with(
     name: &str,
     file: &str,
     change: impl FnOnce(&str) -> String,
 ) -> Result<BTreeSet<String>, String> {
-    let copy = scratch(name);
+    let copy = sources(name);
     let source = here("src");
     for folder in ["", "lemmas"] {
         fs::create_dir_all(copy.join(folder)).unwrap();
@@ -102,13 +107,16 @@ fn compile_with(
     let changed = change(&text);
     assert_ne!(changed, text, "there is something to change");
     fs::write(copy.join(file), changed).unwrap();
+    // The library includes it, and finds it beside its sources.
+    let theorems = scratch(&format!("{name}/coq")).join("Theorems.v");
+    fs::copy(here("coq/Theorems.v"), theorems).unwrap();
     compile(&copy, &copy)
 }
 
 /// Sees that the library with this change is refused, for this reason, in this file.
 fn refused(name: &str, file: &str, old: &str, new: &str, reason: &str) {
     let said = compile_with(name, file, |text| text.replacen(old, new, 1)).unwrap_err();
-    let place = format!("--> {}:", scratch(name).join(file).display());
+    let place = format!("--> {}:", sources(name).join(file).display());
     let lines: Vec<_> = said.lines().collect();
     let there = |pair: &[&str]| pair[0] == reason && pair[1].trim().starts_with(&place);
     assert!(lines.windows(2).any(there), "{said}");
@@ -141,7 +149,7 @@ fn a_lemma_that_does_not_fit_its_harness_is_noticed() {
     })
     .unwrap_err();
     assert!(said.starts_with("error[E0308]: mismatched types\n"), "{said}");
-    let place = format!("::: {}:", scratch("unfit_lemma").join(file).display());
+    let place = format!("::: {}:", sources("unfit_lemma").join(file).display());
     assert!(said.contains(&place), "{said}");
 }
 

@@ -1,9 +1,10 @@
-//! The list of all lemmas: what each says, where it stands, and which engines check it.
+//! The list of all lemmas, and of the theorems that are proved in Coq: what each says, where it stands,
+//! and which engines check it.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
-use toposlam_proofs::{Lemma, lemma::Kani};
+use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
 
 use super::cases;
 use crate::cli::{Failure, columns::print_hanging, json::print_object, words::counted};
@@ -11,9 +12,11 @@ use crate::cli::{Failure, columns::print_hanging, json::print_object, words::cou
 const EXHAUSTIVE: &str = "exhaustive";
 const SAMPLED: &str = "sampled";
 const KANI: &str = "Kani";
+const COQ: &str = "Coq";
+const EVERY_WORLD: &str = "every world";
 
 /// How each engine is run, below the list.
-const ENGINES: [(&str, &str); 3] = [
+const ENGINES: [(&str, &str); 4] = [
     (EXHAUSTIVE, "every case within the bound: toposlam proofs --run NAME, or --run all"),
     (SAMPLED, "cases drawn at random within the bound: cargo test -p toposlam-proofs"),
     (
@@ -21,20 +24,27 @@ const ENGINES: [(&str, &str); 3] = [
         "every case within the bound, made symbolic: proofs/kani/verify, where Kani is installed; \
          neither this program nor cargo test does it, and no result of it stands here",
     ),
+    (
+        COQ,
+        "every world, without a bound: proofs/coq/check, where Coq is installed; this program does \
+         not do it, cargo test -p toposlam-proofs does",
+    ),
 ];
 
-/// Lists the lemmas, and how many there are.
-pub(super) fn list(lemmas: &[&Lemma], json: bool, out: &mut dyn Write) -> Result<(), Failure> {
-    if json { print_json(out, lemmas) } else { Ok(print_list(out, lemmas)?) }
+/// Lists the lemmas and the theorems, and how many there are.
+pub(super) fn list(
+    lemmas: &[&Lemma],
+    theorems: &[Theorem],
+    json: bool,
+    out: &mut dyn Write,
+) -> Result<(), Failure> {
+    if json { print_json(out, lemmas, theorems) } else { Ok(print_list(out, lemmas, theorems)?) }
 }
 
-fn print_list(out: &mut dyn Write, lemmas: &[&Lemma]) -> io::Result<()> {
+fn print_list(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> io::Result<()> {
     for lemma in lemmas {
         let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
-        writeln!(out, "{name}")?;
-        print_hanging(out, "  ", sentence)?;
-        print_entry(out, "paper", paper)?;
-        print_entry(out, "file", file)?;
+        print_head(out, [name, sentence, paper, file])?;
         let cases = cases(exhaustive.cases);
         print_entry(out, EXHAUSTIVE, &format!("{}: {cases}", exhaustive.bound))?;
         if let Some(sampled) = sampled {
@@ -45,11 +55,25 @@ fn print_list(out: &mut dyn Write, lemmas: &[&Lemma]) -> io::Result<()> {
         }
         writeln!(out)?;
     }
+    for Theorem { name, sentence, paper } in theorems {
+        print_head(out, [name, sentence, paper, FILE])?;
+        print_entry(out, COQ, EVERY_WORLD)?;
+        writeln!(out)?;
+    }
     for (engine, how) in ENGINES {
         print_entry(out, engine, how)?;
     }
     let cases = cases(total(lemmas));
-    writeln!(out, "\n{}, {cases} within the exhaustive bounds", counted(lemmas.len(), "lemma"))
+    let [lemmas, theorems] =
+        [(lemmas.len(), "lemma"), (theorems.len(), "theorem")].map(|(n, word)| counted(n, word));
+    writeln!(out, "\n{lemmas}, {cases} within the exhaustive bounds; {theorems} for {EVERY_WORLD}")
+}
+
+fn print_head(out: &mut dyn Write, [name, sentence, paper, file]: [&str; 4]) -> io::Result<()> {
+    writeln!(out, "{name}")?;
+    print_hanging(out, "  ", sentence)?;
+    print_entry(out, "paper", paper)?;
+    print_entry(out, "file", file)
 }
 
 fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
@@ -57,7 +81,7 @@ fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
     print_hanging(out, &format!("  {label:width$}  "), text)
 }
 
-/// A line of `--json`.
+/// A line of `--json`, of a lemma.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
@@ -88,17 +112,34 @@ struct KaniLine<'a> {
     harness: &'a str,
 }
 
+/// A line of `--json`, of a theorem.
+#[derive(Serialize)]
+struct TheoremLine<'a> {
+    schema: u32,
+    theorem: &'a str,
+    sentence: &'a str,
+    paper: &'a str,
+    file: &'a str,
+    coq: CoqLine<'a>,
+}
+
+#[derive(Serialize)]
+struct CoqLine<'a> {
+    bound: &'a str,
+}
+
 /// The last line of `--json`.
 #[derive(Serialize)]
 struct TotalsLine {
     schema: u32,
     lemmas: usize,
+    theorems: usize,
     cases: u64,
     sampled: usize,
     kani: usize,
 }
 
-fn print_json(out: &mut dyn Write, lemmas: &[&Lemma]) -> Result<(), Failure> {
+fn print_json(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> Result<(), Failure> {
     for lemma in lemmas {
         let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
         let line = Line {
@@ -113,9 +154,15 @@ fn print_json(out: &mut dyn Write, lemmas: &[&Lemma]) -> Result<(), Failure> {
         };
         print_object(out, &line)?;
     }
+    for Theorem { name, sentence, paper } in theorems {
+        let coq = CoqLine { bound: EVERY_WORLD };
+        let line = TheoremLine { schema: 1, theorem: name, sentence, paper, file: FILE, coq };
+        print_object(out, &line)?;
+    }
     let totals = TotalsLine {
         schema: 1,
         lemmas: lemmas.len(),
+        theorems: theorems.len(),
         cases: total(lemmas),
         sampled: lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
         kani: lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),

@@ -24,7 +24,8 @@ fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, Failure>, Strin
     let matches = command.try_get_matches_from(arguments).unwrap();
     let arguments = Arguments::from_arg_matches(&matches).unwrap();
     let mut out = Vec::new();
-    let outcome = arguments.run_with(&lemmas.iter().collect::<Vec<_>>(), &mut out);
+    let theorems = [Theorem { name: "round", sentence: "It turns.".into(), paper: "2.2".into() }];
+    let outcome = arguments.run_with(&lemmas.iter().collect::<Vec<_>>(), &theorems, &mut out);
     (outcome, String::from_utf8(out).unwrap())
 }
 
@@ -322,4 +323,23 @@ fn whoever_breaks_off_waits_for_no_case() {
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end) && text.contains("interrupted"), "{text}");
     }
+}
+
+#[test]
+fn a_theorem_is_listed_and_left_to_coq() {
+    let (outcome, text) = run(&[true_lemma()], &[]);
+    assert_eq!(outcome.unwrap(), Outcome::Holds);
+    let entry = "\nround\n  It turns.\n  paper       2.2\n  file        proofs/coq/Theorems.v\n  \
+                 Coq         every world\n\n";
+    assert!(text.contains(entry), "{text}");
+    let last = "\n1 lemma, 4 cases within the exhaustive bounds; 1 theorem for every world\n";
+    assert!(text.ends_with(last), "{text}");
+    for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
+        let (Err(Failure::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
+        let how = "is proved in Coq, for every world; to check it, run proofs/coq/check";
+        assert_eq!((message, text), (format!("--run: round {how}"), String::new()));
+    }
+    let (outcome, text) = run(&[true_lemma()], &["--run", "all", "--json"]);
+    assert_eq!(outcome.unwrap(), Outcome::Holds);
+    assert_eq!(objects(&text).len(), 2);
 }

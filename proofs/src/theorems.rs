@@ -1,0 +1,65 @@
+//! The theorems that are proved in Coq, for every world. They stand in `coq/Theorems.v`, and nowhere else:
+//! each under a comment that says it in words.
+
+/// A theorem that is proved in Coq.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Theorem {
+    /// Its name.
+    pub name: &'static str,
+    /// What it says, in words.
+    pub sentence: String,
+    /// Its place in the paper.
+    pub paper: String,
+}
+
+/// The file in which they stand, from the root of the workspace.
+pub const FILE: &str = "proofs/coq/Theorems.v";
+
+const SOURCE: &str = include_str!("../coq/Theorems.v");
+
+/// All theorems, in their order.
+pub fn all() -> impl Iterator<Item = Theorem> {
+    SOURCE.split("(**").filter_map(theorem)
+}
+
+/// The theorem that stands under a comment, `(** SENTENCES Paper: PLACE. *)`, which begins here.
+fn theorem(text: &'static str) -> Option<Theorem> {
+    let (comment, code) = text.split_once("*)")?;
+    let code = code.trim_start().strip_prefix("Theorem ")?;
+    let name = code.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next()?;
+    let (sentence, paper) = comment.rsplit_once("Paper:").unwrap_or((comment, ""));
+    // A comment of Coq sets code in brackets, and is broken into lines.
+    let plain =
+        |text: &str| text.replace(['[', ']'], "").split_whitespace().collect::<Vec<_>>().join(" ");
+    let paper = plain(paper).trim_end_matches('.').to_owned();
+    Some(Theorem { name, sentence: plain(sentence), paper })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_theorem_has_its_sentence_and_its_place() {
+        let stated = SOURCE.lines().filter(|line| line.trim_start().starts_with("Theorem "));
+        assert_eq!(all().count(), stated.count());
+        assert!(all().count() > 0);
+        for Theorem { name, sentence, paper } in all() {
+            assert!(sentence.ends_with('.') && !paper.is_empty(), "{name}: {sentence} {paper}");
+        }
+    }
+
+    #[test]
+    fn a_comment_is_read_as_it_flows() {
+        let read = theorem(
+            " The way [f] back\n    is one. Paper: 2.3;\n  line 15. *)\nTheorem way (f : nat).",
+        );
+        let (name, sentence, paper) =
+            ("way", "The way f back is one.".into(), "2.3; line 15".into());
+        assert_eq!(read, Some(Theorem { name, sentence, paper }));
+        assert_eq!(
+            theorem(" What is proved. *)\nFrom mathcomp Require Import all_ssreflect."),
+            None
+        );
+    }
+}
