@@ -1,0 +1,123 @@
+//! The development with one thing changed does not hold, and the script says so: a check that no fault
+//! can fail says nothing.
+
+use std::{fs, path::PathBuf};
+
+use crate::{Compiled, check, compiled, folder, source, text};
+
+/// The development with something changed in one file.
+struct Changed {
+    /// Its sources.
+    sources: PathBuf,
+    /// Where it is compiled, as far as nothing has changed.
+    compiled: PathBuf,
+}
+
+impl Changed {
+    fn new(name: &str, file: &str, change: impl Fn(&str) -> String, whole: &Compiled) -> Self {
+        let sources = folder(&format!("{name}/sources"));
+        let compiled = whole.copy(&format!("{name}/compiled"));
+        for entry in fs::read_dir(source("")).unwrap() {
+            let entry = entry.unwrap();
+            if entry.path().extension().is_some_and(|kind| kind == "v") {
+                fs::copy(entry.path(), sources.join(entry.file_name())).unwrap();
+            }
+        }
+        fs::copy(source("_CoqProject"), sources.join("_CoqProject")).unwrap();
+        fs::write(sources.join(file), change(&fs::read_to_string(source(file)).unwrap())).unwrap();
+        Self { sources, compiled }
+    }
+
+    /// What the script says of it, on its output and beside it: it does not hold.
+    #[track_caller]
+    fn violated(&self) -> (String, String) {
+        let said = check(&self.sources, &self.compiled);
+        let (stdout, stderr) = (text(&said.stdout), text(&said.stderr));
+        assert_eq!(said.status.code(), Some(1), "{stderr}\n{stdout}");
+        assert!(stdout.lines().last().unwrap().starts_with("violated: "), "{stdout}");
+        (stdout, stderr)
+    }
+}
+
+/// With another definition, which is accepted, what was proved does not hold.
+#[track_caller]
+fn assert_matters(name: &str, file: &str, from: &str, to: &str) {
+    let Some(whole) = compiled() else { return };
+    let change = |text: &str| {
+        assert_eq!(text.matches(from).count(), 1, "{from}");
+        text.replace(from, to)
+    };
+    let (stdout, stderr) = Changed::new(name, file, change, whole).violated();
+    assert_eq!(stdout, "violated: Coq does not accept the development");
+    let mistaken: Vec<_> = stderr.lines().filter(|line| line.starts_with("File \"./")).collect();
+    assert!(!mistaken.is_empty() && mistaken.iter().all(|line| !line.contains(file)), "{stderr}");
+}
+
+#[test]
+fn a_percept_without_the_degree_where_the_marker_lies_is_not_enough() {
+    assert_matters(
+        "degree",
+        "Spec.v",
+        "percept := (degree pose, M W pose).",
+        "percept := (if same_vertex pose (facing W) then 0 else degree pose, M W pose).",
+    );
+}
+
+#[test]
+fn a_marker_without_a_direction_is_not_enough() {
+    let pointing = "Pointing (findex clockwise pose (facing W))";
+    assert_matters("direction", "Spec.v", pointing, "Pointing 0");
+}
+
+#[test]
+fn the_way_back_needs_its_first_turn() {
+    assert_matters("way-back", "Spec.v", "then 0 :: rev [", "then rev [");
+}
+
+#[test]
+fn a_hypothesis_is_not_validated_by_degrees_alone() {
+    let compared = "if seen == expected S pose'";
+    let degrees = "if seen.1 == (expected S pose').1";
+    assert_matters("validation", "Algorithm1.v", compared, degrees);
+}
+
+#[test]
+fn what_is_left_out_or_assumed_is_refused() {
+    let Some(whole) = compiled() else { return };
+    for (name, added, found) in [
+        ("admitted", "Lemma absurd : False. Admitted.", "Admitted"),
+        ("admit", "Lemma absurd : False. Proof. admit. Qed.", "admit"),
+        ("axiom", "Axiom absurd : False.", "Axiom"),
+        ("parameter", "(* (* *) \" *) \" *) Parameter absurd : False.", "Parameter"),
+        ("variable", "Section S. End S. Variable absurd : False.", "Variable outside a section"),
+        ("guard", "Unset Guard Checking.", "Guard Checking"),
+    ] {
+        let change = |text: &str| format!("{text}\n{added}\n");
+        let changed = Changed::new(name, "Program.v", change, whole);
+        let line = fs::read_to_string(changed.sources.join("Program.v")).unwrap().lines().count();
+        let (stdout, _) = changed.violated();
+        let why = "violated: a proof is left out, or something is assumed";
+        assert_eq!(stdout, format!("Program.v:{line}: {found}\n\n{why}"));
+    }
+}
+
+#[test]
+fn a_theorem_that_rests_on_an_axiom_of_a_library_is_not_closed() {
+    let Some(whole) = compiled() else { return };
+    let middle = "From Coq Require Classical_Prop. (* Axiom: *)\n\
+                  Theorem middle (P : Prop) : P \\/ ~ P.\nProof. exact: Classical_Prop.classic. Qed.\n";
+    let changed =
+        Changed::new("classical", "Theorems.v", |text| format!("{text}\n{middle}"), whole);
+    let (stdout, _) = changed.violated();
+    let (before, after) = stdout.split_once("\nmiddle ").unwrap();
+    assert!(before.lines().all(|line| line.ends_with(" closed")), "{stdout}");
+    assert!(after.trim_start().starts_with("not closed\n  Axioms:\n"), "{stdout}");
+}
+
+#[test]
+fn without_a_theorem_nothing_holds() {
+    let Some(whole) = compiled() else { return };
+    let none = |_: &str| "(* Theorem none : False. *)\n".to_owned();
+    let (stdout, _) = Changed::new("none", "Theorems.v", none, whole).violated();
+    assert_eq!(stdout, "violated: there is no theorem in Theorems.v");
+}

@@ -1,0 +1,101 @@
+//! The Coq development, where Coq is installed: that it holds, that it would not if it were broken, and
+//! that the algorithm of which it speaks is the one of `toposlam-model`.
+//!
+//! Where Coq, MathComp or OCaml is missing a test says so and is skipped, unless `TOPOSLAM_COQ=required`.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod broken;
+mod comparison;
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+
+const OCAMLOPT: &str = "ocamlopt";
+
+/// A file of the development.
+fn source(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("coq").join(name)
+}
+
+/// A folder of ours under the target directory; what stood there is gone.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("coq").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// What the script says of a development that is compiled in a folder.
+fn check(development: &Path, compiled: &Path) -> Output {
+    let mut script = Command::new("bash");
+    script.arg(source("check")).arg("--out").args([compiled, development]).output().unwrap()
+}
+
+/// The development as it stands, compiled; and what the script said of it.
+struct Compiled {
+    folder: PathBuf,
+    said: Output,
+}
+
+impl Compiled {
+    /// A copy of it in a folder of ours, in which something may be changed.
+    fn copy(&self, name: &str) -> PathBuf {
+        let folder = folder(name);
+        // With the times of the files, by which make sees what must be compiled again.
+        printed(Command::new("cp").args(["-a", "."]).arg(&folder).current_dir(&self.folder));
+        folder
+    }
+}
+
+/// Where a program that is needed is missing: what, and how to install it.
+static COMPILED: LazyLock<Result<Compiled, String>> = LazyLock::new(|| {
+    let folder = folder("compiled");
+    let said = check(&source(""), &folder);
+    if said.status.code() == Some(2) {
+        return Err(text(&said.stderr).trim_start_matches("error: ").to_owned());
+    }
+    match Command::new(OCAMLOPT).arg("-version").output() {
+        Ok(_) => Ok(Compiled { folder, said }),
+        Err(_) => Err(format!("there is no {OCAMLOPT}; on Debian: apt-get install ocaml-nox")),
+    }
+});
+
+/// `None`, and why, where Coq is not installed.
+fn compiled() -> Option<&'static Compiled> {
+    match &*COMPILED {
+        Ok(compiled) => Some(compiled),
+        Err(missing) => {
+            let required = env::var("TOPOSLAM_COQ").is_ok_and(|wish| wish == "required");
+            assert!(!required, "{missing}");
+            eprintln!("skipped, nothing was checked in Coq: {missing}");
+            None
+        }
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).trim_end().to_owned()
+}
+
+/// What a program printed; panics if it failed.
+fn printed(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}\n{}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+#[test]
+fn the_theorems_hold_and_rest_on_no_axiom() {
+    let Some(Compiled { said, .. }) = compiled() else { return };
+    let (stdout, stderr) = (text(&said.stdout), text(&said.stderr));
+    assert!(said.status.success(), "{stderr}\n{stdout}");
+    let closed: Vec<_> =
+        stdout.lines().filter_map(|line| line.strip_suffix(" closed")).map(str::trim).collect();
+    let theorems: Vec<_> = toposlam_proofs::theorems::all().map(|theorem| theorem.name).collect();
+    assert_eq!(closed, theorems);
+}
