@@ -7,6 +7,7 @@
 
 mod broken;
 mod comparison;
+mod figures;
 
 use std::{
     env, fs,
