@@ -78,7 +78,10 @@ fn the_embedded_citations_are_where_they_say() {
         let source = fs::read_to_string(file).unwrap();
         let line = source.lines().nth(citation.line - 1).unwrap();
         let (_, ids) = line.split_once(" paper: ").unwrap();
-        assert!(ids.trim_end_matches(" *)").split(", ").any(|id| id == citation.id), "{citation:?} in {line}");
+        assert!(
+            ids.trim_end_matches(" *)").split(", ").any(|id| id == citation.id),
+            "{citation:?} in {line}"
+        );
     }
     assert!(CITATIONS.is_sorted_by_key(|citation| (citation.file, citation.line)));
 }
