@@ -15,7 +15,7 @@ Unset Printing Implicit Defensive.
 
 (** * Walks *)
 
-(** The same doors never lead two poses of a world to one pose. Paper: Section 2.1. *)
+(** The same doors never lead two poses of a world to one pose. Paper: 2.1. *)
 Theorem walk_inj (G : embedded_graph) (doors : seq door) :
   injective (fun pose : G => walk pose doors).
 Proof. (* paper: motion.path *)
@@ -23,7 +23,7 @@ exact: Walks.walk_inj.
 Qed.
 
 (** The way back along a path ends at the vertex where it began, and the robot is then turned by the first
-    door of the path. Paper: Section 2.3, line 15. *)
+    door of the path. Paper: 2.3; Algorithm 1, line 15. *)
 Theorem retrace (G : embedded_graph) (pose : G) (doors : seq door) :
   walk (walk pose doors) (way_back (taken pose doors)) = turn pose (head 0 doors).
 Proof. (* paper: alg1.15 *)
@@ -33,13 +33,13 @@ Qed.
 (** * Markers that do not suffice, and one that does *)
 
 (** Two starts are indistinguishable, every door sequence giving the same percepts, exactly if there is a
-    bisimulation of their poses. Paper: Section 2.2, the proof about Figure 1. *)
+    bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
 Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
   bisimilar M V W <-> indistinguishable M V W.
 Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
 
 (** In bisimilar starts every robot has the same history, whatever its strategy, and so gives the same
-    answer. Paper: Section 2.2. *)
+    answer. Paper: 2.2. *)
 Theorem bisimilar_same_history A (robot : strategy A) (M : marker) (V W : start) :
   bisimilar M V W ->
   (forall decisions, history robot M V decisions = history robot M W decisions) /\
@@ -49,7 +49,7 @@ by move=> same; split; [apply: Bisimulation.bisimilar_same_history
                        | apply: Bisimulation.bisimilar_same_answers].
 Qed.
 
-(** Without a marker no robot maps both the cycle of 3 and the cycle of 4. Paper: Section 2.2. *)
+(** Without a marker no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
 Theorem no_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
 Proof. (* paper: marker.none-insufficient, marker.none-cycles *)
@@ -57,7 +57,7 @@ exact: Impossible.no_marker_impossible.
 Qed.
 
 (** The two worlds of Figure 1 have neither loops nor parallel edges and are not isomorphic, but bisimilar
-    with one undirected marker at the hub. Paper: Figure 1. *)
+    with one undirected marker at the hub. Paper: 2.2; Figure 1. *)
 Theorem figure_1_indistinguishable :
   [/\ simple figure_1a, simple figure_1b, ~ isomorphic figure_1a figure_1b
     & bisimilar undirected figure_1a figure_1b].
@@ -66,8 +66,9 @@ have [simple_a simple_b] := Figures.figure_1_simple.
 split=> //; [exact: Figures.figure_1_not_isomorphic | exact: Figures.figure_1_bisimilar].
 Qed.
 
-(** So are two worlds of 6 edges, the smallest such pair that an exhaustive search finds. Paper: Section
-    2.2. *)
+(** Two worlds of 6 edges, the smallest such pair that an exhaustive search finds, have neither loops nor
+    parallel edges and are not isomorphic, but bisimilar with one undirected marker at the start vertex.
+    Paper: 2.2. *)
 Theorem smaller_pair_indistinguishable :
   [/\ simple smallest_a, simple smallest_b, ~ isomorphic smallest_a smallest_b
     & bisimilar undirected smallest_a smallest_b].
@@ -77,7 +78,7 @@ split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bi
 Qed.
 
 (** With one undirected immovable marker no robot maps both worlds of Figure 1, nor both of the smaller
-    pair. Paper: Section 2.2. *)
+    pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
   ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
@@ -86,7 +87,7 @@ exact: Impossible.undirected_marker_impossible.
 Qed.
 
 (** With a directional marker two starts are indistinguishable exactly if they are isomorphic, facing to
-    facing. Paper: Section 2.3. *)
+    facing. Paper: 2.3. *)
 Theorem directional_marker_separates (V W : start) :
   indistinguishable directional V W <-> isomorphic_starts V W.
 Proof. exact: Separates.indistinguishable_directional. Qed.
@@ -102,7 +103,8 @@ Hypotheses (known : embeds S place) (h_known : h < size S) (path_leads : leads S
 Hypothesis not_contradicted : expected S h = perceive directional t.
 
 (** A hypothesis that is confirmed is true: the robot did come in by the dart of the hypothesis; and it
-    is then where it believes to be. Paper: Section 2.3, lines 16 and 17. *)
+    is then where it believes to be. Paper: 2.3; Algorithm 1,
+    lines 16 and 17. *)
 Theorem validation_sound :
   always directional (follow S (degree t) 0 h path [::]) t
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
@@ -112,7 +114,7 @@ apply: Always.always_weaken (Validation.follow_once known h_known path_leads not
 by case=> [believed|turned] pose k // [placed _ -> _] _ [<-].
 Qed.
 
-(** A hypothesis that is true is confirmed. Paper: Section 2.3, lines 12 to 17. *)
+(** A hypothesis that is true is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
   always directional (follow S (degree t) 0 h path [::]) t
@@ -124,7 +126,7 @@ by case=> [believed|turned] pose k; [exists believed | case].
 Qed.
 
 (** After a hypothesis that is rejected the robot is where it was, turned by a door that it knows. Paper:
-    Section 2.3, lines 14 and 15. *)
+    2.3; Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
   always directional (follow S (degree t) 0 h path [::]) t
     (fun ended pose _ => forall turned, ended = Rejected turned -> pose = turn t turned).
@@ -138,7 +140,7 @@ End Validation.
 (** In every world and from every start Algorithm 1 ends, whatever edge it takes at line 5, whatever
     hypothesis at line 9, and whatever paths through the known map at lines 6 and 10; its map is
     isomorphic to the world, facing to facing, and the robot is where it believes to be. As many rounds
-    suffice as the world has edges. Paper: Section 2.3, Algorithm 1. *)
+    suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
 Theorem algorithm1_correct (W : start) (bound : nat) :
   edges W <= bound ->
   always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
@@ -148,8 +150,8 @@ move=> enough; have short S path : size path < known_vertices S -> any_path S pa
 by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
 Qed.
 
-(** With paths of at most n - 1 edges it takes at most m n + 2 m^2 (n - 1) moves, whatever else is chosen.
-    Paper: Section 2.3, the cost of Algorithm 1. *)
+(** With paths of at most n - 1 edges Algorithm 1 makes at most m n + 2 m^2 (n - 1) moves, whatever else is
+    chosen. Paper: 2.3; the cost of Algorithm 1. *)
 Theorem algorithm1_cost (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
@@ -162,8 +164,8 @@ apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pos
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
-(** So there is one robot that maps every world in which it is given a directional marker, and knows
-    nothing of it before. Paper: Sections 1 and 2.3. *)
+(** One directional marker suffices: there is one robot that maps every world in which it is given one, and
+    knows nothing of that world before. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
   exists robot : strategy start, forall W : start, maps_start directional robot W.
 Proof. (* paper: marker.directional-sufficient *)
@@ -173,7 +175,7 @@ Qed.
 (** * More than the paper *)
 
 (** An undirected marker suffices if it lies at the end of a chain: at a vertex of degree 1. Paper:
-    beyond Section 2.2. *)
+    beyond 2.2. *)
 Theorem undirected_marker_at_dead_end_suffices :
   exists robot : strategy start, forall W : start,
     degree (facing W) = 1 -> maps_start undirected robot W.
@@ -185,7 +187,7 @@ Qed.
 
 (** In two starts that are indistinguishable with one undirected marker, the poses that are alike form
     classes of one size, in both worlds, which divides the degree of the marked vertex. Paper: beyond
-    Section 2.2. *)
+    2.2. *)
 Theorem class_sizes (V W : start) :
   indistinguishable undirected V W ->
   exists size, size %| degree (facing V) /\
@@ -201,8 +203,8 @@ Qed.
 
 (** With one marker that can be picked up and dropped the mapping algorithm of Dudek, Jenkin, Milios and
     Wilkes maps every world without loops and parallel edges, whatever is chosen; the robot is then where
-    it believes to be, with the marker in hand. Paper: Section 2.3, "place validation" and "back-link
-    validation". *)
+    it believes to be, with the marker in hand. Paper: 2.3; place validation, back-link
+    validation. *)
 Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
   let begin := Some (facing W) in
