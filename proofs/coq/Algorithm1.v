@@ -1,6 +1,9 @@
 (** Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
 
-    The numbers are those of the printed lines. What the paper leaves open is left open: the edge of line
+    The numbers are those of the printed lines. Coq wants the inner part first, so read from the end:
+    [algorithm1] is lines 1 to 3, [rounds] line 4, [explore] 5 to 23, [try_all] 8 to 17, [follow] 11 to 17.
+    U is not kept, but read off S: the darts whose other end is not known. So lines 5, 20 and 23 change U by
+    changing S. What the paper leaves open is left open: the edge of line
     5, the hypothesis of line 9, the paths of lines 6 and 10 are chosen, and the default is what toposlam
     does when nobody says otherwise. Definitions only. *)
 
@@ -130,14 +133,15 @@ Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdi
     (* 11: try to traverse the path. *)
     let* seen := move ((i + degree - turned) %% degree) in
     let taken' := rcons taken (i, degree) in
-    (* 12, 13: compare what is perceived with what is expected. *)
+    (* 12, 13: compare what is perceived with what is expected, at each step: the first mismatch decides. *)
     if seen == expected S pose' then follow S seen.1 0 pose' darts' taken'
     (* 14, 15: reject the hypothesis, retrace the path. *)
     else (moves (way_back taken') ;; Return (Rejected (head (0, 0) taken').1))
   (* 16, 17: confirm the hypothesis. *)
   else Return (Confirmed pose).
 
-(** Lines 8 to 17, for hypotheses [H]; each is the unexplored dart by which the robot would have come in. *)
+(** Lines 8 to 17, for hypotheses [H]; each is the unexplored dart by which the robot would have come in.
+    [fuel], the number of hypotheses, is there for Coq to see that this ends. *)
 Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
   let tree := tree_from S 0 in
   (* 8: while H is not empty. *)
@@ -145,9 +149,9 @@ Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
   if fuel is fuel'.+1 then
     (* 9: remove a hypothesis from H. *)
     let* h := choose (fun h => h \in H) (nearest S tree H) in
-    (* 10: a path to v0. *)
+    (* 10: a path to v0; what is to be perceived along it is [expected]. *)
     let* path := choose (fun path => leads S (vertex S h) path 0 && allowed S path)
-              (to_root S tree (vertex S h)) in
+                   (to_root S tree (vertex S h)) in
     (* 11 to 17. *)
     let* ended := follow S degree turned h path [::] in
     match ended with
@@ -164,10 +168,11 @@ Definition explore (S : partial_map) pose : program (partial_map * nat) :=
   let* e := choose (fun e => e \in U) (nearest S tree U) in
   (* 6: traverse S to its known end, then follow it to its unknown end. *)
   let* path := choose (fun path => leads S (vertex S pose) path (vertex S e) && allowed S path)
-            (from_root S tree (vertex S e)) in
+                 (from_root S tree (vertex S e)) in
   moves (doors_along S pose path) ;;
   let* seen := move (door_to S (pose_behind S pose path) e) in
-  (* 7: the hypotheses, but those that the percept contradicts at once. *)
+  (* 7: the hypotheses. Those that the percept on arrival contradicts are left out: they would be rejected
+     at line 13 without a move. *)
   let H := [seq h <- U | (h != e) && (expected S h == seen)] in
   (* 8 to 17. *)
   let* became := try_all (size H) S seen.1 0 H in
@@ -181,6 +186,7 @@ Definition explore (S : partial_map) pose : program (partial_map * nat) :=
 (** Lines 4 to 23: while U is not empty. A robot that is lied to could go on for ever, so the number of
     rounds is bounded; [None] is the answer if they do not suffice. *)
 Fixpoint rounds bound (S : partial_map) pose : program (option (partial_map * nat)) :=
+  (* return S. *)
   if unexplored S is [::] then Return (Some (S, pose)) else
   if bound is bound'.+1 then
     let* after := explore S pose in
@@ -249,5 +255,5 @@ End Drawn.
 
 (** The answer is a map isomorphic to the world as a start, and the robot is where it believes to be. *)
 Definition right_answer (W : start) (answer : option (partial_map * nat)) (pose : W) :=
-  exists S p map, [/\ answer = Some (S, p), drawn S p = Some map
+  exists S p map, [/\ answer = Some (S, p), p < size S, drawn S p = Some map
     & exists f : map -> W, [/\ isomorphism f, f (facing map) = facing W & f (robot map) = pose]].

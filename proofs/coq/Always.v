@@ -19,6 +19,12 @@ elim: p pose Q R => [a|i go IH|T ok default go IH] pose Q R QR /=; first exact: 
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
+(** What is always so is so of some run. *)
+Lemma some_run A (p : program A) (pose : W) : ~ always M p pose (fun _ _ _ => False).
+Proof.
+by elim: p pose => [a|i go IH|T ok default go IH] pose //= [] => [_ /IH|okd /(_ default okd)/IH].
+Qed.
+
 Lemma always_bind A B (p : program A) (next : A -> program B) (pose : W) Q :
   always M p pose (fun a q k => always M (next a) q (fun b r l => Q b r (k + l))) ->
   always M (let* a := p in next a) pose Q.

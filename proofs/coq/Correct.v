@@ -105,7 +105,7 @@ have count : size (with_vertex [::] g) + 2 * edges W = 2 * edges W + size (unexp
 have lt : 0 < size (with_vertex [::] g) by rewrite sz degree_gt0.
 apply: always_weaken (rounds_spec embeds_at_start lt count le) => answer r k [[T [p [place]]]].
 case=> -> em explored p_lt -> cost_k; split=> //.
-by have [L drawn_L iso] := drawn_isomorphic em explored p_lt; exists T, p, L.
+have [L drawn_L iso] := drawn_isomorphic em explored p_lt; by exists T, p, L; split.
 Qed.
 
 End Correct.

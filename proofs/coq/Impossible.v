@@ -16,6 +16,15 @@ move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' 
 by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_unique answers_map answers_map').
 Qed.
 
+(** And if it also tells where it began, that is the same place. *)
+Lemma bisimilar_maps_start M (robot : strategy start) V W :
+  bisimilar M V W -> maps_start M robot V -> maps_start M robot W -> isomorphic_starts V W.
+Proof.
+move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' answers_map' map_W].
+apply: isomorphic_starts_trans (isomorphic_starts_sym map_V) _.
+by rewrite (answers_unique answers_map answers_map').
+Qed.
+
 Corollary bisimilar_impossible M V W :
   bisimilar M V W -> ~ isomorphic V W ->
   forall robot : strategy embedded_graph, ~ (maps M robot V /\ maps M robot W).

@@ -119,7 +119,7 @@ pose bound := (edges W + cost W (edges W)).+1.
 have le : edges W <= bound by rewrite /bound -addnS leq_addr.
 have [answer [pose [ended [right cost_le]]]] := always_heard (algorithm1_spec short le).
 have {cost_le} moves_le := cost_le (fun S path => id).
-have [T [p [map [answered drawn_map [f [iso facing_f _]]]]]] := right.
+have [T [p [map [answered _ drawn_map [f [iso facing_f _]]]]]] := right.
 exists (map : start); last by exists f.
 pose report (d : decision (option (partial_map * nat))) : decision start :=
   match d with

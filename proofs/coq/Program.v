@@ -36,7 +36,8 @@ Fixpoint moves (doors : seq door) : program unit :=
   if doors is i :: others then (move i ;; moves others) else Return tt.
 
 (** Whatever is chosen: the program, begun at this pose, takes only doors that there are, and comes to an
-    end, with an answer, at a pose, after a number of moves, of which [Q] holds. *)
+    end, with an answer, at a pose, after a number of moves, of which [Q] holds. That the default is allowed
+    says that there always is a choice. That it comes to an end need not be said: no program is endless. *)
 Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> W -> nat -> Prop) : Prop :=
   match p with
   | Return a => Q a pose 0
@@ -49,10 +50,14 @@ Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> 
   end.
 
 (** What a robot that obeys the program, and chooses the default each time, does after it has perceived
-    this on its way. *)
+    this behind the doors that it took. *)
 Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
   match p with
   | Return a => Answer a
   | Move i go => if past is seen :: later then obey (go seen) later else Leave i
   | Choose T _ default go => obey (go default) past
   end.
+
+(** Such a robot as a strategy; the program may depend on what is perceived at the start. *)
+Definition obeying A (p : percept -> program A) : strategy A :=
+  fun past => if past is first :: later then obey (p first) later else Leave 0.

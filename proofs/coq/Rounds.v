@@ -52,15 +52,14 @@ have v_lt := vertex_lt wf h_lt; split.
   rewrite to_root_leads ?wf_first ?wf_some //=.
   by apply/allowed_short/to_root_short; rewrite ?wf_first ?wf_some.
 move=> path /andP[path_ok path_allowed]; apply: always_bind.
-have tE : t = walk t [::] by [].
 have empty : path = [::] -> turned = 0.
   move=> empty; rewrite empty /= in path_ok; case: unmarked => // unmarked.
   by have := fits h inH; rewrite /perceive unmarked /expected path_ok.
-apply: always_weaken (follow_spec em h_lt path_ok tE (ltnW turned_lt) empty _ (esym (fits h inH))) => //.
+apply: always_weaken (follow_once em h_lt path_ok turned_lt empty (fits h inH)).
 case=> [pose|i] r k [].
   move=> placed pose_lt -> k_le /=; rewrite addn0; split=> // B /(_ path path_allowed) le.
   by rewrite mulSn mul2n -addnn -addnA; apply: leq_trans k_le (leq_trans le (leq_addr _ _)).
-move=> wrong -> i_lt; rewrite addn0 => k_le.
+move=> wrong -> i_lt k_le.
 have rest_fits g : g \in rem h H -> expected S g = perceive directional t by move/mem_rem/fits.
 have rest_sub : {subset rem h H <= unexplored S} by move=> g /mem_rem/sub.
 have rest_size : size (rem h H) = n by rewrite size_rem // sizeH.

@@ -29,11 +29,13 @@ Record embedded_graph := EmbeddedGraph {
 Arguments opposite {_}.
 Arguments clockwise {_}.
 
-(** A start: a world, and the dart by which the robot counts as having come in, its facing dart. *)
+(** A start: a world, and the dart by which the robot counts as having come in, its facing dart. So the
+    world of a start has at least one edge. *)
 Record start := Start { graph :> embedded_graph; facing : graph }.
 
 Arguments facing : clear implicits.
 
+(** Any number is a door: see [turn]. *)
 Definition door := nat.
 
 Section EmbeddedGraph.
@@ -102,11 +104,11 @@ Definition marker := forall W : start, W -> sighting.
 
 Definition no_marker : marker := fun _ _ => Nothing.
 
-(** One undirected immovable marker, at the start vertex. *)
+(** One undirected immovable marker, at the start vertex from the beginning. *)
 Definition undirected : marker :=
   fun W pose => if same_vertex pose (facing W) then Lying else Nothing.
 
-(** One directional immovable marker, at the start vertex, along the facing dart. *)
+(** One directional immovable marker, at the start vertex from the beginning, along the facing dart. *)
 Definition directional : marker :=
   fun W pose =>
     if same_vertex pose (facing W) then Pointing (findex clockwise pose (facing W)) else Nothing.

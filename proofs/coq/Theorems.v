@@ -3,8 +3,8 @@
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1.
-From toposlam Require Walks Embedding Validation Bisimulation Figures Impossible Separates.
-From toposlam Require Correct Mapper Degree1 Classes MovableMarker MovableCorrect.
+From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
+From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
 Import Embedding(embeds).
@@ -77,7 +77,7 @@ have [simple_a simple_b] := Figures.smallest_simple.
 split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
 Qed.
 
-(** With one undirected immovable marker no robot maps both worlds of Figure 1, nor both of the smaller
+(** With one undirected immovable marker at the start vertex no robot maps both worlds of Figure 1, nor both of the smaller
     pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
@@ -92,50 +92,120 @@ Theorem directional_marker_separates (V W : start) :
   indistinguishable directional V W <-> isomorphic_starts V W.
 Proof. exact: Separates.indistinguishable_directional. Qed.
 
+(** Two starts that one robot maps, and tells where it began, are isomorphic, facing to facing, if they are
+    indistinguishable. Paper: 2.2. *)
+Theorem mapped_starts_are_told_apart (robot : strategy start) (M : marker) (V W : start) :
+  maps_start M robot V -> maps_start M robot W -> indistinguishable M V W -> isomorphic_starts V W.
+Proof.
+by move=> maps_V maps_W /Bisimulation.bisimilar_iff_indistinguishable same;
+   apply: Impossible.bisimilar_maps_start same maps_V maps_W.
+Qed.
+
+(** * Programs *)
+
+(** What is always so of a program is so of the robot that obeys it, choosing the defaults: it answers, and
+    until then takes only doors that there are. Paper: 2.1. *)
+Theorem obeying_always A (p : percept -> program A) (M : marker) (W : start) (Q : A -> W -> nat -> Prop) :
+  always M (p (perceive M (facing W))) (facing W) Q ->
+  let robot := obeying p in
+  exists answer n,
+    [/\ robot (history robot M W n) = Answer answer, Q answer (situation robot M W n).2 n
+      & forall j i, robot (history robot M W j) = Leave i -> i < degree (situation robot M W j).2].
+Proof. exact: Obeying.obeying_always. Qed.
+
 (** * Algorithm 1 *)
+
+Section Line4.
+
+Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
+
+(** At line 4 the known map is a part of the world, and the robot is where it believes to be: at first.
+    Paper: 2.3; Algorithm 1, lines 1 to 3. *)
+Theorem map_embeds_at_first : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
+Proof. (* paper: alg1.2, alg1.3 *)
+exact: Correct.embeds_at_start.
+Qed.
+
+(** At line 4 the known map is a part of the world, and the robot is where it believes to be: after every
+    round, if before it. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
+Theorem map_embeds_after_round :
+  embeds S place -> pose < size S -> unexplored S != [::] ->
+  always directional (explore any_path S pose) (place pose)
+    (fun after there _ => exists place' : nat -> W,
+       [/\ embeds after.1 place', after.2 < size after.1 & there = place' after.2]).
+Proof. (* paper: alg1.4, alg1.located *)
+move=> known lt some; have short T path : size path < known_vertices T -> any_path T path by [].
+apply: Always.always_weaken (Rounds.explore_spec short known lt some).
+by move=> after r k [[place' [known' lt' -> _]] _]; exists place'.
+Qed.
+
+End Line4.
 
 Section Validation.
 
-(** The known map [S] is the part of the world that [place] says; the robot has come to [t], and follows
-    a path from the hypothesis [h] to the marked vertex. *)
-Variables (S : partial_map) (W : start) (place : nat -> W) (t : W) (h : nat) (path : seq nat).
+(** The known map [S] is the part of the world that [place] says. The robot came to [t], and is turned by
+    [turned] since: by nothing if it has rejected no hypothesis yet, as it has not if [h] is at the marked
+    vertex, for then the percept at [t] decided. It follows a path from the hypothesis [h] to the marked
+    vertex. *)
+Variables (S : partial_map) (W : start) (place : nat -> W) (t : W).
+Variables (h : nat) (path : seq nat) (turned : door).
 Hypotheses (known : embeds S place) (h_known : h < size S) (path_leads : leads S (vertex S h) path 0).
+Hypotheses (turned_exists : turned < degree t) (at_marker : path = [::] -> turned = 0).
 Hypothesis not_contradicted : expected S h = perceive directional t.
 
-(** A hypothesis that is confirmed is true: the robot did come in by the dart of the hypothesis; and it
-    is then where it believes to be. Paper: 2.3; Algorithm 1,
-    lines 16 and 17. *)
+Let once :=
+  Validation.follow_once known h_known path_leads turned_exists at_marker not_contradicted.
+
+(** A hypothesis that is confirmed is true: the robot did come in by the dart of the hypothesis; and it is
+    then where it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
-  always directional (follow S (degree t) 0 h path [::]) t
+  always directional (follow S (degree t) turned h path [::]) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
        place h = t /\ place believed = pose).
 Proof. (* paper: alg1.validation, alg1.17 *)
-apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
-by case=> [believed|turned] pose k // [placed _ -> _] _ [<-].
+apply: Always.always_weaken once.
+by case=> [believed|turned'] pose k // [placed _ -> _] _ [<-].
 Qed.
 
 (** A hypothesis that is true is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
-  always directional (follow S (degree t) 0 h path [::]) t
+  always directional (follow S (degree t) turned h path [::]) (turn t turned)
     (fun ended _ _ => exists believed, ended = Confirmed believed).
 Proof. (* paper: alg1.16 *)
-move=> true_h.
-apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
-by case=> [believed|turned] pose k; [exists believed | case].
+move=> true_h; apply: Always.always_weaken once.
+by case=> [believed|turned'] pose k; [exists believed | case].
 Qed.
 
-(** After a hypothesis that is rejected the robot is where it was, turned by a door that it knows. Paper:
-    2.3; Algorithm 1, lines 14 and 15. *)
+(** After a hypothesis that is rejected the robot is where it was, turned by a door that it knows.
+    Paper: 2.3; Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
-  always directional (follow S (degree t) 0 h path [::]) t
-    (fun ended pose _ => forall turned, ended = Rejected turned -> pose = turn t turned).
+  always directional (follow S (degree t) turned h path [::]) (turn t turned)
+    (fun ended pose _ => forall turned', ended = Rejected turned' -> pose = turn t turned').
 Proof. (* paper: alg1.14, alg1.15 *)
-apply: Always.always_weaken (Validation.follow_once known h_known path_leads not_contradicted).
-by case=> [believed|turned] pose k // [_ -> _ _] _ [<-].
+apply: Always.always_weaken once.
+by case=> [believed|turned'] pose k // [_ -> _ _] _ [<-].
 Qed.
 
 End Validation.
+
+(** Of hypotheses that the percept on arrival does not contradict, tried in any order and by any paths, the
+    true one is confirmed; if there is none, all are rejected, and the robot is where it was. Paper: 2.3;
+    Algorithm 1, lines 8 to 17. *)
+Theorem hypotheses_decided (S : partial_map) (W : start) (place : nat -> W) (t : W) (H : seq nat) :
+  embeds S place -> {subset H <= unexplored S} ->
+  (forall h, h \in H -> expected S h = perceive directional t) ->
+  always directional (try_all any_path (size H) S (degree t) 0 H) t
+    (fun became pose _ =>
+       match became with
+       | Loop h believed => [/\ h \in H, place h = t & place believed = pose]
+       | New turned => (forall h, h \in H -> place h <> t) /\ pose = turn t turned
+       end).
+Proof. (* paper: alg1.8, alg1.9 *)
+move=> known sub fits; have short T path : size path < known_vertices T -> any_path T path by [].
+have := Rounds.try_all_spec short known (erefl (size H)) sub fits (Walks.degree_gt0 t) (or_introl erefl).
+by apply: Always.always_weaken => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
+Qed.
 
 (** In every world and from every start Algorithm 1 ends, whatever edge it takes at line 5, whatever
     hypothesis at line 9, and whatever paths through the known map at lines 6 and 10; its map is
@@ -150,8 +220,8 @@ move=> enough; have short S path : size path < known_vertices S -> any_path S pa
 by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
 Qed.
 
-(** With paths of at most n - 1 edges Algorithm 1 makes at most m n + 2 m^2 (n - 1) moves, whatever else is
-    chosen. Paper: 2.3; the cost of Algorithm 1. *)
+(** With paths that have fewer edges than there are known vertices, as shortest ones have, Algorithm 1 makes
+    at most m n + 2 m^2 (n - 1) moves, whatever else is chosen. Paper: 2.3; the cost of Algorithm 1. *)
 Theorem algorithm1_cost (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
@@ -174,7 +244,7 @@ Qed.
 
 (** * More than the paper *)
 
-(** An undirected marker suffices if it lies at the end of a chain: at a vertex of degree 1. Paper:
+(** An undirected marker suffices if it lies at a dead end: at a vertex of degree 1. Paper:
     beyond 2.2. *)
 Theorem undirected_marker_at_dead_end_suffices :
   exists robot : strategy start, forall W : start,
@@ -191,14 +261,12 @@ Qed.
 Theorem class_sizes (V W : start) :
   indistinguishable undirected V W ->
   exists size, size %| degree (facing V) /\
-    forall p : V,
-      (exists2 C : pred V, forall q, C q <-> alike undirected p q & #|C| = size) /\
-      (exists2 C : pred W, forall q, C q <-> alike undirected p q & #|C| = size).
+    forall X Y, (X = V \/ X = W) -> (Y = V \/ Y = W) ->
+    forall p : X, exists2 C : pred Y, forall q, C q <-> alike undirected p q & #|C| = size.
 Proof.
-move=> same; have [size [divides inV _ inW _]] := Classes.indistinguishable_classes same.
-by exists size; split=> // p; split; [exists (Classes.class undirected V p)
-                                     | exists (Classes.class undirected W p)] => // q;
-   split=> /Classes.alikeP.
+move=> same; have [size [divides VV WW VW WV]] := Classes.indistinguishable_classes same.
+exists size; split=> // X Y [->|->] [->|->] p; exists (Classes.class undirected _ p) => // q;
+  split=> /Classes.alikeP //.
 Qed.
 
 (** With one marker that can be picked up and dropped the mapping algorithm of Dudek, Jenkin, Milios and

@@ -74,18 +74,19 @@ have -> : size (way_back (taken t (rcons before i))) = (size before).+1.
 by arithmetic.
 Qed.
 
-(** From where a place was just reached. *)
-Lemma follow_once (t : W) h path :
-  h < size S -> leads S (vertex S h) path 0 -> expected S h = perceive directional t ->
-  always directional (follow S (degree t) 0 h path [::]) t
+(** From where a place was just reached, and the robot has turned since. *)
+Lemma follow_once (t : W) h path turned :
+  h < size S -> leads S (vertex S h) path 0 -> turned < degree t -> (path = [::] -> turned = 0) ->
+  expected S h = perceive directional t ->
+  always directional (follow S (degree t) turned h path [::]) (turn t turned)
     (fun ended r k =>
        match ended with
        | Confirmed pose => [/\ place h = t, pose < size S, r = place pose & k <= size path]
-       | Rejected i => [/\ place h <> t, r = turn t i, i < degree t & k <= 2 * size path + 0]
+       | Rejected i => [/\ place h <> t, r = turn t i, i < degree t & k <= 2 * size path]
        end).
 Proof.
-move=> lt leads_there fits.
-exact: (@follow_spec path t t h 0 [::]) lt leads_there erefl (leq0n _) (fun=> erefl) _ (esym fits).
+move=> lt leads_there turned_lt at_marker fits; rewrite -[2 * _]addn0.
+exact: (@follow_spec path t t h turned [::]) lt leads_there erefl (ltnW turned_lt) at_marker _ (esym fits).
 Qed.
 
 End Validation.

@@ -28,7 +28,7 @@ pub struct Citation<'a> {
 /// the end of a line: `// paper: id`, or several ids with commas between them; in a file of Coq,
 /// `(* paper: id *)`.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
-    let in_coq = file.ends_with(".v");
+    let in_coq = file.rsplit('.').next() == Some("v");
     let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
     let mut kind = if tested || in_coq { Kind::Test } else { Kind::Code };
     let comment = if in_coq { in_coq_comment } else { in_rust_comment };
