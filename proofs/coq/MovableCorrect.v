@@ -28,6 +28,16 @@ move=> QR; elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
+(** What is always so is so of some run. *)
+Lemma some_handling p pose lying : ~ always_handling p pose lying (fun _ _ _ => False).
+Proof.
+elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
+- by case=> _ /IH.
+- by case: lying => [spot [_ /IH]|].
+- by case: lying => [spot [] | all]; case: (IH pose (Some pose)).
+- by case=> okd /(_ default okd)/IH.
+Qed.
+
 (** A part of a program of which it is known how it ends, and the rest. *)
 Lemma always_handling_bind p (next : A -> handling_program B) pose lying Q
     (R : B -> W -> marker_place W -> Prop) :
