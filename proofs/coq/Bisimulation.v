@@ -112,9 +112,6 @@ rewrite /orbit [order _ _](isomorphism_degree p) -/(degree p); have [_ _ f_cw] :
 by move: (degree p) => n; elim: n p => //= n IH p; rewrite -f_cw IH.
 Qed.
 
-Lemma isomorphism_card : #|G| = #|H|.
-Proof. by case: iso => /bij_eq_card. Qed.
-
 End Isomorphisms.
 
 Lemma isomorphism_id (G : embedded_graph) : isomorphism (@id G).

@@ -1,5 +1,5 @@
 (** How the poses of indistinguishable starts fall into classes that no walk tells apart: all classes have
-    one size, which divides the degree of the marked vertex. Section 2.2 of the paper.
+    one size, which divides the degree of the marked vertex. Beyond Section 2.2.
 
     Of starts that an undirected marker does not tell apart, it follows that they have equally many
     edges and vertices. *)

@@ -78,7 +78,8 @@ Qed.
 
 Lemma size_complete : size S = 2 * edges W.
 Proof.
-apply/eqP; rewrite eqn_leq size_known -card_darts /=; apply: leq_trans (_ : size (map place (iota 0 (size S))) <= _).
+apply/eqP; rewrite eqn_leq size_known -card_darts /=.
+apply: leq_trans (_ : size (map place (iota 0 (size S))) <= _).
   apply: leq_trans (card_size _); apply/subset_leq_card/subsetP=> q _.
   by have [d lt <-] := place_onto q; rewrite map_f // mem_iota.
 by rewrite size_map size_iota.
@@ -118,7 +119,8 @@ Lemma map_is_drawn : is_drawn S.
 Proof.
 apply/and4P; split.
 - by apply/forallP=> d; apply/eqP/f_inj; rewrite !f_opposite opposite_involutive.
-- by apply/forallP=> d; apply/eqP=> /(congr1 f); rewrite f_opposite => /eqP; rewrite (negPf (opposite_moves _)).
+- apply/forallP=> d; apply/eqP=> /(congr1 f); rewrite f_opposite => /eqP.
+  by rewrite (negPf (opposite_moves _)).
 - by apply/injectiveP=> d e /(congr1 f); rewrite !f_clockwise => /(@clockwise_injective W)/f_inj.
 apply/forallP=> d; apply/forallP=> e.
 have /connectP[s path_s fe] := connected (f d) (f e).

@@ -46,7 +46,8 @@ Lemma another_round bound S pose :
 Proof. by []. Qed.
 
 Lemma rounds_spec left bound S (place : nat -> W) pose :
-  embeds S place -> pose < size S -> size S + 2 * left = 2 * edges W + size (unexplored S) -> left <= bound ->
+  embeds S place -> pose < size S -> size S + 2 * left = 2 * edges W + size (unexplored S) ->
+  left <= bound ->
   always directional (rounds allowed bound S pose) (place pose)
     (fun answer r k =>
        (exists T pose' (place' : nat -> W),

@@ -1,5 +1,5 @@
 (** On a vertex with one door an undirected marker tells as much as a directional one: it can only point
-    along that door. Section 2.2 of the paper. *)
+    along that door. Beyond Section 2.2. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation Separates.

@@ -8,7 +8,8 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** [place] tells where each dart of the map is in the world. The facing dart is the facing dart; different
-    darts are different; degrees, the order around each vertex, and explored edges are those of the world. *)
+    darts are different; degrees, the order around each vertex, and the explored edges are those of the
+    world. *)
 Record embeds (S : partial_map) (W : start) (place : nat -> W) : Prop := Embeds {
   em_wf : well_formed S;
   em_facing : place 0 = facing W;

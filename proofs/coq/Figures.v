@@ -118,12 +118,6 @@ Implicit Types d e : world.
 
 (** ** What can be seen from the names *)
 
-Lemma val_opposite d : val (opposite d) = flip (val d).
-Proof. by []. Qed.
-
-Lemma val_clockwise d : val (clockwise d) = around (val d).
-Proof. by []. Qed.
-
 Lemma val_turn d i : val (turn d i) = iter i around (val d).
 Proof. by elim: i => //= i <-. Qed.
 

@@ -82,9 +82,6 @@ Lemma other_with_edge d :
   other (with_edge S e h) d = if d == h then Some e else if d == e then Some h else other S d.
 Proof. by rewrite /with_edge !other_set_other. Qed.
 
-Lemma expected_with_edge d : expected (with_edge S e h) d = expected S d.
-Proof. by rewrite /expected /door_to vertex_with_edge doors_with_edge. Qed.
-
 End WithEdge.
 
 Lemma well_formed_with_edge S e h :

@@ -37,14 +37,6 @@ case other_d: (other S d) => [d'|] // /IH leads_back; have [_ _ other_d'] := wf_
 by rewrite rev_cons -cats1; apply: leads_cat leads_back _; rewrite /= other_d' !eqxx.
 Qed.
 
-Lemma leads_mem S v darts v' : well_formed S -> leads S v darts v' ->
-  {in darts, forall d, d < size S /\ other S d != None}.
-Proof.
-move=> _; elim: darts v => [|e darts IH] v //= /andP[_].
-case other_e: (other S e) => [e'|] // /IH mem_darts d; rewrite inE => /predU1P[->|/mem_darts//].
-by rewrite other_e (other_known other_e).
-Qed.
-
 (** * The tree *)
 
 Section Tree.

@@ -26,7 +26,8 @@ Fixpoint bind A B (first : program A) (next : A -> program B) : program B :=
 
 Notation "'let*' x := first 'in' next" := (bind first (fun x => next))
   (at level 200, x name, first at level 100, next at level 200, right associativity).
-Notation "first ;; next" := (bind first (fun=> next)) (at level 100, next at level 200, right associativity).
+Notation "first ;; next" := (bind first (fun=> next))
+  (at level 100, next at level 200, right associativity).
 
 Definition move (i : door) : program percept := Move i (@Return percept).
 Definition choose T (allowed : T -> bool) (default : T) : program T := Choose allowed default (@Return T).

@@ -77,8 +77,8 @@ have [simple_a simple_b] := Figures.smallest_simple.
 split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
 Qed.
 
-(** With one undirected immovable marker at the start vertex no robot maps both worlds of Figure 1, nor both of the smaller
-    pair. Paper: 2.2. *)
+(** With one undirected immovable marker at the start vertex no robot maps both worlds of Figure 1, nor both
+    of the smaller pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
   ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).

@@ -1,5 +1,5 @@
 (** What every walk in a world has: turns are counted round and round, a walk can be undone, and some walk
-    leads from every pose to every other. Stands for what Sections 2.1 and 2.2 of the paper take as plain. *)
+    leads from every pose to every other. Section 2.1. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
@@ -47,9 +47,6 @@ Qed.
 Lemma degree_turn p i : degree (turn p i) = degree p.
 Proof. by rewrite -(same_vertex_degree (same_vertex_turn p i)). Qed.
 
-Lemma turn0 p : turn p 0 = p.
-Proof. by []. Qed.
-
 Lemma turn_add p i j : turn p (i + j) = turn (turn p i) j.
 Proof. by rewrite /turn addnC iterD. Qed.
 
@@ -75,9 +72,6 @@ Qed.
 
 Lemma traverse_inj i : injective (fun p => traverse p i).
 Proof. by move=> p q /opposite_inj /turn_inj. Qed.
-
-Lemma traverse_mod p i : traverse p (i %% degree p) = traverse p i.
-Proof. by rewrite /traverse turn_mod. Qed.
 
 Lemma walk_cat p ds es : walk p (ds ++ es) = walk (walk p ds) es.
 Proof. exact: foldl_cat. Qed.
@@ -149,21 +143,6 @@ Section Percepts.
 
 Variables (M : marker) (W : start).
 Implicit Types (p : W) (ds es : seq door).
-
-Lemma size_percepts p ds : size (percepts M p ds) = (size ds).+1.
-Proof. by elim: ds p => //= i ds IH p; rewrite IH. Qed.
-
-(** The pose in the middle is perceived once. *)
-Lemma percepts_cat p ds es :
-  percepts M p (ds ++ es) = percepts M p ds ++ behead (percepts M (W := W) (walk p ds) es).
-Proof. by elim: ds p => [|i ds IH] p /=; [case: es | rewrite IH]. Qed.
-
-Lemma percepts_rcons p ds i :
-  percepts M p (rcons ds i) = rcons (percepts M p ds) (perceive M (W := W) (walk p (rcons ds i))).
-Proof. by rewrite walk_rcons -!cats1 percepts_cat. Qed.
-
-Lemma head_percepts x p ds : head x (percepts M p ds) = perceive M p.
-Proof. by case: ds. Qed.
 
 Lemma last_percepts x p ds : last x (percepts M p ds) = perceive M (W := W) (walk p ds).
 Proof. by elim: ds x p => //= i ds IH x p; rewrite IH. Qed.
