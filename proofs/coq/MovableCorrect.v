@@ -219,7 +219,7 @@ Lemma candidates_enough : enough_candidates t (candidates S e (degree t)).
 Proof.
 move=> d d_lt here; have [h h_link [he placed]] := end_known d_lt here.
 move: h_link; rewrite mem_filter => /andP[/eqP same hU].
-rewrite mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
+rewrite mem_sort mem_filter mem_undup -{4}same map_f // andbT; apply/and3P; split.
 - by rewrite (em_doors em) ?vertex_lt // (degree_vertex em) // (em_doors em) //
     (same_vertex_degree here).
 - apply: contra end_is_elsewhere => /eqP de; apply: same_vertex_trans here.
@@ -234,7 +234,7 @@ Qed.
 
 Lemma candidates_known n : {in candidates S e n, forall v, v < size S /\ vertex S v = v}.
 Proof.
-move=> v; rewrite mem_filter mem_undup => /andP[_ /mapP[d]].
+move=> v; rewrite mem_sort mem_filter mem_undup => /andP[_ /mapP[d]].
 by rewrite mem_unexplored => /andP[d_lt _] ->; rewrite vertex_lt // vertex_idem.
 Qed.
 

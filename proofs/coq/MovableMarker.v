@@ -86,12 +86,24 @@ End Handling.
 (** Whether the map has an edge between these vertices: some dart leads from the one to the other. *)
 Definition joined (S : partial_map) v w := has (fun d => leads S v [:: d] w) (iota 0 (size S)).
 
+(** Of two paths from one vertex, given by the darts that they take, whether a depth-first walk that takes
+    the darts of each vertex in their order comes to the end of the first before that of the second. *)
+Fixpoint met_before (darts darts' : seq nat) : bool :=
+  match darts, darts' with
+  | [::], _ => true
+  | _, [::] => false
+  | d :: others, d' :: others' => (d < d') || (d == d') && met_before others others'
+  end.
+
 (** The known vertices that the unknown end of [e] may be, if so many doors are perceived there: those
     that have as many doors, and an unexplored dart; but neither the known end of [e], since there are no
-    loops, nor a vertex that is joined to that already, since there are no parallel edges. *)
+    loops, nor a vertex that is joined to that already, since there are no parallel edges. They stand in the
+    order in which a depth-first walk of the shortest paths from the known end meets them. *)
 Definition candidates (S : partial_map) e degree :=
-  [seq v <- undup [seq vertex S d | d <- unexplored S]
-     | [&& doors S v == degree, v != vertex S e & ~~ joined S (vertex S e) v]].
+  let way := from_root S (tree_from S (vertex S e)) in
+  sort (fun v w => met_before (way v) (way w))
+    [seq v <- undup [seq vertex S d | d <- unexplored S]
+       | [&& doors S v == degree, v != vertex S e & ~~ joined S (vertex S e) v]].
 
 (** The darts of vertex [v] that may be the other end of the edge that led there, the back-link. *)
 Definition back_links (S : partial_map) v := [seq h <- unexplored S | vertex S h == v].

@@ -1,5 +1,5 @@
-(** A directional marker separates: starts that are indistinguishable with it are the same. Section 2.2 of
-    the paper. *)
+(** A directional marker separates: starts that are indistinguishable with it are the same.
+    Section 2.3. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation.

@@ -1,17 +1,18 @@
-(* Runs the extracted Algorithm 1, with its default choices, in each start that stands on a line of
-   standard input, and tells on a line of standard output what it did.
+(* Runs the extracted algorithms, with their default choices, in each start that stands on a line of
+   standard input, and tells on a line of standard output what they did.
 
-   A start is two lists of darts with a semicolon between them: what is opposite to dart 0, 1, 2, ..., and
-   what is clockwise from it. The facing dart is dart 0. Told are the doors that the robot took, in their
-   order; of each dart of its map the first dart of its vertex, the degree of its vertex, and the other
-   end of its edge; and the robot's pose:
+   A start is the kind of marker and two lists of darts, with semicolons between them: what is opposite to
+   dart 0, 1, 2, ..., and what is clockwise from it. The facing dart is dart 0. Told are what the robot
+   did, in its order, the doors that it took as numbers; of each dart of its map the first dart of its
+   vertex, the degree of its vertex, and the other end of its edge; and the robot's pose:
 
-     opposite 1 0; clockwise 1 0
-     doors 1; first 0 0; degree 2 2; other 1 0; robot 0
+     movable; opposite 1 0; clockwise 0 1
+     did pick-up 0; first 0 1; degree 1 1; other 1 0; robot 1
 
-   Here the world is: what stands in [Spec.v] on finite types is written again, on arrays. *)
+   Here the world is: what stands in [Spec.v] and in [MovableMarker.v] on finite types is written again, on
+   arrays. *)
 
-open Algorithm1
+open Mappings
 
 let rec nat n = if n = 0 then O else S (nat (n - 1))
 let rec int = function O -> 0 | S n -> 1 + int n
@@ -35,49 +36,67 @@ let doors start pose =
 
 (* What a directional marker along the facing dart adds to the percept, where these are doors [door],
    [door + 1], ... *)
-let rec sighting door = function
+let rec pointing door = function
   | [] -> Nothing
-  | dart :: others -> if dart = facing then Pointing (nat door) else sighting (door + 1) others
+  | dart :: others -> if dart = facing then Pointing (nat door) else pointing (door + 1) others
 
-let percept start pose =
+(* What an undirected marker adds that lies at the vertex of a dart, if it is not carried. *)
+let lying spot doors =
+  match spot with Some dart when List.mem dart doors -> Lying | _ -> Nothing
+
+let percept start sighting pose =
   let doors = doors start pose in
-  (nat (List.length doors), sighting 0 doors)
+  (nat (List.length doors), sighting doors)
 
-(* What the program answers, and the doors that it took, the last one first. *)
-let rec run start pose taken = function
-  | Return answer -> (answer, taken)
-  | Choose (_, default, go) -> run start pose taken (go default)
-  | Move (door, go) ->
+(* What the robot answers, and what it did, the last of it first. The marker lies at the vertex of the dart
+   [spot]; or nowhere, if the robot carries it. *)
+let rec run start sighting pose spot did = function
+  | Answers answer -> (answer, did)
+  | Leaves (door, go) ->
       let door = int door in
       let pose = traverse start pose door in
-      run start pose (door :: taken) (go (percept start pose))
+      let seen = percept start (sighting spot) pose in
+      run start sighting pose spot (string_of_int door :: did) (go seen)
+  | PicksUp go -> (
+      match spot with
+      | Some dart when List.mem dart (doors start pose) ->
+          run start sighting pose None ("pick-up" :: did) go
+      | _ -> failwith "a marker was picked up where none lies")
+  | Drops go ->
+      if spot <> None then failwith "a marker was dropped that is not carried";
+      run start sighting pose (Some pose) ("drop" :: did) go
 
-let listed numbers = String.concat "" (List.map (fun n -> " " ^ string_of_int n) numbers)
-
-let told start =
-  let edges = nat (Array.length start.opposite / 2) in
-  let answer, taken = run start facing [] (mapping edges (percept start facing)) in
-  let doors = "doors" ^ listed (List.rev taken) in
+let told marker start =
+  let mapping, sighting =
+    match marker with
+    | "directional" -> (directional_mapping, fun _ -> pointing 0)
+    | "movable" -> (movable_mapping, lying)
+    | _ -> failwith ("there is no marker " ^ marker)
+  in
+  let edges = nat (Array.length start.opposite / 2) and spot = Some facing in
+  let seen = percept start (sighting spot) facing in
+  let answer, did = run start sighting facing spot [] (mapping edges seen) in
+  let did = String.concat " " ("did" :: List.rev did) in
   match answer with
-  | None -> doors ^ "; it has not come to an end"
+  | None -> did ^ "; it has not come to an end"
   | Some (map, robot) ->
-      let of_each what = listed (List.map what map) in
-      Printf.sprintf "%s; first%s; degree%s; other%s; robot %d" doors
+      let of_each what = String.concat "" (List.map (fun dart -> Printf.sprintf " %d" (what dart)) map) in
+      Printf.sprintf "%s; first%s; degree%s; other%s; robot %d" did
         (of_each (fun dart -> int dart.first_of))
         (of_each (fun dart -> int dart.doors_of))
         (of_each (fun dart -> match dart.other_of with None -> -1 | Some other -> int other))
         (int robot)
 
-let read line =
+let answer line =
   match List.map (String.split_on_char ' ') (String.split_on_char ';' line) with
-  | [ "opposite" :: opposite; "" :: "clockwise" :: clockwise ] ->
+  | [ [ marker ]; "" :: "opposite" :: opposite; "" :: "clockwise" :: clockwise ] ->
       let darts numbers = Array.of_list (List.map int_of_string numbers) in
-      { opposite = darts opposite; clockwise = darts clockwise }
+      told marker { opposite = darts opposite; clockwise = darts clockwise }
   | _ -> failwith ("this is no start: " ^ line)
 
 let () =
   try
     while true do
-      print_endline (told (read (input_line stdin)))
+      print_endline (answer (input_line stdin))
     done
   with End_of_file -> ()
