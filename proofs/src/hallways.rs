@@ -15,7 +15,7 @@ use toposlam_model::{
             CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear,
             undirected, wrapped,
         },
-        visit::Form,
+        visit::JunctionShape,
     },
     percept::{Door, Percept, Sighting},
 };
@@ -24,13 +24,13 @@ use crate::choose::{Choose, Exhibit};
 
 /// The six forms: a dead end, an L to the left and to the right, a T by its stem, and by an arm with
 /// the stem to the left and to the right.
-pub const FORMS: [Form; 6] = [
-    Form([true, false, false, false]),
-    Form([true, true, false, false]),
-    Form([true, false, false, true]),
-    Form([true, true, false, true]),
-    Form([true, true, true, false]),
-    Form([true, false, true, true]),
+pub const FORMS: [JunctionShape; 6] = [
+    JunctionShape([true, false, false, false]),
+    JunctionShape([true, true, false, false]),
+    JunctionShape([true, false, false, true]),
+    JunctionShape([true, true, false, true]),
+    JunctionShape([true, true, true, false]),
+    JunctionShape([true, false, true, true]),
 ];
 
 /// From the middle of a hallway to its walls, in metres.
@@ -80,7 +80,7 @@ impl Driver for PathExecution<'static> {
 #[derive(Clone, Copy, Debug)]
 pub struct Junction {
     /// What it looks like from the door by which the path comes in.
-    pub form: Form,
+    pub form: JunctionShape,
     /// Its turning point.
     at: [f64; 2],
     /// The direction of that door.
@@ -118,12 +118,12 @@ impl Junction {
     }
 
     /// What it looks like from a door of which this is the direction.
-    fn form_from(&self, entry: f64) -> Form {
+    fn form_from(&self, entry: f64) -> JunctionShape {
         let is_door = |quarter| {
             let direction = entry - f64::from(quarter) * FRAC_PI_2;
             self.doors().any(|door| wrapped(door - direction).abs() < NEAR)
         };
-        Form([0, 1, 2, 3].map(is_door))
+        JunctionShape([0, 1, 2, 3].map(is_door))
     }
 
     /// What a robot knows that stands there.
@@ -153,7 +153,7 @@ pub enum Told {
     /// The form of a junction that is there.
     Truth,
     /// Another form, or one where there is no junction.
-    Mistake(Form),
+    Mistake(JunctionShape),
 }
 
 /// A robot on its way along some junctions.
@@ -173,7 +173,12 @@ impl Drive {
     /// to the next, the length of these hallways, and the forms of the junctions there, but for one to
     /// which the path comes back.
     #[must_use]
-    pub fn new(first: Form, legs: &[(Door, f64, Form)], sight: f64, budget: Budget) -> Self {
+    pub fn new(
+        first: JunctionShape,
+        legs: &[(Door, f64, JunctionShape)],
+        sight: f64,
+        budget: Budget,
+    ) -> Self {
         let mut junctions = vec![Junction { form: first, at: [0.0; 2], entry: PI }];
         for &(door, length, form) in legs {
             let last = junctions[junctions.len() - 1];

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use toposlam_model::{
     driving::{
         scene::{undirected, wrapped},
-        visit::Form,
+        visit::JunctionShape,
     },
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
@@ -53,7 +53,7 @@ pub struct JunctionTruth {
     /// Dead end, L or T.
     pub kind: JunctionKind,
     /// What it looks like from the door behind the robot; `None` where there is none.
-    pub form: Option<Form>,
+    pub form: Option<JunctionShape>,
     /// The directions of the doors, clockwise from the one behind the robot, or, where there is
     /// none, from any.
     pub doors: Vec<f64>,
@@ -205,12 +205,12 @@ impl MarkerTruth {
 }
 
 /// What a junction looks like from the first of its doors, which stand clockwise.
-fn form(doors: &[Direction]) -> Form {
+fn form(doors: &[Direction]) -> JunctionShape {
     let mut form = [false; 4];
     for &door in doors {
         form[(door as usize + 4 - doors[0] as usize) % 4] = true;
     }
-    Form(form)
+    JunctionShape(form)
 }
 
 /// A direction, in radians counter-clockwise from east.

@@ -12,12 +12,12 @@ use crate::percept::{Door, Percept, Sighting};
 /// What a junction looks like from its entry: which of the four directions, clockwise from the entry
 /// door, are doors. The first always is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Form(pub [bool; 4]);
+pub struct JunctionShape(pub [bool; 4]);
 
 /// What the pictures of one approach told so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Visit {
-    /// How many pictures told of each form, by its [`Form::code`].
+pub struct JunctionEstimate {
+    /// How many pictures told of each form, by its [`JunctionShape::code`].
     forms: [u32; 8],
     /// The best view of the marker.
     marker: Option<Glimpse>,
@@ -41,7 +41,7 @@ const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
 /// From where it is seen best.
 const BEST: f64 = 0.5;
 
-impl Form {
+impl JunctionShape {
     /// The form of a junction as one picture shows it; `None` where its doors are not at right angles
     /// to each other.
     #[must_use]
@@ -83,11 +83,11 @@ impl Form {
     }
 }
 
-impl Visit {
+impl JunctionEstimate {
     /// The visit of a robot that knows the junction at which it stands, and whether the marker lies
     /// there.
     #[must_use]
-    pub fn decided(form: Form, sighting: Sighting) -> Self {
+    pub fn decided(form: JunctionShape, sighting: Sighting) -> Self {
         let marker = match sighting {
             Sighting::Pointing(door) => Some(Glimpse { off: 0.0, along_entry: door == Door::BACK }),
             _ => None,
@@ -109,7 +109,7 @@ impl Visit {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),
             Place::Junction(junction) => {
-                if let Some(form) = Form::of(junction) {
+                if let Some(form) = JunctionShape::of(junction) {
                     self.forms[form.code()] += 1;
                 }
                 self.looked |= APPROACH.contains(&junction.distance());
@@ -134,11 +134,11 @@ impl Visit {
 
     /// The form of the junction, once two pictures agree on it and fewer on any other.
     #[must_use]
-    pub fn form(&self) -> Option<Form> {
+    pub fn form(&self) -> Option<JunctionShape> {
         let most = self.forms.into_iter().max().filter(|&most| most >= AGREEING)?;
         let mut leading = (0..8).filter(|&code| self.forms[code] == most);
         let code = leading.next()?;
-        leading.next().is_none().then(|| Form::with_code(code))
+        leading.next().is_none().then(|| JunctionShape::with_code(code))
     }
 
     // paper: marker-sense.place
@@ -172,8 +172,8 @@ mod tests {
         Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
     }
 
-    fn seen(places: &[Place], marker: Option<MarkerView>) -> Visit {
-        let mut visit = Visit::default();
+    fn seen(places: &[Place], marker: Option<MarkerView>) -> JunctionEstimate {
+        let mut visit = JunctionEstimate::default();
         for place in places {
             visit.see(&Scene { place: place.clone(), marker });
         }
@@ -195,7 +195,7 @@ mod tests {
             for turned in [0.0, 0.4, -0.4] {
                 let doors: Vec<f64> = doors.iter().map(|door| wrapped(door + turned)).collect();
                 let Place::Junction(view) = junction(&doors, 0.3) else { unreachable!() };
-                assert_eq!(Form::of(&view), Some(Form(expected)), "{doors:?}");
+                assert_eq!(JunctionShape::of(&view), Some(JunctionShape(expected)), "{doors:?}");
             }
         }
     }
@@ -249,14 +249,14 @@ mod tests {
     #[test]
     fn what_a_robot_knows_of_where_it_stands_is_decided() {
         for code in 0..8 {
-            let form = Form::with_code(code);
+            let form = JunctionShape::with_code(code);
             let degree = form.degree();
             let mut sightings = vec![Sighting::Nothing];
             if form.is_l() {
                 sightings.extend([Door::BACK, Door(1)].map(Sighting::Pointing));
             }
             for sighting in sightings {
-                let visit = Visit::decided(form, sighting);
+                let visit = JunctionEstimate::decided(form, sighting);
                 assert_eq!(visit.form(), Some(form));
                 assert_eq!(visit.percept(), Some(Percept { degree, sighting }));
             }
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn at_the_marker_two_pictures_decide_and_it_lies_along_the_entry_door() {
-        let mut visit = Visit::at_marker();
+        let mut visit = JunctionEstimate::at_marker();
         let here = junction(&[PI, FRAC_PI_2], 0.0);
         for expected in
             [None, Some(Percept { degree: 2, sighting: Sighting::Pointing(Door::BACK) })]
@@ -286,7 +286,7 @@ mod tests {
             status: Status::Clear,
             confidence: 1.0,
         });
-        let mut visit = Visit::default();
+        let mut visit = JunctionEstimate::default();
         let mut see = |place: &Place, distance, axis| {
             let marker = MarkerView { position: [distance, 0.0], axis, door: None };
             visit.see(&Scene { place: place.clone(), marker: Some(marker) });

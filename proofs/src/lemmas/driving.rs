@@ -15,7 +15,7 @@ use toposlam_model::{
         scene::{
             CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear, wrapped,
         },
-        visit::Form,
+        visit::JunctionShape,
     },
     percept::{Door, Percept, Sighting},
 };
@@ -130,7 +130,7 @@ const SIGHTS: [f64; 3] = [1.1, 0.75, 1.6];
 const ROUNDS: u32 = 200;
 
 /// A picture of a junction whose turning point is so far ahead of a robot that then has turned.
-fn junction(form: Form, ahead: f64, turned: f64) -> Place {
+fn junction(form: JunctionShape, ahead: f64, turned: f64) -> Place {
     let through =
         if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
     let mut doors = Vec::with_capacity(4);
@@ -203,7 +203,7 @@ fn limits(Command { turn, forward }: Command) -> Case {
 }
 
 /// A robot at the turning point of a junction with this form.
-fn stands(form: Form) -> Standing {
+fn stands(form: JunctionShape) -> Standing {
     let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
     Standing { form, percept, entry: PI }
 }
@@ -276,7 +276,7 @@ struct End {
     /// What the robot believes; `None` if it gave up.
     standing: Option<Standing>,
     /// The pictures since the last door that were mistaken, by their forms.
-    mistaken: Vec<Form>,
+    mistaken: Vec<JunctionShape>,
     /// Whether a picture showed the junction from where a marker would be seen.
     looked: bool,
 }
@@ -348,7 +348,7 @@ fn driven<C: Choose, D: Driver>(
 }
 
 /// So many of these are of this form.
-fn agreeing(forms: &[Form], form: Form) -> usize {
+fn agreeing(forms: &[JunctionShape], form: JunctionShape) -> usize {
     forms.iter().filter(|&&other| other == form).count()
 }
 

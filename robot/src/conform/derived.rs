@@ -7,7 +7,7 @@ use toposlam_model::{
     driving::{
         odometry::Odometry,
         scene::{JunctionView, Place, Scene, wrapped},
-        visit::{Form, Visit},
+        visit::{JunctionEstimate, JunctionShape},
     },
     percept::Door,
 };
@@ -32,7 +32,7 @@ pub struct Derivation {
     events: Vec<Event>,
     approach: Option<Approach>,
     /// What was seen since the last junction.
-    seen: Visit,
+    seen: JunctionEstimate,
     /// How the robot looked when it was last in a hallway.
     hallway: Option<f64>,
 }
@@ -42,7 +42,7 @@ pub struct Derivation {
 struct Approach {
     /// Of its first scene.
     source: Source,
-    visit: Visit,
+    visit: JunctionEstimate,
     /// The direction of the entry door in the frame of odometry.
     entry: f64,
     /// Where the turning point is in that frame.
@@ -56,7 +56,7 @@ impl Derivation {
     /// Nothing has happened yet. A robot that is `marked` puts its marker down where it begins.
     #[must_use]
     pub fn new(marked: bool) -> Self {
-        let seen = if marked { Visit::at_marker() } else { Visit::default() };
+        let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
         Self { events: Vec::new(), approach: None, seen, hallway: None }
     }
 
@@ -94,7 +94,7 @@ impl Derivation {
             && wrapped(odometry.heading - before).abs() > FRAC_PI_2
         {
             self.push(source, Kind::TurnedBack);
-            self.seen = Visit::default();
+            self.seen = JunctionEstimate::default();
         }
         self.hallway = Some(odometry.heading);
         self.seen.see(scene);
@@ -157,7 +157,7 @@ impl Derivation {
 
     /// What was perceived on a visit; answers how the junction lies. Where its pictures do not tell, that
     /// is an event.
-    fn visited(&mut self, approach: &Approach) -> Option<(Form, f64)> {
+    fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
         let Approach { visit, entry, visited, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
             self.push(*visited, Kind::Undecided);

@@ -3,7 +3,7 @@
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::visit::Form,
+    driving::visit::JunctionShape,
     percept::{Door, Percept},
     trace::{self, NotInTurn, Trace},
 };
@@ -62,7 +62,7 @@ pub struct Perceived {
     /// After how many moves the log says that it was.
     pub number: Option<u32>,
     /// Which of the four directions, clockwise from the entry door, are doors, if that is known.
-    pub form: Option<Form>,
+    pub form: Option<JunctionShape>,
     /// The direction of the entry door in the frame of odometry, in radians, if that is known.
     pub entry: Option<f64>,
     /// By how much that differs from where odometry says that the robot came from, in radians.

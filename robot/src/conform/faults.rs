@@ -1,7 +1,7 @@
 //! What the events of a log contradict by themselves, and what is false in how it says that its run ended.
 
 use toposlam_model::{
-    driving::visit::Form,
+    driving::visit::JunctionShape,
     embedded_graph::Dart,
     mapping::PartialMap,
     trace::{Followed, Reached, Trace},
@@ -26,7 +26,7 @@ impl Events {
                     if let Some(told) = number.filter(|&told| told != moves) {
                         fault(Cause::Number { expected: moves, told });
                     }
-                    let doors = form.map_or(percept.degree, Form::degree);
+                    let doors = form.map_or(percept.degree, JunctionShape::degree);
                     if doors != percept.degree {
                         fault(Cause::Form { degree: percept.degree, doors });
                     }

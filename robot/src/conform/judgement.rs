@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::visit::Form,
+    driving::visit::JunctionShape,
     enumerate::Watch,
     mapping::{Contradiction, FACING},
     percept::Percept,
@@ -73,7 +73,7 @@ pub struct Coverage {
     /// Of Algorithm 1.
     pub algorithm: trace::Coverage,
     /// Of perception: each kind of junction, from each of its entries.
-    pub junctions: BTreeMap<Form, u64>,
+    pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
 impl Coverage {
@@ -341,7 +341,7 @@ impl Found<'_> {
 const BEYOND: usize = 4;
 
 /// How often each kind of junction was perceived, from each of its entries.
-fn junctions(events: &Events) -> BTreeMap<Form, u64> {
+fn junctions(events: &Events) -> BTreeMap<JunctionShape, u64> {
     let mut counts = BTreeMap::new();
     for Event { kind, .. } in &events.events {
         if let Kind::Perceived(Perceived { form: Some(form), .. }) = kind {

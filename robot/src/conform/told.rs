@@ -7,7 +7,7 @@ use std::{
 };
 
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::wrapped, visit::Form},
+    driving::{odometry::Odometry, scene::wrapped, visit::JunctionShape},
     percept::{Door, Percept, Sighting},
 };
 
@@ -48,7 +48,7 @@ impl Telling {
     pub fn perceived(&mut self, source: Source, message: &messages::Percept) {
         let sighting = u32::try_from(message.marker)
             .map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door)));
-        let form = message.form.iter().any(|&door| door).then_some(Form(message.form));
+        let form = message.form.iter().any(|&door| door).then_some(JunctionShape(message.form));
         let now = self.way.back();
         let came_from = if self.events.is_empty() {
             // At the start the robot stands with its back to the entry door.
@@ -108,7 +108,7 @@ fn known(number: u32) -> Option<u32> {
 
 /// The direction in the frame of odometry in which a door of a junction leads.
 #[must_use]
-pub fn direction(form: Form, entry: f64, door: Door) -> Option<f64> {
+pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
     let mut doors = (0..4).filter(|&quarter| form.0[quarter]);
     let quarter = doors.nth(door.0 as usize)?;
     Some(wrapped(entry - quarter as f64 * FRAC_PI_2))

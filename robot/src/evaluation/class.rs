@@ -4,7 +4,7 @@ use std::fmt;
 
 use toposlam_model::driving::{
     scene::{Place, Scene},
-    visit::Form,
+    visit::JunctionShape,
 };
 
 /// What an image shows, or what a scene says that it does.
@@ -13,7 +13,7 @@ pub enum Class {
     /// A hallway.
     Hallway,
     /// A junction, as seen from its entry.
-    Junction(Form),
+    Junction(JunctionShape),
     /// A junction whose doors are none of the [`FORMS`]'.
     Other,
     /// The image does not tell.
@@ -21,13 +21,13 @@ pub enum Class {
 }
 
 /// What junctions there are, as seen from their entry, and their names.
-pub const FORMS: [(Form, &str); 6] = [
-    (Form([true, false, false, false]), "dead-end"),
-    (Form([true, true, false, false]), "l-left"),
-    (Form([true, false, false, true]), "l-right"),
-    (Form([true, true, false, true]), "t-by-stem"),
-    (Form([true, true, true, false]), "t-stem-left"),
-    (Form([true, false, true, true]), "t-stem-right"),
+pub const FORMS: [(JunctionShape, &str); 6] = [
+    (JunctionShape([true, false, false, false]), "dead-end"),
+    (JunctionShape([true, true, false, false]), "l-left"),
+    (JunctionShape([true, false, false, true]), "l-right"),
+    (JunctionShape([true, true, false, true]), "t-by-stem"),
+    (JunctionShape([true, true, true, false]), "t-stem-left"),
+    (JunctionShape([true, false, true, true]), "t-stem-right"),
 ];
 
 impl Class {
@@ -43,7 +43,7 @@ impl Class {
         match &scene.place {
             Place::Hallway(_) => Self::Hallway,
             Place::Unknown(_) => Self::Unknown,
-            Place::Junction(junction) => Form::of(junction)
+            Place::Junction(junction) => JunctionShape::of(junction)
                 .filter(|form| FORMS.iter().any(|(known, _)| known == form))
                 .map_or(Self::Other, Self::Junction),
         }

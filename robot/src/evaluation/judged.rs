@@ -1,7 +1,7 @@
 //! Views and visits that have been judged.
 
 use toposlam_model::{
-    driving::{scene::Scene, visit::Form},
+    driving::{scene::Scene, visit::JunctionShape},
     percept::Percept,
 };
 
@@ -51,11 +51,11 @@ pub struct JudgedVisit {
     /// Its pictures.
     pub pictures: Vec<Judged>,
     /// What the junction looks like from its entry.
-    pub form: Form,
+    pub form: JunctionShape,
     /// What the robot should perceive.
     pub percept: Percept,
     /// As what the junction was made out, once two pictures agreed.
-    pub decided: Option<(Form, Percept)>,
+    pub decided: Option<(JunctionShape, Percept)>,
 }
 
 impl Zone {

@@ -9,7 +9,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 use thiserror::Error;
 use toposlam_model::{
-    driving::{scene::Scene, visit::Visit},
+    driving::{scene::Scene, visit::JunctionEstimate},
     enumerate::Watch,
     percept::{Percept, Sighting},
 };
@@ -169,7 +169,7 @@ impl Judge {
             self.judged(view, &image)
         });
         let pictures = judged.collect::<Result<Vec<_>, _>>()?;
-        let mut visit = Visit::default();
+        let mut visit = JunctionEstimate::default();
         for picture in &pictures {
             visit.see(&picture.scene);
         }

@@ -191,7 +191,7 @@ mod tests {
     use toposlam_model::{
         driving::{
             scene::{Reason, Status},
-            visit::Form,
+            visit::JunctionShape,
         },
         embedded_graph::Vertex,
         percept::Door,
@@ -202,9 +202,9 @@ mod tests {
     const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.1, left: 0.9, right: 0.7 };
 
     /// Which form it is does not matter here.
-    const ENTERED: Option<Form> = Some(Form([true; 4]));
+    const ENTERED: Option<JunctionShape> = Some(JunctionShape([true; 4]));
 
-    fn junction(doors: &[f64], form: Option<Form>) -> JunctionTruth {
+    fn junction(doors: &[f64], form: Option<JunctionShape>) -> JunctionTruth {
         JunctionTruth {
             vertex: Vertex(0),
             kind: [JunctionKind::DeadEnd, JunctionKind::L, JunctionKind::T][doors.len() - 1],

@@ -5,7 +5,7 @@ use std::{f64::consts::FRAC_PI_2, sync::Arc};
 use rand::{Rng, RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
-    driving::visit::Form,
+    driving::visit::JunctionShape,
     embedded_graph::{Dart, Vertex},
     floor_plan::{Direction, FloorPlan, Hallway, JunctionKind},
     format::world_file::WorldFileError,
@@ -262,7 +262,7 @@ fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
 }
 
 /// What the junction of a dart looks like to a robot that enters by it.
-fn form_from(plan: &FloorPlan, dart: Dart) -> Option<Form> {
+fn form_from(plan: &FloorPlan, dart: Dart) -> Option<JunctionShape> {
     let pose = before_junction(plan, dart, 0.0, 0.0, 0.0);
     JunctionTruth::of(plan, plan.graph().vertex(dart), pose).form
 }

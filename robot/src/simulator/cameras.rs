@@ -324,7 +324,7 @@ impl Camera for SceneCamera {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::driving::visit::Form;
+    use toposlam_model::driving::visit::JunctionShape;
     use toposlam_vision::camera;
 
     use super::*;
@@ -371,7 +371,11 @@ mod tests {
                 let view = |doors: &[f64]| {
                     let line = |&direction: &f64| CentreLine { through: [0.0; 2], direction };
                     let doors = doors.iter().map(line).collect();
-                    Form::of(&JunctionView { doors, turning_point: [0.0; 2], confidence: 1.0 })
+                    JunctionShape::of(&JunctionView {
+                        doors,
+                        turning_point: [0.0; 2],
+                        confidence: 1.0,
+                    })
                 };
                 assert!((1..=3).contains(&other.len()) && other[0] == PI, "{other:?}");
                 assert_ne!(view(&other).unwrap(), view(&doors).unwrap());

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toposlam_model::{
-    driving::visit::Form,
+    driving::visit::JunctionShape,
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     marker::Marker,
@@ -30,7 +30,7 @@ pub(super) struct Known {
     /// How often each case is gone through from all starts.
     pub(super) reachable: trace::Coverage,
     /// The kinds of junctions from each of their entries, where the world is a floor plan.
-    pub(super) forms: Option<Vec<Form>>,
+    pub(super) forms: Option<Vec<JunctionShape>>,
 }
 
 /// Says that the start is not known.
@@ -95,7 +95,7 @@ fn told(world: &NamedWorld, run: &Run) -> Option<Dart> {
 }
 
 /// What the junctions of a floor plan look like, from each of their entries.
-fn forms(world: &NamedWorld) -> Option<Vec<Form>> {
+fn forms(world: &NamedWorld) -> Option<Vec<JunctionShape>> {
     let plan = world.plan.as_ref()?;
     let graph = plan.graph();
     let form = |dart| {

@@ -15,7 +15,7 @@ pub use reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
 use super::{
     odometry::Odometry,
     scene::{CentreLine, HallwayView, JunctionView, Place, Scene, Status, Turning, wrapped},
-    visit::{Form, Visit},
+    visit::{JunctionEstimate, JunctionShape},
 };
 use crate::percept::{Door, Percept};
 use reckoning::{Reckoning, Round};
@@ -77,7 +77,7 @@ pub enum Step {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
     /// What the junction looks like from its entry door.
-    pub form: Form,
+    pub form: JunctionShape,
     /// What the robot perceives there.
     pub percept: Percept,
     /// Where the entry door is, as a direction in the frame of odometry.
@@ -91,7 +91,7 @@ pub struct PathExecution<'a> {
     queue: &'a [Door],
     state: State,
     /// What is known of the junction ahead, or of the one at which the robot stands.
-    visit: Visit,
+    visit: JunctionEstimate,
     /// The door that the robot has taken from the queue and is turning to.
     door: Option<Door>,
     reckoning: Reckoning,
@@ -112,7 +112,7 @@ impl<'a> PathExecution<'a> {
     // paper: drive.path
     #[must_use]
     pub fn new(queue: &'a [Door], from: &Standing) -> Self {
-        let visit = Visit::decided(from.form, from.percept.sighting);
+        let visit = JunctionEstimate::decided(from.form, from.percept.sighting);
         Self::at_junction(queue, visit, from.entry)
     }
 
@@ -120,10 +120,10 @@ impl<'a> PathExecution<'a> {
     /// stands at the very start, its back to the facing door and the marker along it.
     #[must_use]
     pub fn at_start(odometry: &Odometry) -> Self {
-        Self::at_junction(&[], Visit::at_marker(), odometry.whither(PI))
+        Self::at_junction(&[], JunctionEstimate::at_marker(), odometry.whither(PI))
     }
 
-    fn at_junction(queue: &'a [Door], visit: Visit, entry: f64) -> Self {
+    fn at_junction(queue: &'a [Door], visit: JunctionEstimate, entry: f64) -> Self {
         // 1
         let state = State::Leaving;
         Self { queue, state, visit, door: None, reckoning: Reckoning::at_junction(entry) }
@@ -228,7 +228,7 @@ impl<'a> PathExecution<'a> {
     fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, Why> {
         // A visit is decided by two pictures, and doors are counted in one that agrees with them: else
         // another one, from the same place.
-        let agreed = |standing: &Standing| Form::of(junction) == Some(standing.form);
+        let agreed = |standing: &Standing| JunctionShape::of(junction) == Some(standing.form);
         let Some(standing) = self.standing().filter(agreed) else {
             return Ok(Step::Go(Command::default()));
         };
@@ -255,7 +255,7 @@ impl<'a> PathExecution<'a> {
         self.door = None;
         // 26
         self.state = State::Leaving;
-        self.visit = Visit::default();
+        self.visit = JunctionEstimate::default();
         self.reckoning.leave(exit);
         // 25
         Ok(Step::Go(Command { turn: exit, forward: UNIT }))
@@ -293,7 +293,7 @@ impl<'a> PathExecution<'a> {
     fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
         let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
-        let form = Form::of(&junction);
+        let form = JunctionShape::of(&junction);
         let decided = self.reckoning.is_at_junction().then(|| self.standing()).flatten();
         match decided {
             Some(standing) if form != Some(standing.form) => return Seen::Unknown,

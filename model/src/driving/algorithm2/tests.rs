@@ -21,7 +21,7 @@ struct Robot<'a> {
 impl<'a> Robot<'a> {
     /// At the turning point of a junction, its back to the entry door.
     fn at(doors: &[f64], queue: &'a [Door]) -> Self {
-        let form = Form::of(&view(doors, 0.0, 0.0)).unwrap();
+        let form = JunctionShape::of(&view(doors, 0.0, 0.0)).unwrap();
         let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
         let from = Standing { form, percept, entry: PI };
         Self { path: PathExecution::new(queue, &from), odometry: Odometry::default() }
@@ -236,7 +236,7 @@ fn at_the_turning_point_with_no_door_left_the_path_is_done() {
         for distance in [0.05, 0.0, -0.2] {
             let standing =
                 Robot::come_to(doors, &[Door(2)]).arrives(&junction(doors, distance, 0.0));
-            assert_eq!(Some(standing.form), Form::of(&view(doors, 0.0, 0.0)));
+            assert_eq!(Some(standing.form), JunctionShape::of(&view(doors, 0.0, 0.0)));
             assert_eq!(standing.percept, Percept { degree, sighting: Sighting::Nothing });
             assert_near(standing.entry.abs(), PI);
         }
@@ -341,7 +341,7 @@ fn the_entry_door_is_the_one_behind_on_arrival() {
         let mut view = view(T_STEM, 0.05, 0.0);
         view.doors.rotate_left(first);
         let standing = robot.arrives(&scene(Place::Junction(view)));
-        assert_eq!(standing.form, Form([true, true, false, true]));
+        assert_eq!(standing.form, JunctionShape([true, true, false, true]));
         assert_near(standing.entry.abs(), PI);
     }
     // Pictures tell its direction better than odometry.
@@ -453,7 +453,7 @@ fn a_junction_is_decided_by_two_pictures() {
     let here = junction(T_STEM, 0.0, 0.0);
     let mut robot = Robot::in_hallway(&[Door(2)]);
     assert_eq!(robot.sees(&here), Command::default(), "another picture from the same place");
-    assert_eq!(robot.arrives(&here).form, Form([true, true, false, true]));
+    assert_eq!(robot.arrives(&here).form, JunctionShape([true, true, false, true]));
 
     let mut robot = Robot::in_hallway(&[Door(2), Door(1)]);
     assert_eq!(robot.sees(&here), Command::default());

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use toposlam_model::{
     driving::{
         scene::{CentreLine, Reason, Scene, Status},
-        visit::Form,
+        visit::JunctionShape,
     },
     embedded_graph::Vertex,
     floor_plan::JunctionKind,
@@ -20,7 +20,7 @@ use crate::{
     simulator::LOOKS,
 };
 
-const L: Form = Form([true, true, false, false]);
+const L: JunctionShape = JunctionShape([true, true, false, false]);
 const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.0, left: 0.8, right: 0.8 };
 
 fn any_view() -> View {
@@ -109,14 +109,14 @@ fn views_are_counted_where_they_are() {
 #[test]
 fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
     let pointing = |door| Sighting::Pointing(Door(door));
-    let visit = |sighting, decided: Option<(Form, Sighting)>| JudgedVisit {
+    let visit = |sighting, decided: Option<(JunctionShape, Sighting)>| JudgedVisit {
         pictures: Vec::new(),
         form: L,
         percept: Percept { degree: 2, sighting },
         decided: decided
             .map(|(form, sighting)| (form, Percept { degree: form.degree(), sighting })),
     };
-    let dead_end = Form([true, false, false, false]);
+    let dead_end = JunctionShape([true, false, false, false]);
     let visits = [
         visit(Sighting::Nothing, Some((L, Sighting::Nothing))),
         visit(Sighting::Nothing, Some((L, pointing(0)))),
