@@ -58,12 +58,12 @@ impl Broken {
 }
 
 impl OpenChoices for Broken {
-    fn try_path(
+    fn try_path<'g>(
         &self,
         exploration: &mut Exploration,
         hypothesis: Dart,
-        world: &mut GraphWorld,
-        observer: &mut impl Observer,
+        world: &mut GraphWorld<'g>,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<Verdict, MappingError<Refused>> {
         exploration.set_out();
         let mut pose = hypothesis;
@@ -109,11 +109,11 @@ impl Algorithm for Broken {
         Algorithm1.move_bound(edges, vertices)
     }
 
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld,
+        world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<(), MappingError<Refused>> {
         exploration.begin(world, observer)?;
         while let Some(edge) = exploration.next_edge(&mut Nearest) {
@@ -126,8 +126,8 @@ impl Algorithm for Broken {
                 }
             }
             match confirmed {
-                Some(hypothesis) => exploration.close_loop(hypothesis, observer),
-                None => exploration.add_place(observer)?,
+                Some(hypothesis) => exploration.close_loop(hypothesis, world, observer),
+                None => exploration.add_place(world, observer)?,
             }
         }
         Ok(())

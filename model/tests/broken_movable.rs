@@ -53,11 +53,11 @@ const FLAWS: [Flaw; 9] = [
 ];
 
 impl Broken {
-    fn validate_place(
+    fn validate_place<'g>(
         &self,
         search: &mut MarkerSearch,
-        world: &mut GraphWorld<Movable>,
-        observer: &mut impl Observer,
+        world: &mut GraphWorld<'g, Movable>,
+        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<Place, MappingError<Refused>> {
         match (self.0, search.candidates()) {
             (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(Place::New),
@@ -96,13 +96,13 @@ impl Broken {
         Ok(Place::New)
     }
 
-    fn validate_back_link(
+    fn validate_back_link<'g>(
         &self,
         edge: Dart,
         vertex: Vertex,
         search: &mut MarkerSearch,
-        world: &mut GraphWorld<Movable>,
-        observer: &mut impl Observer,
+        world: &mut GraphWorld<'g, Movable>,
+        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<Dart, MappingError<Refused>> {
         if !matches!(self.0, Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed) {
             return validate_back_link(edge, vertex, search, world, observer);
@@ -150,11 +150,11 @@ impl Algorithm for Broken {
         MovableMarker.move_bound(edges, vertices)
     }
 
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld<Movable>,
+        world: &mut GraphWorld<'g, Movable>,
         search: &mut MarkerSearch,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<(), MappingError<Refused>> {
         search.begin(world, observer)?;
         while let Some(edge) = search.next_edge(&mut Nearest) {
@@ -162,9 +162,9 @@ impl Algorithm for Broken {
             match self.validate_place(search, world, observer)? {
                 Place::Known(vertex) => {
                     let dart = self.validate_back_link(edge, vertex, search, world, observer)?;
-                    search.close_loop(dart, observer);
+                    search.close_loop(dart, world, observer);
                 }
-                Place::New => search.add_place(observer)?,
+                Place::New => search.add_place(world, observer)?,
             }
         }
         Ok(())

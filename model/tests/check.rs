@@ -217,11 +217,11 @@ impl Algorithm for Claimed {
         self.0
     }
 
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld,
+        world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<(), MappingError<Refused>> {
         Algorithm1.run(world, exploration, observer)
     }

@@ -5,7 +5,9 @@
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, MAX_EDGES, Vertex},
-    mapping::{Contradiction, Event, Exploration, Journey, MappingError, Nearest, map_world},
+    mapping::{
+        Contradiction, Exploration, Journey, MappingError, MappingEvent, Nearest, map_world,
+    },
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused, World},
 };
@@ -170,24 +172,25 @@ fn the_story_of_a_triangle_with_a_tail() {
     .unwrap();
     let mut story = Vec::new();
     let mut exploration = Exploration::new(graph.dart_count());
-    let mut listen = |_: &Journey, event: Event| {
-        if !matches!(event, Event::Moved { .. }) {
+    let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
+        if !matches!(event, MappingEvent::Moved { .. }) {
             story.push(event);
         }
     };
     let mut world = GraphWorld::new(&graph, Dart(0));
     map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
-    let arrived = |edge, percept, contradicted, hypotheses| Event::Arrived {
+    let arrived = |edge, percept, contradicted, hypotheses| MappingEvent::Arrived {
         edge: Dart(edge),
         percept,
         contradicted,
         hypotheses,
     };
-    let added = |edge, vertex| Event::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
+    let added =
+        |edge, vertex| MappingEvent::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
     assert_eq!(
         story,
         [
-            Event::Started { percept: marked(1, 0) },
+            MappingEvent::Started { percept: marked(1, 0) },
             arrived(0, plain(3), 0, 0),
             added(0, 1),
             arrived(2, plain(2), 1, 0),
@@ -195,8 +198,8 @@ fn the_story_of_a_triangle_with_a_tail() {
             arrived(5, plain(2), 1, 0),
             added(5, 3),
             arrived(7, plain(3), 0, 1),
-            Event::Confirmed { hypothesis: Dart(3), followed: 1 },
-            Event::LoopClosed { edge: Dart(7), other: Dart(3) },
+            MappingEvent::Confirmed { hypothesis: Dart(3), followed: 1 },
+            MappingEvent::LoopClosed { edge: Dart(7), other: Dart(3) },
         ]
     );
     assert_eq!(exploration.moves(), 5);

@@ -228,12 +228,12 @@ fn steps_out_of_order_do_nothing() {
     assert_eq!(search.look_for_marker(Vertex(0), &mut world, &mut ()), Ok(None));
     search.return_to_marker(&mut world, &mut ()).unwrap();
     search.travel_to(Vertex(3), &mut world, &mut ()).unwrap();
-    search.close_loop(Dart(0), &mut ());
-    search.add_place::<()>(&mut ()).unwrap();
+    search.close_loop(Dart(0), &mut world, &mut ());
+    search.add_place(&mut world, &mut ()).unwrap();
     assert_eq!((search.moves(), search.map().dart_count()), (0, 0));
     search.begin(&mut world, &mut ()).unwrap();
     search.carry_over(Dart(1), &mut world, &mut ()).unwrap();
-    search.add_place::<()>(&mut ()).unwrap();
+    search.add_place(&mut world, &mut ()).unwrap();
     assert_eq!((search.moves(), search.map().dart_count(), search.robot()), (1, 3, Dart(2)));
     // A start that is refused leaves nothing of the run before.
     search.begin(&mut world, &mut ()).unwrap_err();

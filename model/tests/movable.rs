@@ -11,7 +11,9 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration},
     isomorphism::{Candidate, code, isomorphism},
-    mapping::{Event, Journey, MarkerSearch, MovableEvent, Nearest, map_with_movable_marker},
+    mapping::{
+        Journey, MappingEvent, MarkerSearch, MovableEvent, Nearest, map_with_movable_marker,
+    },
     marker::Movable,
     percept::{Percept, Sighting},
     world::GraphWorld,
@@ -146,10 +148,10 @@ fn k4() -> EmbeddedGraph {
 }
 
 /// What happens on the way, but for the moves, each with the moves made by then.
-fn story(graph: &EmbeddedGraph) -> Vec<(u64, Event)> {
+fn story(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent)> {
     let mut story = Vec::new();
-    let mut listen = |journey: &Journey, event: Event| {
-        if !matches!(event, Event::Moved { .. }) {
+    let mut listen = |_: &mut _, journey: &Journey, event: MappingEvent| {
+        if !matches!(event, MappingEvent::Moved { .. }) {
             story.push((journey.moves(), event));
         }
     };
@@ -165,54 +167,57 @@ fn story(graph: &EmbeddedGraph) -> Vec<(u64, Event)> {
 fn the_story_of_the_tetrahedron() {
     use MovableEvent::{Behind, Dropped, NotBehind, PickedUp};
     let percept = Percept { degree: 3, sighting: Sighting::Nothing };
-    let started = Event::Started { percept: Percept { degree: 3, sighting: Sighting::Lying(1) } };
+    let started =
+        MappingEvent::Started { percept: Percept { degree: 3, sighting: Sighting::Lying(1) } };
     let arrived = |edge, candidates| {
-        Event::Movable(MovableEvent::Arrived { edge: Dart(edge), percept, candidates })
+        MappingEvent::Movable(MovableEvent::Arrived { edge: Dart(edge), percept, candidates })
     };
-    let not_at = |vertex| Event::Movable(MovableEvent::NotAt { vertex: Vertex(vertex) });
-    let found = |vertex| Event::Movable(MovableEvent::Found { vertex: Vertex(vertex) });
-    let added = |edge, vertex| Event::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
-    let closed = |edge, other| Event::LoopClosed { edge: Dart(edge), other: Dart(other) };
+    let not_at = |vertex| MappingEvent::Movable(MovableEvent::NotAt { vertex: Vertex(vertex) });
+    let found = |vertex| MappingEvent::Movable(MovableEvent::Found { vertex: Vertex(vertex) });
+    let added =
+        |edge, vertex| MappingEvent::VertexAdded { edge: Dart(edge), vertex: Vertex(vertex) };
+    let closed = |edge, other| MappingEvent::LoopClosed { edge: Dart(edge), other: Dart(other) };
     assert_eq!(
         story(&k4()),
         [
             (0, started),
-            (0, Event::Movable(PickedUp)),
+            (0, MappingEvent::Movable(PickedUp)),
             (1, arrived(0, 0)),
             (1, added(0, 1)),
             (2, arrived(4, 0)),
             (2, added(4, 2)),
             // Back over the edge, and by v1 to v0.
             (3, arrived(7, 1)),
-            (3, Event::Movable(Dropped)),
+            (3, MappingEvent::Movable(Dropped)),
             (6, found(0)),
             // To v2 by v1, and back: v0 has two unexplored darts.
-            (6, Event::Movable(PickedUp)),
-            (8, Event::Movable(Dropped)),
-            (12, Event::Movable(NotBehind { dart: Dart(1), percept })),
-            (13, Event::Movable(Behind { dart: Dart(2) })),
-            (13, Event::Movable(PickedUp)),
+            (6, MappingEvent::Movable(PickedUp)),
+            (8, MappingEvent::Movable(Dropped)),
+            (12, MappingEvent::Movable(NotBehind { dart: Dart(1), percept })),
+            (13, MappingEvent::Movable(Behind { dart: Dart(2) })),
+            (13, MappingEvent::Movable(PickedUp)),
             (13, closed(7, 2)),
             (14, arrived(8, 0)),
             (14, added(8, 3)),
             // Back over the edge, by v2 to v1, and on to v0, which has one unexplored dart left.
             (15, arrived(10, 2)),
-            (15, Event::Movable(Dropped)),
+            (15, MappingEvent::Movable(Dropped)),
             (18, not_at(1)),
             (19, found(0)),
-            (19, Event::Movable(PickedUp)),
+            (19, MappingEvent::Movable(PickedUp)),
             (19, closed(10, 1)),
             (21, arrived(5, 1)),
-            (21, Event::Movable(Dropped)),
+            (21, MappingEvent::Movable(Dropped)),
             (24, found(3)),
-            (24, Event::Movable(PickedUp)),
+            (24, MappingEvent::Movable(PickedUp)),
             (24, closed(5, 11)),
         ]
     );
     // In a cycle, no place is v0 but that behind the last edge.
     let story = story(&cycle(7));
-    let not_found =
-        story.iter().filter(|(_, event)| matches!(event, Event::Movable(MovableEvent::NotFound)));
+    let not_found = story
+        .iter()
+        .filter(|(_, event)| matches!(event, MappingEvent::Movable(MovableEvent::NotFound)));
     assert_eq!(not_found.count(), 4);
 }
 

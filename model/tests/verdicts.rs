@@ -76,15 +76,15 @@ fn steps_out_of_order_do_nothing() {
     assert_eq!(fresh.next_edge(&mut Nearest), None);
     assert_eq!(fresh.next_hypothesis(&mut Nearest), None);
     fresh.explore(Dart(0), &mut world, &mut ()).unwrap();
-    fresh.close_loop(Dart(0), &mut ());
-    fresh.add_place::<()>(&mut ()).unwrap();
+    fresh.close_loop(Dart(0), &mut world, &mut ());
+    fresh.add_place(&mut world, &mut ()).unwrap();
     assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
     assert_eq!(fresh.map().complete(), None);
     let (mut done, mut world) = mapped(&graph);
     let map = done.map().clone();
     done.explore(Dart(0), &mut world, &mut ()).unwrap();
-    done.close_loop(Dart(1), &mut ());
-    done.add_place::<()>(&mut ()).unwrap();
+    done.close_loop(Dart(1), &mut world, &mut ());
+    done.add_place(&mut world, &mut ()).unwrap();
     assert_eq!(done.map(), &map);
     // A start that is refused leaves nothing of the run before.
     world.traverse(Door(1)).unwrap();
@@ -100,15 +100,15 @@ fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
     let mut exploration = Exploration::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
     exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
-    exploration.add_place::<()>(&mut ()).unwrap();
+    exploration.add_place(&mut world, &mut ()).unwrap();
     let map = exploration.map().clone();
     for explored in [Dart(0), Dart(3), Dart(4)] {
         let (mut world, mut exploration) = (world.clone(), exploration.clone());
         exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
-        exploration.close_loop(explored, &mut ());
+        exploration.close_loop(explored, &mut world, &mut ());
         assert_eq!(exploration.map(), &map);
         // Nor is the edge explored any more.
-        exploration.close_loop(Dart(1), &mut ());
+        exploration.close_loop(Dart(1), &mut world, &mut ());
         assert_eq!(exploration.map(), &map);
     }
 }
@@ -121,7 +121,7 @@ fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
     let mut exploration = Exploration::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
     exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
-    exploration.add_place::<()>(&mut ()).unwrap();
+    exploration.add_place(&mut world, &mut ()).unwrap();
     exploration.set_out();
     exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
     exploration.arrive_at_marker(Dart(0));

@@ -14,7 +14,7 @@ use toposlam_model::{
         world_file,
     },
     isomorphism::Candidate,
-    mapping::{Event, Exploration, Journey, map_world},
+    mapping::{Exploration, Journey, MappingEvent, map_world},
     world::GraphWorld,
 };
 
@@ -102,7 +102,7 @@ pub fn mapping(bytes: &[u8]) {
     let mut exploration = Exploration::new(graph.dart_count());
     let bound = Algorithm1.move_bound(graph.edge_count(), graph.vertex_count());
     // A run that would not end fails too.
-    let mut watch = |journey: &Journey, _: Event| {
+    let mut watch = |_: &mut _, journey: &Journey, _: MappingEvent| {
         assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
     };
     let mut open = OpenChoices(&mut choose);

@@ -7,7 +7,7 @@
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
-    mapping::{Event, Exploration, Journey, Nearest, map_world},
+    mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::{Percept, Sighting},
     trace::{self, Claim, Search, Trace, anywhere, follow, smallest},
@@ -35,8 +35,8 @@ fn main() {
 fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     let graph = plan.graph();
     let mut events = vec![trace::Event::Perceived(GraphWorld::new(graph, Dart(0)).sensed())];
-    let mut listen = |_: &Journey, event: Event| {
-        if let Event::Moved { door, percept } = event {
+    let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
+        if let MappingEvent::Moved { door, percept } = event {
             events.extend([trace::Event::Left(door), trace::Event::Perceived(percept)]);
         }
     };

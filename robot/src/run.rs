@@ -108,7 +108,7 @@ where
     C: Camera,
     E: Eye<C::View>,
     O: Observer<SimulatedRobot<C>>,
-    S: mapping::Observer,
+    S: mapping::Observer<Explorer<SimulatedRobot<C>, E, Judged<'p, O>>>,
 {
     let judged = Judged { specification: Specification::new(plan, facing), observer };
     let mut explorer = Explorer::new(robot, eye, judged);
@@ -151,7 +151,7 @@ pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
 }
 
 /// Judges each arrival, and lets somebody else watch, too.
-pub(crate) struct Judged<'p, O> {
+pub struct Judged<'p, O> {
     pub(crate) specification: Specification<'p>,
     pub(crate) observer: O,
 }

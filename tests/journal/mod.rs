@@ -12,7 +12,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
-    mapping::{DEFAULT_DART_BOUND, Event, Journey},
+    mapping::{DEFAULT_DART_BOUND, Journey, MappingEvent},
     percept::Door,
 };
 use toposlam_robot::{
@@ -100,11 +100,13 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         ending: String::new(),
     }));
     let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
-    let mut story = |journey: &Journey, event: Event| {
+    let mut story = |_: &mut _, journey: &Journey, event: MappingEvent| {
         let mut journal = journal.borrow_mut();
         journal.story.push(format!("{event:?}"));
         match event {
-            Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. } => {
+            MappingEvent::Started { .. }
+            | MappingEvent::LoopClosed { .. }
+            | MappingEvent::VertexAdded { .. } => {
                 journal.maps.push(journey.map().clone());
             }
             _ => {}

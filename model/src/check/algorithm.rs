@@ -36,11 +36,11 @@ pub trait Algorithm: Sync {
     ///
     /// # Errors
     /// Those of the algorithm.
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld<Self::Marker>,
+        world: &mut GraphWorld<'g, Self::Marker>,
         state: &mut Self::State,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g, Self::Marker>>,
     ) -> Result<(), MappingError<Refused>>;
 
     /// The runs that are to be made of a start besides, judged; none, but with [`AllChoices`].
@@ -131,12 +131,12 @@ pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
     ///
     /// # Errors
     /// Those of [`try_path`].
-    fn try_path(
+    fn try_path<'g>(
         &self,
         exploration: &mut Exploration,
         hypothesis: Dart,
-        world: &mut GraphWorld,
-        observer: &mut impl Observer,
+        world: &mut GraphWorld<'g>,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<Verdict, MappingError<Refused>> {
         try_path(exploration, hypothesis, world, observer)
     }
@@ -167,11 +167,11 @@ impl Algorithm for Algorithm1 {
     }
 
     #[inline]
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld,
+        world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<(), MappingError<Refused>> {
         map_world(world, &mut Nearest, exploration, observer)
     }
@@ -205,11 +205,11 @@ impl<A: OpenChoices> Algorithm for AllChoices<A> {
         self.algorithm.move_bound(edges, vertices)
     }
 
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld,
+        world: &mut GraphWorld<'g>,
         exploration: &mut Exploration,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<(), MappingError<Refused>> {
         self.algorithm.run(world, exploration, observer)
     }
@@ -265,11 +265,11 @@ impl Algorithm for MovableMarker {
     }
 
     #[inline]
-    fn run(
+    fn run<'g>(
         &self,
-        world: &mut GraphWorld<Movable>,
+        world: &mut GraphWorld<'g, Movable>,
         search: &mut MarkerSearch,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<(), MappingError<Refused>> {
         map_with_movable_marker(world, &mut Nearest, search, observer)
     }

@@ -172,9 +172,9 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
         }
         let mut futures = Futures::default();
         if exploration.hypotheses().is_empty() {
-            let mut next = exploration.clone();
-            next.add_place(&mut ())?;
-            futures = self.line_4(world, &next)?;
+            let (mut world, mut next) = (world.clone(), exploration.clone());
+            next.add_place(&mut world, &mut ())?;
+            futures = self.line_4(&world, &next)?;
         }
         for place in 0..exploration.hypotheses().len() {
             let (mut world, mut next) = (world.clone(), exploration.clone());
@@ -182,7 +182,7 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
                 let after =
                     match self.algorithm.try_path(&mut next, hypothesis, &mut world, &mut ())? {
                         Verdict::Confirmed => {
-                            next.close_loop(hypothesis, &mut ());
+                            next.close_loop(hypothesis, &mut world, &mut ());
                             self.line_4(&world, &next)?
                         }
                         Verdict::Rejected => self.line_8(&world, &next, known)?,

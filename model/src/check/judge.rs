@@ -8,7 +8,7 @@ use super::{Algorithm, RunState};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{Event, FACING, Journey, MappingError, PartialMap},
+    mapping::{FACING, Journey, MappingError, MappingEvent, PartialMap},
     world::{GraphWorld, Refused},
 };
 
@@ -94,7 +94,7 @@ pub struct FalseStep {
     /// The moves made by then.
     pub moves: u64,
     /// What was added.
-    pub added: Event,
+    pub added: MappingEvent,
 }
 
 impl fmt::Display for FalseStep {
@@ -102,10 +102,10 @@ impl fmt::Display for FalseStep {
         let Self { moves, added } = self;
         write!(out, "after {moves} moves ")?;
         match added {
-            Event::LoopClosed { edge, other } => {
+            MappingEvent::LoopClosed { edge, other } => {
                 write!(out, "the map's darts {} and {} are wrongly made one edge", edge.0, other.0)
             }
-            Event::VertexAdded { edge, vertex } => write!(
+            MappingEvent::VertexAdded { edge, vertex } => write!(
                 out,
                 "vertex v{} is wrongly added behind the map's dart {}",
                 vertex.0, edge.0
@@ -124,8 +124,9 @@ pub fn first_false_step<A: Algorithm>(
     state: &mut A::State,
 ) -> Option<FalseStep> {
     let mut first = None;
-    let mut watch = |journey: &Journey, added: Event| {
-        let adds = matches!(added, Event::LoopClosed { .. } | Event::VertexAdded { .. });
+    let mut watch = |_: &mut GraphWorld<A::Marker>, journey: &Journey, added: MappingEvent| {
+        let adds =
+            matches!(added, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. });
         if adds && first.is_none() && !embeds(journey.map(), graph, facing) {
             first = Some(FalseStep { moves: journey.moves(), added });
         }

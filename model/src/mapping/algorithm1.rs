@@ -3,7 +3,7 @@
 //! The numbers are those of the printed lines. The state, and the small steps that are taken here,
 //! are [`Exploration`]'s.
 
-use super::{Choices, Event, Exploration, MappingError, Observer};
+use super::{Choices, Exploration, MappingError, MappingEvent, Observer};
 use crate::{embedded_graph::Dart, world::World};
 
 /// How the trial of a hypothesis ended.
@@ -28,7 +28,7 @@ pub fn map_world<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
     exploration: &mut Exploration,
-    observer: &mut impl Observer,
+    observer: &mut impl Observer<W>,
 ) -> Result<(), MappingError<W::Error>> {
     // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
     exploration.begin(world, observer)?;
@@ -47,9 +47,9 @@ pub fn map_world<W: World>(
         }
         match confirmed {
             // 18, 19, 20: a loop was closed.
-            Some(hypothesis) => exploration.close_loop(hypothesis, observer),
+            Some(hypothesis) => exploration.close_loop(hypothesis, world, observer),
             // 21, 22, 23: vu is a new place.
-            None => exploration.add_place(observer)?,
+            None => exploration.add_place(world, observer)?,
         }
     }
     // S is the map.
@@ -66,7 +66,7 @@ pub fn try_path<W: World>(
     exploration: &mut Exploration,
     hypothesis: Dart,
     world: &mut W,
-    observer: &mut impl Observer,
+    observer: &mut impl Observer<W>,
 ) -> Result<Verdict, MappingError<W::Error>> {
     exploration.set_out();
     let mut pose = hypothesis;
@@ -81,14 +81,14 @@ pub fn try_path<W: World>(
         if perceived != expected {
             // 14, 15: reject the hypothesis, and retrace the path back to vu.
             exploration.retrace(world, observer)?;
-            let event = Event::Rejected { hypothesis, followed, expected, perceived };
-            observer.event(exploration.journey(), event);
+            let event = MappingEvent::Rejected { hypothesis, followed, expected, perceived };
+            observer.event(world, exploration.journey(), event);
             return Ok(Verdict::Rejected);
         }
         pose = next;
     }
     // 16, 17: the percepts match throughout; confirm the hypothesis.
     exploration.arrive_at_marker(pose);
-    observer.event(exploration.journey(), Event::Confirmed { hypothesis, followed });
+    observer.event(world, exploration.journey(), MappingEvent::Confirmed { hypothesis, followed });
     Ok(Verdict::Confirmed)
 }

@@ -40,7 +40,7 @@ mod tests {
     use crate::{
         any_graph::{Class, any_graph},
         embedded_graph::{EmbeddedGraph, Vertex},
-        mapping::{Event, Exploration, Journey, map_world},
+        mapping::{Exploration, Journey, MappingEvent, map_world},
         world::GraphWorld,
     };
 
@@ -80,9 +80,9 @@ mod tests {
         }
     }
 
-    fn story(graph: &EmbeddedGraph, choices: &mut impl Choices) -> Vec<Event> {
+    fn story(graph: &EmbeddedGraph, choices: &mut impl Choices) -> Vec<MappingEvent> {
         let mut story = Vec::new();
-        let mut listen = |_: &Journey, event: Event| story.push(event);
+        let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| story.push(event);
         let mut exploration = Exploration::new(graph.dart_count());
         let mut world = GraphWorld::new(graph, Dart(0));
         map_world(&mut world, choices, &mut exploration, &mut listen).unwrap();

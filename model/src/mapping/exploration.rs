@@ -6,8 +6,8 @@
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, Event, Journey, MappingError, Observer, PartialMap, journey::NOWHERE,
-    partial_map::START, tree::Tree,
+    Choices, Contradiction, Journey, MappingError, MappingEvent, Observer, PartialMap,
+    journey::NOWHERE, partial_map::START, tree::Tree,
 };
 use crate::{
     embedded_graph::Dart,
@@ -114,14 +114,14 @@ impl Exploration {
     pub fn begin<W: World>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
-        let start = self.journey.begin(percept, observer)?;
+        let start = self.journey.begin(percept, world, observer)?;
         self.stand(percept);
         self.to_marker.plant(self.journey.map(), start);
         self.to_marker_is_current = true;
@@ -147,7 +147,7 @@ impl Exploration {
         &mut self,
         edge: Dart,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         if !self.map().is_unexplored(edge) {
             return Ok(());
@@ -159,8 +159,8 @@ impl Exploration {
         self.raise_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
-        let event = Event::Arrived { edge, percept, contradicted, hypotheses };
-        observer.event(&self.journey, event);
+        let event = MappingEvent::Arrived { edge, percept, contradicted, hypotheses };
+        observer.event(world, &self.journey, event);
         Ok(())
     }
 
@@ -231,7 +231,7 @@ impl Exploration {
         &mut self,
         door: Door,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
         let Here { percept, entry } = self.here;
         self.trail.push((percept, door));
@@ -250,7 +250,7 @@ impl Exploration {
     pub fn retrace<W: World>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         let trail = mem::take(&mut self.trail);
         let doors = retrace(trail.iter().map(|&(percept, door)| (door, percept.degree)));
@@ -284,8 +284,13 @@ impl Exploration {
     /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis. Where no edge is being
     /// explored, or the hypothesis is no other unexplored dart, nothing happens.
     // paper: alg1.18, alg1.19, alg1.20
-    pub fn close_loop(&mut self, hypothesis: Dart, observer: &mut impl Observer) {
-        let Some(edge) = self.journey.close_loop(hypothesis, observer) else { return };
+    pub fn close_loop<W: ?Sized>(
+        &mut self,
+        hypothesis: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) {
+        let Some(edge) = self.journey.close_loop(hypothesis, world, observer) else { return };
         self.to_marker_is_current &=
             self.to_marker.stays_with(self.journey.map(), edge, hypothesis);
         self.hypotheses.clear();
@@ -297,10 +302,14 @@ impl Exploration {
     /// # Errors
     /// The bound.
     // paper: alg1.21, alg1.22, alg1.23
-    pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
+    pub fn add_place<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
         // The robot may have come back by another dart than it first came in by.
         let entry = self.here.entry;
-        let Some(vertex) = self.journey.add_place(entry, observer)? else { return Ok(()) };
+        let Some(vertex) = self.journey.add_place(entry, world, observer)? else { return Ok(()) };
         if self.to_marker_is_current {
             self.to_marker.add_leaf(self.journey.map(), vertex);
         }

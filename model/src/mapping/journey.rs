@@ -4,7 +4,7 @@
 use std::mem;
 
 use super::{
-    Choices, Contradiction, Event, FACING, MappingError, Observer, PartialMap, tree::Tree,
+    Choices, Contradiction, FACING, MappingError, MappingEvent, Observer, PartialMap, tree::Tree,
 };
 use crate::{
     embedded_graph::{Dart, MAX_EDGES, Vertex},
@@ -84,14 +84,15 @@ impl Journey {
     }
 
     /// S is the start vertex, and U is its edges.
-    pub(super) fn begin<E>(
+    pub(super) fn begin<W: World>(
         &mut self,
         percept: Percept,
-        observer: &mut impl Observer,
-    ) -> Result<Vertex, MappingError<E>> {
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<Vertex, MappingError<W::Error>> {
         self.check_bound(percept.degree)?;
         let start = self.map.add_vertex(percept.degree);
-        observer.event(self, Event::Started { percept });
+        observer.event(world, self, MappingEvent::Started { percept });
         Ok(start)
     }
 
@@ -114,7 +115,7 @@ impl Journey {
         edge: Dart,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.travel_to(self.map.vertex(edge), expected, world, observer)?;
         self.arrival = self.go(self.map.door(self.robot, edge), world, observer)?;
@@ -129,7 +130,7 @@ impl Journey {
         target: Vertex,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         let way = self.way_to(target);
         for &dart in &way {
@@ -162,7 +163,7 @@ impl Journey {
         &mut self,
         dart: Dart,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<Option<(Dart, Percept)>, MappingError<W::Error>> {
         let Some(next) = self.map.opposite(dart) else { return Ok(None) };
         let perceived = self.go(self.map.door(self.robot, dart), world, observer)?;
@@ -191,7 +192,7 @@ impl Journey {
         &mut self,
         door: Door,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
         world.traverse(door).map_err(MappingError::World)?;
         self.moves += 1;
@@ -200,7 +201,7 @@ impl Journey {
             Sighting::Pointing(door) => door.0 < percept.degree,
             _ => percept.degree > 0,
         };
-        observer.event(self, Event::Moved { door, percept });
+        observer.event(world, self, MappingEvent::Moved { door, percept });
         if possible {
             Ok(percept)
         } else {
@@ -211,22 +212,28 @@ impl Journey {
     /// The edge that is being explored leads to a known vertex, by another unexplored dart; answers
     /// its known end. Where no edge is being explored, or the dart is no other unexplored one,
     /// nothing happens.
-    pub(super) fn close_loop(&mut self, other: Dart, observer: &mut impl Observer) -> Option<Dart> {
+    pub(super) fn close_loop<W: ?Sized>(
+        &mut self,
+        other: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Option<Dart> {
         let possible = |edge: &Dart| *edge != other && self.map.is_unexplored(other);
         let edge = self.edge.take().filter(possible)?;
         self.map.join(edge, other);
-        observer.event(self, Event::LoopClosed { edge, other });
+        observer.event(world, self, MappingEvent::LoopClosed { edge, other });
         Some(edge)
     }
 
     /// The edge that is being explored leads to a new vertex, whose other edges are unexplored. The
     /// robot is still there; counted from the dart by which it first came in, it has now come in by
     /// the door `entry`. Where no edge is being explored, nothing happens.
-    pub(super) fn add_place<E>(
+    pub(super) fn add_place<W: World>(
         &mut self,
         entry: Door,
-        observer: &mut impl Observer,
-    ) -> Result<Option<Vertex>, MappingError<E>> {
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<Option<Vertex>, MappingError<W::Error>> {
         let Some(edge) = self.edge else { return Ok(None) };
         self.check_bound(self.arrival.degree)?;
         self.edge = None;
@@ -234,7 +241,7 @@ impl Journey {
         let first = self.map.first_dart(vertex);
         self.map.join(edge, first);
         self.robot = Dart(first.0 + entry.0);
-        observer.event(self, Event::VertexAdded { edge, vertex });
+        observer.event(world, self, MappingEvent::VertexAdded { edge, vertex });
         Ok(Some(vertex))
     }
 

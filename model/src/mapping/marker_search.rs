@@ -1,13 +1,13 @@
 //! The state of the movable marker algorithm, and the small steps of which it is made. Section 2.3.
 
 use super::{
-    Choices, Contradiction, Event, Journey, MappingError, MovableEvent, Observer, PartialMap,
-    Verdict,
+    Choices, Contradiction, Journey, MappingError, MappingEvent, MovableEvent, Observer,
+    PartialMap, Verdict,
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept, Sighting},
-    world::Handling,
+    world::{Handling, World},
 };
 
 /// The state of a run with a movable marker: the robot's journey, and where the marker may be.
@@ -85,14 +85,14 @@ impl MarkerSearch {
     pub fn begin<W: Handling>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.clear();
         let percept = world.percept().map_err(MappingError::World)?;
         if percept.degree == 0 || percept.sighting != Sighting::Lying(1) {
             return Err(Contradiction::StartWithoutMarker { perceived: percept }.into());
         }
-        self.journey.begin(percept, observer)?;
+        self.journey.begin(percept, world, observer)?;
         self.pick_up(world, observer)
     }
 
@@ -111,7 +111,7 @@ impl MarkerSearch {
         &mut self,
         edge: Dart,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         if !self.map().is_unexplored(edge) {
             return Ok(());
@@ -124,7 +124,7 @@ impl MarkerSearch {
         }
         self.raise_candidates(self.map().vertex(edge));
         let candidates = self.candidates.len();
-        self.tell(MovableEvent::Arrived { edge, percept, candidates }, observer);
+        self.report(MovableEvent::Arrived { edge, percept, candidates }, world, observer);
         Ok(())
     }
 
@@ -179,10 +179,10 @@ impl MarkerSearch {
     pub fn drop_marker<W: Handling>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         world.drop().map_err(MappingError::World)?;
-        self.tell(MovableEvent::Dropped, observer);
+        self.report(MovableEvent::Dropped, world, observer);
         Ok(())
     }
 
@@ -193,10 +193,10 @@ impl MarkerSearch {
     pub fn pick_up<W: Handling>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         world.pick_up().map_err(MappingError::World)?;
-        self.tell(MovableEvent::PickedUp, observer);
+        self.report(MovableEvent::PickedUp, world, observer);
         Ok(())
     }
 
@@ -208,7 +208,7 @@ impl MarkerSearch {
     pub fn go_back<W: Handling>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         let Some(edge) = self.journey.edge else { return Ok(()) };
         let perceived = self.journey.go(Door::BACK, world, observer)?;
@@ -225,7 +225,7 @@ impl MarkerSearch {
         &mut self,
         candidate: Vertex,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<Option<Vertex>, MappingError<W::Error>> {
         let way = self.journey.way_to(candidate);
         for &dart in &way {
@@ -235,13 +235,13 @@ impl MarkerSearch {
             let (vertex, expected) = (self.map().vertex(next), self.map().unmarked(next));
             if self.may_be(vertex) && perceived == marked(expected) {
                 self.journey.robot = next;
-                self.tell(MovableEvent::Found { vertex }, observer);
+                self.report(MovableEvent::Found { vertex }, world, observer);
                 return Ok(Some(vertex));
             }
             self.journey.arrive(next, expected, perceived)?;
             if self.may_be(vertex) {
                 self.is_candidate[vertex.at()] = false;
-                self.tell(MovableEvent::NotAt { vertex }, observer);
+                self.report(MovableEvent::NotAt { vertex }, world, observer);
             }
         }
         self.journey.way = way;
@@ -256,10 +256,10 @@ impl MarkerSearch {
     pub fn return_to_marker<W: Handling>(
         &mut self,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         let Some(edge) = self.journey.edge else { return Ok(()) };
-        self.tell(MovableEvent::NotFound, observer);
+        self.report(MovableEvent::NotFound, world, observer);
         let expected = marked(self.journey.arrival);
         self.journey.explore(edge, PartialMap::unmarked, world, observer)?;
         let perceived = self.journey.arrival;
@@ -277,7 +277,7 @@ impl MarkerSearch {
         &mut self,
         vertex: Vertex,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
         self.journey.travel_to(vertex, PartialMap::unmarked, world, observer)
     }
@@ -307,20 +307,20 @@ impl MarkerSearch {
         &mut self,
         dart: Dart,
         world: &mut W,
-        observer: &mut impl Observer,
+        observer: &mut impl Observer<W>,
     ) -> Result<Verdict, MappingError<W::Error>> {
         let door = self.map().door(self.journey.robot, dart);
         let percept = self.journey.go(door, world, observer)?;
         match self.journey.edge {
             Some(edge) if percept.sighting != Sighting::Nothing => {
                 self.journey.arrive(edge, marked(self.map().unmarked(edge)), percept)?;
-                self.tell(MovableEvent::Behind { dart }, observer);
+                self.report(MovableEvent::Behind { dart }, world, observer);
                 Ok(Verdict::Confirmed)
             }
             _ => {
                 let back = self.journey.go(Door::BACK, world, observer)?;
                 self.journey.arrive(dart, self.map().unmarked(dart), back)?;
-                self.tell(MovableEvent::NotBehind { dart, percept }, observer);
+                self.report(MovableEvent::NotBehind { dart, percept }, world, observer);
                 Ok(Verdict::Rejected)
             }
         }
@@ -328,8 +328,13 @@ impl MarkerSearch {
 
     /// The edge leads to a known vertex, by this unexplored dart of it. Where no edge is being
     /// explored, or the dart is no other unexplored one, nothing happens.
-    pub fn close_loop(&mut self, back_link: Dart, observer: &mut impl Observer) {
-        self.journey.close_loop(back_link, observer);
+    pub fn close_loop<W: ?Sized>(
+        &mut self,
+        back_link: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) {
+        self.journey.close_loop(back_link, world, observer);
     }
 
     /// The edge leads to a new vertex, whose other edges are unexplored. The robot is there. Where
@@ -337,12 +342,21 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The bound.
-    pub fn add_place<E>(&mut self, observer: &mut impl Observer) -> Result<(), MappingError<E>> {
-        self.journey.add_place(Door::BACK, observer)?;
+    pub fn add_place<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.journey.add_place(Door::BACK, world, observer)?;
         Ok(())
     }
 
-    fn tell(&self, event: MovableEvent, observer: &mut impl Observer) {
-        observer.event(&self.journey, Event::Movable(event));
+    fn report<W: ?Sized>(
+        &self,
+        event: MovableEvent,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) {
+        observer.event(world, &self.journey, MappingEvent::Movable(event));
     }
 }

@@ -8,8 +8,8 @@ mod exploration;
 mod journey;
 mod marker_search;
 mod movable_marker;
+mod observer;
 mod partial_map;
-mod story;
 mod tree;
 
 pub use algorithm1::{Verdict, map_world, try_path};
@@ -19,5 +19,5 @@ pub use exploration::{DEFAULT_DART_BOUND, Exploration};
 pub use journey::Journey;
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{Place, map_with_movable_marker, validate_back_link, validate_place};
+pub use observer::{MappingEvent, MovableEvent, Observer};
 pub use partial_map::{FACING, PartialMap};
-pub use story::{Event, MovableEvent, Observer};

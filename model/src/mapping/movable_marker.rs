@@ -36,7 +36,7 @@ pub fn map_with_movable_marker<W: Handling>(
     world: &mut W,
     choices: &mut impl Choices,
     search: &mut MarkerSearch,
-    observer: &mut impl Observer,
+    observer: &mut impl Observer<W>,
 ) -> Result<(), MappingError<W::Error>> {
     // The robot picks the marker up at v0; S is v0; U is its edges.
     search.begin(world, observer)?;
@@ -48,10 +48,10 @@ pub fn map_with_movable_marker<W: Handling>(
             // vu is a known vertex: a loop was closed.
             Place::Known(vertex) => {
                 let back_link = validate_back_link(edge, vertex, search, world, observer)?;
-                search.close_loop(back_link, observer);
+                search.close_loop(back_link, world, observer);
             }
             // vu is a new place.
-            Place::New => search.add_place(observer)?,
+            Place::New => search.add_place(world, observer)?,
         }
     }
     // S is the map.
@@ -66,7 +66,7 @@ pub fn map_with_movable_marker<W: Handling>(
 pub fn validate_place<W: Handling>(
     search: &mut MarkerSearch,
     world: &mut W,
-    observer: &mut impl Observer,
+    observer: &mut impl Observer<W>,
 ) -> Result<Place, MappingError<W::Error>> {
     // No known vertex can be vu: it is new.
     if search.candidates().is_empty() {
@@ -99,7 +99,7 @@ pub fn validate_back_link<W: Handling>(
     vertex: Vertex,
     search: &mut MarkerSearch,
     world: &mut W,
-    observer: &mut impl Observer,
+    observer: &mut impl Observer<W>,
 ) -> Result<Dart, MappingError<W::Error>> {
     search.pick_up(world, observer)?;
     // An only unexplored dart of the vertex needs no validation.

@@ -4,7 +4,9 @@ use std::{collections::BTreeMap, fmt};
 
 use crate::{
     embedded_graph::EmbeddedGraph,
-    mapping::{DEFAULT_DART_BOUND, Event, Exploration, Journey, Nearest, Observer, map_world},
+    mapping::{
+        DEFAULT_DART_BOUND, Exploration, Journey, MappingEvent, Nearest, Observer, map_world,
+    },
     percept::Sighting,
     world::GraphWorld,
 };
@@ -89,16 +91,16 @@ impl Coverage {
 }
 
 /// Whoever counts listens.
-impl Observer for Coverage {
-    fn event(&mut self, _: &Journey, event: Event) {
+impl<W: ?Sized> Observer<W> for Coverage {
+    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
         match event {
-            Event::Moved { percept, .. } => {
+            MappingEvent::Moved { percept, .. } => {
                 self.add(Case::MarkerSeen, u64::from(percept.sighting != Sighting::Nothing));
             }
-            Event::Arrived { contradicted, .. } => {
+            MappingEvent::Arrived { contradicted, .. } => {
                 self.add(Case::RejectedAtOnce, contradicted as u64);
             }
-            Event::Rejected { expected, perceived, .. } => {
+            MappingEvent::Rejected { expected, perceived, .. } => {
                 // The marker is expected at the end of the path, and nowhere else on it.
                 let at_the_end = expected.sighting != Sighting::Nothing;
                 let missed = at_the_end && perceived.sighting == Sighting::Nothing;
@@ -106,9 +108,11 @@ impl Observer for Coverage {
                 self.add(case, 1);
                 self.add(Case::MarkerMissed, u64::from(missed));
             }
-            Event::LoopClosed { .. } => self.add(Case::Confirmed, 1),
-            Event::VertexAdded { .. } => self.add(Case::NewVertex, 1),
-            Event::Started { .. } | Event::Confirmed { .. } | Event::Movable(_) => {}
+            MappingEvent::LoopClosed { .. } => self.add(Case::Confirmed, 1),
+            MappingEvent::VertexAdded { .. } => self.add(Case::NewVertex, 1),
+            MappingEvent::Started { .. }
+            | MappingEvent::Confirmed { .. }
+            | MappingEvent::Movable(_) => {}
         }
     }
 }
@@ -164,8 +168,9 @@ mod tests {
             (none, percept(Sighting::Lying(1)), [1, 0, 0]),
         ] {
             let mut coverage = Coverage::default();
-            let event = Event::Rejected { hypothesis: Dart(1), followed: 1, expected, perceived };
-            coverage.event(Exploration::new(0).journey(), event);
+            let event =
+                MappingEvent::Rejected { hypothesis: Dart(1), followed: 1, expected, perceived };
+            coverage.event(&mut (), Exploration::new(0).journey(), event);
             let cases = [Case::RejectedOnTheWay, Case::RejectedAtTheEnd, Case::MarkerMissed];
             assert_eq!(cases.map(|case| coverage.count(case)), counts);
         }

@@ -130,31 +130,38 @@ impl fmt::Display for Allowed {
 
 /// A world that answers with what was recorded, for as long as it is asked for what was done then.
 #[derive(Clone, Debug)]
-struct Recorded<'t> {
+pub struct TraceWorld<'t> {
     trace: &'t Trace,
     moves: usize,
 }
 
 /// Why a recorded world does not answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-enum Unlike {
+pub enum TraceWorldError {
+    /// Another door was taken.
     #[error("door {} was taken then, not door {}", recorded.0, asked.0)]
-    Door { recorded: Door, asked: Door },
+    Door {
+        /// The door that was taken.
+        recorded: Door,
+        /// The door that the algorithm takes.
+        asked: Door,
+    },
+    /// The trace has no further event.
     #[error("the trace ends here")]
     End,
 }
 
-impl World for Recorded<'_> {
-    type Error = Unlike;
+impl World for TraceWorld<'_> {
+    type Error = TraceWorldError;
 
-    fn percept(&mut self) -> Result<Percept, Unlike> {
-        self.trace.percepts().get(self.moves).copied().ok_or(Unlike::End)
+    fn percept(&mut self) -> Result<Percept, TraceWorldError> {
+        self.trace.percepts().get(self.moves).copied().ok_or(TraceWorldError::End)
     }
 
-    fn traverse(&mut self, asked: Door) -> Result<(), Unlike> {
+    fn traverse(&mut self, asked: Door) -> Result<(), TraceWorldError> {
         match self.trace.doors().get(self.moves) {
-            None => Err(Unlike::End),
-            Some(&recorded) if recorded != asked => Err(Unlike::Door { recorded, asked }),
+            None => Err(TraceWorldError::End),
+            Some(&recorded) if recorded != asked => Err(TraceWorldError::Door { recorded, asked }),
             Some(_) => {
                 self.moves += 1;
                 Ok(())
@@ -176,13 +183,13 @@ pub enum Claim {
 /// otherwise with any that do. At most `bound` darts may become known.
 #[must_use]
 pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
-    let mut world = Recorded { trace, moves: 0 };
+    let mut world = TraceWorld { trace, moves: 0 };
     let mut exploration = Exploration::new(bound);
     let mut coverage = Coverage::default();
     let run = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
     let reached = match &run {
         Ok(()) if world.moves == trace.doors().len() => Some(Reached::Mapped),
-        Err(MappingError::World(Unlike::End)) => Some(Reached::EndOfTrace),
+        Err(MappingError::World(TraceWorldError::End)) => Some(Reached::EndOfTrace),
         _ => None,
     };
     let to_the_end = reached == Some(Reached::Mapped);
@@ -200,7 +207,7 @@ pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
     }
     // Where the default choices go along, it is their end that is another.
     let from = match run {
-        Err(MappingError::World(Unlike::End)) => trace.len(),
+        Err(MappingError::World(TraceWorldError::End)) => trace.len(),
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * world.moves,
         _ => 2 * world.moves + 1,
     };
@@ -217,9 +224,14 @@ pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
 
 impl Followed {
     /// Runs along the trace again, as far as Algorithm 1 goes along with it, for an observer.
-    pub fn again(&self, trace: &Trace, bound: usize, observer: &mut impl Observer) -> Exploration {
+    pub fn again(
+        &self,
+        trace: &Trace,
+        bound: usize,
+        observer: &mut impl for<'t> Observer<TraceWorld<'t>>,
+    ) -> Exploration {
         let mut exploration = Exploration::new(bound);
-        let mut world = Recorded { trace, moves: 0 };
+        let mut world = TraceWorld { trace, moves: 0 };
         // It ends as it was found to end.
         let _ = match self.script.clone() {
             None => map_world(&mut world, &mut Nearest, &mut exploration, observer),
@@ -252,7 +264,7 @@ impl Choices for Script {
 #[derive(Clone)]
 struct Way<'t> {
     exploration: Exploration,
-    world: Recorded<'t>,
+    world: TraceWorld<'t>,
     script: Script,
     /// Whether it stands at line 8, not at line 4.
     within_round: bool,
@@ -292,7 +304,7 @@ impl Search {
     /// A way that goes along with the whole trace.
     fn run(&mut self, trace: &Trace, bound: usize) -> Option<(Reached, Script)> {
         let mut exploration = Exploration::new(bound);
-        let mut world = Recorded { trace, moves: 0 };
+        let mut world = TraceWorld { trace, moves: 0 };
         let begun = exploration.begin(&mut world, &mut ());
         let way = Way { exploration, world, script: Script::default(), within_round: false };
         if let Err(error) = begun {
@@ -340,7 +352,7 @@ impl Search {
             let _ = way.exploration.next_edge(&mut This(edge, 0));
             match way.exploration.explore(edge, &mut way.world, &mut ()) {
                 Ok(()) => next.push(Way { within_round: true, ..way }),
-                Err(MappingError::World(Unlike::End)) => {
+                Err(MappingError::World(TraceWorldError::End)) => {
                     self.part.get_or_insert(way.script);
                 }
                 Err(error) => {
@@ -357,7 +369,7 @@ impl Search {
     fn line_8<'t>(&mut self, way: &Way<'t>) -> Vec<Way<'t>> {
         if way.exploration.hypotheses().is_empty() {
             let mut way = Way { within_round: false, ..way.clone() };
-            if let Err(error) = way.exploration.add_place(&mut ()) {
+            if let Err(error) = way.exploration.add_place(&mut way.world, &mut ()) {
                 self.ended(&way, &error, Purpose::Bound);
                 return Vec::new();
             }
@@ -374,7 +386,7 @@ impl Search {
             way.script.hypotheses.push_back(dart);
             match try_path(&mut way.exploration, dart, &mut way.world, &mut ()) {
                 Ok(Verdict::Confirmed) => {
-                    way.exploration.close_loop(dart, &mut ());
+                    way.exploration.close_loop(dart, &mut way.world, &mut ());
                     next.push(Way { within_round: false, ..way });
                 }
                 // Two that fall along the trace fall after the same moves, for the way back begins with
@@ -382,7 +394,7 @@ impl Search {
                 // after the same moves again.
                 Ok(Verdict::Rejected) if !mem::replace(&mut rejected, true) => next.push(way),
                 Ok(Verdict::Rejected) => {}
-                Err(MappingError::World(Unlike::End)) => {
+                Err(MappingError::World(TraceWorldError::End)) => {
                     self.part.get_or_insert(way.script);
                 }
                 Err(error) => {
@@ -396,14 +408,14 @@ impl Search {
     }
 
     /// A way ended before the trace.
-    fn ended(&mut self, way: &Way, error: &MappingError<Unlike>, purpose: Purpose) {
+    fn ended(&mut self, way: &Way, error: &MappingError<TraceWorldError>, purpose: Purpose) {
         let at_percept = 2 * way.world.moves;
         let (event, door, purpose) = match error {
-            MappingError::World(Unlike::Door { asked, .. }) => {
+            MappingError::World(TraceWorldError::Door { asked, .. }) => {
                 (at_percept + 1, Some(*asked), purpose)
             }
             // The end of the trace is told otherwise.
-            MappingError::World(Unlike::End) => return,
+            MappingError::World(TraceWorldError::End) => return,
             MappingError::Contradiction(contradiction) => {
                 (at_percept, None, Purpose::Contradicted(*contradiction))
             }
@@ -453,7 +465,7 @@ mod tests {
         any_graph::{Class, any_graph},
         embedded_graph::EmbeddedGraph,
         isomorphism::code,
-        mapping::{FACING, Journey},
+        mapping::{FACING, Journey, MappingEvent},
         percept::Sighting,
         trace::{
             Event,
@@ -475,8 +487,8 @@ mod tests {
             }
         }
         let mut doors = Vec::new();
-        let mut listen = |_: &Journey, event: crate::mapping::Event| {
-            if let crate::mapping::Event::Moved { door, .. } = event {
+        let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+            if let MappingEvent::Moved { door, .. } = event {
                 doors.push(door);
             }
         };

@@ -10,7 +10,10 @@ mod some_world;
 use thiserror::Error;
 
 pub use coverage::{Case, Coverage, reachable};
-pub use followed::{Allowed, Choosing, Claim, Departure, Followed, Purpose, Reached, follow};
+pub use followed::{
+    Allowed, Choosing, Claim, Departure, Followed, Purpose, Reached, TraceWorld, TraceWorldError,
+    follow,
+};
 pub use known_world::{Misfit, Poses, Why, anywhere, poses};
 pub use shortened::shortened;
 pub use some_world::{Search, Smallest, smallest};
@@ -133,7 +136,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
-        mapping::{self, Exploration, Journey, Nearest, map_world},
+        mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
         percept::Sighting,
         world::{GraphWorld, World},
     };
@@ -152,8 +155,8 @@ pub(crate) mod tests {
     /// A run of Algorithm 1.
     pub(crate) fn explored(graph: &EmbeddedGraph, facing: Dart) -> Trace {
         let mut doors = Vec::new();
-        let mut listen = |_: &Journey, event: mapping::Event| {
-            if let mapping::Event::Moved { door, .. } = event {
+        let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+            if let MappingEvent::Moved { door, .. } = event {
                 doors.push(door);
             }
         };

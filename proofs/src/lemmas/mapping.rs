@@ -10,7 +10,7 @@ use toposlam_model::{
     check::{Algorithm, Algorithm1},
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::code,
-    mapping::{Choices, Event, Exploration, FACING, Journey, PartialMap, map_world},
+    mapping::{Choices, Exploration, FACING, Journey, MappingEvent, PartialMap, map_world},
     percept::Door,
     world::GraphWorld,
 };
@@ -100,14 +100,14 @@ struct Truth<'g> {
 
 impl Truth<'_> {
     /// Takes note of what happened.
-    fn event(&mut self, journey: &Journey, event: Event) {
+    fn event(&mut self, journey: &Journey, event: MappingEvent) {
         match event {
-            Event::Started { percept } => self.meet(FACING, percept.degree),
-            Event::Moved { door, percept: _ } => {
+            MappingEvent::Started { percept } => self.meet(FACING, percept.degree),
+            MappingEvent::Moved { door, percept: _ } => {
                 self.doors.push(door);
                 self.pose = self.graph.after(self.pose, door);
             }
-            Event::VertexAdded { edge, vertex } => {
+            MappingEvent::VertexAdded { edge, vertex } => {
                 let degree = journey.map().degree(vertex);
                 self.meet(self.behind(edge), degree);
             }
@@ -160,20 +160,20 @@ impl<C: Choose> Choices for Noted<'_, C> {
 fn run<'g, C: Choose>(
     choose: &mut C,
     graph: &'g EmbeddedGraph,
-    mut judge: impl FnMut(&Truth, &Journey, Event) -> Case,
+    mut judge: impl FnMut(&Truth, &Journey, MappingEvent) -> Case,
 ) -> Result<(Exploration, Truth<'g>), Stop> {
     let latest = Cell::new(FACING);
     let heeded = |event| match event {
-        Event::Arrived { edge: chosen, .. }
-        | Event::Rejected { hypothesis: chosen, .. }
-        | Event::Confirmed { hypothesis: chosen, .. } => {
+        MappingEvent::Arrived { edge: chosen, .. }
+        | MappingEvent::Rejected { hypothesis: chosen, .. }
+        | MappingEvent::Confirmed { hypothesis: chosen, .. } => {
             claim("the choice is heeded", latest.get() == chosen)
         }
         _ => Ok(()),
     };
     let mut truth = Truth { graph, pose: FACING, image: Vec::new(), doors: Vec::new() };
     let mut verdict = Ok(());
-    let mut watch = |journey: &Journey, event: Event| {
+    let mut watch = |_: &mut _, journey: &Journey, event: MappingEvent| {
         truth.event(journey, event);
         if verdict.is_ok() {
             verdict = heeded(event).and_then(|()| judge(&truth, journey, event));
@@ -194,15 +194,15 @@ fn run<'g, C: Choose>(
 }
 
 /// Whether a round ends with this event.
-fn ends_round(event: Event) -> bool {
-    matches!(event, Event::LoopClosed { .. } | Event::VertexAdded { .. })
+fn ends_round(event: MappingEvent) -> bool {
+    matches!(event, MappingEvent::LoopClosed { .. } | MappingEvent::VertexAdded { .. })
 }
 
 // paper: alg1.19, alg1.22, alg1.located
 fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     run(choose, &graph, |truth, journey, event| {
-        if ends_round(event) || matches!(event, Event::Started { .. }) {
+        if ends_round(event) || matches!(event, MappingEvent::Started { .. }) {
             embeds(truth, journey)
         } else {
             Ok(())
@@ -235,11 +235,11 @@ fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(choose: &
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut explored = FACING;
     run(choose, &graph, |truth, journey, event| match event {
-        Event::Arrived { edge, .. } => {
+        MappingEvent::Arrived { edge, .. } => {
             explored = edge;
             Ok(())
         }
-        Event::Confirmed { hypothesis, .. } => {
+        MappingEvent::Confirmed { hypothesis, .. } => {
             let leads_to = truth.behind(explored);
             claim("the edge leads to it", truth.image[hypothesis.at()] == leads_to)?;
             let believed = truth.image[journey.robot().at()];
@@ -255,15 +255,17 @@ fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(choose
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut truly = None;
     run(choose, &graph, |truth, _, event| match event {
-        Event::Arrived { edge, hypotheses, .. } => {
+        MappingEvent::Arrived { edge, hypotheses, .. } => {
             truly = truth.known(truth.behind(edge));
             claim("there is a hypothesis if one is true", truly.is_none() || hypotheses > 0)
         }
-        Event::Rejected { hypothesis, .. } => {
+        MappingEvent::Rejected { hypothesis, .. } => {
             claim("the true hypothesis is not rejected", Some(hypothesis) != truly)
         }
-        Event::LoopClosed { other, .. } => claim("the loop is closed there", Some(other) == truly),
-        Event::VertexAdded { .. } => claim("the vertex is new", truly.is_none()),
+        MappingEvent::LoopClosed { other, .. } => {
+            claim("the loop is closed there", Some(other) == truly)
+        }
+        MappingEvent::VertexAdded { .. } => claim("the vertex is new", truly.is_none()),
         _ => Ok(()),
     })?;
     Ok(())
@@ -277,16 +279,16 @@ fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(choose: &m
     let (exploration, _) = run(choose, &graph, |_, journey, event| {
         let map = journey.map();
         match event {
-            Event::Started { percept } => {
+            MappingEvent::Started { percept } => {
                 claim("all darts of the start are in U", map.unexplored_count() == percept.degree)?;
             }
-            Event::LoopClosed { edge, other } => {
+            MappingEvent::LoopClosed { edge, other } => {
                 let took = map.unexplored_count() + 2 == unexplored;
                 claim("a loop takes two darts from U", took)?;
                 let joined = map.opposite(edge) == Some(other) && map.opposite(other) == Some(edge);
                 claim("they are one edge", joined && edge != other)?;
             }
-            Event::VertexAdded { vertex, .. } => {
+            MappingEvent::VertexAdded { vertex, .. } => {
                 let added = map.unexplored_count() + 2 == unexplored + map.degree(vertex);
                 claim("a vertex adds its other darts to U", added)?;
             }
@@ -311,7 +313,7 @@ fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut 
         if ends_round(event) {
             let cost = journey.moves() - moves;
             claim("a round costs so much at most", cost <= known + 2 * others * (known - 1))?;
-        } else if !matches!(event, Event::Started { .. }) {
+        } else if !matches!(event, MappingEvent::Started { .. }) {
             return Ok(());
         }
         round += 1;

@@ -14,7 +14,7 @@ use toposlam_model::{
     enumerate::{Class, Each, Enumeration},
     format::{named_world::NamedWorld, world_file},
     mapping::{
-        Event, Exploration, Journey, MarkerSearch, MovableEvent, Nearest, PartialMap,
+        Exploration, Journey, MappingEvent, MarkerSearch, Nearest, Observer, PartialMap,
         map_with_movable_marker, map_world,
     },
     marker::Movable,
@@ -60,30 +60,32 @@ impl Mapping {
 
     /// What the running algorithm does in a start, as `compare/main.ml` tells it.
     fn told(self, start: &EmbeddedGraph) -> String {
-        let mut did = vec!["did".to_owned()];
-        let mut listen = |_: &Journey, event| match event {
-            Event::Moved { door, .. } => did.push(door.0.to_string()),
-            Event::Movable(MovableEvent::PickedUp) => did.push("pick-up".to_owned()),
-            Event::Movable(MovableEvent::Dropped) => did.push("drop".to_owned()),
-            _ => (),
-        };
+        let mut did = Actions(vec!["did".to_owned()]);
         let bound = start.dart_count();
         let known = match self {
             Self::Directional => {
                 let mut world = GraphWorld::new(start, Dart(0));
                 let mut exploration = Exploration::new(bound);
-                map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
+                map_world(&mut world, &mut Nearest, &mut exploration, &mut did).unwrap();
                 known(exploration.map(), exploration.robot())
             }
             Self::Movable => {
                 let mut world = GraphWorld::with_marker(start, Movable, Dart(0));
                 let mut search = MarkerSearch::new(bound);
-                map_with_movable_marker(&mut world, &mut Nearest, &mut search, &mut listen)
-                    .unwrap();
+                map_with_movable_marker(&mut world, &mut Nearest, &mut search, &mut did).unwrap();
                 known(search.map(), search.robot())
             }
         };
-        [did.join(" "), known].join("; ")
+        [did.0.join(" "), known].join("; ")
+    }
+}
+
+/// What the robot did, as text.
+struct Actions(Vec<String>);
+
+impl<W: ?Sized> Observer<W> for Actions {
+    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+        self.0.extend(event.action().map(|action| action.to_string()));
     }
 }
 

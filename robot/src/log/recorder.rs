@@ -9,7 +9,7 @@ use toposlam_model::{
         algorithm2::{Standing, Step},
         scene,
     },
-    mapping::{self, Event, Journey, MappingError},
+    mapping::{self, Journey, MappingError, MappingEvent},
     percept::Door,
 };
 use toposlam_vision::{annotate, camera::Camera, image_file::ImageFile};
@@ -161,8 +161,8 @@ impl<W: Write, R: Robot<View: Photograph>> Observer<R> for Recorder<W> {
     }
 }
 
-impl<W: Write> mapping::Observer for Recorder<W> {
-    fn event(&mut self, journey: &Journey, event: Event) {
+impl<W: Write, X: ?Sized> mapping::Observer<X> for Recorder<W> {
+    fn event(&mut self, _: &mut X, journey: &Journey, event: MappingEvent) {
         let mut log = self.0.borrow_mut();
         let stamp = log.stamp();
         if let Some(step) = told::hypothesis(stamp, journey, event) {

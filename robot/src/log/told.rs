@@ -8,7 +8,7 @@ use toposlam_model::{
         },
     },
     embedded_graph::{Dart, Vertex},
-    mapping::{Event, Journey},
+    mapping::{Journey, MappingEvent},
     percept::{Door, Sighting},
 };
 
@@ -128,7 +128,11 @@ pub(super) fn percept(stamp: Stamp, moves: u64, at: &Standing) -> Percept {
 }
 
 /// A step of Algorithm 1; moves are told by [`Percept`].
-pub(super) fn hypothesis(stamp: Stamp, journey: &Journey, event: Event) -> Option<Hypothesis> {
+pub(super) fn hypothesis(
+    stamp: Stamp,
+    journey: &Journey,
+    event: MappingEvent,
+) -> Option<Hypothesis> {
     let told = |step: &str, dart: Option<Dart>| Hypothesis {
         stamp,
         r#move: count(journey.moves()),
@@ -138,33 +142,35 @@ pub(super) fn hypothesis(stamp: Stamp, journey: &Journey, event: Event) -> Optio
         ..Hypothesis::default()
     };
     Some(match event {
-        Event::Started { .. } => told("started", None),
-        Event::Arrived { edge, contradicted, hypotheses, .. } => Hypothesis {
+        MappingEvent::Started { .. } => told("started", None),
+        MappingEvent::Arrived { edge, contradicted, hypotheses, .. } => Hypothesis {
             contradicted: count(contradicted as u64),
             hypotheses: count(hypotheses as u64),
             ..told("arrived", Some(edge))
         },
-        Event::Rejected { hypothesis, followed, .. } => {
+        MappingEvent::Rejected { hypothesis, followed, .. } => {
             Hypothesis { followed, ..told("rejected", Some(hypothesis)) }
         }
-        Event::Confirmed { hypothesis, followed } => {
+        MappingEvent::Confirmed { hypothesis, followed } => {
             Hypothesis { followed, ..told("confirmed", Some(hypothesis)) }
         }
-        Event::LoopClosed { edge, other: Dart(other) } => {
+        MappingEvent::LoopClosed { edge, other: Dart(other) } => {
             Hypothesis { other: number(other), ..told("loop-closed", Some(edge)) }
         }
-        Event::VertexAdded { edge, vertex: Vertex(vertex) } => {
+        MappingEvent::VertexAdded { edge, vertex: Vertex(vertex) } => {
             Hypothesis { other: number(vertex), ..told("vertex-added", Some(edge)) }
         }
-        Event::Moved { .. } | Event::Movable(_) => return None,
+        MappingEvent::Moved { .. } | MappingEvent::Movable(_) => return None,
     })
 }
 
 /// The map, where an event made it grow.
-pub(super) fn map(stamp: Stamp, journey: &Journey, event: Event) -> Option<Map> {
+pub(super) fn map(stamp: Stamp, journey: &Journey, event: MappingEvent) -> Option<Map> {
     let grown = matches!(
         event,
-        Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. }
+        MappingEvent::Started { .. }
+            | MappingEvent::LoopClosed { .. }
+            | MappingEvent::VertexAdded { .. }
     );
     let map = journey.map();
     let darts = map.vertices().flat_map(|vertex| map.darts_of(vertex));

@@ -12,7 +12,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{self, Event, Exploration, Journey, Nearest, map_world},
+    mapping::{self, Exploration, Journey, MappingEvent, Nearest, map_world},
     percept::Door,
 };
 use toposlam_robot::{
@@ -228,11 +228,11 @@ struct Telling<'o, 'l> {
     log: Option<Recorder>,
 }
 
-impl mapping::Observer for Telling<'_, '_> {
-    fn event(&mut self, journey: &Journey, event: Event) {
-        self.story.event(journey, event);
+impl<W: ?Sized> mapping::Observer<W> for Telling<'_, '_> {
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+        self.story.event(world, journey, event);
         if let Some(log) = &mut self.log {
-            log.event(journey, event);
+            log.event(world, journey, event);
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Event, Journey, Observer};
+use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 
 use crate::cli::json::action_json;
 
@@ -26,8 +26,8 @@ impl<'o, W: Write> Doors<'o, W> {
     }
 }
 
-impl<W: Write> Observer for Doors<'_, W> {
-    fn event(&mut self, _: &Journey, event: Event) {
+impl<W: ?Sized, O: Write> Observer<W> for Doors<'_, O> {
+    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
         if let (Ok(()), Some(action)) = (&self.result, event.action()) {
             let comma = if self.taken == 0 { "" } else { "," };
             self.taken += 1;

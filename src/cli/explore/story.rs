@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{Event, Journey, Observer, PartialMap},
+    mapping::{Journey, MappingEvent, Observer, PartialMap},
     percept::{Percept, Sighting},
     world::Action,
 };
@@ -56,21 +56,21 @@ impl<'o, W: Write> Story<'o, W> {
         self.result
     }
 
-    fn tell(&mut self, journey: &Journey, event: Event) -> io::Result<()> {
+    fn tell(&mut self, journey: &Journey, event: MappingEvent) -> io::Result<()> {
         let map = journey.map();
         if self.detail.doors {
             self.actions.extend(event.action());
         }
         match event {
-            Event::Started { percept } => {
+            MappingEvent::Started { percept } => {
                 let marker = match percept.sighting {
                     Sighting::Pointing(_) => "It drops its marker",
                     _ => "Its marker lies",
                 };
                 writeln!(self.out, "{marker} at v0, where it senses {percept}.")
             }
-            Event::Moved { .. } => Ok(()),
-            Event::Arrived { edge, percept, contradicted, hypotheses } => {
+            MappingEvent::Moved { .. } => Ok(()),
+            MappingEvent::Arrived { edge, percept, contradicted, hypotheses } => {
                 self.tell_round(journey, edge, "", percept)?;
                 match (contradicted, hypotheses) {
                     (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
@@ -81,7 +81,7 @@ impl<'o, W: Write> Story<'o, W> {
                     }
                 }
             }
-            Event::Rejected { hypothesis, followed, expected, perceived } => {
+            MappingEvent::Rejected { hypothesis, followed, expected, perceived } => {
                 let why = format!(
                     "no, its path fails at move {followed}: {} instead of {}",
                     seen_against(perceived, expected),
@@ -89,7 +89,7 @@ impl<'o, W: Write> Story<'o, W> {
                 );
                 self.tell_rejected(journey, &dart(map, hypothesis), &why)
             }
-            Event::Confirmed { hypothesis, followed } => {
+            MappingEvent::Confirmed { hypothesis, followed } => {
                 self.tell_untold()?;
                 let moves = self.count_moves(journey);
                 let how = match followed {
@@ -98,7 +98,7 @@ impl<'o, W: Write> Story<'o, W> {
                 };
                 writeln!(self.out, "     {}? yes: {how}", dart(map, hypothesis))
             }
-            Event::LoopClosed { edge, other } => {
+            MappingEvent::LoopClosed { edge, other } => {
                 writeln!(
                     self.out,
                     "     so {} and {} are one edge",
@@ -107,7 +107,7 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 self.tell_map(map)
             }
-            Event::VertexAdded { edge, vertex } => {
+            MappingEvent::VertexAdded { edge, vertex } => {
                 self.tell_untold()?;
                 writeln!(
                     self.out,
@@ -117,7 +117,7 @@ impl<'o, W: Write> Story<'o, W> {
                 )?;
                 self.tell_map(map)
             }
-            Event::Movable(event) => self.tell_movable(journey, event),
+            MappingEvent::Movable(event) => self.tell_movable(journey, event),
         }
     }
 
@@ -178,8 +178,8 @@ impl<'o, W: Write> Story<'o, W> {
     }
 }
 
-impl<W: Write> Observer for Story<'_, W> {
-    fn event(&mut self, journey: &Journey, event: Event) {
+impl<W: ?Sized, O: Write> Observer<W> for Story<'_, O> {
+    fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
         if self.result.is_ok() {
             self.result = self.tell(journey, event);
         }

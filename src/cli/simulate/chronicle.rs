@@ -19,7 +19,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::FloorPlan,
-    mapping::{self, Event, Journey, PartialMap},
+    mapping::{self, Journey, MappingEvent, PartialMap},
     percept::Door,
 };
 use toposlam_robot::{
@@ -255,15 +255,17 @@ impl<'o, 'l> Telling<'o, 'l> {
     }
 }
 
-impl mapping::Observer for Telling<'_, '_> {
-    fn event(&mut self, journey: &Journey, event: Event) {
-        self.story.event(journey, event);
+impl<W: ?Sized> mapping::Observer<W> for Telling<'_, '_> {
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+        self.story.event(world, journey, event);
         if let Some(log) = &mut self.log {
-            log.event(journey, event);
+            log.event(world, journey, event);
         }
         let grown = matches!(
             event,
-            Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. }
+            MappingEvent::Started { .. }
+                | MappingEvent::LoopClosed { .. }
+                | MappingEvent::VertexAdded { .. }
         );
         if grown {
             self.chronicle.borrow_mut().maps.push(journey.map().clone());

@@ -11,7 +11,7 @@ use crate::{
         driving::algorithm2::{Command, State},
         embedded_graph::Dart,
         floor_plan::FloorPlan,
-        mapping::{Event, Exploration, Journey, Nearest, PartialMap, map_world},
+        mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
         percept::{Percept, Sighting},
         world::GraphWorld,
     },
@@ -60,8 +60,10 @@ pub(crate) fn journal() -> Journal {
 /// The map of a plan whenever Algorithm 1 adds to it.
 pub(crate) fn maps(plan: &FloorPlan, facing: Dart) -> Vec<PartialMap> {
     let mut maps = Vec::new();
-    let mut watch = |journey: &Journey, event: Event| match event {
-        Event::Started { .. } | Event::LoopClosed { .. } | Event::VertexAdded { .. } => {
+    let mut watch = |_: &mut _, journey: &Journey, event: MappingEvent| match event {
+        MappingEvent::Started { .. }
+        | MappingEvent::LoopClosed { .. }
+        | MappingEvent::VertexAdded { .. } => {
             maps.push(journey.map().clone());
         }
         _ => {}

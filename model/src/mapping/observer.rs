@@ -1,4 +1,4 @@
-//! The story of a run, told to whoever listens.
+//! The events of a run, and who observes them.
 
 use crate::{
     embedded_graph::{Dart, Vertex},
@@ -9,7 +9,7 @@ use crate::{
 
 /// What happens in a run, as it happens. Vertices and darts are those of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum MappingEvent {
     /// Lines 1 to 3: the marker lies at the start vertex.
     Started {
         /// What the robot perceives there.
@@ -69,7 +69,7 @@ pub enum Event {
     Movable(MovableEvent),
 }
 
-impl Event {
+impl MappingEvent {
     /// What the robot did, if the event is something that it did.
     #[must_use]
     pub fn action(self) -> Option<Action> {
@@ -125,21 +125,23 @@ pub enum MovableEvent {
     },
 }
 
-/// Listens to a run.
-pub trait Observer {
-    /// Something happened; the journey is as it is after it, but that at [`Event::Moved`] the
-    /// robot's pose in the map is still that before the move.
-    fn event(&mut self, journey: &Journey, event: Event);
+/// Observes a run in a world `W`.
+///
+/// It gets the world, too: so an observer that lives in the world needs no shared ownership.
+pub trait Observer<W: ?Sized> {
+    /// Something happened. The journey is as it is afterwards, except that at
+    /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent);
 }
 
-/// Nobody listens.
-impl Observer for () {
+/// Ignores every event.
+impl<W: ?Sized> Observer<W> for () {
     #[inline]
-    fn event(&mut self, _: &Journey, _: Event) {}
+    fn event(&mut self, _: &mut W, _: &Journey, _: MappingEvent) {}
 }
 
-impl<F: FnMut(&Journey, Event)> Observer for F {
-    fn event(&mut self, journey: &Journey, event: Event) {
-        self(journey, event);
+impl<W: ?Sized, F: FnMut(&mut W, &Journey, MappingEvent)> Observer<W> for F {
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+        self(world, journey, event);
     }
 }
