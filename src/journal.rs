@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use toposlam_model::{
-    driving::algorithm2::{Command, State},
+    driving::algorithm2::{Command, PathState},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     mapping::PartialMap,
@@ -44,7 +44,7 @@ pub struct Round {
     /// How many moves were made or begun by then.
     pub moves: u64,
     /// What the robot was about after it.
-    pub state: State,
+    pub state: PathState,
     /// What sensing told, in words.
     pub scene: String,
     /// What the robot did then; `None` where a path ended or was given up.

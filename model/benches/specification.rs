@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use divan::{Bencher, counter::ItemsCount};
 use toposlam_model::{
-    ambiguity::{Comparison, Search},
+    ambiguity::{AmbiguitySearch, Comparison},
     check::{Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, MovableMarker, Shard, Sweep, judge},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
@@ -80,7 +80,7 @@ fn counterexample(bencher: Bencher, (class, edges, marker, placed): (&str, usize
     let wanted = |kind: &&dyn Marker| kind.name() == marker || marker.is_empty();
     let immovable = MARKERS.into_iter().filter(|marker| !marker.is_movable()).filter(wanted);
     let searches: Vec<_> =
-        immovable.map(|marker| Search::new(class, edges, marker).unwrap()).collect();
+        immovable.map(|marker| AmbiguitySearch::new(class, edges, marker).unwrap()).collect();
     bencher.counter(ItemsCount::new(placed)).bench(|| {
         let findings = searches.iter().map(|search| search.run(&()));
         let sizes = findings.flat_map(|findings| findings.unwrap().sizes);

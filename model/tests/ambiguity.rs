@@ -10,8 +10,8 @@ use std::{
 
 use toposlam_model::{
     ambiguity::{
-        Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Search, Unfinished, Walk, replay,
-        state_count,
+        AmbiguitySearch, Comparison, Findings, PlacedRobot, PlacedWorld, Relation, Unfinished,
+        Walk, replay, state_count,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, SizeError, Watch},
@@ -22,7 +22,7 @@ use toposlam_model::{
 };
 
 fn search(class: Class, edges: usize, marker: &str) -> Findings {
-    Search::new(class, edges, named(marker).unwrap()).unwrap().run(&()).unwrap()
+    AmbiguitySearch::new(class, edges, named(marker).unwrap()).unwrap().run(&()).unwrap()
 }
 
 /// For each number of edges: placed worlds, and those that are ambiguous.
@@ -338,8 +338,11 @@ fn a_walk_that_shows_no_difference_proves_nothing() {
 #[test]
 fn a_search_of_no_size_or_of_too_many_edges_is_refused() {
     let none = named("none").unwrap();
-    assert_eq!(Search::new(Class::Simple, 0, none).unwrap_err(), SizeError::NoEdge);
-    assert_eq!(Search::new(Class::Simple, 33, none).unwrap_err(), SizeError::TooManyEdges(33));
+    assert_eq!(AmbiguitySearch::new(Class::Simple, 0, none).unwrap_err(), SizeError::NoEdge);
+    assert_eq!(
+        AmbiguitySearch::new(Class::Simple, 33, none).unwrap_err(),
+        SizeError::TooManyEdges(33)
+    );
 }
 
 /// Asked to stop, a search finds nothing and says so: what it has seen is not all.
@@ -358,7 +361,7 @@ fn an_interrupted_search_says_so() {
             self.0.swap(false, Ordering::Relaxed)
         }
     }
-    let search = Search::new(Class::Simple, 5, named("none").unwrap()).unwrap();
+    let search = AmbiguitySearch::new(Class::Simple, 5, named("none").unwrap()).unwrap();
     assert_eq!(search.run(&Stop), Err(Unfinished::Interrupted));
     assert_eq!(search.run(&StopOnce(AtomicBool::new(true))), Err(Unfinished::Interrupted));
 }

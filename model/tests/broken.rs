@@ -5,11 +5,13 @@
 use std::ops::ControlFlow;
 
 use toposlam_model::{
-    check::{self, Algorithm, Algorithm1, Failure, OpenChoices, Order, Shard, Sweep, every_way},
+    check::{
+        self, Algorithm, Algorithm1, CostOrder, FailedStart, OpenChoices, Shard, Sweep, every_way,
+    },
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
     isomorphism::code,
-    mapping::{Exploration, MappingError, Nearest, Observer, Verdict},
+    mapping::{Exploration, MappingError, Nearest, Observer, ValidationResult},
     marker::Directional,
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused},
@@ -64,12 +66,12 @@ impl OpenChoices for Broken {
         hypothesis: Dart,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<Verdict, MappingError<Refused>> {
+    ) -> Result<ValidationResult, MappingError<Refused>> {
         exploration.set_out();
         let mut pose = hypothesis;
         if matches!(self.0, Flaw::FirstPerceptSuffices) {
             exploration.arrive_at_marker(pose);
-            return Ok(Verdict::Confirmed);
+            return Ok(ValidationResult::Confirmed);
         }
         while let Some((door, next)) = exploration.toward_marker(pose) {
             let expected = exploration.map().expected(next);
@@ -79,17 +81,17 @@ impl OpenChoices for Broken {
                     Flaw::NoRetrace => {}
                     _ => exploration.retrace(world, observer)?,
                 }
-                return Ok(Verdict::Rejected);
+                return Ok(ValidationResult::Rejected);
             }
             pose = next;
         }
         if matches!(self.0, Flaw::NeverConfirmed) && pose != hypothesis {
             exploration.retrace(world, observer)?;
-            return Ok(Verdict::Rejected);
+            return Ok(ValidationResult::Rejected);
         }
         let believed = if matches!(self.0, Flaw::LeftBehind) { hypothesis } else { pose };
         exploration.arrive_at_marker(believed);
-        Ok(Verdict::Confirmed)
+        Ok(ValidationResult::Confirmed)
     }
 }
 
@@ -101,7 +103,7 @@ impl Algorithm for Broken {
         "Algorithm 1, broken"
     }
 
-    fn order(&self) -> Order {
+    fn order(&self) -> CostOrder {
         Algorithm1.order()
     }
 
@@ -120,7 +122,9 @@ impl Algorithm for Broken {
             exploration.explore(edge, world, observer)?;
             let mut confirmed = None;
             while let Some(hypothesis) = exploration.next_hypothesis(&mut Nearest) {
-                if self.try_path(exploration, hypothesis, world, observer)? == Verdict::Confirmed {
+                if self.try_path(exploration, hypothesis, world, observer)?
+                    == ValidationResult::Confirmed
+                {
                     confirmed = Some(hypothesis);
                     break;
                 }
@@ -141,7 +145,7 @@ fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
             let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
             let tally = sweep.unwrap().run(&Broken(flaw), &());
             assert_eq!(tally.failed() > 0, tally.failure.is_some());
-            let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;
+            let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
             let words = code(&graph, facing).words().to_vec();
             let step = false_step
                 .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{Algorithm, Failure, MovableMarker, Order, Shard, Sweep},
+    check::{Algorithm, CostOrder, FailedStart, MovableMarker, Shard, Sweep},
     embedded_graph::{Dart, Vertex},
     enumerate::Class,
     isomorphism::code,
     mapping::{
-        MappingError, MarkerSearch, Nearest, Observer, Place, Verdict, validate_back_link,
-        validate_place,
+        MappingError, MarkerSearch, Nearest, Observer, ReachedPlace, ValidationResult,
+        validate_back_link, validate_place,
     },
     marker::Movable,
     world::{GraphWorld, Refused},
@@ -58,14 +58,14 @@ impl Broken {
         search: &mut MarkerSearch,
         world: &mut GraphWorld<'g, Movable>,
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
-    ) -> Result<Place, MappingError<Refused>> {
+    ) -> Result<ReachedPlace, MappingError<Refused>> {
         match (self.0, search.candidates()) {
-            (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(Place::New),
+            (_, []) | (Flaw::EveryPlaceIsNew, _) => return Ok(ReachedPlace::New),
             (Flaw::OnlyCandidateIsIt, &[only]) => {
                 search.drop_marker(world, observer)?;
                 search.go_back(world, observer)?;
                 search.look_for_marker(only, world, observer)?;
-                return Ok(Place::Known(only));
+                return Ok(ReachedPlace::Known(only));
             }
             (Flaw::FirstDartIsIt | Flaw::NotCarried | Flaw::RejectedIsConfirmed, _) => {
                 return validate_place(search, world, observer);
@@ -77,7 +77,7 @@ impl Broken {
         let mut last = Vertex(0);
         while let Some(candidate) = search.next_candidate() {
             if let Some(vertex) = search.look_for_marker(candidate, world, observer)? {
-                return Ok(Place::Known(vertex));
+                return Ok(ReachedPlace::Known(vertex));
             }
             last = candidate;
             if matches!(self.0, Flaw::OneCandidateSearched) {
@@ -85,15 +85,15 @@ impl Broken {
             }
         }
         match self.0 {
-            Flaw::NotFoundIsFound => return Ok(Place::Known(last)),
-            Flaw::LeftBehind => return Ok(Place::New),
+            Flaw::NotFoundIsFound => return Ok(ReachedPlace::Known(last)),
+            Flaw::LeftBehind => return Ok(ReachedPlace::New),
             _ => {}
         }
         search.return_to_marker(world, observer)?;
         if !matches!(self.0, Flaw::MarkerLeftBehind) {
             search.pick_up(world, observer)?;
         }
-        Ok(Place::New)
+        Ok(ReachedPlace::New)
     }
 
     fn validate_back_link<'g>(
@@ -125,7 +125,8 @@ impl Broken {
                 return Ok(dart);
             }
             let verdict = search.try_back_link(dart, world, observer)?;
-            if verdict == Verdict::Confirmed || matches!(self.0, Flaw::RejectedIsConfirmed) {
+            if verdict == ValidationResult::Confirmed || matches!(self.0, Flaw::RejectedIsConfirmed)
+            {
                 search.pick_up(world, observer)?;
                 return Ok(dart);
             }
@@ -142,7 +143,7 @@ impl Algorithm for Broken {
         "The movable marker algorithm, broken"
     }
 
-    fn order(&self) -> Order {
+    fn order(&self) -> CostOrder {
         MovableMarker.order()
     }
 
@@ -160,11 +161,11 @@ impl Algorithm for Broken {
         while let Some(edge) = search.next_edge(&mut Nearest) {
             search.carry_over(edge, world, observer)?;
             match self.validate_place(search, world, observer)? {
-                Place::Known(vertex) => {
+                ReachedPlace::Known(vertex) => {
                     let dart = self.validate_back_link(edge, vertex, search, world, observer)?;
                     search.close_loop(dart, world, observer);
                 }
-                Place::New => search.add_place(world, observer)?,
+                ReachedPlace::New => search.add_place(world, observer)?,
             }
         }
         Ok(())
@@ -178,7 +179,7 @@ fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
             let sweep = Sweep::new(Class::Simple, edges, Shard::WHOLE);
             let tally = sweep.unwrap().run(&Broken(flaw), &());
             assert_eq!(tally.failed() > 0, tally.failure.is_some());
-            let Failure { graph, facing, flaw, moves, false_step } = tally.failure?;
+            let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
             let words = code(&graph, facing).words().to_vec();
             let step = false_step
                 .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, AllChoices, DEFAULT_STATE_BUDGET, Flaw, OpenChoices, Order, Shard,
-        Sweep, Tally, check_worlds, every_way,
+        Algorithm, Algorithm1, AllChoices, CostOrder, DEFAULT_STATE_BUDGET, Flaw, OpenChoices,
+        Shard, Sweep, Tally, check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
@@ -209,7 +209,7 @@ impl Algorithm for Claimed {
         "Algorithm 1, with a claim"
     }
 
-    fn order(&self) -> Order {
+    fn order(&self) -> CostOrder {
         Algorithm1.order()
     }
 

@@ -6,11 +6,11 @@ use std::{collections::HashSet, ops::ControlFlow};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration, Found, SizeError},
+    enumerate::{Class, Each, EnumeratedGraph, Enumeration, SizeError},
     isomorphism::{canonical, code},
 };
 
-fn for_each(each: Each, class: Class, edges: usize, mut visit: impl FnMut(Found)) {
+fn for_each(each: Each, class: Class, edges: usize, mut visit: impl FnMut(EnumeratedGraph)) {
     let _ = Enumeration::new(each, class, edges).unwrap().for_each(&mut |found| {
         visit(found);
         ControlFlow::Continue(())
@@ -97,7 +97,7 @@ fn simple_worlds_in_the_plane() {
 #[test]
 fn embeddings_of_the_wheel() {
     let mut by_genus = [0; 3];
-    for_each(Each::World, Class::Simple, 8, |Found { graph, .. }| {
+    for_each(Each::World, Class::Simple, 8, |EnumeratedGraph { graph, .. }| {
         let mut degrees: Vec<_> = graph.vertices().map(|vertex| graph.degree(vertex)).collect();
         degrees.sort_unstable();
         if degrees == [3, 3, 3, 3, 4] {

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration},
-    marker::{MARKERS, Marker, Part, named},
+    marker::{MARKERS, Marker, MarkerPart, named},
     percept::{Door, Sighting},
     world::{Action, GraphWorld, Handling, Refused, World},
 };
@@ -138,7 +138,7 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
 /// Whoever holds a marker by a reference has the marker.
 #[test]
 fn a_reference_to_a_marker_tells_what_the_marker_tells() {
-    type Told = (&'static str, &'static str, Vec<Dart>, Vec<Part>, bool);
+    type Told = (&'static str, &'static str, Vec<Dart>, Vec<MarkerPart>, bool);
     fn told<M: Marker + ?Sized>(marker: &M) -> Told {
         let (graph, facing) = (junction(), Dart(2));
         let starts = marker.starts(&graph, facing);

@@ -181,9 +181,9 @@ pub fn byte(choose: &mut impl Choose) -> u8 {
 
 /// What Algorithm 1 leaves open, chosen: any edge at line 5, any hypothesis at line 9. The map has at
 /// most 127 edges.
-pub struct OpenChoices<'c, C>(pub &'c mut C);
+pub struct DrawnChoices<'c, C>(pub &'c mut C);
 
-impl<C: Choose> Choices for OpenChoices<'_, C> {
+impl<C: Choose> Choices for DrawnChoices<'_, C> {
     fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
         let place = self.0.below(map.unexplored_count() as u8);
         map.unexplored().nth(place.into()).unwrap_or(nearest)

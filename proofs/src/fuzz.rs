@@ -21,12 +21,12 @@ use toposlam_model::{
 use crate::{
     bytes::Bytes,
     definition::{is_simple, is_world},
-    draw::{self, OpenChoices},
+    draw::{self, DrawnChoices},
 };
 
 /// A body for a fuzzer.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub struct FuzzTarget {
     /// The name of the body, of the target in `fuzz/`, and of the folder of its seeds.
     pub name: &'static str,
     /// The body.
@@ -36,7 +36,7 @@ pub struct Target {
 macro_rules! targets {
     ($($name:ident),*) => {
         /// All bodies.
-        pub const TARGETS: &[Target] = &[$(Target { name: stringify!($name), body: $name }),*];
+        pub const TARGETS: &[FuzzTarget] = &[$(FuzzTarget { name: stringify!($name), body: $name }),*];
     };
 }
 targets!(world_file, planar_code, edge_code, mapping);
@@ -105,7 +105,7 @@ pub fn mapping(bytes: &[u8]) {
     let mut watch = |_: &mut _, journey: &Journey, _: MappingEvent| {
         assert!(journey.moves() <= bound, "more than {bound} moves are made in {graph:?}");
     };
-    let mut open = OpenChoices(&mut choose);
+    let mut open = DrawnChoices(&mut choose);
     let flaw = match map_world(&mut world, &mut open, &mut exploration, &mut watch) {
         Err(error) => Some(error.into()),
         Ok(()) => judge(&Algorithm1, &exploration, facing, &world, &mut Candidate::default()).err(),

@@ -12,7 +12,7 @@ use toposlam_model::{
         algorithm2::{Command, Lost, PathExecution, Standing, Step},
         odometry::Odometry,
         scene::{
-            CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear,
+            CentreLine, HallwayStatus, HallwayView, JunctionView, Place, Reason, Scene, Unclear,
             undirected, wrapped,
         },
         visit::JunctionShape,
@@ -47,7 +47,7 @@ const SURELY: f64 = 0.7;
 const HARDLY: f64 = 1.6;
 
 /// Who drives: Algorithm 2, or something like it that is broken.
-pub trait Driver {
+pub trait PathDriver {
     /// Begins a path from where the last one ended, and gives up after so many metres without a
     /// junction.
     fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self;
@@ -62,7 +62,7 @@ pub trait Driver {
     fn queue(&self) -> &[Door];
 }
 
-impl Driver for PathExecution<'static> {
+impl PathDriver for PathExecution<'static> {
     fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
         Self::new(queue, from).with_leg_bound(leg)
     }
@@ -78,7 +78,7 @@ impl Driver for PathExecution<'static> {
 
 /// A junction of the plan.
 #[derive(Clone, Copy, Debug)]
-pub struct Junction {
+pub struct PathJunction {
     /// What it looks like from the door by which the path comes in.
     pub form: JunctionShape,
     /// Its turning point.
@@ -87,7 +87,7 @@ pub struct Junction {
     entry: f64,
 }
 
-impl Junction {
+impl PathJunction {
     /// The directions of its doors, clockwise from the entry door.
     fn doors(&self) -> impl Iterator<Item = f64> + '_ {
         let quarters = (0..4).filter(|&quarter| self.form.0[quarter]);
@@ -147,7 +147,7 @@ pub struct Budget {
 
 /// What a picture told of the junction to come to, or at which the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Told {
+pub enum PictureEvidence {
     /// Nothing of a form.
     Nothing,
     /// The form of a junction that is there.
@@ -158,9 +158,9 @@ pub enum Told {
 
 /// A robot on its way along some junctions.
 #[derive(Clone, Debug)]
-pub struct Drive {
+pub struct HallwayDrive {
     /// The junctions of its path, in their order.
-    junctions: Vec<Junction>,
+    junctions: Vec<PathJunction>,
     /// Where the robot is, and where odometry says that it is.
     pub robot: Odometry,
     /// How near to a junction the robot mostly sees it.
@@ -168,7 +168,7 @@ pub struct Drive {
     budget: Budget,
 }
 
-impl Drive {
+impl HallwayDrive {
     /// A robot at the turning point of the first of some junctions, with the doors that lead from each
     /// to the next, the length of these hallways, and the forms of the junctions there, but for one to
     /// which the path comes back.
@@ -179,7 +179,7 @@ impl Drive {
         sight: f64,
         budget: Budget,
     ) -> Self {
-        let mut junctions = vec![Junction { form: first, at: [0.0; 2], entry: PI }];
+        let mut junctions = vec![PathJunction { form: first, at: [0.0; 2], entry: PI }];
         for &(door, length, form) in legs {
             let last = junctions[junctions.len() - 1];
             let direction = last.direction(door);
@@ -187,21 +187,21 @@ impl Drive {
             let entry = wrapped(direction + PI);
             let known = junctions.iter().find(|junction| junction.distance(&there) < NEAR);
             let form = known.map_or(form, |junction| junction.form_from(entry));
-            junctions.push(Junction { form, at: there.position, entry });
+            junctions.push(PathJunction { form, at: there.position, entry });
         }
         Self { junctions, robot: Odometry::default(), sight, budget }
     }
 
     /// A junction of the path, by its place on it.
     #[must_use]
-    pub fn junction(&self, place: usize) -> &Junction {
+    pub fn junction(&self, place: usize) -> &PathJunction {
         &self.junctions[place]
     }
 
     /// The junction that is nearest to the robot; of one that stands twice on the path, the latter.
     #[must_use]
-    pub fn nearest(&self) -> &Junction {
-        let distance = |junction: &Junction| junction.distance(&self.robot);
+    pub fn nearest(&self) -> &PathJunction {
+        let distance = |junction: &PathJunction| junction.distance(&self.robot);
         let mut nearest = &self.junctions[0];
         for junction in &self.junctions[1..] {
             if distance(junction) < distance(nearest) + TIE {
@@ -220,7 +220,7 @@ impl Drive {
     }
 
     /// The scene of a picture, and what it told.
-    pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, Told) {
+    pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, PictureEvidence) {
         let junction = *self.nearest();
         let distance = junction.distance(&self.robot);
         let (place, told) = if distance <= self.sight {
@@ -235,24 +235,24 @@ impl Drive {
     fn at_junction(
         &mut self,
         choose: &mut impl Choose,
-        junction: Junction,
+        junction: PathJunction,
         distance: f64,
-    ) -> (Place, Told) {
+    ) -> (Place, PictureEvidence) {
         let mistakes = if self.budget.mistakes == 0 { 0 } else { FORMS.len() as u8 - 1 };
         let hallway = u8::from(distance > SURELY || mistakes > 0);
         match self.surprise(choose, 1 + hallway + mistakes) {
-            0 => (Place::Junction(junction.seen(&self.robot)), Told::Truth),
-            1 => (Place::Unknown(Reason::NothingFits), Told::Nothing),
+            0 => (Place::Junction(junction.seen(&self.robot)), PictureEvidence::Truth),
+            1 => (Place::Unknown(Reason::NothingFits), PictureEvidence::Nothing),
             2 => {
                 self.budget.mistakes -= u8::from(distance <= SURELY);
-                (Place::Hallway(self.hallway(Status::Clear)), Told::Nothing)
+                (Place::Hallway(self.hallway(HallwayStatus::Clear)), PictureEvidence::Nothing)
             }
             other => {
                 self.budget.mistakes -= 1;
                 let mut others = FORMS.into_iter().filter(|&form| form != junction.form);
                 let form = others.nth(usize::from(other) - 3).unwrap_or(FORMS[0]);
-                let mistaken = Junction { form, ..junction };
-                (Place::Junction(mistaken.seen(&self.robot)), Told::Mistake(form))
+                let mistaken = PathJunction { form, ..junction };
+                (Place::Junction(mistaken.seen(&self.robot)), PictureEvidence::Mistake(form))
             }
         }
     }
@@ -260,19 +260,19 @@ impl Drive {
     fn in_hallway(
         &mut self,
         choose: &mut impl Choose,
-        junction: Junction,
+        junction: PathJunction,
         distance: f64,
-    ) -> (Place, Told) {
+    ) -> (Place, PictureEvidence) {
         let mistakes = if self.budget.mistakes == 0 { 0 } else { 2 * FORMS.len() as u8 };
         let near = u8::from(distance <= HARDLY);
         match self.surprise(choose, 2 + near + mistakes) {
-            0 => (Place::Hallway(self.hallway(Status::Clear)), Told::Nothing),
-            1 => (Place::Unknown(Reason::NothingFits), Told::Nothing),
+            0 => (Place::Hallway(self.hallway(HallwayStatus::Clear)), PictureEvidence::Nothing),
+            1 => (Place::Unknown(Reason::NothingFits), PictureEvidence::Nothing),
             2 => {
-                let unclear = Status::Unclear(Unclear::ClustersAhead);
-                (Place::Hallway(self.hallway(unclear)), Told::Nothing)
+                let unclear = HallwayStatus::Unclear(Unclear::ClustersAhead);
+                (Place::Hallway(self.hallway(unclear)), PictureEvidence::Nothing)
             }
-            3 if near > 0 => (Place::Junction(junction.seen(&self.robot)), Told::Truth),
+            3 if near > 0 => (Place::Junction(junction.seen(&self.robot)), PictureEvidence::Truth),
             other => {
                 self.budget.mistakes -= 1;
                 let other = usize::from(other - 3 - near);
@@ -282,20 +282,20 @@ impl Drive {
                 let onwards = self.onwards();
                 let there = Odometry { heading: onwards, ..self.robot }.moved(0.0, ahead);
                 let entry = wrapped(onwards + PI);
-                let mistaken = Junction { form, at: there.position, entry };
-                (Place::Junction(mistaken.seen(&self.robot)), Told::Mistake(form))
+                let mistaken = PathJunction { form, at: there.position, entry };
+                (Place::Junction(mistaken.seen(&self.robot)), PictureEvidence::Mistake(form))
             }
         }
     }
 
     /// The hallways: from where, to which direction, how long.
     fn hallways(&self) -> impl Iterator<Item = ([f64; 2], f64, f64)> + '_ {
-        let length = |junction: &Junction, door: f64| {
-            let leads_to = |other: &&Junction| {
+        let length = |junction: &PathJunction, door: f64| {
+            let leads_to = |other: &&PathJunction| {
                 let [x, y] = [0, 1].map(|axis| other.at[axis] - junction.at[axis]);
                 x.hypot(y) > NEAR && wrapped(y.atan2(x) - door).abs() < NEAR
             };
-            let far = |other: &Junction| Odometry { position: other.at, heading: 0.0 };
+            let far = |other: &PathJunction| Odometry { position: other.at, heading: 0.0 };
             let next = self.junctions.iter().find(leads_to);
             next.map_or(2.0 * HALF_WIDTH, |next| junction.distance(&far(next)))
         };
@@ -331,7 +331,7 @@ impl Drive {
         wrapped(direction + if looks_back { PI } else { 0.0 })
     }
 
-    fn hallway(&self, status: Status) -> HallwayView {
+    fn hallway(&self, status: HallwayStatus) -> HallwayView {
         let (left, direction) = self.lane();
         let heading = undirected(self.robot.seen(direction));
         let is_back = wrapped(heading - self.robot.seen(direction)).abs() > FRAC_PI_2;

@@ -4,7 +4,7 @@
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{Lost, PathExecution, Standing, State, Step},
+        algorithm2::{Lost, PathExecution, PathState, Standing, Step},
         odometry::Odometry,
         scene::Scene,
     },
@@ -76,7 +76,7 @@ pub struct Round<'a, V> {
     /// What sensing told of it.
     pub scene: &'a Scene,
     /// What the robot is about after it.
-    pub state: State,
+    pub state: PathState,
     /// What came of it.
     pub step: &'a Result<Step, Lost>,
 }

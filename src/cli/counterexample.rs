@@ -8,7 +8,7 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::Search,
+    ambiguity::AmbiguitySearch,
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
@@ -103,7 +103,7 @@ impl Arguments {
             |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
         let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
         let search = |marker| {
-            let search = Search::new(self.class, edges, marker);
+            let search = AmbiguitySearch::new(self.class, edges, marker);
             search.map_err(|error| Failure::at("--edges", error))
         };
         let searches: Vec<_> =

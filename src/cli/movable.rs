@@ -3,7 +3,7 @@
 use std::{fmt::Display, path::Path};
 
 use toposlam_model::{
-    ambiguity::{PlacedWorld, Search},
+    ambiguity::{AmbiguitySearch, PlacedWorld},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -32,7 +32,7 @@ pub(super) fn not_sufficient(what: impl Display) -> String {
 /// The smallest two worlds that no robot with one movable marker can tell apart, in words.
 fn smallest_pair() -> Option<String> {
     // It has two edges; with three the search still takes no time.
-    let findings = Search::new(Class::Multigraph, 3, &Movable).ok()?.run(&()).ok()?;
+    let findings = AmbiguitySearch::new(Class::Multigraph, 3, &Movable).ok()?.run(&()).ok()?;
     let [one, other] = findings.smallest()?.map(described);
     Some(format!("{one} from {other}"))
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use serde::Serialize;
 use toposlam_model::driving::scene::{
-    CentreLine, HallwayView, JunctionView, MarkerView, Place, Scene, Status, Turning,
+    CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Scene, Turning,
 };
 
 /// A scene as JSON; keys in the order of the design page.
@@ -53,8 +53,8 @@ impl From<&Scene> for SceneLine {
         match &scene.place {
             Place::Hallway(HallwayView { heading, left, right, status, confidence }) => {
                 let (status, reason) = match status {
-                    Status::Clear => ("clear", None),
-                    Status::Unclear(reason) => ("unclear", Some(reason.to_string())),
+                    HallwayStatus::Clear => ("clear", None),
+                    HallwayStatus::Unclear(reason) => ("unclear", Some(reason.to_string())),
                 };
                 let heading = rounded_angle(*heading, FRAC_PI_2);
                 let [left, right] = [*left, *right].map(rounded);
@@ -122,8 +122,8 @@ pub(super) fn in_words(scene: &Scene) -> String {
 
 fn hallway_in_words(hallway: &HallwayView) -> String {
     let status = match hallway.status {
-        Status::Clear => "clear".to_owned(),
-        Status::Unclear(reason) => format!("unclear ({reason})"),
+        HallwayStatus::Clear => "clear".to_owned(),
+        HallwayStatus::Unclear(reason) => format!("unclear ({reason})"),
     };
     format!(
         "hallway, {status}, {}; walls {:.2} m to the left and {:.2} m to the right; confidence {:.2}",
@@ -195,7 +195,7 @@ mod tests {
             heading: 0.02,
             left: 0.78,
             right: 0.81,
-            status: Status::Clear,
+            status: HallwayStatus::Clear,
             confidence: 0.97,
         };
         let scene = Scene { place: Place::Hallway(hallway), marker: None };
@@ -210,7 +210,7 @@ mod tests {
             "hallway, clear, 1 degree to the left; walls 0.78 m to the left and 0.81 m to the \
              right; confidence 0.97"
         );
-        let status = Status::Unclear(Unclear::SizesDiffer);
+        let status = HallwayStatus::Unclear(Unclear::SizesDiffer);
         let place = Place::Hallway(HallwayView { status, ..hallway });
         let unclear = json(&Scene { place, marker: None });
         assert!(unclear.contains(r#""status":"unclear","reason":"sizes-differ","#), "{unclear}");

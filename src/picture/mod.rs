@@ -36,7 +36,7 @@ mod gallery;
 use crate::model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     format::named_world::NamedWorld,
-    marker::{Directional, Look, Marker, Part},
+    marker::{Directional, Marker, MarkerLook, MarkerPart},
 };
 
 pub(crate) use growth::growth;
@@ -70,7 +70,7 @@ pub struct Picture<'a> {
 
 impl Picture<'_> {
     /// What lies where.
-    fn parts(&self) -> Vec<Part> {
+    fn parts(&self) -> Vec<MarkerPart> {
         self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
     }
 
@@ -88,24 +88,28 @@ impl Picture<'_> {
         };
         Some(match self.parts().as_slice() {
             [] => return None,
-            [Part::Pointing(dart)] => format!(
+            [MarkerPart::Pointing(dart)] => format!(
                 "the marker lies at {} and points along door {}",
                 name(graph.vertex(*dart)),
                 graph.index(*dart)
             ),
-            [Part::OnEdge(dart)] => format!("{} is marked", edge(*dart)),
-            [Part::OnEdgeAlong(dart)] => format!("{} is marked with an arrow", edge(*dart)),
-            [Part::At { vertex, .. }] => format!("the marker lies at {}", name(*vertex)),
-            [Part::At { vertex: one, .. }, Part::At { vertex: other, .. }] if one == other => {
+            [MarkerPart::OnEdge(dart)] => format!("{} is marked", edge(*dart)),
+            [MarkerPart::OnEdgeAlong(dart)] => format!("{} is marked with an arrow", edge(*dart)),
+            [MarkerPart::At { vertex, .. }] => format!("the marker lies at {}", name(*vertex)),
+            [MarkerPart::At { vertex: one, .. }, MarkerPart::At { vertex: other, .. }]
+                if one == other =>
+            {
                 format!("both markers lie at {}", name(*one))
             }
             parts => {
-                let at = |part: &Part| match part {
-                    Part::At { vertex, look: Look::One } => name(*vertex),
-                    Part::At { vertex, look: Look::Other } => format!("{} (dashed)", name(*vertex)),
-                    Part::Pointing(dart) | Part::OnEdge(dart) | Part::OnEdgeAlong(dart) => {
-                        name(graph.vertex(*dart))
+                let at = |part: &MarkerPart| match part {
+                    MarkerPart::At { vertex, look: MarkerLook::One } => name(*vertex),
+                    MarkerPart::At { vertex, look: MarkerLook::Other } => {
+                        format!("{} (dashed)", name(*vertex))
                     }
+                    MarkerPart::Pointing(dart)
+                    | MarkerPart::OnEdge(dart)
+                    | MarkerPart::OnEdgeAlong(dart) => name(graph.vertex(*dart)),
                 };
                 let places: Vec<_> = parts.iter().map(at).collect();
                 format!("markers lie at {}", places.join(" and "))

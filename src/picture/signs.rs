@@ -7,14 +7,14 @@ use super::{
 };
 use crate::model::{
     embedded_graph::Dart,
-    marker::{Look, Part},
+    marker::{MarkerLook, MarkerPart},
 };
 
 /// A sign, at its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sign {
     /// A ring around a vertex.
-    Ring { centre: Point, radius: f64, look: Look },
+    Ring { centre: Point, radius: f64, look: MarkerLook },
     /// A triangle that points along a direction, its base at `at`.
     Arrow { at: Point, direction: f64, scale: f64 },
     /// A bar across a direction, its middle at `at`.
@@ -30,7 +30,7 @@ pub(super) fn signs(picture: &Picture, drawing: &Drawing) -> Vec<Sign> {
     let scale = if drawing.size.knob > 0.0 { 1.35 } else { 0.9 };
     for part in picture.parts() {
         let sign = match part {
-            Part::At { vertex, look } => {
+            MarkerPart::At { vertex, look } => {
                 let centre = drawing.centres[vertex.at()];
                 let radius = drawing.size.discs[vertex.at()] + drawing.size.knob + 3.5;
                 // A second one at the same vertex lies around the first.
@@ -39,18 +39,18 @@ pub(super) fn signs(picture: &Picture, drawing: &Drawing) -> Vec<Sign> {
                 let around = signs.iter().filter(there).count() as f64;
                 Sign::Ring { centre, radius: radius + 4.5 * around, look }
             }
-            Part::Pointing(dart) => {
+            MarkerPart::Pointing(dart) => {
                 let vertex = picture.graph.vertex(dart).at();
                 let direction = drawing.doors[dart.at()];
                 let away = drawing.size.discs[vertex] + drawing.size.knob + 1.5;
                 let at = drawing.centres[vertex] + Point::polar(direction, away);
                 Sign::Arrow { at, direction, scale }
             }
-            Part::OnEdge(dart) => match on_edge(picture, drawing, dart) {
+            MarkerPart::OnEdge(dart) => match on_edge(picture, drawing, dart) {
                 Some((at, direction)) => Sign::Bar { at, direction, scale },
                 None => continue,
             },
-            Part::OnEdgeAlong(dart) => match on_edge(picture, drawing, dart) {
+            MarkerPart::OnEdgeAlong(dart) => match on_edge(picture, drawing, dart) {
                 Some((middle, direction)) => {
                     let at = middle - Point::polar(direction, 0.5 * ARROW * scale);
                     Sign::Arrow { at, direction, scale }
@@ -144,8 +144,8 @@ mod tests {
     fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
         let picture = Picture { marker: named(marker).unwrap(), ..Picture::from(world) };
         let letter = |sign: &Sign| match sign {
-            Sign::Ring { look: Look::One, .. } => 'o',
-            Sign::Ring { look: Look::Other, .. } => 'x',
+            Sign::Ring { look: MarkerLook::One, .. } => 'o',
+            Sign::Ring { look: MarkerLook::Other, .. } => 'x',
             Sign::Arrow { .. } => '>',
             Sign::Bar { .. } => '|',
         };

@@ -276,7 +276,7 @@ fn ring(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::driving::scene::{HallwayView, JunctionView, Reason, Status};
+    use toposlam_model::driving::scene::{HallwayStatus, HallwayView, JunctionView, Reason};
 
     use super::*;
 
@@ -317,7 +317,7 @@ mod tests {
             heading: 0.0,
             left: 1.0,
             right: 0.6,
-            status: Status::Clear,
+            status: HallwayStatus::Clear,
             confidence: 1.0,
         };
         let lines = |place| centre_lines(&Scene { place, marker: None });

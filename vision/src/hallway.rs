@@ -1,7 +1,7 @@
 //! Hallways: two parallel walls on opposite sides of the robot, and floor that goes on. Section 3,
 //! Figure 7.
 
-use toposlam_model::driving::scene::{HallwayView, Status, Unclear, undirected};
+use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undirected};
 
 use crate::{
     agreement::{Agreement, DOOR},
@@ -20,7 +20,7 @@ pub struct Hallway {
     /// Its centre line and half its width, between the edges that were seen.
     pub square: Square,
     /// Whether it is clear.
-    pub status: Status,
+    pub status: HallwayStatus,
     /// How its walls agree with what is seen.
     pub agreement: Agreement,
 }
@@ -209,7 +209,7 @@ fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
 // paper: sense.unclear.ahead
 // paper: sense.unclear.sizes
 // paper: sense.unclear.behind
-pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> Status {
+pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> HallwayStatus {
     let (_, across) = axis.split();
     let off = |wall: &Wall, side: f64| wall.offset - square.middle[across] - side * square.half;
     let side = |side: f64| {
@@ -223,19 +223,19 @@ pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> 
     let is_major =
         |wall: &Wall| wall.along == axis && off(wall, 1.0).abs().min(off(wall, -1.0).abs()) < OFF;
     if walls.iter().any(|wall| !is_major(wall) && forwards(wall) > ABREAST) {
-        return Status::Unclear(Unclear::ClustersAhead);
+        return HallwayStatus::Unclear(Unclear::ClustersAhead);
     }
     let foremost = |wall: &Wall| (ahead * wall.from).max(ahead * wall.to);
     let ends = [left.clone(), right.clone()]
         .map(|side| side.map(foremost).fold(f64::NEG_INFINITY, f64::max));
     if ends.iter().any(|&end| end < 0.0) {
-        return Status::Unclear(Unclear::ClusterBehind);
+        return HallwayStatus::Unclear(Unclear::ClusterBehind);
     }
     let sizes = [left, right].map(|side| side.map(Wall::length).sum::<f64>());
     if sizes[0].min(sizes[1]) < SIZES * sizes[0].max(sizes[1]) {
-        return Status::Unclear(Unclear::SizesDiffer);
+        return HallwayStatus::Unclear(Unclear::SizesDiffer);
     }
-    Status::Clear
+    HallwayStatus::Clear
 }
 
 impl Hallway {
@@ -298,7 +298,7 @@ mod tests {
         Wall { along, offset, from, to, cluster: 0 }
     }
 
-    fn clear_or_not(more: &[Wall], left: [f64; 2], right: [f64; 2]) -> Status {
+    fn clear_or_not(more: &[Wall], left: [f64; 2], right: [f64; 2]) -> HallwayStatus {
         let major = |offset, [from, to]: [f64; 2]| wall(Axis::X, offset, from, to);
         let walls = [&[major(0.8, left), major(-0.8, right)], more].concat();
         status(Axis::X, 1.0, SQUARE, &walls)
@@ -308,9 +308,9 @@ mod tests {
     // paper: sense.hallway.major
     #[test]
     fn two_walls_and_no_more_are_clear_and_so_are_broken_ones() {
-        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-2.0, 2.0]), Status::Clear);
+        assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-2.0, 2.0]), HallwayStatus::Clear);
         let broken = [wall(Axis::X, 0.82, 1.0, 2.0), wall(Axis::X, -0.78, 1.0, 2.0)];
-        assert_eq!(clear_or_not(&broken, [-2.0, 0.7], [-2.0, 0.8]), Status::Clear);
+        assert_eq!(clear_or_not(&broken, [-2.0, 0.7], [-2.0, 0.8]), HallwayStatus::Clear);
     }
 
     // paper: sense.clear.behind
@@ -318,17 +318,17 @@ mod tests {
     #[test]
     fn a_further_cluster_counts_ahead_and_not_behind() {
         let across = |at| clear_or_not(&[wall(Axis::Y, at, -0.8, 0.8)], [-2.0, 2.0], [-2.0, 2.0]);
-        assert_eq!(across(1.9), Status::Unclear(Unclear::ClustersAhead));
-        assert_eq!(across(-1.9), Status::Clear);
+        assert_eq!(across(1.9), HallwayStatus::Unclear(Unclear::ClustersAhead));
+        assert_eq!(across(-1.9), HallwayStatus::Clear);
     }
 
     // paper: sense.unclear.sizes
     // paper: sense.unclear.behind
     #[test]
     fn a_major_cluster_that_is_short_or_behind_is_unclear() {
-        let sizes = Status::Unclear(Unclear::SizesDiffer);
+        let sizes = HallwayStatus::Unclear(Unclear::SizesDiffer);
         assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-1.0, 0.9]), sizes);
-        let behind = Status::Unclear(Unclear::ClusterBehind);
+        let behind = HallwayStatus::Unclear(Unclear::ClusterBehind);
         assert_eq!(clear_or_not(&[], [-2.0, 0.5], [-2.0, -0.1]), behind);
     }
 
@@ -373,7 +373,7 @@ mod tests {
                 frame: Frame::along(turned),
                 axis: Axis::Y,
                 square: Square { middle: [0.2, 0.0], half: 0.8 },
-                status: Status::Clear,
+                status: HallwayStatus::Clear,
                 agreement: Agreement { support: 1, ..Agreement::default() },
             };
             let view = hallway.view(0.0);

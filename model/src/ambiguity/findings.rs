@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    isomorphism::Code,
+    isomorphism::StartCode,
 };
 
 /// An embedded graph with a marker, up to isomorphism that keeps the marker.
@@ -13,7 +13,7 @@ pub struct PlacedWorld {
     /// The graph; the marker was placed by its dart 0. Of all starts that place it so, this is the
     /// one with the least code, and darts are numbered as met from it.
     pub graph: EmbeddedGraph,
-    pub(super) code: Code,
+    pub(super) code: StartCode,
 }
 
 impl PlacedWorld {
@@ -21,7 +21,7 @@ impl PlacedWorld {
     pub const FACING: Dart = Dart(0);
 
     /// The order in which worlds are told: fewer edges first, then the lesser code.
-    pub(super) fn rank(&self) -> (usize, &Code) {
+    pub(super) fn rank(&self) -> (usize, &StartCode) {
         (self.graph.edge_count(), &self.code)
     }
 }
@@ -29,12 +29,12 @@ impl PlacedWorld {
 /// Placed worlds of which no two can be told apart, in the order of their sizes and codes. There are
 /// at least two.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Group {
+pub struct AmbiguousGroup {
     /// The worlds.
     pub worlds: Vec<PlacedWorld>,
 }
 
-impl Group {
+impl AmbiguousGroup {
     /// Its smallest pair.
     pub(super) fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
         match self.worlds.as_slice() {
@@ -61,7 +61,7 @@ pub struct Findings {
     /// For each number of edges from 1.
     pub sizes: Vec<SizeFindings>,
     /// All ambiguous worlds, the group with the smallest pair first.
-    pub groups: Vec<Group>,
+    pub groups: Vec<AmbiguousGroup>,
 }
 
 /// Why a search found nothing that could be told.
@@ -92,7 +92,7 @@ impl Findings {
     #[must_use]
     pub fn pairs(&self) -> Vec<[&PlacedWorld; 2]> {
         let mut pairs = Vec::new();
-        for Group { worlds } in &self.groups {
+        for AmbiguousGroup { worlds } in &self.groups {
             for (place, other) in worlds.iter().enumerate() {
                 pairs.extend(worlds[..place].iter().map(|one| [one, other]));
             }
@@ -103,6 +103,6 @@ impl Findings {
 }
 
 /// The order of pairs.
-pub(super) fn rank([one, other]: [&PlacedWorld; 2]) -> (usize, usize, &Code, &Code) {
+pub(super) fn rank([one, other]: [&PlacedWorld; 2]) -> (usize, usize, &StartCode, &StartCode) {
     (other.graph.edge_count(), one.graph.edge_count(), &one.code, &other.code)
 }

@@ -3,7 +3,7 @@
 //!
 //! Whether two starts are indistinguishable is decided by the coarsest partition of the states
 //! of both worlds; what a [`Comparison`] hands over is a [witness](Relation), which is verified
-//! without it. The [`Search`] finds all such worlds of a class by the quotient of each.
+//! without it. The [`AmbiguitySearch`] finds all such worlds of a class by the quotient of each.
 
 mod comparison;
 mod findings;
@@ -14,7 +14,7 @@ mod space;
 mod witness;
 
 pub use comparison::{Comparison, PlacedRobot};
-pub use findings::{Findings, Group, PlacedWorld, SizeFindings, Unfinished};
-pub use search::Search;
+pub use findings::{AmbiguousGroup, Findings, PlacedWorld, SizeFindings, Unfinished};
+pub use search::AmbiguitySearch;
 pub use space::state_count;
 pub use witness::{Relation, Walk, replay};

@@ -2,7 +2,7 @@
 
 use super::{
     partition::coarsest,
-    space::{Label, Space},
+    space::{Space, StateLabel},
 };
 
 /// What is left of a placed world when states that no robot can tell apart are one.
@@ -10,7 +10,7 @@ use super::{
 /// It is no embedded graph: crossing may stay in the same class, and the degree is but a label. No
 /// two of its classes can be told apart by nothing, so it has no automorphism.
 pub(super) struct Quotient {
-    labels: Vec<Label>,
+    labels: Vec<StateLabel>,
     maps: Vec<Vec<u32>>,
     /// The class of each state of the placed world.
     class: Vec<u32>,
@@ -19,7 +19,7 @@ pub(super) struct Quotient {
 /// A quotient as met from one of its classes: for each class, in the order in which it is met, its
 /// label and the numbers of the classes to which the maps lead. Two states, of whatever worlds, have
 /// the same code exactly when they are indistinguishable.
-pub(super) type Code = Vec<(Label, [u32; 3])>;
+pub(super) type QuotientCode = Vec<(StateLabel, [u32; 3])>;
 
 impl Quotient {
     pub(super) fn of(space: &Space) -> Self {
@@ -43,7 +43,7 @@ impl Quotient {
     }
 
     /// The code of the class of a state, which is told by its number.
-    pub(super) fn code(&self, state: u32) -> Code {
+    pub(super) fn code(&self, state: u32) -> QuotientCode {
         const UNMET: u32 = u32::MAX;
         let mut number = vec![UNMET; self.labels.len()];
         let root = self.class[state as usize];

@@ -8,14 +8,16 @@ use std::ops::ControlFlow;
 use petgraph::unionfind::UnionFind;
 
 use super::{
-    Comparison, Findings, Group, PlacedWorld, SizeFindings, Unfinished,
+    AmbiguousGroup, Comparison, Findings, PlacedWorld, SizeFindings, Unfinished,
     findings::rank,
-    quotient::{Code, Quotient},
+    quotient::{Quotient, QuotientCode},
     space::{Space, States},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration, Found, Part, SizeError, Watch, in_parts},
+    enumerate::{
+        Class, Each, EnumeratedGraph, Enumeration, EnumerationPart, SizeError, Watch, in_parts,
+    },
     isomorphism::{as_discovered, canonical, code},
     marker::Marker,
     world::State,
@@ -23,7 +25,7 @@ use crate::{
 
 /// A search over all placed worlds of a class with 1 to some number of edges.
 #[derive(Clone, Debug)]
-pub struct Search {
+pub struct AmbiguitySearch {
     /// The worlds of each size, from 1 edge.
     sizes: Vec<Enumeration>,
     marker: &'static dyn Marker,
@@ -34,11 +36,11 @@ pub struct Search {
 struct Seen {
     placed_worlds: u64,
     /// Those that may be ambiguous, with the code of their quotient.
-    candidates: Vec<(Code, PlacedWorld)>,
+    candidates: Vec<(QuotientCode, PlacedWorld)>,
     interrupted: bool,
 }
 
-impl Search {
+impl AmbiguitySearch {
     /// A search over the worlds with 1 to `edges` edges.
     ///
     /// # Errors
@@ -73,7 +75,7 @@ impl Search {
     }
 
     fn look_at(&self, worlds: &Enumeration, watch: &impl Watch) -> Seen {
-        let look = |part: &Part| {
+        let look = |part: &EnumerationPart| {
             let mut seen = Seen::default();
             let end = part.for_each(&mut |found| {
                 self.look_at_graph(found, &mut seen);
@@ -92,8 +94,8 @@ impl Search {
     }
 
     /// Looks at all ways to place the marker in a graph.
-    fn look_at_graph(&self, found: Found, seen: &mut Seen) {
-        let Found { graph, automorphisms } = found;
+    fn look_at_graph(&self, found: EnumeratedGraph, seen: &mut Seen) {
+        let EnumeratedGraph { graph, automorphisms } = found;
         let mut refined: Option<(States, Quotient)> = None;
         for places in self.placings(graph, automorphisms) {
             seen.placed_worlds += 1;
@@ -149,9 +151,9 @@ impl Search {
     /// relation with the first.
     fn grouped(
         &self,
-        mut candidates: Vec<(Code, PlacedWorld)>,
+        mut candidates: Vec<(QuotientCode, PlacedWorld)>,
         watch: &impl Watch,
-    ) -> Result<Vec<Group>, Unfinished> {
+    ) -> Result<Vec<AmbiguousGroup>, Unfinished> {
         candidates.sort_by(|(code, world), (other_code, other)| {
             code.cmp(other_code).then_with(|| world.rank().cmp(&other.rank()))
         });
@@ -171,7 +173,7 @@ impl Search {
             }
         };
         in_parts(&pairs, &(), || Ok(()), confirm, |_| 1, Result::and)?;
-        let group = |alike: &[(Code, PlacedWorld)]| Group {
+        let group = |alike: &[(QuotientCode, PlacedWorld)]| AmbiguousGroup {
             worlds: alike.iter().map(|(_, world)| world.clone()).collect(),
         };
         let mut groups: Vec<_> = alike.into_iter().map(group).collect();
@@ -206,7 +208,8 @@ mod tests {
     #[test]
     fn worlds_that_a_walk_tells_apart_are_not_confirmed() {
         for marker in ["none", "undirected", "movable"].map(|name| named(name).unwrap()) {
-            let findings = Search::new(Class::Multigraph, 3, marker).unwrap().run(&()).unwrap();
+            let findings =
+                AmbiguitySearch::new(Class::Multigraph, 3, marker).unwrap().run(&()).unwrap();
             let groups: Vec<_> = findings.groups.iter().map(|group| &group.worlds).collect();
             for (one, other) in groups.iter().zip(groups.iter().skip(1)) {
                 assert!(is_confirmed(marker, [&one[0], &one[1]]));
@@ -218,20 +221,20 @@ mod tests {
 
     #[test]
     fn a_group_that_is_not_confirmed_is_an_error() {
-        let search = Search::new(Class::Simple, 4, named("undirected").unwrap()).unwrap();
+        let search = AmbiguitySearch::new(Class::Simple, 4, named("undirected").unwrap()).unwrap();
         let seen = search.look_at(&search.sizes[3], &());
-        let chains = Search::new(Class::Simple, 4, named("none").unwrap()).unwrap();
+        let chains = AmbiguitySearch::new(Class::Simple, 4, named("none").unwrap()).unwrap();
         let seen = [seen, chains.look_at(&chains.sizes[3], &())];
         let worlds: Vec<_> = seen.into_iter().flat_map(|seen| seen.candidates).collect();
         // As if all of these had the same quotient.
-        let same = worlds.into_iter().map(|(_, world)| (Code::new(), world)).collect();
+        let same = worlds.into_iter().map(|(_, world)| (QuotientCode::new(), world)).collect();
         assert!(matches!(search.grouped(same, &()), Err(Unfinished::Unconfirmed(_))));
     }
 
     /// A cover has at least twice as many edges.
     #[test]
     fn a_world_whose_states_can_be_told_apart_is_a_candidate_only_where_it_has_covers() {
-        let search = Search::new(Class::Simple, 5, named("undirected").unwrap()).unwrap();
+        let search = AmbiguitySearch::new(Class::Simple, 5, named("undirected").unwrap()).unwrap();
         let counts = |edges: usize| {
             let seen = search.look_at(&search.sizes[edges - 1], &());
             (seen.placed_worlds, seen.candidates.len())
@@ -247,7 +250,8 @@ mod tests {
     #[test]
     fn a_placed_world_is_told_by_its_least_start() {
         for marker in ["none", "undirected", "two-identical"].map(|name| named(name).unwrap()) {
-            let findings = Search::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();
+            let findings =
+                AmbiguitySearch::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();
             for world in findings.groups.iter().flat_map(|group| &group.worlds) {
                 let graph = &world.graph;
                 let place = marker.first_alike(graph, PlacedWorld::FACING);

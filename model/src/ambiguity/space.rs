@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// What a robot knows in a state without moving: its percept, and whether it carries the marker.
-pub(super) type Label = (Percept, bool);
+pub(super) type StateLabel = (Percept, bool);
 
 /// How many states a robot and the marker can be in, in a world: its poses, and for each of them, with
 /// a marker that can be moved, where this lies or that it is carried.
@@ -69,7 +69,7 @@ impl States {
 /// turns and a crossing. The converse holds too: crossing is door 0, and turning is door 1 and then
 /// door 0, which brings the robot back, having now come in by the next dart.
 pub(super) struct Space {
-    pub(super) labels: Vec<Label>,
+    pub(super) labels: Vec<StateLabel>,
     pub(super) maps: Vec<Vec<u32>>,
 }
 

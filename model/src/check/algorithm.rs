@@ -7,7 +7,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{
-        Exploration, Journey, MappingError, MarkerSearch, Nearest, Observer, Verdict,
+        Exploration, Journey, MappingError, MarkerSearch, Nearest, Observer, ValidationResult,
         map_with_movable_marker, map_world, try_path,
     },
     marker::{Directional, Marker, Movable},
@@ -27,7 +27,7 @@ pub trait Algorithm: Sync {
     fn name(&self) -> &'static str;
 
     /// The order of its cost.
-    fn order(&self) -> Order;
+    fn order(&self) -> CostOrder;
 
     /// The most moves that it may make in a world of this size.
     fn move_bound(&self, edges: usize, vertices: usize) -> u64;
@@ -98,14 +98,14 @@ run_state!(MarkerSearch);
 
 /// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum CostOrder {
     /// `m n`.
     EdgesVertices,
     /// `m^2 n`.
     EdgesSquaredVertices,
 }
 
-impl Order {
+impl CostOrder {
     /// What it is for a world of this size.
     #[must_use]
     pub fn of(self, edges: f64, vertices: f64) -> f64 {
@@ -116,7 +116,7 @@ impl Order {
     }
 }
 
-impl fmt::Display for Order {
+impl fmt::Display for CostOrder {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         out.write_str(match self {
             Self::EdgesVertices => "m n",
@@ -137,7 +137,7 @@ pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
         hypothesis: Dart,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<Verdict, MappingError<Refused>> {
+    ) -> Result<ValidationResult, MappingError<Refused>> {
         try_path(exploration, hypothesis, world, observer)
     }
 }
@@ -154,8 +154,8 @@ impl Algorithm for Algorithm1 {
         "Algorithm 1"
     }
 
-    fn order(&self) -> Order {
-        Order::EdgesSquaredVertices
+    fn order(&self) -> CostOrder {
+        CostOrder::EdgesSquaredVertices
     }
 
     /// `m n + 2 m^2 (n - 1)`.
@@ -197,7 +197,7 @@ impl<A: OpenChoices> Algorithm for AllChoices<A> {
         self.algorithm.name()
     }
 
-    fn order(&self) -> Order {
+    fn order(&self) -> CostOrder {
         self.algorithm.order()
     }
 
@@ -237,8 +237,8 @@ impl Algorithm for MovableMarker {
         "Place and back-link validation"
     }
 
-    fn order(&self) -> Order {
-        Order::EdgesVertices
+    fn order(&self) -> CostOrder {
+        CostOrder::EdgesVertices
     }
 
     /// `3 n (n - 1) / 2 + (m - n + 1) (6 n - 7)`, which is less than `6 m n`.

@@ -8,7 +8,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Choices, Exploration, PartialMap, Verdict},
+    mapping::{Choices, Exploration, PartialMap, ValidationResult},
     world::GraphWorld,
 };
 
@@ -181,11 +181,11 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
             if let Some(hypothesis) = next.next_hypothesis(&mut ThisHypothesis(place)) {
                 let after =
                     match self.algorithm.try_path(&mut next, hypothesis, &mut world, &mut ())? {
-                        Verdict::Confirmed => {
+                        ValidationResult::Confirmed => {
                             next.close_loop(hypothesis, &mut world, &mut ());
                             self.line_4(&world, &next)?
                         }
-                        Verdict::Rejected => self.line_8(&world, &next, known)?,
+                        ValidationResult::Rejected => self.line_8(&world, &next, known)?,
                     };
                 futures.include(&after, next.moves() - exploration.moves());
             }

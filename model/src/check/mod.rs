@@ -8,13 +8,13 @@ mod sweep;
 mod tally;
 
 pub use algorithm::{
-    Algorithm, Algorithm1, AllChoices, MovableMarker, OpenChoices, Order, RunState,
+    Algorithm, Algorithm1, AllChoices, CostOrder, MovableMarker, OpenChoices, RunState,
 };
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
 pub use judge::{FalseStep, Flaw, first_false_step, judge};
 pub use sweep::{Shard, ShardError, Sweep, check_worlds};
-pub use tally::{Failure, Tally, WorstStart};
+pub use tally::{FailedStart, Tally, WorstStart};
 
 #[cfg(test)]
 mod tests {

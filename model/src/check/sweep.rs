@@ -4,10 +4,10 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Algorithm, Failure, Flaw, RunState, Tally, first_false_step, judge};
+use super::{Algorithm, FailedStart, Flaw, RunState, Tally, first_false_step, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
-    enumerate::{Class, Each, Enumeration, Part, SizeError, Watch, in_parts},
+    enumerate::{Class, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts},
     isomorphism::{Candidate, canonical},
     world::GraphWorld,
 };
@@ -31,7 +31,7 @@ impl Shard {
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
     /// What belongs to the shard, of the parts of an enumeration.
-    fn select(self, parts: Vec<Part>) -> Vec<Part> {
+    fn select(self, parts: Vec<EnumerationPart>) -> Vec<EnumerationPart> {
         parts.into_iter().skip(self.index - 1).step_by(self.of).collect()
     }
 }
@@ -182,7 +182,7 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
             Err(flaw) => {
                 // The run is not that of the default choices, whose story could be told.
                 let (graph, moves) = (graph.clone(), None);
-                let failure = Failure { graph, facing, flaw, moves, false_step: None };
+                let failure = FailedStart { graph, facing, flaw, moves, false_step: None };
                 tally.failure.get_or_insert(failure);
                 return;
             }
@@ -200,12 +200,12 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
         Ok(self.state.journey().moves())
     }
 
-    fn failure(&mut self, graph: &EmbeddedGraph, facing: Dart, flaw: Flaw) -> Failure {
+    fn failure(&mut self, graph: &EmbeddedGraph, facing: Dart, flaw: Flaw) -> FailedStart {
         let moves = Some(self.state.journey().moves());
         let graph = graph.clone();
         // With room for what is wrongly added.
         self.state.set_bound(2 * graph.dart_count());
         let false_step = first_false_step(self.algorithm, &graph, facing, &mut self.state);
-        Failure { graph, facing, flaw, moves, false_step }
+        FailedStart { graph, facing, flaw, moves, false_step }
     }
 }

@@ -1,6 +1,6 @@
 //! What a check counts.
 
-use super::{EveryWay, FalseStep, Flaw, Order};
+use super::{CostOrder, EveryWay, FalseStep, Flaw};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The start that took the most moves.
@@ -16,7 +16,7 @@ pub struct WorstStart {
 
 /// A start on which the algorithm failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Failure {
+pub struct FailedStart {
     /// The world.
     pub graph: EmbeddedGraph,
     /// The facing dart.
@@ -45,7 +45,7 @@ pub struct Tally {
     /// The moves and the vertices of the run with the most moves a vertex.
     pub dearest: Option<(u64, u64)>,
     /// The first start on which the algorithm failed.
-    pub failure: Option<Failure>,
+    pub failure: Option<FailedStart>,
     /// Where all choices were tried: distinct states at line 4, summed over the starts.
     pub states: u64,
     /// Where all choices were tried: runs, summed over the starts.
@@ -73,7 +73,7 @@ impl Tally {
 
     /// The largest ratio of moves to the order of the cost, for worlds with `edges` edges.
     #[must_use]
-    pub fn largest_ratio(&self, edges: usize, order: Order) -> f64 {
+    pub fn largest_ratio(&self, edges: usize, order: CostOrder) -> f64 {
         let (moves, vertices) = self.dearest.unwrap_or((0, 1));
         moves as f64 / order.of(edges as f64, vertices as f64)
     }

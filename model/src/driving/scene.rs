@@ -40,14 +40,14 @@ pub struct HallwayView {
     /// The same on its right.
     pub right: f64,
     /// Whether the robot may go on as fast as it likes.
-    pub status: Status,
+    pub status: HallwayStatus,
     /// How well what was seen fits, from 0 to 1.
     pub confidence: f64,
 }
 
 /// Whether a hallway is clear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum HallwayStatus {
     /// Nothing but two walls, or more only behind.
     Clear,
     /// Go on with care.

@@ -164,7 +164,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::driving::scene::{CentreLine, HallwayView, Reason, Status};
+    use crate::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
 
     fn junction(doors: &[f64], distance: f64) -> Place {
         let through = [distance, 0.0];
@@ -283,7 +283,7 @@ mod tests {
             heading: 0.0,
             left: 0.8,
             right: 0.8,
-            status: Status::Clear,
+            status: HallwayStatus::Clear,
             confidence: 1.0,
         });
         let mut visit = JunctionEstimate::default();

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{
-    Dart, EmbeddedGraph, Fault, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
+    Dart, EmbeddedGraph, GraphError, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
 };
 
 /// A dart that has not yet met its opposite.
@@ -18,14 +18,14 @@ impl EmbeddedGraph {
     /// from it.
     ///
     /// # Errors
-    /// The [`Fault`] that tells why they are not `opposite` and `clockwise` of a connected graph
+    /// The [`GraphError`] that tells why they are not `opposite` and `clockwise` of a connected graph
     /// with at least one edge.
     pub fn from_permutations(
         opposite: &[u32],
         clockwise: &[u32],
-    ) -> Result<(Self, Vec<Dart>), Fault> {
+    ) -> Result<(Self, Vec<Dart>), GraphError> {
         if opposite.len() != clockwise.len() {
-            return Err(Fault::LengthsDiffer {
+            return Err(GraphError::LengthsDiffer {
                 opposite: opposite.len(),
                 clockwise: clockwise.len(),
             });
@@ -56,7 +56,7 @@ impl EmbeddedGraph {
         match graph.unreached_vertex() {
             Some(vertex) => {
                 let missed = graph.darts_of(vertex).map(|dart| inverse[dart.at()]).min();
-                Err(Fault::NotConnected { dart: missed.unwrap_or_default() as u32 })
+                Err(GraphError::NotConnected { dart: missed.unwrap_or_default() as u32 })
             }
             None => Ok((graph, number)),
         }
@@ -232,17 +232,26 @@ mod tests {
         let fault = |opposite: &[u32], clockwise: &[u32]| {
             EmbeddedGraph::from_permutations(opposite, clockwise).unwrap_err()
         };
-        assert_eq!(fault(&[], &[]), Fault::NoEdge);
-        assert_eq!(fault(&[1, 0], &[0]), Fault::LengthsDiffer { opposite: 2, clockwise: 1 });
-        assert_eq!(fault(&[5, 0], &[0, 1]), Fault::OppositeOutOfRange { dart: 0, opposite: 5 });
-        assert_eq!(fault(&[0, 1], &[0, 1]), Fault::OppositeFixed { dart: 0 });
+        assert_eq!(fault(&[], &[]), GraphError::NoEdge);
+        assert_eq!(fault(&[1, 0], &[0]), GraphError::LengthsDiffer { opposite: 2, clockwise: 1 });
+        assert_eq!(
+            fault(&[5, 0], &[0, 1]),
+            GraphError::OppositeOutOfRange { dart: 0, opposite: 5 }
+        );
+        assert_eq!(fault(&[0, 1], &[0, 1]), GraphError::OppositeFixed { dart: 0 });
         assert_eq!(
             fault(&[1, 2, 3, 0], &[0, 1, 2, 3]),
-            Fault::OppositeNotMutual { dart: 0, opposite: 1 }
+            GraphError::OppositeNotMutual { dart: 0, opposite: 1 }
         );
-        assert_eq!(fault(&[1, 0], &[2, 0]), Fault::ClockwiseOutOfRange { dart: 0, clockwise: 2 });
-        assert_eq!(fault(&[1, 0], &[1, 1]), Fault::ClockwiseRepeated { dart: 1, clockwise: 1 });
-        assert_eq!(fault(&[1, 0, 3, 2], &[0, 1, 2, 3]), Fault::NotConnected { dart: 2 });
+        assert_eq!(
+            fault(&[1, 0], &[2, 0]),
+            GraphError::ClockwiseOutOfRange { dart: 0, clockwise: 2 }
+        );
+        assert_eq!(
+            fault(&[1, 0], &[1, 1]),
+            GraphError::ClockwiseRepeated { dart: 1, clockwise: 1 }
+        );
+        assert_eq!(fault(&[1, 0, 3, 2], &[0, 1, 2, 3]), GraphError::NotConnected { dart: 2 });
     }
 
     #[test]

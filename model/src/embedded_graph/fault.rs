@@ -9,7 +9,7 @@ use super::MAX_EDGES;
 
 /// Why two arrays are not the `opposite` and `clockwise` of an embedded graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum Fault {
+pub enum GraphError {
     /// There is no dart at all.
     #[error("there is no edge; a world has at least one")]
     NoEdge,
@@ -72,29 +72,29 @@ pub enum Fault {
 
 /// Why a graph cannot have so many darts; `None` if it can.
 #[must_use]
-pub fn size_fault(darts: usize) -> Option<Fault> {
+pub fn size_fault(darts: usize) -> Option<GraphError> {
     match darts / 2 {
-        0 => Some(Fault::NoEdge),
-        edges if edges > MAX_EDGES => Some(Fault::TooManyEdges),
+        0 => Some(GraphError::NoEdge),
+        edges if edges > MAX_EDGES => Some(GraphError::TooManyEdges),
         _ => None,
     }
 }
 
 /// Why `opposite` is not an involution without fixed points on its own indices; `None` if it is.
 #[must_use]
-pub fn opposite_fault(opposite: &[u32]) -> Option<Fault> {
+pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < opposite.len() {
         let other = opposite[dart];
         let this = dart as u32;
         if other as usize >= opposite.len() {
-            return Some(Fault::OppositeOutOfRange { dart: this, opposite: other });
+            return Some(GraphError::OppositeOutOfRange { dart: this, opposite: other });
         }
         if other == this {
-            return Some(Fault::OppositeFixed { dart: this });
+            return Some(GraphError::OppositeFixed { dart: this });
         }
         if opposite[other as usize] != this {
-            return Some(Fault::OppositeNotMutual { dart: this, opposite: other });
+            return Some(GraphError::OppositeNotMutual { dart: this, opposite: other });
         }
         dart += 1;
     }
@@ -104,16 +104,16 @@ pub fn opposite_fault(opposite: &[u32]) -> Option<Fault> {
 /// Why `clockwise` is not a permutation of its own indices; `None` if it is. `taken` is scratch
 /// space, all `false`, at least as long as `clockwise`.
 #[must_use]
-pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<Fault> {
+pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<GraphError> {
     let mut dart = 0;
     while dart < clockwise.len() {
         let next = clockwise[dart];
         let this = dart as u32;
         if next as usize >= clockwise.len() {
-            return Some(Fault::ClockwiseOutOfRange { dart: this, clockwise: next });
+            return Some(GraphError::ClockwiseOutOfRange { dart: this, clockwise: next });
         }
         if taken[next as usize] {
-            return Some(Fault::ClockwiseRepeated { dart: this, clockwise: next });
+            return Some(GraphError::ClockwiseRepeated { dart: this, clockwise: next });
         }
         taken[next as usize] = true;
         dart += 1;
@@ -127,9 +127,9 @@ mod tests {
 
     #[test]
     fn a_graph_has_at_least_one_edge_and_not_more_than_can_be_numbered() {
-        assert_eq!(size_fault(0), Some(Fault::NoEdge));
+        assert_eq!(size_fault(0), Some(GraphError::NoEdge));
         assert_eq!(size_fault(2), None);
         assert_eq!(size_fault(2 * MAX_EDGES), None);
-        assert_eq!(size_fault(2 * (MAX_EDGES + 1)), Some(Fault::TooManyEdges));
+        assert_eq!(size_fault(2 * (MAX_EDGES + 1)), Some(GraphError::TooManyEdges));
     }
 }

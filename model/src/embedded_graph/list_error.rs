@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Fault;
+use super::GraphError;
 
 /// Why lists of names are not an embedded graph.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -68,5 +68,5 @@ pub enum ListError {
     },
     /// No edge, or too many.
     #[error(transparent)]
-    Fault(#[from] Fault),
+    GraphError(#[from] GraphError),
 }

@@ -11,7 +11,7 @@ mod interop;
 mod list_error;
 mod relabel;
 
-pub use fault::{Fault, clockwise_fault, opposite_fault, size_fault};
+pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
 pub use interop::PetgraphError;
 pub use list_error::ListError;
 

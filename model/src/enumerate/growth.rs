@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Class, Each, Found};
+use super::{Class, Each, EnumeratedGraph};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The most edges that a growth can have: its darts are the bits of a `u64`.
@@ -302,7 +302,7 @@ impl Growth {
     pub(super) fn show(
         &self,
         graph: &mut EmbeddedGraph,
-        visit: &mut impl FnMut(Found) -> ControlFlow<()>,
+        visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         graph.clear();
         for &degree in &self.degree[..self.vertices] {
@@ -311,7 +311,7 @@ impl Growth {
         for (dart, &other) in self.opposite[..self.darts].iter().enumerate() {
             graph.join(Dart(dart as u32), Dart(u32::from(other)));
         }
-        visit(Found { graph, automorphisms: self.rivals.count_ones() + 1 })
+        visit(EnumeratedGraph { graph, automorphisms: self.rivals.count_ones() + 1 })
     }
 }
 

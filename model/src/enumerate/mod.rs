@@ -52,7 +52,7 @@ pub enum SizeError {
 
 /// What the enumeration shows at each step.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<'g> {
+pub struct EnumeratedGraph<'g> {
     /// The embedded graph; darts are numbered as met from the start, which faces dart 0.
     pub graph: &'g EmbeddedGraph,
     /// The number of its automorphisms, when worlds are enumerated; 1 when starts are.
@@ -62,7 +62,7 @@ pub struct Found<'g> {
 /// A part of an enumeration: all histories that begin alike. The parts are disjoint, and together
 /// they are the whole.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct EnumerationPart {
     whole: Enumeration,
     beginning: Beginning,
 }
@@ -88,27 +88,33 @@ impl Enumeration {
 
     /// The parts of the enumeration, in its order; they do not depend on who works on them.
     #[must_use]
-    pub fn parts(&self) -> Vec<Part> {
+    pub fn parts(&self) -> Vec<EnumerationPart> {
         let mut parts = Vec::new();
         let beginning = BEGINNING.min(self.edges);
         let _ = Growth::new(self.class, self.edges, self.each).grow_to(beginning, &mut |growth| {
-            parts.push(Part { whole: *self, beginning: growth.beginning() });
+            parts.push(EnumerationPart { whole: *self, beginning: growth.beginning() });
             ControlFlow::Continue(())
         });
         parts
     }
 
     /// Shows everything, in order, until `visit` breaks off.
-    pub fn for_each(&self, visit: &mut impl FnMut(Found) -> ControlFlow<()>) -> ControlFlow<()> {
+    pub fn for_each(
+        &self,
+        visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let mut graph = EmbeddedGraph::unfinished();
         let mut whole = Growth::new(self.class, self.edges, self.each);
         whole.grow_to(self.edges, &mut |growth| growth.show(&mut graph, visit))
     }
 }
 
-impl Part {
+impl EnumerationPart {
     /// Shows all that belongs to the part, in order, until `visit` breaks off.
-    pub fn for_each(&self, visit: &mut impl FnMut(Found) -> ControlFlow<()>) -> ControlFlow<()> {
+    pub fn for_each(
+        &self,
+        visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let mut graph = EmbeddedGraph::unfinished();
         let Enumeration { class, edges, each } = self.whole;
         let mut growth = Growth::new(class, edges, each);

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use petgraph::unionfind::UnionFind;
 
-use super::code::{Code, Numbering};
+use super::code::{Numbering, StartCode};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// What is the same for all isomorphic embedded graphs, and where it is found in this one.
@@ -13,7 +13,7 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 pub struct Canonical {
     /// The least of the codes of the graph's starts: equal for two embedded graphs exactly when
     /// they are isomorphic.
-    pub code: Code,
+    pub code: StartCode,
     /// The darts in the order in which the least start meets them.
     pub order: Vec<Dart>,
     /// The number of automorphisms. The graph has `2m / automorphisms` starts.
@@ -78,5 +78,5 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
         .darts()
         .map(|dart| *least[orbits.find(dart.0) as usize].get_or_insert(dart))
         .collect();
-    Canonical { code: Code(code), order: best.order, automorphisms, orbit }
+    Canonical { code: StartCode(code), order: best.order, automorphisms, orbit }
 }

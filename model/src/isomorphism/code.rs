@@ -13,9 +13,9 @@ use crate::embedded_graph::{Dart, EmbeddedGraph};
 /// less) is less than a lead to a new vertex, and a vertex of higher degree is less than one of
 /// lower degree.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Code(pub(super) Vec<u32>);
+pub struct StartCode(pub(super) Vec<u32>);
 
-impl Code {
+impl StartCode {
     /// The words of the code: `u32::MAX - degree` for the start vertex; then for each edge the
     /// number of its second dart, or `u32::MAX - degree` where that is at a new vertex.
     #[must_use]
@@ -32,11 +32,11 @@ fn new_vertex(degree: u32) -> u32 {
 /// The code of a start. Linear time.
 // paper: world.unlabelled
 #[must_use]
-pub fn code(graph: &EmbeddedGraph, facing: Dart) -> Code {
+pub fn code(graph: &EmbeddedGraph, facing: Dart) -> StartCode {
     let mut numbering = Numbering::new(graph);
     let mut words = vec![numbering.begin(graph, facing)];
     words.extend(std::iter::from_fn(|| numbering.next_word(graph)));
-    Code(words)
+    StartCode(words)
 }
 
 /// The same embedded graph with its darts numbered as a robot meets them from a start, the facing

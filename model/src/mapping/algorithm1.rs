@@ -8,7 +8,7 @@ use crate::{embedded_graph::Dart, world::World};
 
 /// How the trial of a hypothesis ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum ValidationResult {
     /// The percepts did not match; the robot is back where it was.
     Rejected,
     /// The percepts matched throughout; the robot stands at the marker.
@@ -40,7 +40,7 @@ pub fn map_world<W: World>(
         // 8, 9: while H is not empty, remove a hypothesis from it.
         while let Some(hypothesis) = exploration.next_hypothesis(choices) {
             // 10 to 17: exit the loop when one is confirmed.
-            if try_path(exploration, hypothesis, world, observer)? == Verdict::Confirmed {
+            if try_path(exploration, hypothesis, world, observer)? == ValidationResult::Confirmed {
                 confirmed = Some(hypothesis);
                 break;
             }
@@ -67,7 +67,7 @@ pub fn try_path<W: World>(
     hypothesis: Dart,
     world: &mut W,
     observer: &mut impl Observer<W>,
-) -> Result<Verdict, MappingError<W::Error>> {
+) -> Result<ValidationResult, MappingError<W::Error>> {
     exploration.set_out();
     let mut pose = hypothesis;
     let mut followed = 0;
@@ -83,12 +83,12 @@ pub fn try_path<W: World>(
             exploration.retrace(world, observer)?;
             let event = MappingEvent::Rejected { hypothesis, followed, expected, perceived };
             observer.event(world, exploration.journey(), event);
-            return Ok(Verdict::Rejected);
+            return Ok(ValidationResult::Rejected);
         }
         pose = next;
     }
     // 16, 17: the percepts match throughout; confirm the hypothesis.
     exploration.arrive_at_marker(pose);
     observer.event(world, exploration.journey(), MappingEvent::Confirmed { hypothesis, followed });
-    Ok(Verdict::Confirmed)
+    Ok(ValidationResult::Confirmed)
 }

@@ -7,7 +7,7 @@ use std::{cmp::Reverse, mem};
 
 use super::{
     Choices, Contradiction, Journey, MappingError, MappingEvent, Observer, PartialMap,
-    journey::NOWHERE, partial_map::START, tree::Tree,
+    journey::NOWHERE, partial_map::START, tree::BreadthFirstTree,
 };
 use crate::{
     embedded_graph::Dart,
@@ -28,7 +28,7 @@ pub struct Exploration {
     hypotheses: Vec<Dart>,
     /// The percept at each vertex left since setting out, and the door by which it was left.
     trail: Vec<(Percept, Door)>,
-    to_marker: Tree,
+    to_marker: BreadthFirstTree,
     /// Whether `to_marker` is that of the present map.
     to_marker_is_current: bool,
 }
@@ -52,7 +52,7 @@ impl Exploration {
             here: Here { percept: NOWHERE, entry: Door::BACK },
             hypotheses: Vec::new(),
             trail: Vec::new(),
-            to_marker: Tree::default(),
+            to_marker: BreadthFirstTree::default(),
             to_marker_is_current: false,
         }
     }

@@ -4,7 +4,8 @@
 use std::mem;
 
 use super::{
-    Choices, Contradiction, FACING, MappingError, MappingEvent, Observer, PartialMap, tree::Tree,
+    Choices, Contradiction, FACING, MappingError, MappingEvent, Observer, PartialMap,
+    tree::BreadthFirstTree,
 };
 use crate::{
     embedded_graph::{Dart, MAX_EDGES, Vertex},
@@ -25,7 +26,7 @@ pub struct Journey {
     pub(super) edge: Option<Dart>,
     /// What the robot perceived at its unknown end.
     pub(super) arrival: Percept,
-    pub(super) from_robot: Tree,
+    pub(super) from_robot: BreadthFirstTree,
     /// Scratch: the darts on the way to somewhere known.
     pub(super) way: Vec<Dart>,
 }
@@ -42,7 +43,7 @@ impl Journey {
             robot: FACING,
             edge: None,
             arrival: NOWHERE,
-            from_robot: Tree::default(),
+            from_robot: BreadthFirstTree::default(),
             way: Vec::new(),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{
     Choices, Contradiction, Journey, MappingError, MappingEvent, MovableEvent, Observer,
-    PartialMap, Verdict,
+    PartialMap, ValidationResult,
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
@@ -308,20 +308,20 @@ impl MarkerSearch {
         dart: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
-    ) -> Result<Verdict, MappingError<W::Error>> {
+    ) -> Result<ValidationResult, MappingError<W::Error>> {
         let door = self.map().door(self.journey.robot, dart);
         let percept = self.journey.go(door, world, observer)?;
         match self.journey.edge {
             Some(edge) if percept.sighting != Sighting::Nothing => {
                 self.journey.arrive(edge, marked(self.map().unmarked(edge)), percept)?;
                 self.report(MovableEvent::Behind { dart }, world, observer);
-                Ok(Verdict::Confirmed)
+                Ok(ValidationResult::Confirmed)
             }
             _ => {
                 let back = self.journey.go(Door::BACK, world, observer)?;
                 self.journey.arrive(dart, self.map().unmarked(dart), back)?;
                 self.report(MovableEvent::NotBehind { dart, percept }, world, observer);
-                Ok(Verdict::Rejected)
+                Ok(ValidationResult::Rejected)
             }
         }
     }

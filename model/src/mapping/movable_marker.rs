@@ -6,7 +6,7 @@
 //! validation tells by which of its edges it was entered. The state, and the small steps that are
 //! taken here, are [`MarkerSearch`]'s.
 
-use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, Verdict};
+use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, ValidationResult};
 use crate::{
     embedded_graph::{Dart, Vertex},
     world::Handling,
@@ -14,7 +14,7 @@ use crate::{
 
 /// What a place just reached is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum ReachedPlace {
     /// It was never reached before. The robot is there, with the marker in hand.
     New,
     /// It is a known vertex. The robot is there, with the marker at its feet.
@@ -46,12 +46,12 @@ pub fn map_with_movable_marker<W: Handling>(
         search.carry_over(edge, world, observer)?;
         match validate_place(search, world, observer)? {
             // vu is a known vertex: a loop was closed.
-            Place::Known(vertex) => {
+            ReachedPlace::Known(vertex) => {
                 let back_link = validate_back_link(edge, vertex, search, world, observer)?;
                 search.close_loop(back_link, world, observer);
             }
             // vu is a new place.
-            Place::New => search.add_place(world, observer)?,
+            ReachedPlace::New => search.add_place(world, observer)?,
         }
     }
     // S is the map.
@@ -67,10 +67,10 @@ pub fn validate_place<W: Handling>(
     search: &mut MarkerSearch,
     world: &mut W,
     observer: &mut impl Observer<W>,
-) -> Result<Place, MappingError<W::Error>> {
+) -> Result<ReachedPlace, MappingError<W::Error>> {
     // No known vertex can be vu: it is new.
     if search.candidates().is_empty() {
-        return Ok(Place::New);
+        return Ok(ReachedPlace::New);
     }
     // Drop the marker at vu, and go back over e to vk.
     search.drop_marker(world, observer)?;
@@ -79,13 +79,13 @@ pub fn validate_place<W: Handling>(
     while let Some(candidate) = search.next_candidate() {
         // Found at a vertex of S: this is vu.
         if let Some(vertex) = search.look_for_marker(candidate, world, observer)? {
-            return Ok(Place::Known(vertex));
+            return Ok(ReachedPlace::Known(vertex));
         }
     }
     // Not found: vu is new. Go there again, for the marker.
     search.return_to_marker(world, observer)?;
     search.pick_up(world, observer)?;
-    Ok(Place::New)
+    Ok(ReachedPlace::New)
 }
 
 /// Back-link validation: which unexplored dart of the known vertex is the other end of `edge`?
@@ -113,7 +113,7 @@ pub fn validate_back_link<W: Handling>(
     search.travel_to(vertex, world, observer)?;
     // Try one unexplored dart after the other: that behind which the marker lies is it.
     while let Some(dart) = search.next_back_link() {
-        if search.try_back_link(dart, world, observer)? == Verdict::Confirmed {
+        if search.try_back_link(dart, world, observer)? == ValidationResult::Confirmed {
             search.pick_up(world, observer)?;
             return Ok(dart);
         }

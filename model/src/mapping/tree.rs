@@ -9,7 +9,7 @@ use crate::{
 
 /// A breadth-first tree of the known map, grown as far as somebody asked.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tree {
+pub(super) struct BreadthFirstTree {
     /// For each vertex the number of edges to the root.
     hops: Vec<u32>,
     /// For each vertex in the tree, but for the root, its dart that leads towards the root.
@@ -23,7 +23,7 @@ pub(super) struct Tree {
 /// Stands as the hops of a vertex that is not in the tree.
 const UNREACHED: u32 = u32::MAX;
 
-impl Tree {
+impl BreadthFirstTree {
     /// Begins a new tree at its root.
     pub(super) fn plant(&mut self, map: &PartialMap, root: Vertex) {
         self.hops.clear();

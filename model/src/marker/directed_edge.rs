@@ -1,6 +1,6 @@
 //! A mark on an edge that shows a sense.
 
-use super::{Marker, Part, undirected_edge::ends};
+use super::{Marker, MarkerPart, undirected_edge::ends};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -40,7 +40,7 @@ impl Marker for DirectedEdge {
         ends(graph, facing).to_vec()
     }
 
-    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
-        vec![Part::OnEdgeAlong(facing)]
+    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        vec![MarkerPart::OnEdgeAlong(facing)]
     }
 }

@@ -1,6 +1,6 @@
 //! One directional marker that stays where it is: that of Algorithm 1. Section 2.3.
 
-use super::{Marker, Part};
+use super::{Marker, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::{Door, Sighting},
@@ -38,7 +38,7 @@ impl Marker for Directional {
         vec![facing]
     }
 
-    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
-        vec![Part::Pointing(facing)]
+    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        vec![MarkerPart::Pointing(facing)]
     }
 }

@@ -59,7 +59,7 @@ pub trait Marker: Sync {
     fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart>;
 
     /// What lies where; nothing, where there is no marker to place.
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part>;
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart>;
 
     /// Whether the robot can pick it up where it notices it, carry it, and drop it, which places it
     /// as if it then faced the dart by which it has come in.
@@ -70,13 +70,13 @@ pub trait Marker: Sync {
 
 /// A part of a marker, and where it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum MarkerPart {
     /// Lies at a vertex. Parts of another look can be told apart from it.
     At {
         /// The vertex.
         vertex: Vertex,
         /// The look.
-        look: Look,
+        look: MarkerLook,
     },
     /// Lies at the dart's vertex and points along the dart.
     Pointing(Dart),
@@ -88,7 +88,7 @@ pub enum Part {
 
 /// How a part of a marker looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum MarkerLook {
     /// The usual one.
     One,
     /// One that can be told apart from it.
@@ -116,7 +116,7 @@ impl<M: Marker + ?Sized> Marker for &M {
         (**self).starts(graph, facing)
     }
 
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
         (**self).parts(graph, facing)
     }
 

@@ -1,7 +1,7 @@
 //! One undirected marker that the robot can move. Section 2.3, after the paper's reference 8:
 //! Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph construction" (1991).
 
-use super::{Marker, Part, Undirected};
+use super::{Marker, MarkerPart, Undirected};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -34,7 +34,7 @@ impl Marker for Movable {
         Undirected.starts(graph, facing)
     }
 
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
         Undirected.parts(graph, facing)
     }
 

@@ -1,6 +1,6 @@
 //! No marker at all. Section 2.2.
 
-use super::{Marker, Part};
+use super::{Marker, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -32,7 +32,7 @@ impl Marker for NoMarker {
         graph.darts().collect()
     }
 
-    fn parts(&self, _: &EmbeddedGraph, _: Dart) -> Vec<Part> {
+    fn parts(&self, _: &EmbeddedGraph, _: Dart) -> Vec<MarkerPart> {
         Vec::new()
     }
 }

@@ -1,6 +1,6 @@
 //! Two undirected markers that look different, at the ends of an edge.
 
-use super::{Look, Marker, Part};
+use super::{MarkerLook, Marker, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     percept::Sighting,
@@ -47,11 +47,11 @@ impl Marker for TwoDistinct {
         graph.darts_of(graph.vertex(facing)).collect()
     }
 
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
         let [first, second] = vertices(graph, facing);
         vec![
-            Part::At { vertex: first, look: Look::One },
-            Part::At { vertex: second, look: Look::Other },
+            MarkerPart::At { vertex: first, look: MarkerLook::One },
+            MarkerPart::At { vertex: second, look: MarkerLook::Other },
         ]
     }
 }

@@ -1,6 +1,6 @@
 //! Two undirected markers that look alike, at the ends of an edge.
 
-use super::{Look, Marker, Part, TwoDistinct, two_distinct::vertices};
+use super::{MarkerLook, Marker, MarkerPart, TwoDistinct, two_distinct::vertices};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -42,7 +42,7 @@ impl Marker for TwoIdentical {
         vertices.into_iter().flat_map(|vertex| graph.darts_of(vertex)).collect()
     }
 
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
-        vertices(graph, facing).map(|vertex| Part::At { vertex, look: Look::One }).to_vec()
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        vertices(graph, facing).map(|vertex| MarkerPart::At { vertex, look: MarkerLook::One }).to_vec()
     }
 }

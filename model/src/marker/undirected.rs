@@ -1,6 +1,6 @@
 //! One undirected marker that stays where it is. Section 2.2.
 
-use super::{Look, Marker, Part};
+use super::{MarkerLook, Marker, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -36,7 +36,7 @@ impl Marker for Undirected {
         graph.darts_of(graph.vertex(facing)).collect()
     }
 
-    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
-        vec![Part::At { vertex: graph.vertex(facing), look: Look::One }]
+    fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        vec![MarkerPart::At { vertex: graph.vertex(facing), look: MarkerLook::One }]
     }
 }

@@ -1,6 +1,6 @@
 //! A mark on an edge that shows no sense.
 
-use super::{Marker, Part};
+use super::{Marker, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -38,7 +38,7 @@ impl Marker for UndirectedEdge {
         ends(graph, facing).to_vec()
     }
 
-    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<Part> {
-        vec![Part::OnEdge(facing)]
+    fn parts(&self, _: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
+        vec![MarkerPart::OnEdge(facing)]
     }
 }

@@ -12,8 +12,8 @@ use super::{Coverage, Trace};
 use crate::{
     embedded_graph::Dart,
     mapping::{
-        Choices, Contradiction, Exploration, MappingError, Nearest, Observer, PartialMap, Verdict,
-        map_world, try_path,
+        Choices, Contradiction, Exploration, MappingError, Nearest, Observer, PartialMap,
+        ValidationResult, map_world, try_path,
     },
     percept::{Door, Percept},
     world::World,
@@ -385,15 +385,17 @@ impl Search {
             };
             way.script.hypotheses.push_back(dart);
             match try_path(&mut way.exploration, dart, &mut way.world, &mut ()) {
-                Ok(Verdict::Confirmed) => {
+                Ok(ValidationResult::Confirmed) => {
                     way.exploration.close_loop(dart, &mut way.world, &mut ());
                     next.push(Way { within_round: false, ..way });
                 }
                 // Two that fall along the trace fall after the same moves, for the way back begins with
                 // door 0, by which no shortest path goes on. They are alike: whichever is tried later falls
                 // after the same moves again.
-                Ok(Verdict::Rejected) if !mem::replace(&mut rejected, true) => next.push(way),
-                Ok(Verdict::Rejected) => {}
+                Ok(ValidationResult::Rejected) if !mem::replace(&mut rejected, true) => {
+                    next.push(way)
+                }
+                Ok(ValidationResult::Rejected) => {}
                 Err(MappingError::World(TraceWorldError::End)) => {
                     self.part.get_or_insert(way.script);
                 }

@@ -431,7 +431,7 @@ mod tests {
                 let marked = |facing| explains(graph, Some(facing), trace);
                 explains(graph, None, trace) || graph.darts().any(marked)
             };
-            let visit = |found: crate::enumerate::Found| {
+            let visit = |found: crate::enumerate::EnumeratedGraph| {
                 if explains(found.graph) {
                     ControlFlow::Break(())
                 } else {

@@ -2,7 +2,7 @@
 //! Section 2.1.
 
 use toposlam_model::{
-    embedded_graph::{Fault, MAX_EDGES, size_fault},
+    embedded_graph::{GraphError, MAX_EDGES, size_fault},
     percept::{Door, Percept, Sighting},
 };
 
@@ -134,9 +134,9 @@ fn the_highest<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
     let (darts, degree) = (near(), near());
     choose.show(|| Exhibit::Value { name: "darts, degree", value: format!("{darts}, {degree}") });
     let expected = match darts {
-        0 | 1 => Some(Fault::NoEdge),
+        0 | 1 => Some(GraphError::NoEdge),
         2..=MOST_DARTS => None,
-        _ => Some(Fault::TooManyEdges),
+        _ => Some(GraphError::TooManyEdges),
     };
     claim("it is refused exactly for its size", size_fault(darts) == expected)?;
     given(choose, expected.is_none() && size_fault(degree).is_none())?;

@@ -1,6 +1,6 @@
 //! Algorithm 2: what it never does, and where it gets. Section 4.3.
 //!
-//! In a [`Drive`] pictures and motions may surprise the robot, within a budget. Where scenes are
+//! In a [`HallwayDrive`] pictures and motions may surprise the robot, within a budget. Where scenes are
 //! arbitrary, they come from [`SCENES`], in any order.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -13,7 +13,8 @@ use toposlam_model::{
         },
         odometry::Odometry,
         scene::{
-            CentreLine, HallwayView, JunctionView, Place, Reason, Scene, Status, Unclear, wrapped,
+            CentreLine, HallwayStatus, HallwayView, JunctionView, Place, Reason, Scene, Unclear,
+            wrapped,
         },
         visit::JunctionShape,
     },
@@ -22,7 +23,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{Case, Choose, Exhibit, Stop, claim},
-    hallways::{Budget, Drive, Driver, FORMS, HALF_WIDTH, Told},
+    hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, PathDriver, PictureEvidence},
     lemma::declare,
 };
 
@@ -145,7 +146,7 @@ fn junction(form: JunctionShape, ahead: f64, turned: f64) -> Place {
     Place::Junction(JunctionView { doors, turning_point: through, confidence: 1.0 })
 }
 
-fn hallway(heading: f64, left: f64, right: f64, status: Status) -> Place {
+fn hallway(heading: f64, left: f64, right: f64, status: HallwayStatus) -> Place {
     Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 })
 }
 
@@ -156,8 +157,8 @@ const SCENES: u8 = 8;
 fn any_scene(choose: &mut impl Choose) -> Place {
     match choose.below(SCENES) {
         0 => Place::Unknown(Reason::NothingFits),
-        1 => hallway(0.0, 0.8, 0.8, Status::Clear),
-        2 => hallway(0.7, 1.2, 0.4, Status::Unclear(Unclear::SizesDiffer)),
+        1 => hallway(0.0, 0.8, 0.8, HallwayStatus::Clear),
+        2 => hallway(0.7, 1.2, 0.4, HallwayStatus::Unclear(Unclear::SizesDiffer)),
         3 => junction(FORMS[1], 0.6, 0.0),
         4 => junction(FORMS[1], 0.0, 0.0),
         5 => junction(FORMS[1], 0.0, FRAC_PI_2),
@@ -179,7 +180,7 @@ fn wide_scene(choose: &mut impl Choose) -> Place {
             let heading = (f64::from(choose.below(12)) - 5.0) / 12.0 * PI;
             let left = [0.8, 0.2, 2.0][usize::from(choose.below(3))];
             let right = [0.8, 0.2, 2.0][usize::from(choose.below(3))];
-            let statuses = [Status::Clear, Status::Unclear(Unclear::ClusterBehind)];
+            let statuses = [HallwayStatus::Clear, HallwayStatus::Unclear(Unclear::ClusterBehind)];
             hallway(heading, left, right, statuses[usize::from(choose.below(2))])
         }
         _ => {
@@ -209,7 +210,7 @@ fn stands(form: JunctionShape) -> Standing {
 }
 
 // paper: alg2.2, drive.clear, drive.unclear
-fn no_command_exceeds_a_unit<C: Choose, D: Driver, const BEFORE: u8>(choose: &mut C) -> Case {
+fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(choose: &mut C) -> Case {
     let mut driver = D::begin(TWO_DOORS[1][0], &stands(FORMS[1]), LEG);
     let mut odometry = Odometry::default();
     let before = choose.below(1 + BEFORE);
@@ -230,7 +231,7 @@ fn no_command_exceeds_a_unit<C: Choose, D: Driver, const BEFORE: u8>(choose: &mu
 }
 
 // paper: alg2.20, alg2.21, alg2.22, alg2.23, alg2.24
-fn the_first_door<C: Choose, D: Driver, const TURNS: u8>(choose: &mut C) -> Case {
+fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> Case {
     let form = FORMS[usize::from(choose.below(6))];
     let door = choose.below(form.degree() as u8);
     let queue = match choose.below(3) {
@@ -282,9 +283,9 @@ struct End {
 }
 
 /// Drives a path to its end, and looks that its doors are taken as they must be.
-fn driven<C: Choose, D: Driver>(
+fn driven<C: Choose, D: PathDriver>(
     choose: &mut C,
-    drive: &mut Drive,
+    drive: &mut HallwayDrive,
     queue: &'static [Door],
 ) -> Result<End, Stop> {
     choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?} {drive:?}") });
@@ -299,11 +300,13 @@ fn driven<C: Choose, D: Driver>(
         // The junction to come to, or at which the robot stands.
         let here = *drive.junction(left_by);
         match (told, &scene.place) {
-            (Told::Mistake(form), _) => {
+            (PictureEvidence::Mistake(form), _) => {
                 told_of.push(form);
                 mistaken.push(form);
             }
-            (Told::Truth, Place::Junction(view)) if here.distance(&drive.robot) < HALFWAY => {
+            (PictureEvidence::Truth, Place::Junction(view))
+                if here.distance(&drive.robot) < HALFWAY =>
+            {
                 told_of.push(here.form);
                 looked |= (0.2..=0.8).contains(&view.distance());
             }
@@ -356,20 +359,22 @@ fn agreeing(forms: &[JunctionShape], form: JunctionShape) -> usize {
 const HALFWAY: f64 = 1.6;
 
 // paper: alg2.23, alg2.25, drive.turn, drive.path
-fn doors_in_order<C: Choose, D: Driver, const SURPRISES: u8, const MISTAKES: u8>(
+fn doors_in_order<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES: u8>(
     choose: &mut C,
 ) -> Case {
     let (first, door) = EXITS[usize::from(choose.below(14))];
     let (second, then) = EXITS[usize::from(choose.below(14))];
     let legs = [(Door(door), 3.2, FORMS[second]), (Door(then), 3.2, FORMS[3])];
     let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
-    let mut drive = Drive::new(FORMS[first], &legs, SIGHTS[0], budget);
+    let mut drive = HallwayDrive::new(FORMS[first], &legs, SIGHTS[0], budget);
     let queue = TWO_DOORS[door as usize][then as usize];
     driven::<_, D>(choose, &mut drive, queue).map(|_| ())
 }
 
 // paper: alg2.3
-fn always_ends<C: Choose, D: Driver, const BEFORE: u8, const PERIOD: u8>(choose: &mut C) -> Case {
+fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
+    choose: &mut C,
+) -> Case {
     const FAR: f64 = 2.0;
     let queue: &'static [Door] = [&[], ONE_DOOR[2], TWO_DOORS[1][0]][usize::from(choose.below(3))];
     let form = FORMS[if queue.len() == 1 { 4 } else { 1 }];
@@ -410,13 +415,13 @@ fn always_ends<C: Choose, D: Driver, const BEFORE: u8, const PERIOD: u8>(choose:
 }
 
 // paper: alg2.7, alg2.15, alg2.22, drive.path
-fn arrives<C: Choose, D: Driver, const SURPRISES: u8>(choose: &mut C) -> Case {
+fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> Case {
     let (first, door) = EXITS[usize::from(choose.below(14))];
     let form = FORMS[usize::from(choose.below(6))];
     let length = [3.2, 4.1][usize::from(choose.below(2))];
     let sight = SIGHTS[usize::from(choose.below(3))];
     let budget = Budget { surprises: SURPRISES, mistakes: 0, failures: 0 };
-    let mut drive = Drive::new(FORMS[first], &[(Door(door), length, form)], sight, budget);
+    let mut drive = HallwayDrive::new(FORMS[first], &[(Door(door), length, form)], sight, budget);
     let End { standing, looked, .. } = driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
     let Some(standing) = standing else {
         return claim("it gives up only if it could not see a marker", form.is_l() && !looked);
@@ -430,14 +435,14 @@ fn arrives<C: Choose, D: Driver, const SURPRISES: u8>(choose: &mut C) -> Case {
 }
 
 // paper: alg2.15, alg2.27, drive.path
-fn no_false_arrival<C: Choose, D: Driver, const SURPRISES: u8, const MISTAKES: u8>(
+fn no_false_arrival<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES: u8>(
     choose: &mut C,
 ) -> Case {
     let (first, door) = EXITS[usize::from(choose.below(6))];
     let form = FORMS[usize::from(choose.below(6))];
     let sight = SIGHTS[usize::from(choose.below(3))];
     let budget = Budget { surprises: SURPRISES, mistakes: MISTAKES, failures: SURPRISES };
-    let mut drive = Drive::new(FORMS[first], &[(Door(door), 3.2, form)], sight, budget);
+    let mut drive = HallwayDrive::new(FORMS[first], &[(Door(door), 3.2, form)], sight, budget);
     let End { standing, mistaken, .. } =
         driven::<_, D>(choose, &mut drive, ONE_DOOR[door as usize])?;
     let Some(standing) = standing else { return Ok(()) };

@@ -2,7 +2,7 @@
 //! permutation, and the graph connected. Section 2.1.
 
 use toposlam_model::embedded_graph::{
-    Dart, EmbeddedGraph, Fault, Vertex, clockwise_fault, opposite_fault,
+    Dart, EmbeddedGraph, GraphError, Vertex, clockwise_fault, opposite_fault,
 };
 
 use crate::{
@@ -127,11 +127,11 @@ fn check_opposite(array: &[u32]) -> Case {
     )?;
     let is_there = match fault {
         None => true,
-        Some(Fault::OppositeOutOfRange { dart, opposite }) => {
+        Some(GraphError::OppositeOutOfRange { dart, opposite }) => {
             array[dart as usize] == opposite && opposite as usize >= array.len()
         }
-        Some(Fault::OppositeFixed { dart }) => array[dart as usize] == dart,
-        Some(Fault::OppositeNotMutual { dart, opposite }) => {
+        Some(GraphError::OppositeFixed { dart }) => array[dart as usize] == dart,
+        Some(GraphError::OppositeNotMutual { dart, opposite }) => {
             array[dart as usize] == opposite && array[opposite as usize] != dart
         }
         Some(_) => false,
@@ -160,10 +160,10 @@ fn check_clockwise<const MOST: usize>(array: &[u32]) -> Case {
     )?;
     let is_there = match fault {
         None => true,
-        Some(Fault::ClockwiseOutOfRange { dart, clockwise }) => {
+        Some(GraphError::ClockwiseOutOfRange { dart, clockwise }) => {
             array[dart as usize] == clockwise && clockwise as usize >= array.len()
         }
-        Some(Fault::ClockwiseRepeated { dart, clockwise }) => {
+        Some(GraphError::ClockwiseRepeated { dart, clockwise }) => {
             let mut earlier = 0;
             while earlier < dart as usize && array[earlier] != clockwise {
                 earlier += 1;
@@ -261,7 +261,9 @@ fn permutations_are_accepted<
             claim("what is accepted is connected", connected)?;
             claim("the graph has them", has(&graph, &numbers, opposite, clockwise))
         }
-        Err(Fault::NotConnected { .. }) => claim("what is refused is not connected", !connected),
+        Err(GraphError::NotConnected { .. }) => {
+            claim("what is refused is not connected", !connected)
+        }
         Err(_) => claim("nothing else is refused", false),
     }
 }

@@ -17,7 +17,7 @@ use toposlam_model::{
 
 use crate::{
     choose::{Case, Choose, Exhibit, Stop, claim},
-    draw::{self, OpenChoices},
+    draw::{self, DrawnChoices},
     lemma::declare,
 };
 
@@ -137,7 +137,7 @@ impl Truth<'_> {
 
 /// The latest choice that was made, beside whoever makes it.
 struct Noted<'n, C> {
-    choices: OpenChoices<'n, C>,
+    choices: DrawnChoices<'n, C>,
     latest: &'n Cell<Dart>,
 }
 
@@ -182,7 +182,7 @@ fn run<'g, C: Choose>(
     // No more need be known than there is.
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
-    let mut choices = Noted { choices: OpenChoices(choose), latest: &latest };
+    let mut choices = Noted { choices: DrawnChoices(choose), latest: &latest };
     let ended = map_world(&mut world, &mut choices, &mut exploration, &mut watch);
     choose.show(|| Exhibit::walk(FACING, &truth.doors));
     verdict?;

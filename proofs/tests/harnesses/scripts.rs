@@ -23,12 +23,12 @@ Runtime decision procedure: 0.0123s
 
 RESULTS:
 Check 1: lemmas::retracing::the_way_back_retraces_the_path::kani.assertion.1
-\t - Status: SUCCESS
+\t - HallwayStatus: SUCCESS
 \t - Description: \"assertion failed: holds\"
 \t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
 
 Check 2: lemmas::retracing::the_way_back_retraces_the_path::kani.cover.1
-\t - Status: SATISFIED
+\t - HallwayStatus: SATISFIED
 \t - Description: \"there is a case\"
 \t - Location: proofs/src/lemmas/retracing.rs:15:1 in function kani
 

@@ -206,7 +206,7 @@ fn in_frame([x, y]: [f64; 2], odometry: &Odometry) -> [f64; 2] {
 mod tests {
     use std::f64::consts::{FRAC_PI_4, PI};
 
-    use toposlam_model::driving::scene::{CentreLine, HallwayView, Reason, Status};
+    use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
 
     use super::*;
     use crate::conform::{Seen, derived, shorter_seen};
@@ -222,7 +222,13 @@ mod tests {
 
     fn hallway() -> Place {
         let (heading, left, right) = (0.0, 0.8, 0.8);
-        Place::Hallway(HallwayView { heading, left, right, status: Status::Clear, confidence: 1.0 })
+        Place::Hallway(HallwayView {
+            heading,
+            left,
+            right,
+            status: HallwayStatus::Clear,
+            confidence: 1.0,
+        })
     }
 
     /// Places that are seen from somewhere, in turn.

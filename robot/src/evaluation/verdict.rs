@@ -190,7 +190,7 @@ mod tests {
 
     use toposlam_model::{
         driving::{
-            scene::{Reason, Status},
+            scene::{HallwayStatus, Reason},
             visit::JunctionShape,
         },
         embedded_graph::Vertex,
@@ -219,7 +219,7 @@ mod tests {
     }
 
     fn hallway(heading: f64, left: f64, right: f64) -> HallwayView {
-        HallwayView { heading, left, right, status: Status::Clear, confidence: 1.0 }
+        HallwayView { heading, left, right, status: HallwayStatus::Clear, confidence: 1.0 }
     }
 
     fn view(doors: &[f64]) -> JunctionView {

@@ -2,9 +2,10 @@
 
 use toposlam_model::{
     driving::{
-        algorithm2::{self, Standing, State},
+        algorithm2::{self, PathState, Standing},
         scene::{
-            self, CentreLine, HallwayView, JunctionView, MarkerView, Place, Reason, Status, Unclear,
+            self, CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason,
+            Unclear,
         },
     },
     embedded_graph::{Dart, Vertex},
@@ -40,8 +41,8 @@ pub fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
         Place::Hallway(hallway) => {
             "hallway".clone_into(&mut told.place);
             told.status = match hallway.status {
-                Status::Clear => "clear".to_owned(),
-                Status::Unclear(why) => why.to_string(),
+                HallwayStatus::Clear => "clear".to_owned(),
+                HallwayStatus::Unclear(why) => why.to_string(),
             };
             (told.heading, told.left, told.right) = (hallway.heading, hallway.left, hallway.right);
             told.confidence = hallway.confidence;
@@ -73,8 +74,10 @@ pub(crate) fn scene_of(told: &Scene) -> Option<scene::Scene> {
             left: told.left,
             right: told.right,
             status: match told.status.as_str() {
-                "clear" => Status::Clear,
-                why => Status::Unclear(UNCLEAR.into_iter().find(|one| one.to_string() == why)?),
+                "clear" => HallwayStatus::Clear,
+                why => {
+                    HallwayStatus::Unclear(UNCLEAR.into_iter().find(|one| one.to_string() == why)?)
+                }
             },
             confidence: told.confidence,
         }),
@@ -106,12 +109,12 @@ const REASONS: [Reason; 4] =
     [Reason::NoFloor, Reason::FewWalls, Reason::NothingFits, Reason::Ambiguous];
 
 /// What Algorithm 2 answered.
-pub(super) fn command(stamp: Stamp, state: State, command: algorithm2::Command) -> Command {
+pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Command) -> Command {
     let state = match state {
-        State::Leaving => "leaving",
-        State::Hallway => "hallway",
-        State::Junction => "junction",
-        State::Unknown => "unknown",
+        PathState::Leaving => "leaving",
+        PathState::Hallway => "hallway",
+        PathState::Junction => "junction",
+        PathState::Unknown => "unknown",
     };
     let algorithm2::Command { turn, forward } = command;
     Command { stamp, state: state.to_owned(), turn, forward }
@@ -206,9 +209,9 @@ mod tests {
             turning_point: [0.5, 0.1],
             confidence: 0.8,
         };
-        let places = UNCLEAR.map(|why| hallway(Status::Unclear(why))).into_iter();
+        let places = UNCLEAR.map(|why| hallway(HallwayStatus::Unclear(why))).into_iter();
         let places = places.chain(REASONS.map(Place::Unknown));
-        let places = places.chain([hallway(Status::Clear), Place::Junction(junction)]);
+        let places = places.chain([hallway(HallwayStatus::Clear), Place::Junction(junction)]);
         let marker = |door| MarkerView { position: [0.4, 0.0], axis: 0.2, door };
         for place in places {
             for marker in [None, Some(marker(None)), Some(marker(Some(Door(1))))] {

@@ -12,8 +12,8 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::{
     driving::scene::{
-        CentreLine, HallwayView, JunctionView, MarkerView, Place, Reason, Scene, Status, Unclear,
-        undirected, wrapped,
+        CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason, Scene,
+        Unclear, undirected, wrapped,
     },
     embedded_graph::Dart,
     floor_plan::FloorPlan,
@@ -256,7 +256,11 @@ fn told_hallway(truth: &HallwayTruth, near: &[JunctionTruth], chance: &mut Chanc
         heading: undirected(truth.heading + chance.off(HEADING)),
         left: truth.left + chance.off(SIDE),
         right: truth.right + chance.off(SIDE),
-        status: if ahead { Status::Unclear(Unclear::ClustersAhead) } else { Status::Clear },
+        status: if ahead {
+            HallwayStatus::Unclear(Unclear::ClustersAhead)
+        } else {
+            HallwayStatus::Clear
+        },
         confidence: 1.0,
     })
 }

@@ -8,7 +8,7 @@ use std::{
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{Algorithm, Failure as Failed, Order, Shard, Tally},
+    check::{Algorithm, CostOrder, FailedStart, Shard, Tally},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
     marker::Marker,
@@ -22,7 +22,7 @@ pub(super) struct Subject {
     algorithm: &'static str,
     marker: &'static str,
     /// The order of its cost.
-    order: Order,
+    order: CostOrder,
 }
 
 impl Subject {
@@ -261,13 +261,13 @@ impl<'a> Line<'a> {
     }
 }
 
-fn failed_world(failure: &Failed, subject: Subject) -> NamedWorld {
+fn failed_world(failure: &FailedStart, subject: Subject) -> NamedWorld {
     let about = format!("{} fails here: {}", subject.algorithm, failure.flaw);
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
 /// The step at which it went wrong, where it is known.
-fn step(failure: &Failed) -> Option<String> {
+fn step(failure: &FailedStart) -> Option<String> {
     let step = failure.false_step.map(|step| step.to_string());
     step.or_else(|| failure.moves.map(|moves| format!("after {moves} moves")))
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toposlam::picture::{Picture, svg};
 use toposlam_model::{
-    ambiguity::Search,
+    ambiguity::AmbiguitySearch,
     enumerate::Class,
     format::named_world::NamedWorld,
     marker::{MARKERS, Marker},
@@ -40,8 +40,8 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
     for marker in MARKERS {
         let mut found_of = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
-            let search =
-                Search::new(class, edges, marker).map_err(|error| Failure::at("--edges", error))?;
+            let search = AmbiguitySearch::new(class, edges, marker)
+                .map_err(|error| Failure::at("--edges", error))?;
             let work = format!("{}, {class}", marker.name());
             let progress = Progress::new(&work, "placed worlds")?;
             let findings = search.run(&progress);

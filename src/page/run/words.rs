@@ -2,7 +2,7 @@
 
 use crate::{
     journal::Journal,
-    model::driving::algorithm2::{Command, State},
+    model::driving::algorithm2::{Command, PathState},
     page::clock,
 };
 
@@ -19,12 +19,12 @@ pub(super) fn about(journal: &Journal) -> String {
     format!("{ending}. {pictures}, {} min of simulated time.", clock(last.time))
 }
 
-pub(super) fn state(state: State) -> &'static str {
+pub(super) fn state(state: PathState) -> &'static str {
     match state {
-        State::Leaving => "leaving a junction",
-        State::Hallway => "in a hallway",
-        State::Junction => "at a junction",
-        State::Unknown => "it does not know where it is",
+        PathState::Leaving => "leaving a junction",
+        PathState::Hallway => "in a hallway",
+        PathState::Junction => "at a junction",
+        PathState::Unknown => "it does not know where it is",
     }
 }
 

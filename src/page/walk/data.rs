@@ -6,7 +6,7 @@ use super::{WalkPage, side::Side};
 use crate::{
     model::{
         ambiguity::PlacedRobot,
-        marker::{Marker, Part},
+        marker::{Marker, MarkerPart},
         world::Action,
     },
     page::in_script,
@@ -48,7 +48,7 @@ fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value
     let pointing = robot.state().placed.and_then(|placed| {
         let parts = robot.marker().parts(robot.graph(), placed);
         parts.into_iter().find_map(|part| match part {
-            Part::Pointing(dart) => Some(dart.0),
+            MarkerPart::Pointing(dart) => Some(dart.0),
             _ => None,
         })
     });

@@ -8,7 +8,7 @@ use toposlam_robot::pose::Pose;
 use crate::{
     journal::{Call, Journal, Round},
     model::{
-        driving::algorithm2::{Command, State},
+        driving::algorithm2::{Command, PathState},
         embedded_graph::Dart,
         floor_plan::FloorPlan,
         mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
@@ -30,7 +30,7 @@ pub(crate) fn journal() -> Journal {
         time: 2.5 * number as f64,
         pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
         moves: number.div_ceil(3) as u64,
-        state: State::Hallway,
+        state: PathState::Hallway,
         scene: format!("scene {number}"),
         command: Some(Command { turn: 0.0, forward: 0.5 }),
         picture: (number > 0).then(|| vec![number.min(4) as u8; 3]),

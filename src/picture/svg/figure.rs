@@ -15,7 +15,7 @@ use super::{
     page::{FAINT, INK, MARKER, PAPER, Page, short},
 };
 
-use crate::model::marker::Part;
+use crate::model::marker::MarkerPart;
 
 /// The colour of the floor.
 pub(in super::super) const FLOOR: &str = "#ebe6db";
@@ -151,7 +151,7 @@ impl Page {
             }
             let rim = Point::polar(drawing.doors[dart.at()], drawing.size.discs[vertex.at()]);
             let at = drawing.centres[vertex.at()] + rim + shift;
-            let facing = pointing.contains(&Part::Pointing(dart));
+            let facing = pointing.contains(&MarkerPart::Pointing(dart));
             let (fill, stroke, ink) =
                 if facing { (MARKER, MARKER, "#ffffff") } else { ("#ffffff", INK, INK) };
             let number = graph.index(dart);

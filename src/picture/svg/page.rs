@@ -5,7 +5,7 @@ use super::super::{
     signs::{ARROW, Sign},
     text,
 };
-use crate::model::marker::Look;
+use crate::model::marker::MarkerLook;
 
 pub(in super::super) const PAPER: &str = "#fdfcf9";
 pub(in super::super) const INK: &str = "#2b3440";
@@ -54,8 +54,8 @@ impl Page {
         match *sign {
             Sign::Ring { centre, radius, look } => {
                 let dashes = match look {
-                    Look::One => "",
-                    Look::Other => " stroke-dasharray=\"4 3\"",
+                    MarkerLook::One => "",
+                    MarkerLook::Other => " stroke-dasharray=\"4 3\"",
                 };
                 self.line(&format!(
                     "<circle class=\"marker\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" \

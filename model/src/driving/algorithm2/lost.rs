@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::State;
+use super::PathState;
 use crate::percept::Door;
 
 /// The robot no longer knows where it is.
@@ -10,16 +10,16 @@ use crate::percept::Door;
 #[error("{why}; {}, {since_turn:.2} m after the last turn to a door", about(*state))]
 pub struct Lost {
     /// What happened.
-    pub why: Why,
+    pub why: LostReason,
     /// What the robot was about.
-    pub state: State,
+    pub state: PathState,
     /// How far it had come since it last turned to a door, in metres of odometry.
     pub since_turn: f64,
 }
 
 /// What makes a robot give up a path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum Why {
+pub enum LostReason {
     /// Too many pictures in a row tell of no place that the robot could be at.
     #[error("{pictures} pictures in a row do not tell where the robot is")]
     Unknown {
@@ -66,11 +66,11 @@ pub enum Why {
     },
 }
 
-fn about(state: State) -> &'static str {
+fn about(state: PathState) -> &'static str {
     match state {
-        State::Leaving => "leaving a junction",
-        State::Hallway => "in a hallway",
-        State::Junction => "at a junction",
-        State::Unknown => "looking around at a junction",
+        PathState::Leaving => "leaving a junction",
+        PathState::Hallway => "in a hallway",
+        PathState::Junction => "at a junction",
+        PathState::Unknown => "looking around at a junction",
     }
 }

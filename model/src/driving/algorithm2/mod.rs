@@ -9,16 +9,16 @@ mod reckoning;
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-pub use lost::{Lost, Why};
+pub use lost::{Lost, LostReason};
 pub use reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
 
 use super::{
     odometry::Odometry,
-    scene::{CentreLine, HallwayView, JunctionView, Place, Scene, Status, Turning, wrapped},
+    scene::{CentreLine, HallwayStatus, HallwayView, JunctionView, Place, Scene, Turning, wrapped},
     visit::{JunctionEstimate, JunctionShape},
 };
 use crate::percept::{Door, Percept};
-use reckoning::{Reckoning, Round};
+use reckoning::{DeadReckoning, Round};
 
 /// A unit distance, in metres.
 // paper: alg2.2
@@ -44,7 +44,7 @@ const SAME: f64 = 0.6;
 /// What the robot is about.
 // paper: alg2.1
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum State {
+pub enum PathState {
     /// Leaving a junction.
     Leaving,
     /// In a hallway.
@@ -89,12 +89,12 @@ pub struct Standing {
 pub struct PathExecution<'a> {
     /// The doors that have not been taken.
     queue: &'a [Door],
-    state: State,
+    state: PathState,
     /// What is known of the junction ahead, or of the one at which the robot stands.
     visit: JunctionEstimate,
     /// The door that the robot has taken from the queue and is turning to.
     door: Option<Door>,
-    reckoning: Reckoning,
+    reckoning: DeadReckoning,
 }
 
 /// What a scene is taken for, given odometry.
@@ -125,8 +125,8 @@ impl<'a> PathExecution<'a> {
 
     fn at_junction(queue: &'a [Door], visit: JunctionEstimate, entry: f64) -> Self {
         // 1
-        let state = State::Leaving;
-        Self { queue, state, visit, door: None, reckoning: Reckoning::at_junction(entry) }
+        let state = PathState::Leaving;
+        Self { queue, state, visit, door: None, reckoning: DeadReckoning::at_junction(entry) }
     }
 
     /// Gives up a path that is so long from junction to junction, in metres; [`LEG`] otherwise.
@@ -138,7 +138,7 @@ impl<'a> PathExecution<'a> {
 
     /// What the robot is about.
     #[must_use]
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> PathState {
         self.state
     }
 
@@ -171,35 +171,35 @@ impl<'a> PathExecution<'a> {
             // 7
             Seen::Hallway(hallway) => {
                 // 8
-                self.state = State::Hallway;
+                self.state = PathState::Hallway;
                 // 9
                 let along = self.aligned(&hallway);
                 // 10
                 let turn = along + towards_centre(&hallway, along);
                 let forward = match hallway.status {
                     // 11, 12
-                    Status::Clear => UNIT,
+                    HallwayStatus::Clear => UNIT,
                     // 13, 14
-                    Status::Unclear(_) => UNIT / 2.0,
+                    HallwayStatus::Unclear(_) => UNIT / 2.0,
                 };
                 Command { turn, forward }
             }
             // The print is silent here: half a metre after the turn the robot is still in the
             // junction's square. It goes on, still leaving.
             Seen::Left(junction) => {
-                self.state = State::Leaving;
+                self.state = PathState::Leaving;
                 self.onwards(&junction)
             }
             // 15, 16
             Seen::Junction(junction) if self.is_before(&junction) => {
                 // 17
-                self.state = State::Junction;
+                self.state = PathState::Junction;
                 // 18, 19
                 to_turning_point(&junction)
             }
             // 20
             Seen::Junction(junction) => {
-                self.state = State::Junction;
+                self.state = PathState::Junction;
                 match self.at_turning_point(&junction).map_err(|why| self.lost(why))? {
                     Step::Go(command) => command,
                     arrived @ Step::Arrived(_) => return Ok(arrived),
@@ -208,13 +208,13 @@ impl<'a> PathExecution<'a> {
             // 27
             Seen::Unknown => match self.state {
                 // 28, 29
-                State::Hallway | State::Leaving if !self.reckoning.is_at_junction() => {
+                PathState::Hallway | PathState::Leaving if !self.reckoning.is_at_junction() => {
                     Command { turn: 0.0, forward: UNIT / 3.0 }
                 }
                 // 30
                 _ => {
                     // 32
-                    self.state = State::Unknown;
+                    self.state = PathState::Unknown;
                     // 31
                     Command { turn: self.reckoning.little_turn(), forward: 0.0 }
                 }
@@ -225,7 +225,7 @@ impl<'a> PathExecution<'a> {
 
     /// Lines 20 to 26: the red line is reached or passed.
     // paper: drive.turn
-    fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, Why> {
+    fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, LostReason> {
         // A visit is decided by two pictures, and doors are counted in one that agrees with them: else
         // another one, from the same place.
         let agreed = |standing: &Standing| JunctionShape::of(junction) == Some(standing.form);
@@ -245,7 +245,7 @@ impl<'a> PathExecution<'a> {
         };
         let exit = junction.doors.get(door.0 as usize).map(|line| line.direction);
         let Some(exit) = exit else {
-            return Err(Why::NoSuchDoor { door, degree: standing.form.degree() });
+            return Err(LostReason::NoSuchDoor { door, degree: standing.form.degree() });
         };
         if exit.abs() > STRAIGHT {
             // 24: and a picture must show the doors turned by it before the robot leaves.
@@ -254,7 +254,7 @@ impl<'a> PathExecution<'a> {
         }
         self.door = None;
         // 26
-        self.state = State::Leaving;
+        self.state = PathState::Leaving;
         self.visit = JunctionEstimate::default();
         self.reckoning.leave(exit);
         // 25
@@ -262,7 +262,7 @@ impl<'a> PathExecution<'a> {
     }
 
     /// What a scene is taken for.
-    fn made_out(&mut self, scene: &Scene) -> Result<Seen, Why> {
+    fn made_out(&mut self, scene: &Scene) -> Result<Seen, LostReason> {
         let seen = match &scene.place {
             Place::Unknown(_) => Seen::Unknown,
             // At a junction that the robot has not left there is no hallway.
@@ -316,7 +316,7 @@ impl<'a> PathExecution<'a> {
         let direction = self.reckoning.ahead();
         let ahead = x * direction.cos() + y * direction.sin();
         let is_behind = (since + ahead).abs() < SAME;
-        let is_early = self.state == State::Leaving && since < ARRIVAL;
+        let is_early = self.state == PathState::Leaving && since < ARRIVAL;
         is_behind || is_early
     }
 
@@ -352,7 +352,7 @@ impl<'a> PathExecution<'a> {
         Command { turn, forward: UNIT / 2.0 }
     }
 
-    fn lost(&self, why: Why) -> Lost {
+    fn lost(&self, why: LostReason) -> Lost {
         Lost { why, state: self.state, since_turn: self.reckoning.since_turn() }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use super::{Command, LEAST_FORWARD, LEAST_TURN, UNIT, lost::Why};
+use super::{Command, LEAST_FORWARD, LEAST_TURN, UNIT, lost::LostReason};
 use crate::driving::{
     odometry::Odometry,
     scene::{CentreLine, JunctionView, undirected, wrapped},
@@ -43,7 +43,7 @@ enum Stage {
 
 /// What is kept by odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reckoning {
+pub(super) struct DeadReckoning {
     now: Odometry,
     stage: Stage,
     /// Where the entry door is, as a direction in the frame of odometry.
@@ -62,7 +62,7 @@ pub(super) struct Reckoning {
     leg_bound: f64,
 }
 
-impl Reckoning {
+impl DeadReckoning {
     pub(super) fn at_junction(entry: f64) -> Self {
         Self {
             now: Odometry::default(),
@@ -85,7 +85,7 @@ impl Reckoning {
     }
 
     /// A round begins: what was asked for has been done or not.
-    pub(super) fn begin(&mut self, now: Odometry) -> Result<(), Why> {
+    pub(super) fn begin(&mut self, now: Odometry) -> Result<(), LostReason> {
         self.now = now;
         let Some((command, before)) = self.asked.take() else {
             self.known = now.heading;
@@ -98,33 +98,33 @@ impl Reckoning {
             self.crept += forward;
         }
         if self.since_turn > self.leg_bound {
-            return Err(Why::TooFar { metres: self.since_turn });
+            return Err(LostReason::TooFar { metres: self.since_turn });
         }
         let stalled = forward < command.forward / 2.0 || turned < command.turn.abs() / 2.0;
         self.stalls = if stalled { self.stalls + 1 } else { 0 };
         if self.stalls >= STALLS {
-            return Err(Why::Stalled { times: self.stalls });
+            return Err(LostReason::Stalled { times: self.stalls });
         }
         let nearer = command.forward > 0.0 && !stalled;
         self.idle = if nearer { 0 } else { self.idle + 1 };
         if self.idle >= IDLE {
-            return Err(Why::Idle { rounds: self.idle });
+            return Err(LostReason::Idle { rounds: self.idle });
         }
         Ok(())
     }
 
     /// A picture told of a place, or of none.
-    pub(super) fn note(&mut self, round: Round) -> Result<(), Why> {
+    pub(super) fn note(&mut self, round: Round) -> Result<(), LostReason> {
         if round == Round::Known {
             (self.unknowns, self.crept) = (0, 0.0);
             return Ok(());
         }
         self.unknowns += 1;
         if self.unknowns >= UNKNOWNS {
-            return Err(Why::Unknown { pictures: self.unknowns });
+            return Err(LostReason::Unknown { pictures: self.unknowns });
         }
         if self.crept > CREEP {
-            return Err(Why::Crept { metres: self.crept });
+            return Err(LostReason::Crept { metres: self.crept });
         }
         Ok(())
     }
@@ -181,10 +181,10 @@ impl Reckoning {
     }
 
     /// A hallway is seen to run so.
-    pub(super) fn hallway(&mut self, heading: f64) -> Result<(), Why> {
+    pub(super) fn hallway(&mut self, heading: f64) -> Result<(), LostReason> {
         let off = undirected(heading - self.ahead());
         if off.abs() > AGAINST {
-            return Err(Why::Turned { degrees: off.to_degrees().abs() });
+            return Err(LostReason::Turned { degrees: off.to_degrees().abs() });
         }
         self.leg = wrapped(self.leg + off);
         Ok(())

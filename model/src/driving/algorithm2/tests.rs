@@ -79,12 +79,12 @@ impl<'a> Robot<'a> {
         standing
     }
 
-    fn gives_up(&mut self, scene: &Scene) -> Why {
+    fn gives_up(&mut self, scene: &Scene) -> LostReason {
         self.round(scene).expect_err("it gives up").why
     }
 
     /// Drives on by the same scene until it gives up: after so many commands, and why.
-    fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, Why) {
+    fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, LostReason) {
         for commands in 0..1000 {
             match self.round(scene) {
                 Ok(Step::Go(Command { turn, forward })) => {
@@ -118,12 +118,12 @@ fn junction(doors: &[f64], distance: f64, turned: f64) -> Scene {
     scene(Place::Junction(view(doors, distance, turned)))
 }
 
-fn hallway_of(heading: f64, [left, right]: [f64; 2], status: Status) -> Scene {
+fn hallway_of(heading: f64, [left, right]: [f64; 2], status: HallwayStatus) -> Scene {
     scene(Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 }))
 }
 
 fn hallway(heading: f64) -> Scene {
-    hallway_of(heading, [0.8, 0.8], Status::Clear)
+    hallway_of(heading, [0.8, 0.8], HallwayStatus::Clear)
 }
 
 fn unknown() -> Scene {
@@ -140,7 +140,7 @@ fn assert_near(one: f64, other: f64) {
 fn a_path_begins_as_leaving_with_all_of_its_doors() {
     let queue = [Door(2), Door(1)];
     let robot = Robot::at(T_LEFT, &queue);
-    assert_eq!((robot.path.state(), robot.path.queue()), (State::Leaving, &queue[..]));
+    assert_eq!((robot.path.state(), robot.path.queue()), (PathState::Leaving, &queue[..]));
 }
 
 // paper: alg2.2, alg2.7, alg2.8, alg2.11, alg2.12, drive.clear
@@ -148,7 +148,7 @@ fn a_path_begins_as_leaving_with_all_of_its_doors() {
 fn in_a_clear_hallway_the_robot_goes_half_a_metre() {
     let mut robot = Robot::leaving(&[Door(2)]);
     assert_eq!(robot.sees(&hallway(0.0)), Command { turn: 0.0, forward: 0.5 });
-    assert_eq!(robot.path.state(), State::Hallway);
+    assert_eq!(robot.path.state(), PathState::Hallway);
 }
 
 // paper: alg2.13, alg2.14, drive.unclear
@@ -156,7 +156,7 @@ fn in_a_clear_hallway_the_robot_goes_half_a_metre() {
 fn in_an_unclear_hallway_it_goes_half_as_far() {
     for why in [Unclear::ClustersAhead, Unclear::SizesDiffer, Unclear::ClusterBehind] {
         let mut robot = Robot::leaving(&[Door(2)]);
-        let unclear = hallway_of(0.0, [0.8, 0.8], Status::Unclear(why));
+        let unclear = hallway_of(0.0, [0.8, 0.8], HallwayStatus::Unclear(why));
         assert_eq!(robot.sees(&unclear), Command { turn: 0.0, forward: 0.25 });
     }
 }
@@ -173,7 +173,7 @@ fn it_turns_to_the_direction_of_the_hallway() {
 fn of_the_two_directions_of_a_hallway_it_takes_the_one_onwards() {
     let mut robot = Robot::leaving(&[Door(2)]);
     robot.odometry.heading = 1.8;
-    let off_centre = hallway_of(PI - 1.8, [1.1, 0.5], Status::Clear);
+    let off_centre = hallway_of(PI - 1.8, [1.1, 0.5], HallwayStatus::Clear);
     // What lies to the left of a robot that looks back lies to the right onwards.
     assert_near(robot.sees(&off_centre).turn, -1.8 - PI / 8.0);
 }
@@ -183,7 +183,10 @@ fn a_hallway_at_more_than_45_degrees_against_odometry_is_an_error() {
     for sign in [1.0, -1.0] {
         assert_near(Robot::leaving(&[Door(2)]).sees(&hallway(sign * 0.78)).turn, sign * 0.78);
         let why = Robot::leaving(&[Door(2)]).gives_up(&hallway(sign * 0.80));
-        assert!(matches!(why, Why::Turned { degrees } if (degrees - 45.8).abs() < 0.1), "{why}");
+        assert!(
+            matches!(why, LostReason::Turned { degrees } if (degrees - 45.8).abs() < 0.1),
+            "{why}"
+        );
     }
 }
 
@@ -191,7 +194,7 @@ fn a_hallway_at_more_than_45_degrees_against_odometry_is_an_error() {
 #[test]
 fn too_close_to_one_side_it_turns_towards_the_centre_line() {
     let turn = |sides| {
-        let scene = hallway_of(0.1, sides, Status::Clear);
+        let scene = hallway_of(0.1, sides, HallwayStatus::Clear);
         Robot::leaving(&[Door(2)]).sees(&scene).turn - 0.1
     };
     assert_near(turn([0.95, 0.65]), 0.15_f64.atan2(0.5));
@@ -212,7 +215,7 @@ fn before_the_turning_point_it_goes_towards_the_crossing_by_at_most_half_a_unit(
     let Command { turn, forward } = robot.sees(&aside);
     assert_near(turn, 0.2_f64.atan2(0.6));
     assert_near(forward, 0.25);
-    assert_eq!(robot.path.state(), State::Junction);
+    assert_eq!(robot.path.state(), PathState::Junction);
     let mut robot = Robot::in_hallway(&[Door(2)]);
     assert_near(robot.sees(&junction(L_LEFT, 0.15, 0.0)).forward, 0.15);
 }
@@ -251,9 +254,9 @@ fn with_a_door_left_it_turns_to_it_and_goes_half_a_metre_out_of_the_junction() {
         let mut robot = Robot::come_to(doors, &queue);
         assert_eq!(robot.sees(&junction(doors, 0.0, 0.0)), Command { turn, forward: 0.0 });
         assert_eq!(robot.path.queue(), &queue[2..], "the door is taken from the queue, once");
-        assert_eq!(robot.path.state(), State::Junction);
+        assert_eq!(robot.path.state(), PathState::Junction);
         assert_eq!(robot.sees(&junction(doors, 0.0, turn)), ahead(0.5));
-        assert_eq!(robot.path.state(), State::Leaving);
+        assert_eq!(robot.path.state(), PathState::Leaving);
         assert_eq!(robot.path.queue(), &queue[2..]);
     }
 }
@@ -287,7 +290,7 @@ fn a_door_straight_ahead_takes_no_turn() {
     let Command { turn, forward } = robot.sees(&junction(T_RIGHT, 0.0, 0.1));
     assert_near(turn, -0.1);
     assert_near(forward, 0.5);
-    assert_eq!(robot.path.state(), State::Leaving);
+    assert_eq!(robot.path.state(), PathState::Leaving);
 }
 
 #[test]
@@ -310,7 +313,7 @@ fn after_a_turn_a_picture_must_show_the_doors_turned_before_it_leaves() {
         let command = robot.sees(&other);
         assert_near(command.turn, FRAC_PI_6 / 3.0);
         assert_near(command.forward, 0.0);
-        assert_eq!(robot.path.state(), State::Unknown);
+        assert_eq!(robot.path.state(), PathState::Unknown);
         let now = robot.odometry.heading;
         assert_near(robot.sees(&junction(T_STEM, 0.0, now)).forward, 0.5);
     }
@@ -371,7 +374,7 @@ fn a_junction_just_left_is_left_behind() {
     let mut robot = Robot::leaving(&[Door(2)]);
     for way in [0.5, 0.75, 1.0, 1.25, 1.5] {
         assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
-        assert_eq!(robot.path.state(), State::Leaving, "after {way} m");
+        assert_eq!(robot.path.state(), PathState::Leaving, "after {way} m");
     }
 }
 
@@ -390,7 +393,7 @@ fn out_of_a_junction_it_goes_along_the_centre_line_of_the_door() {
 fn a_junction_just_left_tells_nothing_without_the_door_that_was_taken() {
     let mut robot = Robot::leaving(&[Door(2)]);
     assert_eq!(robot.sees(&junction(T_STEM, -0.5, 0.0)), ahead(UNIT / 3.0));
-    assert_eq!(robot.path.state(), State::Leaving);
+    assert_eq!(robot.path.state(), PathState::Leaving);
 }
 
 #[test]
@@ -399,30 +402,30 @@ fn arrival_takes_a_hallway_in_between_or_a_metre_and_20() {
     let mut robot = Robot::leaving(&[Door(2)]);
     for _ in 0..3 {
         robot.sees(&junction(T_LEFT, 0.2, 0.0));
-        assert_eq!(robot.path.state(), State::Leaving);
+        assert_eq!(robot.path.state(), PathState::Leaving);
     }
     assert_near(robot.odometry.position[0], 1.25);
     robot.sees(&junction(T_LEFT, 0.2, 0.0));
-    assert_eq!(robot.path.state(), State::Junction, "after more than 1.2 m");
+    assert_eq!(robot.path.state(), PathState::Junction, "after more than 1.2 m");
 
     let mut robot = Robot::leaving(&[Door(2)]);
-    robot.sees(&hallway_of(0.0, [0.8, 0.8], Status::Unclear(Unclear::ClustersAhead)));
+    robot.sees(&hallway_of(0.0, [0.8, 0.8], HallwayStatus::Unclear(Unclear::ClustersAhead)));
     robot.sees(&junction(T_LEFT, 0.2, 0.0));
-    assert_eq!(robot.path.state(), State::Junction, "after a hallway");
+    assert_eq!(robot.path.state(), PathState::Junction, "after a hallway");
 }
 
 #[test]
 fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
     let mut robot = Robot::in_hallway(&[Door(2)]);
     robot.sees(&junction(T_LEFT, -1.0, 0.0));
-    assert_eq!(robot.path.state(), State::Leaving);
+    assert_eq!(robot.path.state(), PathState::Leaving);
     // Nor though one picture has told of a junction ahead, where there was none.
     let mut robot = Robot::in_hallway(&[Door(2)]);
     robot.sees(&junction(L_LEFT, 0.05, 0.0));
     for _ in 0..4 {
         let way = robot.odometry.position[0];
         assert_eq!(robot.sees(&junction(T_LEFT, -way, 0.0)), ahead(UNIT / 2.0));
-        assert_eq!(robot.path.state(), State::Leaving);
+        assert_eq!(robot.path.state(), PathState::Leaving);
     }
 }
 
@@ -433,7 +436,7 @@ fn a_junction_that_the_robot_could_not_leave_is_no_arrival() {
     // A picture is mistaken for one of a hallway.
     robot.sees_and_does(0.0, &hallway(0.0));
     assert_eq!(robot.sees(&junction(T_LEFT, 0.0, 0.0)), ahead(UNIT / 2.0));
-    assert_eq!(robot.path.state(), State::Leaving);
+    assert_eq!(robot.path.state(), PathState::Leaving);
 }
 
 #[test]
@@ -445,7 +448,7 @@ fn a_junction_that_was_passed_is_not_the_one_just_left() {
     // It is the next one, 3.3 m after the last, and the robot is 3 m after it.
     let past = junction(L_LEFT, -0.3, 0.0);
     assert_eq!(robot.sees(&past), Command::default(), "another picture");
-    assert_eq!(robot.path.state(), State::Junction);
+    assert_eq!(robot.path.state(), PathState::Junction);
 }
 
 #[test]
@@ -477,7 +480,7 @@ fn a_junction_that_is_known_is_not_decided_again() {
     let mut robot = Robot::at(L_LEFT, &[Door(1)]);
     for _ in 0..3 {
         robot.sees(&junction(T_LEFT, 0.0, robot.odometry.heading));
-        assert_eq!(robot.path.state(), State::Unknown);
+        assert_eq!(robot.path.state(), PathState::Unknown);
     }
     assert_eq!(robot.path.queue(), [Door(1)]);
     assert_near(robot.sees(&junction(L_LEFT, 0.0, robot.odometry.heading)).forward, 0.0);
@@ -503,7 +506,7 @@ fn at_a_dead_end_it_turns_around_only_when_told_to() {
     assert_eq!(robot.sees(&junction(DEAD_END, 0.0, PI)), ahead(0.5));
 
     let why = Robot::come_to(DEAD_END, &[Door(2), Door(1)]).gives_up(&here);
-    assert_eq!(why, Why::NoSuchDoor { door: Door(1), degree: 1 });
+    assert_eq!(why, LostReason::NoSuchDoor { door: Door(1), degree: 1 });
 }
 
 #[test]
@@ -521,8 +524,8 @@ fn at_the_start_the_robot_gets_to_know_its_junction_with_its_back_to_the_marker(
 #[test]
 fn unknown_in_a_hallway_or_leaving_it_goes_a_third_with_care() {
     for (mut robot, state) in [
-        (Robot::leaving(&[Door(2)]), State::Leaving),
-        (Robot::in_hallway(&[Door(2)]), State::Hallway),
+        (Robot::leaving(&[Door(2)]), PathState::Leaving),
+        (Robot::in_hallway(&[Door(2)]), PathState::Hallway),
     ] {
         assert_eq!(robot.sees(&unknown()), ahead(0.5 / 3.0));
         assert_eq!(robot.path.state(), state, "the last printed line is not for it");
@@ -536,7 +539,7 @@ fn unknown_at_a_junction_it_turns_by_10_20_30_degrees_to_either_side() {
     for degrees in [10.0, -10.0, 20.0, -20.0, 30.0, -30.0_f64] {
         assert_near(robot.sees(&unknown()).forward, 0.0);
         assert_near(robot.odometry.heading, degrees.to_radians());
-        assert_eq!(robot.path.state(), State::Unknown);
+        assert_eq!(robot.path.state(), PathState::Unknown);
     }
 }
 
@@ -556,7 +559,7 @@ fn what_it_turns_about_is_where_it_looked_when_it_last_knew() {
 
 #[test]
 fn after_seven_unknowns_in_a_row_it_gives_up() {
-    let gives_up = (6, Why::Unknown { pictures: 7 });
+    let gives_up = (6, LostReason::Unknown { pictures: 7 });
     assert_eq!(Robot::at(L_LEFT, &[Door(1)]).drives_on(1.0, &unknown()), gives_up);
     assert_eq!(Robot::leaving(&[Door(2)]).drives_on(1.0, &unknown()), gives_up);
     assert_eq!(Robot::before(L_LEFT, &[Door(2)]).drives_on(1.0, &unknown()), gives_up);
@@ -573,7 +576,7 @@ fn after_seven_unknowns_in_a_row_it_gives_up() {
 fn after_a_metre_of_creeping_it_gives_up() {
     // Its wheels carry it farther than it asks for.
     let (commands, why) = Robot::leaving(&[Door(2)]).drives_on(1.5, &unknown());
-    assert!(matches!(why, Why::Crept { metres } if (metres - 1.25).abs() < 1e-9), "{why}");
+    assert!(matches!(why, LostReason::Crept { metres } if (metres - 1.25).abs() < 1e-9), "{why}");
     assert_eq!(commands, 5);
 
     let mut robot = Robot::leaving(&[Door(2)]);
@@ -586,7 +589,7 @@ fn after_a_metre_of_creeping_it_gives_up() {
 
 #[test]
 fn what_is_not_carried_out_is_an_error_after_three_tries() {
-    let gives_up = (3, Why::Stalled { times: 3 });
+    let gives_up = (3, LostReason::Stalled { times: 3 });
     assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.0, &hallway(0.0)), gives_up);
     assert_eq!(Robot::leaving(&[Door(2)]).drives_on(0.4, &hallway(0.0)), gives_up);
     let mut turning = Robot::come_to(L_LEFT, &[Door(2), Door(1)]);
@@ -604,18 +607,18 @@ fn sixteen_pictures_from_the_same_place_are_enough() {
     // Beside its turning point the robot hides whether the marker lies at an L.
     let mut robot = Robot::in_hallway(&[Door(2)]);
     let (commands, why) = robot.drives_on(1.0, &junction(L_LEFT, 0.0, 0.0));
-    assert_eq!((commands, why), (16, Why::Idle { rounds: 16 }));
+    assert_eq!((commands, why), (16, LostReason::Idle { rounds: 16 }));
 }
 
 #[test]
 fn a_hallway_without_end_is_given_up() {
     let mut robot = Robot::leaving(&[Door(2)]);
     let (commands, why) = robot.drives_on(1.0, &hallway(0.0));
-    assert_eq!((commands, why), (200, Why::TooFar { metres: 100.5 }));
+    assert_eq!((commands, why), (200, LostReason::TooFar { metres: 100.5 }));
 
     let mut robot = Robot::leaving(&[Door(2)]);
     robot.path = robot.path.with_leg_bound(2.0);
-    assert_eq!(robot.drives_on(1.0, &hallway(0.0)), (4, Why::TooFar { metres: 2.5 }));
+    assert_eq!(robot.drives_on(1.0, &hallway(0.0)), (4, LostReason::TooFar { metres: 2.5 }));
 }
 
 #[test]

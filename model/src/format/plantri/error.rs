@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::embedded_graph::Fault;
+use crate::embedded_graph::GraphError;
 
 /// Why bytes are not one of plantri's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -105,7 +105,7 @@ pub enum Cause {
     },
     /// The graph has no edge or too many.
     #[error(transparent)]
-    Fault(#[from] Fault),
+    GraphError(#[from] GraphError),
 }
 
 /// Why an embedded graph cannot be written in a code.

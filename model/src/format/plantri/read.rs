@@ -1,7 +1,7 @@
 //! Reading plantri's codes, one world after the other.
 
 use super::{Cause, Code, PlantriError};
-use crate::embedded_graph::{EmbeddedGraph, Fault, MAX_EDGES};
+use crate::embedded_graph::{EmbeddedGraph, GraphError, MAX_EDGES};
 
 /// How the numbers of `planar_code` with two bytes are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -280,7 +280,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
 /// Refuses more darts than can be numbered, before anything is numbered.
 fn check_size(start: usize, darts: usize) -> Result<(), Failure> {
     if darts / 2 > MAX_EDGES {
-        return Err((start, Fault::TooManyEdges.into()));
+        return Err((start, GraphError::TooManyEdges.into()));
     }
     Ok(())
 }
@@ -305,7 +305,7 @@ fn graph(start: usize, opposite: &[u32], firsts: &[u32]) -> Result<EmbeddedGraph
     }
     match EmbeddedGraph::from_permutations(opposite, &clockwise) {
         Ok((graph, _)) => Ok(graph),
-        Err(Fault::NotConnected { dart }) => {
+        Err(GraphError::NotConnected { dart }) => {
             let vertex = firsts.partition_point(|&first| first <= dart);
             Err((start, Cause::NotConnected { vertex }))
         }

@@ -120,9 +120,9 @@ fn in_lists(table: &str, error: ListError) -> WorldFileError {
         | ListError::OneSided { vertex, .. }
         | ListError::RepeatedNeighbour { vertex, .. }
         | ListError::OwnNeighbour { vertex } => format!("{table}.{vertex}"),
-        ListError::NotTwoEnds { .. } | ListError::NotConnected { .. } | ListError::Fault(_) => {
-            table.to_owned()
-        }
+        ListError::NotTwoEnds { .. }
+        | ListError::NotConnected { .. }
+        | ListError::GraphError(_) => table.to_owned(),
     };
     Cause::from(error).at(path)
 }

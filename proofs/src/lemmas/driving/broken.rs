@@ -1,6 +1,6 @@
 //! The lemmas fail on broken variants of Algorithm 2.
 
-use toposlam_model::driving::algorithm2::{Lost, Why};
+use toposlam_model::driving::algorithm2::{Lost, LostReason};
 
 use super::*;
 use crate::Odometer;
@@ -33,7 +33,7 @@ const IDLE_FOR_EVER: u8 = 7;
 /// Junctions without a door left are driven through.
 const NO_STOP: u8 = 8;
 
-impl<const FLAW: u8> Driver for Broken<FLAW> {
+impl<const FLAW: u8> PathDriver for Broken<FLAW> {
     fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self {
         let (driven, skipped): (&'static [Door], usize) = match (FLAW, queue) {
             (KEPT, [first, _]) => (TWO_DOORS[first.0 as usize][first.0 as usize], 0),
@@ -58,9 +58,9 @@ impl<const FLAW: u8> Driver for Broken<FLAW> {
             {
                 Ok(Step::Go(Command { turn, forward: UNIT }))
             }
-            (UNKNOWN_FOR_EVER, Err(Lost { why: Why::Unknown { .. }, .. }))
-            | (STALLED_FOR_EVER, Err(Lost { why: Why::Stalled { .. }, .. }))
-            | (IDLE_FOR_EVER, Err(Lost { why: Why::Idle { .. }, .. })) => {
+            (UNKNOWN_FOR_EVER, Err(Lost { why: LostReason::Unknown { .. }, .. }))
+            | (STALLED_FOR_EVER, Err(Lost { why: LostReason::Stalled { .. }, .. }))
+            | (IDLE_FOR_EVER, Err(Lost { why: LostReason::Idle { .. }, .. })) => {
                 self.path = before;
                 Ok(Step::Go(Command { turn: 0.2, forward: 0.0 }))
             }

@@ -2,7 +2,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_model::{
     driving::{
-        scene::{CentreLine, Reason, Scene, Status},
+        scene::{CentreLine, HallwayStatus, Reason, Scene},
         visit::JunctionShape,
     },
     embedded_graph::Vertex,
@@ -47,7 +47,7 @@ fn corner(before: f64) -> Truth {
 }
 
 fn in_hallway(heading: f64) -> Place {
-    let status = Status::Clear;
+    let status = HallwayStatus::Clear;
     Place::Hallway(HallwayView { heading, left: 0.81, right: 0.79, status, confidence: 1.0 })
 }
 
