@@ -1,7 +1,7 @@
 //! `toposlam check`: an algorithm on every start of every world up to a size.
 
+mod edge_range;
 mod report;
-mod sizes;
 
 use std::{
     collections::BTreeMap,
@@ -18,13 +18,14 @@ use toposlam_model::{
 };
 
 use super::{
-    Choice, Choices, Failure, Outcome, input, movable, output,
+    ChoicesOption, Failure, Outcome, RunChoices, input,
+    mapping_marker::{MappingAlgorithm, MappingMarker, movable_not_sufficient},
+    output,
     progress::Progress,
     use_threads,
-    with_marker::{Wanted, WithMarker},
 };
-use report::{Report, Size, Subject};
-use sizes::Sizes;
+use edge_range::EdgeRange;
+use report::{AlgorithmInfo, CheckReport, SizeResult};
 
 /// Run Algorithm 1 on every start of every world up to a size; is every map right?
 ///
@@ -46,10 +47,10 @@ Examples:
 Ctrl-C ends a check early, and prints what was checked.
 
 Exit codes: 0 every map is right, 1 one is wrong, 2 bad usage or input, 3 not all was checked.")]
-pub(super) struct Arguments {
+pub(super) struct CheckArguments {
     /// Numbers of edges: one, as in 6, or several, as in 1..=6
     #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
-    edges: Sizes,
+    edges: EdgeRange,
 
     /// Class of worlds: multigraph, simple, corridor or planar
     /// [default: multigraph; with --marker movable: simple]
@@ -58,11 +59,11 @@ pub(super) struct Arguments {
 
     /// Marker with which the worlds are mapped: directional (by Algorithm 1) or movable
     #[arg(long, default_value = "directional")]
-    marker: WithMarker,
+    marker: MappingMarker,
 
     /// Runs of each start: default, or all that the open choices allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
-    choices: Choices,
+    choices: ChoicesOption,
 
     /// With --choices all: give up on a start that has more states
     /// [default: 1000000]
@@ -96,21 +97,21 @@ enum Work {
     Worlds(Vec<EmbeddedGraph>),
 }
 
-impl Arguments {
+impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         match self.marker.algorithm(choice)? {
-            Wanted::Algorithm1 => self.check(&Algorithm1, choice, out),
-            Wanted::AllChoices(algorithm) => self.check(&algorithm, choice, out),
-            Wanted::MovableMarker => self.check(&MovableMarker, choice, out),
+            MappingAlgorithm::Algorithm1 => self.check(&Algorithm1, choice, out),
+            MappingAlgorithm::AllChoices(algorithm) => self.check(&algorithm, choice, out),
+            MappingAlgorithm::MovableMarker => self.check(&MovableMarker, choice, out),
         }
     }
 
     fn check(
         self,
         algorithm: &impl Algorithm,
-        choice: Choice,
+        choice: RunChoices,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let work = match &self.from {
@@ -121,12 +122,12 @@ impl Arguments {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         let begun = Instant::now();
-        let mut report = Report::new(out, self.json, Subject::of(algorithm), choice);
+        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
             let tally = work.check(edges, algorithm)?;
             let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
-            report.size(&Size { edges, class, from, shard, tally: &tally })?;
+            report.size(&SizeResult { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
             if tally.interrupted {
                 break;
@@ -141,16 +142,16 @@ impl Arguments {
 
     fn class(&self) -> Class {
         self.class.unwrap_or(match self.marker {
-            WithMarker::Directional => Class::Multigraph,
-            WithMarker::Movable => Class::Simple,
+            MappingMarker::Directional => Class::Multigraph,
+            MappingMarker::Movable => Class::Simple,
         })
     }
 
     /// A sweep for each number of edges.
     fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
         let class = self.class();
-        if self.marker == WithMarker::Movable && !class.is_simple() {
-            return Err(Failure::at("--class", movable::not_sufficient(format!("class {class}"))));
+        if self.marker == MappingMarker::Movable && !class.is_simple() {
+            return Err(Failure::at("--class", movable_not_sufficient(format!("class {class}"))));
         }
         let sweep = |edges| {
             let sweep = Sweep::new(class, edges, self.shard);

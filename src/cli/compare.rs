@@ -1,8 +1,8 @@
 //! `toposlam compare A B`: the same world, mirror images, or what differs; and can a robot with a
 //! marker tell them apart?
 
-mod robots;
-mod walk;
+mod joint_walk;
+mod robot_comparison;
 
 use std::{io::Write, path::PathBuf};
 
@@ -15,11 +15,12 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome, input, marker_kinds, walk_page,
-    words::{counted, vertices},
+    Failure, Outcome, input, marker_kinds,
+    text::{counted, vertices},
+    walk_page,
 };
-use robots::Robots;
-use walk::Actions;
+use joint_walk::ActionList;
+use robot_comparison::RobotComparison;
 
 /// Compare two worlds: isomorphic, mirror images, or the first difference; and by which walk, if by
 /// any, a robot with a marker tells them apart
@@ -39,7 +40,7 @@ Where no walk tells the worlds apart, all pairs of states that the robots can be
 v:2~w:0 is the robot in A at v, having come in by the dart 2 places clockwise from the first that
 the file lists, and the one in B at w. With a movable marker, v:2@u is a marker that lies at u, and
 v:2+marker one that is carried.")]
-pub(super) struct Arguments {
+pub(super) struct CompareArguments {
     /// A world file
     a: PathBuf,
     /// Another world file
@@ -55,7 +56,7 @@ pub(super) struct Arguments {
 
     /// Walk in both worlds: door numbers, pick-up and drop, with commas between them
     #[arg(long, value_name = "ACTIONS")]
-    walk: Option<Actions>,
+    walk: Option<ActionList>,
 
     /// Write a page on which a person walks both worlds at once
     #[arg(long, value_name = "FILE")]
@@ -76,7 +77,7 @@ struct Graphs<'w> {
     mirror: bool,
 }
 
-impl Arguments {
+impl CompareArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let mut worlds = [input::read_world(&self.a)?, input::read_world(&self.b)?];
         if self.start.len() > 2 {
@@ -108,7 +109,9 @@ impl Arguments {
         };
         if self.json {
             let mut line = graphs.json();
-            line.extend(robots.as_ref().map_or_else(robots::unknown, Robots::json));
+            line.extend(
+                robots.as_ref().map_or_else(robot_comparison::unknown, RobotComparison::json),
+            );
             line.extend(walk.as_ref().map(|walk| ("walked".to_owned(), walk.json())));
             writeln!(out, "{}", serde_json::Value::Object(line))?;
         } else {
@@ -124,7 +127,10 @@ impl Arguments {
     }
 
     /// The robots in the two worlds, where there is a marker, and starts that place it.
-    fn robots<'w>(&self, worlds: [&'w NamedWorld; 2]) -> Result<Option<Robots<'w>>, Failure> {
+    fn robots<'w>(
+        &self,
+        worlds: [&'w NamedWorld; 2],
+    ) -> Result<Option<RobotComparison<'w>>, Failure> {
         let named = [&self.a, &self.b].into_iter().zip(worlds);
         let startless = named.clone().find(|(_, world)| world.start.is_none());
         let marker = match (self.marker, startless) {
@@ -143,7 +149,7 @@ impl Arguments {
             (Some(marker), _) => marker,
         };
         let one_pose = self.start.len() == 2;
-        Robots::new(worlds, marker, one_pose).map(Some)
+        RobotComparison::new(worlds, marker, one_pose).map(Some)
     }
 }
 

@@ -12,17 +12,17 @@ use super::{Failure, Outcome};
 #[command(
     after_help = "Example:\n  toposlam completions bash > ~/.local/share/bash-completion/completions/toposlam"
 )]
-pub(super) struct Arguments {
+pub(super) struct CompletionsArguments {
     /// The shell
     shell: Shell,
 }
 
-impl Arguments {
+impl CompletionsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(
             self.shell,
-            &mut super::Arguments::command(),
+            &mut super::CommandLine::command(),
             "toposlam",
             &mut script,
         );

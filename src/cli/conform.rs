@@ -24,7 +24,7 @@ use toposlam_robot::conform::{
 
 use super::{
     Failure, Outcome, input, marker_kinds,
-    opened::{Opened, Sources},
+    open_log::{LogOptions, OpenLog},
     output,
     progress::Progress,
 };
@@ -69,7 +69,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world")]
     edges: usize,
     #[command(flatten)]
-    sources: Sources,
+    sources: LogOptions,
     /// Of what events are made [default: the first of these that the log has]
     #[arg(long, value_enum, value_name = "WHAT")]
     events: Option<Made>,
@@ -112,7 +112,7 @@ enum Made {
 
 /// A log that was judged.
 struct Judged {
-    opened: Opened,
+    opened: OpenLog,
     gathered: Gathered,
     judgement: Judgement,
     known: Option<Known>,
@@ -178,7 +178,7 @@ impl Arguments {
 
     /// Reads a log and judges it.
     fn judge(&self, path: &Path, quirks: &Quirks) -> Result<Judged, Failure> {
-        let opened = Opened::new(path, &self.sources)?;
+        let opened = OpenLog::new(path, &self.sources)?;
         let evidence = match self.events {
             Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
             Some(_) => {

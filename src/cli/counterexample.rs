@@ -1,7 +1,7 @@
 //! `toposlam counterexample`: the smallest worlds that a marker cannot tell apart.
 
 mod atlas;
-mod found;
+mod pairs;
 mod report;
 
 use std::{io::Write, path::PathBuf};
@@ -14,8 +14,8 @@ use toposlam_model::{
 };
 
 use super::{Failure, Outcome, marker_kinds, output, progress::Progress, use_threads, walk_page};
-use found::Found;
-use report::Report;
+use pairs::WorldPairs;
+use report::SearchReport;
 
 /// The smallest worlds that a marker cannot tell apart, for each marker
 ///
@@ -36,7 +36,7 @@ larger world. A world is ambiguous if it is in any pair.
 
 Exit codes: 0 the search is done, 1 with --expect none something was found, 2 bad usage,
 3 it was broken off.")]
-pub(super) struct Arguments {
+pub(super) struct CounterexampleArguments {
     /// Kind of marker; may be given several times [default: every one]
     #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
     markers: Vec<&'static dyn Marker>,
@@ -91,7 +91,7 @@ enum Expectation {
     None,
 }
 
-impl Arguments {
+impl CounterexampleArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
         if let Some(folder) = &self.atlas {
@@ -120,7 +120,7 @@ impl Arguments {
         if let Some(folder) = &self.out {
             output::make_folder(folder)?;
         }
-        let mut report = Report::new(out, self.json, self.class, edges, searches.len());
+        let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
         for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
@@ -128,9 +128,9 @@ impl Arguments {
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(found::unfinished(&unfinished)),
+                Err(unfinished) => return Ok(pairs::unfinished(&unfinished)),
             };
-            let found = Found::new(marker, self.class, &findings, self.all);
+            let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
             if let Some(folder) = &self.out {
                 found.write(folder)?;

@@ -19,7 +19,7 @@ use super::{Failure, Outcome, input, marker_kinds, output};
 #[command(
     after_help = "Example:\n  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png"
 )]
-pub(super) struct Arguments {
+pub(super) struct DrawArguments {
     /// The world file
     world: PathBuf,
     /// Where the marker is placed, instead of the file's [start]
@@ -46,7 +46,7 @@ enum Format {
     Dot,
 }
 
-impl Arguments {
+impl DrawArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;

@@ -1,9 +1,8 @@
 //! `toposlam explore WORLD`: an algorithm on one world, told as a story.
 
-mod doors;
-mod ending;
+mod doors_writer;
+mod result;
 pub(super) mod story;
-mod words;
 
 use std::{
     io::{self, Write},
@@ -22,12 +21,13 @@ use toposlam_model::{
 };
 
 use super::{
-    Choices, Failure, Outcome, input, output,
-    with_marker::{Wanted, WithMarker},
+    ChoicesOption, Failure, Outcome, input,
+    mapping_marker::{MappingAlgorithm, MappingMarker},
+    output,
 };
-use doors::Doors;
-use ending::Ending;
-use story::{Detail, Story};
+use doors_writer::DoorsWriter;
+use result::ExploreResult;
+use story::{Story, StoryDetail};
 
 /// Run Algorithm 1 on one world: the map, the moves, the story of each hypothesis
 ///
@@ -48,7 +48,7 @@ the dart by which v2 was first entered.
 
 Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input,
 3 given up at --max-darts or --max-states.")]
-pub(super) struct Arguments {
+pub(super) struct ExploreArguments {
     /// A world file, or a file of plantri's with one world
     world: PathBuf,
 
@@ -58,11 +58,11 @@ pub(super) struct Arguments {
 
     /// Marker with which the world is mapped: directional (by Algorithm 1) or movable
     #[arg(long, default_value = "directional")]
-    marker: WithMarker,
+    marker: MappingMarker,
 
     /// Also try every resolution of what Algorithm 1 leaves open: default or all
     #[arg(long, default_value = "default", hide_possible_values = true)]
-    choices: Choices,
+    choices: ChoicesOption,
 
     /// With --choices all: give up when there are more states
     /// [default: 1000000]
@@ -94,7 +94,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-impl Arguments {
+impl ExploreArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
@@ -107,9 +107,11 @@ impl Arguments {
         }
         let choice = self.choices.with_budget(self.max_states)?;
         match self.marker.algorithm(choice)? {
-            Wanted::Algorithm1 => self.explore(&Algorithm1, &world, facing, out),
-            Wanted::AllChoices(algorithm) => self.explore(&algorithm, &world, facing, out),
-            Wanted::MovableMarker => self.explore(&MovableMarker, &world, facing, out),
+            MappingAlgorithm::Algorithm1 => self.explore(&Algorithm1, &world, facing, out),
+            MappingAlgorithm::AllChoices(algorithm) => {
+                self.explore(&algorithm, &world, facing, out)
+            }
+            MappingAlgorithm::MovableMarker => self.explore(&MovableMarker, &world, facing, out),
         }
     }
 
@@ -124,12 +126,12 @@ impl Arguments {
         let mut state = A::State::new(self.max_darts);
         let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
         let run = if self.json {
-            let mut doors = Doors::new(&mut out);
+            let mut doors = DoorsWriter::new(&mut out);
             let run = algorithm.run(&mut robot, &mut state, &mut doors);
             doors.finish()?;
             run
         } else {
-            let detail = Detail { every_hypothesis: self.full, doors: self.doors };
+            let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
             let mut story = Story::new(&mut out, world, facing, detail);
             let run = algorithm.run(&mut robot, &mut state, &mut story);
             story.finish()?;
@@ -139,7 +141,7 @@ impl Arguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
-        let ending = Ending {
+        let ending = ExploreResult {
             world,
             facing,
             marker: self.marker,
@@ -165,7 +167,7 @@ impl Arguments {
         Ok(ending.outcome())
     }
 
-    fn write_map(&self, map: &NamedWorld, ending: &Ending) -> Result<(), Failure> {
+    fn write_map(&self, map: &NamedWorld, ending: &ExploreResult) -> Result<(), Failure> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }

@@ -14,9 +14,7 @@ use toposlam_robot::log::{
     topic::{Encoding, Topic},
 };
 
-use super::{
-    Failure, Outcome, columns::print_rows, input, json::print_object, output, words::grouped,
-};
+use super::{Failure, Outcome, input, json::print_object, output, text::grouped, text::print_rows};
 
 /// Tell what is in logs: when they were recorded, whether they are whole, their topics
 ///

@@ -3,7 +3,6 @@
 mod appearance;
 mod calibrate;
 mod check;
-mod columns;
 mod compare;
 mod completions;
 mod conform;
@@ -15,8 +14,8 @@ mod explore;
 mod info;
 mod input;
 mod json;
-mod movable;
-mod opened;
+mod mapping_marker;
+mod open_log;
 mod outcome;
 mod output;
 mod paper;
@@ -28,10 +27,9 @@ mod replay;
 mod scene;
 mod sense;
 mod simulate;
+mod text;
 mod train;
 mod walk_page;
-mod with_marker;
-mod words;
 
 use std::{
     io::{self, Write},
@@ -54,23 +52,23 @@ use outcome::{Failure, Outcome};
 #[command(
     name = "toposlam",
     version,
-    max_term_width = 100,
+    max_term_width = 80,
     after_help = "Example:\n  toposlam check        every start of every world with up to 6 edges"
 )]
-struct Arguments {
+struct CommandLine {
     #[command(subcommand)]
     verb: Option<Verb>,
 }
 
 #[derive(Subcommand)]
 enum Verb {
-    Check(check::Arguments),
-    Explore(explore::Arguments),
-    Compare(compare::Arguments),
-    Counterexample(counterexample::Arguments),
-    Draw(draw::Arguments),
-    Paper(paper::Arguments),
-    Proofs(proofs::Arguments),
+    Check(check::CheckArguments),
+    Explore(explore::ExploreArguments),
+    Compare(compare::CompareArguments),
+    Counterexample(counterexample::CounterexampleArguments),
+    Draw(draw::DrawArguments),
+    Paper(paper::PaperArguments),
+    Proofs(proofs::ProofsArguments),
     Simulate(simulate::Arguments),
     Drive(drive::Arguments),
     Render(render::Arguments),
@@ -81,12 +79,12 @@ enum Verb {
     Info(info::Arguments),
     Conform(conform::Arguments),
     Replay(replay::Arguments),
-    Completions(completions::Arguments),
+    Completions(completions::CompletionsArguments),
 }
 
 /// How what Algorithm 1 leaves open is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Choices {
+enum ChoicesOption {
     /// By the default choices.
     Default,
     /// In every way.
@@ -95,7 +93,7 @@ enum Choices {
 
 /// Which runs of a start are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Choice {
+enum RunChoices {
     /// That of the default choices.
     Default,
     /// That, and every other resolution of what Algorithm 1 leaves open.
@@ -105,16 +103,16 @@ enum Choice {
     },
 }
 
-impl Choices {
+impl ChoicesOption {
     /// The choice, with a budget of states, which only all choices have.
-    fn with_budget(self, max_states: Option<u64>) -> Result<Choice, Failure> {
+    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, Failure> {
         match (self, max_states) {
-            (Self::Default, None) => Ok(Choice::Default),
+            (Self::Default, None) => Ok(RunChoices::Default),
             (Self::Default, Some(_)) => {
                 Err(Failure::at("--max-states", "this goes with --choices all"))
             }
             (Self::All, budget) => {
-                Ok(Choice::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
+                Ok(RunChoices::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
             }
         }
     }
@@ -155,7 +153,7 @@ fn without_ros() -> Failure {
 
 /// Runs the verb that the command line names.
 pub(crate) fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = CommandLine::parse();
     let mut out = io::stdout().lock();
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),
@@ -186,6 +184,6 @@ pub(crate) fn run() -> ExitCode {
 
 /// What `toposlam` alone prints: what it is, and its verbs.
 fn help(out: &mut dyn Write) -> Result<Outcome, Failure> {
-    write!(out, "{}", Arguments::command().render_help())?;
+    write!(out, "{}", CommandLine::command().render_help())?;
     Ok(Outcome::Holds)
 }

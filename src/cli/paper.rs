@@ -8,7 +8,7 @@ use std::{
 use serde::Serialize;
 use toposlam::paper::{CITATIONS, Citation, Row, Status, TABLE, Trace, requirements};
 
-use super::{Failure, Outcome, columns::print_hanging, json::print_object};
+use super::{Failure, Outcome, json::print_object, text::print_hanging};
 
 /// Show every requirement of the paper: where it is implemented, where it is tested, what is open
 #[derive(clap::Args)]
@@ -17,7 +17,7 @@ use super::{Failure, Outcome, columns::print_hanging, json::print_object};
                   something cites what is no requirement.\n\n\
                   Example:\n  toposlam paper --section 2.3"
 )]
-pub(super) struct Arguments {
+pub(super) struct PaperArguments {
     /// Only this section of the paper, and its parts
     #[arg(long, value_name = "N")]
     section: Option<String>,
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-impl Arguments {
+impl PaperArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let requirements =
             requirements(TABLE).map_err(|error| Failure::at("tests/paper.toml", error))?;

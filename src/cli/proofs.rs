@@ -1,11 +1,11 @@
 //! `toposlam proofs`: the lemmas on which the correctness of the mapping rests; check them, and look
 //! at single cases.
 
-mod again;
-mod checking;
+mod case_view;
+mod check;
+mod lemma_case;
 mod listing;
 mod report;
-mod shown;
 #[cfg(test)]
 mod tests;
 
@@ -14,10 +14,10 @@ use std::{io::Write, num::ParseIntError, str::FromStr};
 use clap::ValueEnum;
 use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 
-use super::{Failure, Outcome, progress::Progress, words::grouped};
-use again::Again;
-use checking::{Ending, checked};
-use report::Report;
+use super::{Failure, Outcome, progress::Progress, text::grouped};
+use check::{CheckEnd, check_lemma};
+use lemma_case::LemmaCase;
+use report::ProofsReport;
 
 /// List the lemmas on which the mapping rests; check them in every case within a bound
 ///
@@ -40,14 +40,14 @@ Ctrl-C ends a check early, and prints what was checked.
 
 Exit codes: 0 all that was run holds, 1 a lemma fails, 2 bad usage or input,
 3 not all was checked, or the lemma says nothing about the case that --choices makes.")]
-pub(super) struct Arguments {
+pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all, in every case within its bound; may be repeated
     #[arg(long, value_name = "NAME")]
     run: Vec<String>,
 
     /// Make one case of the lemma again and show it: numbers with commas between them
     #[arg(long, value_name = "NUMBERS", requires = "run", allow_hyphen_values = true)]
-    choices: Option<Choices>,
+    choices: Option<CaseChoices>,
 
     /// The bound within which --choices makes its case: exhaustive or sampled
     #[arg(long, default_value = "exhaustive", hide_possible_values = true, requires = "choices")]
@@ -60,9 +60,9 @@ pub(super) struct Arguments {
 
 /// The choices that make a case.
 #[derive(Clone, Debug)]
-struct Choices(Vec<u8>);
+struct CaseChoices(Vec<u8>);
 
-impl FromStr for Choices {
+impl FromStr for CaseChoices {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -95,7 +95,7 @@ impl Engine {
     }
 }
 
-impl Arguments {
+impl ProofsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let theorems: Vec<_> = theorems::all().collect();
         self.run_with(&lemmas::all().collect::<Vec<_>>(), &theorems, out)
@@ -114,8 +114,8 @@ impl Arguments {
         }
         match (&self.choices, self.run.as_slice()) {
             (Some(choices), [name]) if name != ALL => {
-                let Choices(choices) = choices;
-                Again::new(named(lemmas, name)?, self.engine, choices)?.tell(self.json, out)
+                let CaseChoices(choices) = choices;
+                LemmaCase::new(named(lemmas, name)?, self.engine, choices)?.tell(self.json, out)
             }
             (Some(_), _) => {
                 let cause = "these make a case of one lemma; name it with one --run";
@@ -131,12 +131,12 @@ impl Arguments {
 
     /// Checks lemmas, each in every case within its bound.
     fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
-        let mut report = Report::new(out, self.json, lemmas);
+        let mut report = ProofsReport::new(out, self.json, lemmas);
         for &lemma in lemmas {
             let progress = Progress::new(lemma.name, "cases")?;
-            let checked = checked(lemma, &progress)?;
+            let checked = check_lemma(lemma, &progress)?;
             progress.finish();
-            let interrupted = matches!(checked.ending, Ending::Interrupted { .. });
+            let interrupted = matches!(checked.ending, CheckEnd::Interrupted { .. });
             report.lemma(lemma, checked)?;
             if interrupted {
                 break;

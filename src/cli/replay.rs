@@ -9,9 +9,9 @@ use toposlam_robot::replay::{Agreement, NotReplayed, Replay, replay};
 use super::{
     Failure, Outcome,
     json::print_object,
-    opened::{Opened, Sources},
+    open_log::{LogOptions, OpenLog},
     output,
-    words::{counted, grouped, vertices},
+    text::{counted, grouped, vertices},
 };
 
 /// Run sensing and Algorithm 1 on the pictures of a log, without a robot that moves
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     /// The log
     log: PathBuf,
     #[command(flatten)]
-    sources: Sources,
+    sources: LogOptions,
     /// Give up when more edge ends are known
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
@@ -79,7 +79,7 @@ impl Arguments {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
-        let opened = Opened::new(&self.log, &self.sources)?;
+        let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
         let replay = replay(&opened.log, &opened.mapping, opened.sensor(), self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();

@@ -33,11 +33,11 @@ use toposlam_vision::camera::Camera as Calibrated;
 use super::{
     Failure, Outcome,
     appearance::Appearance,
-    explore::story::{Detail, Story},
+    explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::Progress,
     render::Size,
-    words::capital,
+    text::capital,
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
 use ending::Ending;
@@ -231,7 +231,7 @@ impl Arguments {
         let watching = Watching::new(chronicle.clone(), pictures, progress, log.clone());
         let shown: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let mut lines = Lines::new(shown, chronicle.clone());
-        let detail = Detail { every_hypothesis: false, doors: false };
+        let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = Story::new(&mut lines, world, *facing, detail);
         let mut telling = Telling::new(story, chronicle.clone(), log.clone());
         let (run, robot, watching) =

@@ -18,7 +18,7 @@ use toposlam_vision::{
     colour::{Class, ExampleError, Stripe, StripeKind, Training, TrainingError},
 };
 
-use super::{Failure, Outcome, input, output, picture_file, progress::Progress, words::counted};
+use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
 use report::{LeftOut, Report, Validation};
 
 /// Learn the colours of a building from labelled images of it: floor, stripe, marker

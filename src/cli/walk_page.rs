@@ -12,7 +12,7 @@ use toposlam_model::{
 
 use super::{
     Failure, output,
-    words::{grouped, sentence},
+    text::{grouped, sentence},
 };
 
 /// Refuses a path that cannot become a page, before long work begins.

@@ -14,18 +14,18 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{Choice, Failure, Outcome, words::grouped};
+use crate::cli::{Failure, Outcome, RunChoices, text::grouped};
 
 /// Which algorithm is checked, with which marker.
 #[derive(Clone, Copy)]
-pub(super) struct Subject {
+pub(super) struct AlgorithmInfo {
     algorithm: &'static str,
     marker: &'static str,
     /// The order of its cost.
     order: CostOrder,
 }
 
-impl Subject {
+impl AlgorithmInfo {
     pub(super) fn of<A: Algorithm>(algorithm: &A) -> Self {
         let marker = A::Marker::default().name();
         Self { algorithm: algorithm.name(), marker, order: algorithm.order() }
@@ -33,7 +33,7 @@ impl Subject {
 }
 
 /// What was checked of one number of edges.
-pub(super) struct Size<'a> {
+pub(super) struct SizeResult<'a> {
     pub(super) edges: usize,
     /// The class of the worlds, where they are not from a file.
     pub(super) class: Class,
@@ -44,27 +44,27 @@ pub(super) struct Size<'a> {
 }
 
 /// Prints as it goes.
-pub(super) struct Report<'o> {
+pub(super) struct CheckReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
-    subject: Subject,
-    choice: Choice,
+    subject: AlgorithmInfo,
+    choice: RunChoices,
     header: bool,
     total: Tally,
 }
 
-impl<'o> Report<'o> {
+impl<'o> CheckReport<'o> {
     pub(super) fn new(
         out: &'o mut dyn Write,
         json: bool,
-        subject: Subject,
-        choice: Choice,
+        subject: AlgorithmInfo,
+        choice: RunChoices,
     ) -> Self {
         Self { out, json, subject, choice, header: false, total: Tally::default() }
     }
 
     /// One number of edges.
-    pub(super) fn size(&mut self, size: &Size) -> Result<(), Failure> {
+    pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), Failure> {
         if self.json {
             let line = Line::new(size, self.subject, self.choice);
             serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
@@ -77,7 +77,7 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    fn header(&mut self, size: &Size) -> Result<(), Failure> {
+    fn header(&mut self, size: &SizeResult) -> Result<(), Failure> {
         let worlds = match size.from {
             Some(path) => format!("the worlds of {}", path.display()),
             None => format!("class {}", size.class),
@@ -86,7 +86,7 @@ impl<'o> Report<'o> {
             Shard::WHOLE => String::new(),
             shard => format!(", shard {shard}"),
         };
-        let Subject { algorithm, marker, order } = self.subject;
+        let AlgorithmInfo { algorithm, marker, order } = self.subject;
         writeln!(self.out, "{algorithm}, {marker} marker, {worlds}{share}\n")?;
         write!(
             self.out,
@@ -100,15 +100,15 @@ impl<'o> Report<'o> {
             "most",
             format!("most/({order})"),
         )?;
-        if self.choice != Choice::Default {
+        if self.choice != RunChoices::Default {
             write!(self.out, "  {:>11}  {:>20}  {:>9}", "states", "runs", "moves")?;
         }
         writeln!(self.out)?;
         Ok(())
     }
 
-    fn row(&mut self, size: &Size) -> Result<(), Failure> {
-        let &Size { edges, tally, .. } = size;
+    fn row(&mut self, size: &SizeResult) -> Result<(), Failure> {
+        let &SizeResult { edges, tally, .. } = size;
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
         }
@@ -123,7 +123,7 @@ impl<'o> Report<'o> {
             tally.moves_max(),
             tally.largest_ratio(edges, self.subject.order),
         )?;
-        if self.choice != Choice::Default {
+        if self.choice != RunChoices::Default {
             let (least, most) = tally.extremes.unwrap_or_default();
             let at_least = if tally.runs == u128::MAX || tally.gave_up > 0 { ">= " } else { "" };
             write!(
@@ -223,8 +223,8 @@ struct FailureLine {
 }
 
 impl<'a> Line<'a> {
-    fn new(size: &Size<'a>, subject: Subject, choice: Choice) -> Self {
-        let &Size { edges, class, from, shard, tally } = size;
+    fn new(size: &SizeResult<'a>, subject: AlgorithmInfo, choice: RunChoices) -> Self {
+        let &SizeResult { edges, class, from, shard, tally } = size;
         Self {
             schema: 1,
             edges,
@@ -238,7 +238,7 @@ impl<'a> Line<'a> {
             moves_total: tally.moves_total,
             moves_max: tally.moves_max(),
             largest_ratio: tally.largest_ratio(edges, subject.order),
-            every_way: (choice != Choice::Default).then(|| EveryWayLine {
+            every_way: (choice != RunChoices::Default).then(|| EveryWayLine {
                 states: tally.states,
                 runs: tally.runs,
                 moves_least: tally.extremes.map(|(least, _)| least),
@@ -261,7 +261,7 @@ impl<'a> Line<'a> {
     }
 }
 
-fn failed_world(failure: &FailedStart, subject: Subject) -> NamedWorld {
+fn failed_world(failure: &FailedStart, subject: AlgorithmInfo) -> NamedWorld {
     let about = format!("{} fails here: {}", subject.algorithm, failure.flaw);
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
@@ -282,9 +282,9 @@ mod tests {
     fn runs_beyond_64_bits_are_printed_whole() {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
         let (class, shard) = (Class::Simple, Shard::WHOLE);
-        let size = Size { edges: 1, class, from: None, shard, tally: &tally };
-        let subject = Subject::of(&Algorithm1);
-        let line = Line::new(&size, subject, Choice::All { budget: 9 });
+        let size = SizeResult { edges: 1, class, from: None, shard, tally: &tally };
+        let subject = AlgorithmInfo::of(&Algorithm1);
+        let line = Line::new(&size, subject, RunChoices::All { budget: 9 });
         let line = serde_json::to_string(&line).unwrap();
         assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");
     }

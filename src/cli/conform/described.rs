@@ -19,7 +19,7 @@ use toposlam_robot::{
 };
 
 use super::{Judged, minimised::Minimised};
-use crate::cli::words::{counted, grouped, vertices};
+use crate::cli::text::{counted, grouped, vertices};
 
 /// So many ways are told one by one.
 const TOLD: usize = 8;

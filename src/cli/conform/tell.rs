@@ -7,7 +7,7 @@ use toposlam::report::{Covered, Report, Told};
 use toposlam_robot::conform::{Culprit, Judgement, Verdict};
 
 use super::Failure;
-use crate::cli::{columns::print_hanging, json::print_object, words::counted};
+use crate::cli::{json::print_object, text::counted, text::print_hanging};
 
 /// So many steps are told before a divergence.
 const BEFORE: usize = 6;

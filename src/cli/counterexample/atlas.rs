@@ -10,11 +10,11 @@ use toposlam_model::{
     marker::{MARKERS, Marker},
 };
 
-use super::found::{self, Found};
+use super::pairs::{self, WorldPairs};
 use crate::cli::{
     Failure, Outcome, output,
     progress::Progress,
-    words::{counted, sentence},
+    text::{counted, sentence},
 };
 
 /// The sizes up to which the atlas searches a class, in about a minute altogether.
@@ -29,7 +29,7 @@ fn full_size(class: Class) -> usize {
 /// The smallest pair of a marker in each class.
 struct Row {
     marker: &'static dyn Marker,
-    found: Vec<Found>,
+    found: Vec<WorldPairs>,
 }
 
 /// Makes the atlas, of worlds with no more than so many edges where somebody says so.
@@ -48,9 +48,9 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(found::unfinished(&unfinished)),
+                Err(unfinished) => return Ok(pairs::unfinished(&unfinished)),
             };
-            found_of.push(Found::new(marker, class, &findings, false));
+            found_of.push(WorldPairs::new(marker, class, &findings, false));
         }
         rows.push(Row { marker, found: found_of });
     }
@@ -121,7 +121,7 @@ shows, and with `--html` walks. This folder is made by
     toposlam counterexample --atlas worlds/atlas";
 
 /// The sizes of the pair, with its files.
-fn cell(found: &Found, edges: usize) -> String {
+fn cell(found: &WorldPairs, edges: usize) -> String {
     match found.pairs().first() {
         None => format!("none up to {edges} edges"),
         Some(pair) => {

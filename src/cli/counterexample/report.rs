@@ -10,11 +10,11 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use super::found::Found;
-use crate::cli::{Failure, words::grouped};
+use super::pairs::WorldPairs;
+use crate::cli::{Failure, text::grouped};
 
 /// Prints as it goes.
-pub(super) struct Report<'o> {
+pub(super) struct SearchReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
     class: Class,
@@ -23,10 +23,10 @@ pub(super) struct Report<'o> {
     markers: usize,
     header: bool,
     /// What is told after the table.
-    pairs: Vec<Found>,
+    pairs: Vec<WorldPairs>,
 }
 
-impl<'o> Report<'o> {
+impl<'o> SearchReport<'o> {
     pub(super) fn new(
         out: &'o mut dyn Write,
         json: bool,
@@ -42,7 +42,7 @@ impl<'o> Report<'o> {
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
-        found: &Found,
+        found: &WorldPairs,
     ) -> Result<(), Failure> {
         if self.json {
             self.objects(marker, findings, found)?;
@@ -59,7 +59,7 @@ impl<'o> Report<'o> {
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
-        found: &Found,
+        found: &WorldPairs,
     ) -> Result<(), Failure> {
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
             let line = json!({
@@ -108,7 +108,7 @@ impl<'o> Report<'o> {
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
-        found: &Found,
+        found: &WorldPairs,
     ) -> Result<(), Failure> {
         if !std::mem::replace(&mut self.header, true) {
             let (class, edges) = (self.class, self.edges);
@@ -136,7 +136,7 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    fn sizes_of_smallest(&self, found: &Found) -> String {
+    fn sizes_of_smallest(&self, found: &WorldPairs) -> String {
         match found.pairs().first() {
             Some([one, other]) => sizes(one, other),
             None => format!("none up to {} edges", self.edges),
@@ -148,7 +148,7 @@ impl<'o> Report<'o> {
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
-        found: &Found,
+        found: &WorldPairs,
     ) -> Result<(), Failure> {
         writeln!(self.out, "{} marker: {}", marker.name(), marker.about())?;
         writeln!(self.out, "class {}, 1 to {} edges\n", self.class, self.edges)?;
@@ -187,7 +187,7 @@ impl<'o> Report<'o> {
     }
 
     /// All pairs by name, and the worlds in them.
-    fn tell_pairs(&mut self, found: &Found) -> Result<(), Failure> {
+    fn tell_pairs(&mut self, found: &WorldPairs) -> Result<(), Failure> {
         let pairs = found.pairs();
         let count = grouped(pairs.len() as u128);
         writeln!(self.out, "\nall pairs: {count}\n")?;

@@ -10,7 +10,7 @@ use toposlam_model::{
 use toposlam_robot::explorer::ExplorerError;
 
 use super::{Failure, Outcome};
-use crate::cli::{json::print_object, words::sentence};
+use crate::cli::{json::print_object, text::sentence};
 
 /// How a run ended.
 pub(super) struct Ending<'a> {

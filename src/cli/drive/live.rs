@@ -29,10 +29,10 @@ use toposlam_vision::{
 
 use super::{Arguments, Failure, MAX_DARTS, Outcome, ending::Ending};
 use crate::cli::{
-    explore::story::{Detail, Story},
+    explore::story::{Story, StoryDetail},
     input, output,
     progress::Progress,
-    words::quoted,
+    text::quoted,
 };
 
 type Recorder = recorder::Recorder<File>;
@@ -87,7 +87,7 @@ impl Arguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let mut lines = Lines(if self.json { None } else { Some(&mut *out) });
-        let detail = Detail { every_hypothesis: false, doors: false };
+        let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = match world {
             Some((world, facing)) => Story::new(&mut lines, world, *facing, detail),
             None => Story::under(&mut lines, &format!("A robot at {}.", self.ros), detail),

@@ -11,8 +11,8 @@ use crate::cli::{
     Failure, Outcome,
     json::print_object,
     progress::Progress,
+    text::{counted, grouped},
     use_threads,
-    words::{counted, grouped},
 };
 
 /// Measure driving: does each door of each junction lead where the specification says?

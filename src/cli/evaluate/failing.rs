@@ -18,7 +18,7 @@ use toposlam_robot::evaluation::{
 use toposlam_robot::truth::{JunctionTruth, Truth};
 
 use crate::cli::{
-    Failure, json::print_object, output, picture_file, scene::SceneLine, words::counted,
+    Failure, json::print_object, output, picture_file, scene::SceneLine, text::counted,
 };
 
 /// Pictures of no more views are written, nor of more visits: the first of those that are wrong, then

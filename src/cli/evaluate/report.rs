@@ -16,9 +16,9 @@ use toposlam_robot::evaluation::{
 
 use crate::cli::{
     Failure, Outcome,
-    columns::{print_hanging, print_rows},
     json::print_object,
-    words::grouped,
+    text::grouped,
+    text::{print_hanging, print_rows},
 };
 
 /// What is measured.

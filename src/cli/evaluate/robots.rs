@@ -20,7 +20,7 @@ use crate::cli::{
     Failure, noise,
     progress::Progress,
     render::{Size, looks},
-    words::grouped,
+    text::grouped,
 };
 
 /// Which robots, and where.

@@ -13,11 +13,11 @@ use toposlam_robot::{
 use super::robots::{Random, Robots, failed, share, share_json};
 use crate::cli::{
     Failure, Outcome,
-    columns::print_rows,
     json::print_object,
     progress::Progress,
+    text::print_rows,
+    text::{counted, grouped},
     use_threads,
-    words::{counted, grouped},
 };
 
 /// Measure whole runs: is each building mapped right, with the moves that the specification makes?

@@ -12,11 +12,11 @@ use toposlam_model::{
     world::Action,
 };
 
-use super::words::{counted, dart, seen_against, vertices};
+use crate::cli::text::{counted, vertices};
 
 /// How much is told.
 #[derive(Clone, Copy)]
-pub(crate) struct Detail {
+pub(crate) struct StoryDetail {
     /// Everything that was rejected, or only the first few of each round.
     pub(crate) every_hypothesis: bool,
     /// The doors taken, and what was done with the marker.
@@ -29,7 +29,7 @@ const TOLD: usize = 4;
 /// Tells a run as it goes.
 pub(crate) struct Story<'o, W> {
     out: &'o mut W,
-    detail: Detail,
+    detail: StoryDetail,
     result: io::Result<()>,
     round: u64,
     actions: Vec<Action>,
@@ -40,14 +40,19 @@ pub(crate) struct Story<'o, W> {
 }
 
 impl<'o, W: Write> Story<'o, W> {
-    pub(crate) fn new(out: &'o mut W, world: &NamedWorld, facing: Dart, detail: Detail) -> Self {
+    pub(crate) fn new(
+        out: &'o mut W,
+        world: &NamedWorld,
+        facing: Dart,
+        detail: StoryDetail,
+    ) -> Self {
         let (at, back) = (world.at_text(facing), world.facing_text(facing));
         let head = format!("{}, from {at} with its back to the door {back}.", world.name);
         Self::under(out, &head, detail)
     }
 
     /// The story of a run, under a head that says where it is.
-    pub(crate) fn under(out: &'o mut W, head: &str, detail: Detail) -> Self {
+    pub(crate) fn under(out: &'o mut W, head: &str, detail: StoryDetail) -> Self {
         let result = writeln!(out, "{head}");
         Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
     }
@@ -184,4 +189,15 @@ impl<W: ?Sized, O: Write> Observer<W> for Story<'_, O> {
             self.result = self.tell(journey, event);
         }
     }
+}
+
+/// The name of a dart of the map: its vertex and its index there.
+fn dart(map: &PartialMap, dart: Dart) -> String {
+    format!("v{}.{}", map.vertex(dart).0, map.index(dart))
+}
+
+/// A percept that differs from another one. It says "no marker" if the other one has a marker.
+fn seen_against(percept: Percept, other: Percept) -> String {
+    let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
+    format!("{percept}{}", if absent { ", no marker" } else { "" })
 }

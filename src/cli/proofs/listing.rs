@@ -7,7 +7,7 @@ use serde::Serialize;
 use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
 
 use super::cases;
-use crate::cli::{Failure, columns::print_hanging, json::print_object, words::counted};
+use crate::cli::{Failure, json::print_object, text::counted, text::print_hanging};
 
 const EXHAUSTIVE: &str = "exhaustive";
 const SAMPLED: &str = "sampled";

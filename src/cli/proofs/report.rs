@@ -8,15 +8,15 @@ use toposlam_proofs::{Counterexample, Lemma};
 
 use super::{
     Engine,
-    again::{Again, print_head},
+    case_view::CaseViewLine,
     cases,
-    checking::{Checked, Ending},
-    shown::ShownLine,
+    check::{CheckEnd, LemmaCheck},
+    lemma_case::{LemmaCase, print_head},
 };
-use crate::cli::{Failure, Outcome, columns::print_hanging, json::print_object};
+use crate::cli::{Failure, Outcome, json::print_object, text::print_hanging};
 
 /// Prints as it goes.
-pub(super) struct Report<'o> {
+pub(super) struct ProofsReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
     /// How wide the names are, and the numbers of cases.
@@ -27,10 +27,10 @@ pub(super) struct Report<'o> {
     seconds: f64,
     interrupted: bool,
     /// What does not hold, to be told below the rows.
-    failed: Vec<(&'o Lemma, Ending)>,
+    failed: Vec<(&'o Lemma, CheckEnd)>,
 }
 
-impl<'o> Report<'o> {
+impl<'o> ProofsReport<'o> {
     /// On the check of these lemmas.
     pub(super) fn new(out: &'o mut dyn Write, json: bool, lemmas: &[&Lemma]) -> Self {
         let names = lemmas.iter().map(|lemma| lemma.name.len());
@@ -49,7 +49,7 @@ impl<'o> Report<'o> {
     }
 
     /// One lemma.
-    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: Checked) -> Result<(), Failure> {
+    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), Failure> {
         if self.json {
             print_line(self.out, lemma, &checked)?;
         } else {
@@ -58,11 +58,11 @@ impl<'o> Report<'o> {
         self.out.flush()?;
         self.seconds += checked.seconds;
         match checked.ending {
-            Ending::Holds { cases } => {
+            CheckEnd::Holds { cases } => {
                 self.held += 1;
                 self.cases += cases;
             }
-            Ending::Interrupted { cases } => {
+            CheckEnd::Interrupted { cases } => {
                 self.interrupted = true;
                 self.cases += cases;
             }
@@ -71,12 +71,12 @@ impl<'o> Report<'o> {
         Ok(())
     }
 
-    fn row(&mut self, lemma: &Lemma, checked: &Checked) -> io::Result<()> {
-        let Checked { ending, seconds } = checked;
+    fn row(&mut self, lemma: &Lemma, checked: &LemmaCheck) -> io::Result<()> {
+        let LemmaCheck { ending, seconds } = checked;
         let word = match ending {
-            Ending::Holds { .. } => "holds",
-            Ending::Fails(_) | Ending::Miscounted { .. } => "fails",
-            Ending::Interrupted { .. } => "interrupted",
+            CheckEnd::Holds { .. } => "holds",
+            CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => "fails",
+            CheckEnd::Interrupted { .. } => "interrupted",
         };
         let cases = cases(ending.cases());
         let [name, width] = self.widths;
@@ -121,9 +121,9 @@ impl<'o> Report<'o> {
 }
 
 /// Tells why a lemma does not hold.
-fn print_failure(out: &mut dyn Write, lemma: &Lemma, ending: &Ending) -> io::Result<()> {
+fn print_failure(out: &mut dyn Write, lemma: &Lemma, ending: &CheckEnd) -> io::Result<()> {
     match ending {
-        Ending::Fails(failed) => {
+        CheckEnd::Fails(failed) => {
             let Counterexample { choices, claim, .. } = failed;
             print_head(out, lemma, Engine::Exhaustive, choices, Some(claim))?;
             match again(lemma, failed) {
@@ -131,20 +131,20 @@ fn print_failure(out: &mut dyn Write, lemma: &Lemma, ending: &Ending) -> io::Res
                 None => writeln!(out, "\nIt comes out otherwise when it is made again."),
             }
         }
-        Ending::Miscounted { pinned, found } => {
+        CheckEnd::Miscounted { pinned, found } => {
             writeln!(out, "{}", lemma.name)?;
             print_hanging(out, "  ", lemma.sentence)?;
             let [found, pinned] = [cases(*found), cases(*pinned)];
             let cause = format!("there must be {pinned} within its bound, and it has {found}");
             print_hanging(out, "  fails: ", &cause)
         }
-        Ending::Holds { .. } | Ending::Interrupted { .. } => Ok(()),
+        CheckEnd::Holds { .. } | CheckEnd::Interrupted { .. } => Ok(()),
     }
 }
 
 /// The case in which a lemma failed, if it fails in the same way when it is made again.
-fn again<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<Again<'a>> {
-    let again = Again::new(lemma, Engine::Exhaustive, &failed.choices).ok()?;
+fn again<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<LemmaCase<'a>> {
+    let again = LemmaCase::new(lemma, Engine::Exhaustive, &failed.choices).ok()?;
     (again.claim() == Some(failed.claim)).then_some(again)
 }
 
@@ -161,7 +161,7 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     claim: Option<&'a str>,
     #[serde(flatten)]
-    shown: Option<ShownLine<'a>>,
+    shown: Option<CaseViewLine<'a>>,
     /// How many cases there must be, where there are not as many.
     #[serde(skip_serializing_if = "Option::is_none")]
     pinned: Option<u64>,
@@ -169,10 +169,10 @@ struct Line<'a> {
     interrupted: bool,
 }
 
-fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &Checked) -> Result<(), Failure> {
-    let Checked { ending, seconds } = checked;
+fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
+    let LemmaCheck { ending, seconds } = checked;
     let failed = match ending {
-        Ending::Fails(failed) => Some(failed),
+        CheckEnd::Fails(failed) => Some(failed),
         _ => None,
     };
     let again = failed.and_then(|failed| again(lemma, failed));
@@ -181,15 +181,15 @@ fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &Checked) -> Result<(
         lemma: lemma.name,
         cases: ending.cases(),
         seconds: *seconds,
-        holds: matches!(ending, Ending::Holds { .. }),
+        holds: matches!(ending, CheckEnd::Holds { .. }),
         choices: failed.map(|failed| failed.choices.as_slice()),
         claim: failed.map(|failed| failed.claim),
         shown: again.as_ref().map(|again| again.shown.json()),
         pinned: match ending {
-            Ending::Miscounted { pinned, .. } => Some(*pinned),
+            CheckEnd::Miscounted { pinned, .. } => Some(*pinned),
             _ => None,
         },
-        interrupted: matches!(ending, Ending::Interrupted { .. }),
+        interrupted: matches!(ending, CheckEnd::Interrupted { .. }),
     };
     print_object(out, &line)
 }

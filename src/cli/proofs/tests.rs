@@ -20,9 +20,9 @@ use super::*;
 
 /// What the verb does with these lemmas.
 fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, Failure>, String) {
-    let command = Arguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
+    let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
     let matches = command.try_get_matches_from(arguments).unwrap();
-    let arguments = Arguments::from_arg_matches(&matches).unwrap();
+    let arguments = ProofsArguments::from_arg_matches(&matches).unwrap();
     let mut out = Vec::new();
     let theorems = [Theorem { name: "round", sentence: "It turns.".into(), paper: "2.2".into() }];
     let outcome = arguments.run_with(&lemmas.iter().collect::<Vec<_>>(), &theorems, &mut out);
@@ -310,15 +310,15 @@ fn whoever_breaks_off_waits_for_no_case() {
         }
     }
     let endless = lemma("endless", 9, endless, endless);
-    let broken_off = checked(&endless, &Impatient).unwrap();
-    assert!(matches!(broken_off.ending, Ending::Interrupted { cases: 0 }));
+    let broken_off = check_lemma(&endless, &Impatient).unwrap();
+    assert!(matches!(broken_off.ending, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
         (false, "\nincomplete, interrupted: 0 of 1 lemmas hold, 0 cases\n"),
         (true, "\"interrupted\":true,\"holds\":false}\n"),
     ] {
         let mut out = Vec::new();
-        let mut report = Report::new(&mut out, json, &[&endless]);
-        report.lemma(&endless, checked(&endless, &Impatient).unwrap()).unwrap();
+        let mut report = ProofsReport::new(&mut out, json, &[&endless]);
+        report.lemma(&endless, check_lemma(&endless, &Impatient).unwrap()).unwrap();
         assert_eq!(report.verdict().unwrap(), Outcome::Incomplete);
         let text = String::from_utf8(out).unwrap();
         assert!(text.ends_with(end) && text.contains("interrupted"), "{text}");

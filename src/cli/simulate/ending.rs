@@ -14,7 +14,7 @@ use toposlam_robot::{
 };
 
 use super::{Failure, Outcome};
-use crate::cli::{json::print_object, words::sentence};
+use crate::cli::{json::print_object, text::sentence};
 
 /// How a run ended.
 pub(super) struct Ending<'a> {

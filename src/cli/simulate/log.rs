@@ -12,7 +12,7 @@ use toposlam_vision::{
 };
 
 use super::{Arguments, Failure, Simulation};
-use crate::cli::{output, words::quoted};
+use crate::cli::{output, text::quoted};
 
 /// Writes a log to a file, as the run goes.
 pub(super) type Recorder = recorder::Recorder<File>;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use toposlam_vision::colour::{Class, Confusion, ExampleError, Stripe, StripeKind, Training};
 
-use crate::cli::{Failure, columns::print_rows, json::print_object, words::grouped};
+use crate::cli::{Failure, json::print_object, text::grouped, text::print_rows};
 
 /// What was learned from, and how well.
 pub(super) struct Report<'t> {

@@ -5,8 +5,7 @@ use std::io::{self, Write};
 
 use toposlam_model::mapping::{Journey, MovableEvent};
 
-use super::Story;
-use crate::cli::explore::words::dart;
+use super::{Story, dart};
 
 impl<W: Write> Story<'_, W> {
     pub(super) fn tell_movable(

@@ -13,10 +13,10 @@ use toposlam_model::{
 };
 use toposlam_proofs::Exhibit;
 
-use crate::cli::{columns::print_rows, json::percept_json, words::capital};
+use crate::cli::{json::percept_json, text::capital, text::print_rows};
 
 /// The worlds of a case, the walks in them, and what else there is.
-pub(super) struct Shown {
+pub(super) struct CaseView {
     worlds: Vec<NamedWorld>,
     /// In the order of the lemma.
     parts: Vec<Part>,
@@ -45,7 +45,7 @@ struct Walk {
     stopped: Option<String>,
 }
 
-impl Shown {
+impl CaseView {
     /// What a lemma shows; `about` is said of its worlds.
     pub(super) fn new(about: &str, exhibits: &[Exhibit]) -> Self {
         let is_world = |exhibit: &&Exhibit| matches!(exhibit, Exhibit::World { .. });
@@ -98,8 +98,8 @@ impl Shown {
         Ok(())
     }
 
-    pub(super) fn json(&self) -> ShownLine<'_> {
-        let mut line = ShownLine {
+    pub(super) fn json(&self) -> CaseViewLine<'_> {
+        let mut line = CaseViewLine {
             worlds: self.worlds.iter().map(world_file::to_json).collect(),
             walks: Vec::new(),
             values: Vec::new(),
@@ -180,7 +180,7 @@ impl Walk {
 
 /// What `--json` tells of a case.
 #[derive(Serialize)]
-pub(super) struct ShownLine<'a> {
+pub(super) struct CaseViewLine<'a> {
     worlds: Vec<Value>,
     walks: Vec<WalkLine<'a>>,
     values: Vec<ValueLine<'a>>,

@@ -11,7 +11,8 @@ use toposlam_model::{
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{Failure, Outcome, WithMarker, words};
+use super::{Failure, MappingMarker, Outcome};
+use crate::cli::text;
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
@@ -41,10 +42,10 @@ struct EveryWayRest {
 }
 
 /// How the run ended.
-pub(super) struct Ending<'a> {
+pub(super) struct ExploreResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
-    pub(super) marker: WithMarker,
+    pub(super) marker: MappingMarker,
     pub(super) journey: &'a Journey,
     /// The most moves that the algorithm may make in this world.
     pub(super) move_bound: u64,
@@ -56,7 +57,7 @@ pub(super) struct Ending<'a> {
     pub(super) ways: Option<Result<EveryWay, Flaw>>,
 }
 
-impl Ending<'_> {
+impl ExploreResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
         match (&self.result, &self.ways) {
             (Err(Flaw::Error(MappingError::Bound { .. })), _) => Outcome::Incomplete,
@@ -94,7 +95,7 @@ impl Ending<'_> {
             isomorphic: self.result.is_ok(),
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
-            marker: (self.marker != WithMarker::Directional).then(|| self.marker.name()),
+            marker: (self.marker != MappingMarker::Directional).then(|| self.marker.name()),
             error: self.error().map(ToString::to_string),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
@@ -111,7 +112,7 @@ impl Ending<'_> {
     pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
         match &self.result {
             Err(flaw) => {
-                let moves = words::counted(self.journey.moves() as usize, "move");
+                let moves = text::counted(self.journey.moves() as usize, "move");
                 writeln!(out, "\nAfter {moves}: {flaw}")?;
                 if matches!(flaw, Flaw::Error(MappingError::Bound { .. })) {
                     writeln!(out, "With --max-darts N the robot may go on.")?;
@@ -147,8 +148,8 @@ impl Ending<'_> {
         writeln!(
             out,
             "\nThe map has {} and {}, and took {} moves (at least {edges}, at most {move_bound}).",
-            words::vertices(vertices),
-            words::counted(edges, "edge"),
+            text::vertices(vertices),
+            text::counted(edges, "edge"),
             journey.moves(),
         )?;
         writeln!(out, "It is isomorphic to the world:")?;

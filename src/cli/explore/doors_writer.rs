@@ -8,13 +8,13 @@ use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 use crate::cli::json::action_json;
 
 /// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
-pub(super) struct Doors<'o, W> {
+pub(super) struct DoorsWriter<'o, W> {
     out: &'o mut W,
     taken: u64,
     result: io::Result<()>,
 }
 
-impl<'o, W: Write> Doors<'o, W> {
+impl<'o, W: Write> DoorsWriter<'o, W> {
     pub(super) fn new(out: &'o mut W) -> Self {
         let result = write!(out, "{{\"schema\":1,\"doors\":[");
         Self { out, taken: 0, result }
@@ -26,7 +26,7 @@ impl<'o, W: Write> Doors<'o, W> {
     }
 }
 
-impl<W: ?Sized, O: Write> Observer<W> for Doors<'_, O> {
+impl<W: ?Sized, O: Write> Observer<W> for DoorsWriter<'_, O> {
     fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
         if let (Ok(()), Some(action)) = (&self.result, event.action()) {
             let comma = if self.taken == 0 { "" } else { "," };

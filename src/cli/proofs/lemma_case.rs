@@ -7,20 +7,20 @@ use toposlam_proofs::{Lemma, Replay, Stop, choose, lemma::Sampled, odometer::lis
 
 use super::{
     Engine,
-    shown::{Shown, ShownLine},
+    case_view::{CaseView, CaseViewLine},
 };
-use crate::cli::{Failure, Outcome, columns::print_hanging, json::print_object};
+use crate::cli::{Failure, Outcome, json::print_object, text::print_hanging};
 
 /// A case as it was made.
-pub(super) struct Again<'a> {
+pub(super) struct LemmaCase<'a> {
     lemma: &'a Lemma,
     engine: Engine,
     choices: &'a [u8],
     case: choose::Case,
-    pub(super) shown: Shown,
+    pub(super) shown: CaseView,
 }
 
-impl<'a> Again<'a> {
+impl<'a> LemmaCase<'a> {
     /// Makes the case of these choices.
     pub(super) fn new(
         lemma: &'a Lemma,
@@ -36,7 +36,7 @@ impl<'a> Again<'a> {
         };
         let made = Replay::show(replay, choices)
             .map_err(|misfit| Failure::at("--choices", format!("{}: {misfit}", lemma.name)))?;
-        let shown = Shown::new(&command(lemma, engine, choices), &made.exhibits);
+        let shown = CaseView::new(&command(lemma, engine, choices), &made.exhibits);
         Ok(Self { lemma, engine, choices, case: made.case, shown })
     }
 
@@ -121,5 +121,5 @@ struct Line<'a> {
     holds: bool,
     claim: Option<&'a str>,
     #[serde(flatten)]
-    shown: ShownLine<'a>,
+    shown: CaseViewLine<'a>,
 }

@@ -11,15 +11,15 @@ use toposlam_model::{
 
 use super::{
     Failure,
-    robots::{Robots, actions_json},
+    robot_comparison::{RobotComparison, actions_json},
 };
-use crate::cli::{columns::print_rows, json::percept_json};
+use crate::cli::{json::percept_json, text::print_rows};
 
-/// Actions as the command line tells them.
+/// ActionList as the command line tells them.
 #[derive(Clone, Debug)]
-pub(super) struct Actions(Vec<Action>);
+pub(super) struct ActionList(Vec<Action>);
 
-impl FromStr for Actions {
+impl FromStr for ActionList {
     type Err = UnknownAction;
 
     fn from_str(text: &str) -> Result<Self, UnknownAction> {
@@ -29,7 +29,7 @@ impl FromStr for Actions {
 }
 
 /// A walk as it was walked: the percepts at the start and after each action.
-pub(super) struct Walked<'w> {
+pub(super) struct JointWalk<'w> {
     names: [&'w str; 2],
     /// Where the robots began.
     starts: [String; 2],
@@ -39,11 +39,11 @@ pub(super) struct Walked<'w> {
     stopped: Option<String>,
 }
 
-impl<'w> Robots<'w> {
+impl<'w> RobotComparison<'w> {
     /// Both robots do the same, as far as both can.
-    pub(super) fn walk(&self, Actions(actions): &Actions) -> Result<Walked<'w>, Failure> {
+    pub(super) fn walk(&self, ActionList(actions): &ActionList) -> Result<JointWalk<'w>, Failure> {
         let mut robots = self.begun();
-        let mut walked = Walked {
+        let mut walked = JointWalk {
             names: self.names(),
             starts: self.starts_text(),
             actions: Vec::new(),
@@ -70,7 +70,7 @@ impl<'w> Robots<'w> {
     }
 }
 
-impl Walked<'_> {
+impl JointWalk<'_> {
     pub(super) fn json(&self) -> Value {
         let pair = |pair: &[Percept; 2]| pair.map(percept_json);
         json!({

@@ -13,14 +13,14 @@ use crate::cli::{Failure, Outcome, output, walk_page};
 
 /// The worlds of the pairs that are told, each once.
 #[derive(Clone)]
-pub(super) struct Found {
+pub(super) struct WorldPairs {
     worlds: Vec<NamedWorld>,
     /// The places of the two worlds of each pair, the smallest pair first.
     pairs: Vec<[usize; 2]>,
     all: bool,
 }
 
-impl Found {
+impl WorldPairs {
     /// The smallest pair, or all.
     pub(super) fn new(marker: &dyn Marker, class: Class, findings: &Findings, all: bool) -> Self {
         let pairs = if all { findings.pairs() } else { findings.smallest().into_iter().collect() };

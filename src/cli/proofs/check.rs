@@ -12,13 +12,13 @@ use toposlam_proofs::{Counterexample, Lemma, lemma};
 use crate::cli::Failure;
 
 /// What became of a check, and how long it took.
-pub(super) struct Checked {
-    pub(super) ending: Ending,
+pub(super) struct LemmaCheck {
+    pub(super) ending: CheckEnd,
     pub(super) seconds: f64,
 }
 
 /// What became of a check.
-pub(super) enum Ending {
+pub(super) enum CheckEnd {
     /// The lemma holds in so many cases, which are all.
     Holds { cases: u64 },
     /// It fails in this case.
@@ -29,7 +29,7 @@ pub(super) enum Ending {
     Interrupted { cases: u64 },
 }
 
-impl Ending {
+impl CheckEnd {
     /// In how many cases the lemma holds; where it fails, in how many before that.
     pub(super) fn cases(&self) -> u64 {
         match *self {
@@ -53,7 +53,7 @@ enum News {
 /// Checks a lemma.
 ///
 /// It works on a thread of its own: whoever breaks off need not wait for the next case.
-pub(super) fn checked(lemma: &Lemma, watch: &impl Watch) -> Result<Checked, Failure> {
+pub(super) fn check_lemma(lemma: &Lemma, watch: &impl Watch) -> Result<LemmaCheck, Failure> {
     let begun = Instant::now();
     let (teller, news) = mpsc::channel();
     let at_work = *lemma;
@@ -67,7 +67,7 @@ pub(super) fn checked(lemma: &Lemma, watch: &impl Watch) -> Result<Checked, Fail
     let mut cases = 0;
     let ending = loop {
         match news.recv_timeout(PATIENCE) {
-            Ok(News::Ended(result)) => break Ending::from(result),
+            Ok(News::Ended(result)) => break CheckEnd::from(result),
             Ok(News::Cases(so_far)) => {
                 if cases == 0 {
                     watch.parts((lemma.exhaustive.cases / so_far.max(1)) as usize);
@@ -81,13 +81,13 @@ pub(super) fn checked(lemma: &Lemma, watch: &impl Watch) -> Result<Checked, Fail
             }
         }
         if watch.stop() {
-            break Ending::Interrupted { cases };
+            break CheckEnd::Interrupted { cases };
         }
     };
-    Ok(Checked { ending, seconds: begun.elapsed().as_secs_f64() })
+    Ok(LemmaCheck { ending, seconds: begun.elapsed().as_secs_f64() })
 }
 
-impl From<Result<u64, lemma::Failure>> for Ending {
+impl From<Result<u64, lemma::Failure>> for CheckEnd {
     fn from(result: Result<u64, lemma::Failure>) -> Self {
         match result {
             Ok(cases) => Self::Holds { cases },

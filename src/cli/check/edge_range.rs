@@ -4,15 +4,15 @@ use std::{ops::RangeInclusive, str::FromStr};
 
 /// A range of numbers of edges, none of them 0.
 #[derive(Clone, Debug)]
-pub(super) struct Sizes(RangeInclusive<usize>);
+pub(super) struct EdgeRange(RangeInclusive<usize>);
 
-impl Sizes {
+impl EdgeRange {
     pub(super) fn iter(&self) -> RangeInclusive<usize> {
         self.0.clone()
     }
 }
 
-impl FromStr for Sizes {
+impl FromStr for EdgeRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -24,7 +24,7 @@ use super::{Failure, input};
 
 /// What a log does not tell itself.
 #[derive(clap::Args)]
-pub(super) struct Sources {
+pub(super) struct LogOptions {
     /// Which topics carry what [default: as their types tell; see `toposlam info`]
     #[arg(long, value_name = "FILE")]
     mapping: Option<PathBuf>,
@@ -37,7 +37,7 @@ pub(super) struct Sources {
 }
 
 /// A log, open.
-pub(super) struct Opened {
+pub(super) struct OpenLog {
     pub(super) log: Log,
     pub(super) mapping: Mapping,
     mapping_path: Option<PathBuf>,
@@ -48,8 +48,8 @@ pub(super) struct Opened {
 /// The topic of annotated pictures in logs of the project.
 const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
 
-impl Opened {
-    pub(super) fn new(path: &Path, sources: &Sources) -> Result<Self, Failure> {
+impl OpenLog {
+    pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, Failure> {
         let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
         let mapping = match &sources.mapping {
             None => Mapping::unambiguous(&log),

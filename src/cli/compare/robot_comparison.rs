@@ -1,4 +1,4 @@
-//! Robots in two worlds with the same marker: can they tell the worlds apart?
+//! RobotComparison in two worlds with the same marker: can they tell the worlds apart?
 
 use std::{io::Write, path::Path};
 
@@ -12,14 +12,17 @@ use toposlam_model::{
 };
 
 use super::{Failure, walk_page};
-use crate::cli::{json::action_json, words::grouped};
+use crate::cli::{
+    json::action_json,
+    text::{grouped, print_columns, print_paragraph},
+};
 
 /// How many starts in B, and how many pairs of states, are told one by one.
-const TOLD: usize = 8;
-const TOLD_PAIRS: usize = 400;
+const PRINTED_STARTS: usize = 8;
+const PRINTED_PAIRS: usize = 400;
 
-/// Robots in two worlds: one start in A, one or more in B.
-pub(super) struct Robots<'w> {
+/// RobotComparison in two worlds: one start in A, one or more in B.
+pub(super) struct RobotComparison<'w> {
     worlds: [&'w NamedWorld; 2],
     marker: &'static dyn Marker,
     comparison: Comparison<'w>,
@@ -34,8 +37,8 @@ pub(super) struct Robots<'w> {
 /// hundred bytes and more.
 const MOST_STATES: usize = 1 << 26;
 
-impl<'w> Robots<'w> {
-    /// Robots at the starts of the worlds; the one in B in every way that the marker cannot tell
+impl<'w> RobotComparison<'w> {
+    /// RobotComparison at the starts of the worlds; the one in B in every way that the marker cannot tell
     /// from its start, unless `one_pose` is wanted.
     pub(super) fn new(
         worlds: [&'w NamedWorld; 2],
@@ -145,25 +148,21 @@ impl<'w> Robots<'w> {
         writeln!(out, "\n{} marker: {}", self.marker.name(), self.marker.about())?;
         if let Some(relation) = &self.relation {
             let [_, other] = self.starts_text();
-            writeln!(
-                out,
-                "from {start} in A and {other} in B no walk tells the worlds apart;\n\
-                 the robots can be in {} pairs of states:",
-                grouped(relation.0.len() as u128)
-            )?;
-            let told = relation.0.iter().take(TOLD_PAIRS);
-            let pairs: Vec<_> = told.map(|pair| self.pair_text(pair).join("~")).collect();
-            let widest = pairs.iter().map(String::len).max().unwrap_or_default();
-            for line in pairs.chunks((96 / (widest + 2)).max(1)) {
-                let line: Vec<_> = line.iter().map(|pair| format!("{pair:widest$}")).collect();
-                writeln!(out, "  {}", line.join("  ").trim_end())?;
-            }
-            if let Some(more) = relation.0.len().checked_sub(TOLD_PAIRS + 1) {
+            let pairs = grouped(relation.0.len() as u128);
+            let verdict = format!(
+                "No walk distinguishes the worlds from {start} in A and {other} in B. \
+                 The robots can be in {pairs} pairs of states:"
+            );
+            print_paragraph(out, &verdict)?;
+            let printed = relation.0.iter().take(PRINTED_PAIRS);
+            let pairs: Vec<_> = printed.map(|pair| self.pair_text(pair).join("~")).collect();
+            print_columns(out, &pairs)?;
+            if let Some(more) = relation.0.len().checked_sub(PRINTED_PAIRS + 1) {
                 writeln!(out, "  and {} more, which --json tells", more + 1)?;
             }
             return Ok(());
         }
-        for (pose, walk) in self.others.iter().take(TOLD) {
+        for (pose, walk) in self.others.iter().take(PRINTED_STARTS) {
             if let Some(Walk { actions, percepts: [one, other] }) = walk {
                 let actions: Vec<_> = actions.iter().map(ToString::to_string).collect();
                 let how = match actions.as_slice() {
@@ -177,7 +176,7 @@ impl<'w> Robots<'w> {
                 )?;
             }
         }
-        match self.others.len().saturating_sub(TOLD) {
+        match self.others.len().saturating_sub(PRINTED_STARTS) {
             0 => {}
             more => writeln!(
                 out,
