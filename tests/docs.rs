@@ -1,8 +1,8 @@
-//! What the README shows is what the program prints and draws.
+//! The documents show what the program prints and draws.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{env, fs, path::Path, process::Command};
+use std::{env, ffi::OsString, fs, path::Path, process::Command};
 
 use toposlam::{
     model::format::{named_world::NamedWorld, world_file},
@@ -23,80 +23,68 @@ fn toposlam(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+/// A `text` block shows what the last command of the `sh` block before it prints. The other blocks that
+/// run here write what these read. The last of them draws each step of sensing as docs/sensing.md shows
+/// it: look at the pictures that changed, and commit them.
 #[test]
-fn the_readme_shows_what_check_counterexample_train_and_conform_print() {
-    let readme = read("README.md");
-    let shown = blocks(&readme, "text");
-    let [check, counterexample] = ["check", "counterexample"].map(|verb| toposlam(&[verb]));
-    assert_eq!(shown, [check, counterexample, trained(&readme), conform(&readme)]);
-}
-
-fn blocks<'t>(text: &'t str, kind: &str) -> Vec<&'t str> {
-    let begin = format!("```{kind}\n");
-    text.split(&begin).skip(1).map(|block| block.split_once("```").unwrap().0).collect()
-}
-
-/// What the README's chain of sensing prints where it trains. Its last line draws each step of sensing
-/// as docs/sensing.md shows it: look at those that changed, and commit them.
-fn trained(readme: &str) -> String {
-    let chain = blocks(readme, "sh").into_iter().find(|block| block.contains("toposlam train"));
+fn the_documents_show_what_the_commands_print() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(folder.join("worlds")).unwrap();
-    fs::write(folder.join("worlds/shape-8.toml"), read("worlds/shape-8.toml")).unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_toposlam")).parent().unwrap().to_owned();
-    let others = env::var_os("PATH").unwrap();
-    let path = env::join_paths([program].into_iter().chain(env::split_paths(&others))).unwrap();
-    let mut trained = None;
-    for command in chain.unwrap().lines() {
-        let mut bash = Command::new("bash");
-        bash.args(["-euo", "pipefail", "-c", command]).current_dir(&folder).env("PATH", &path);
-        let output = bash.output().unwrap();
-        assert!(output.status.success(), "{command}: {output:?}");
-        if command.starts_with("toposlam train") {
-            trained = Some(String::from_utf8(output.stdout).unwrap());
-        }
-    }
-    let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/sensing");
-    let names = |folder: &Path| {
-        let mut names: Vec<_> =
-            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        names.sort();
-        names
-    };
-    let drawn = folder.join("steps");
-    assert_eq!(names(&shown), names(&drawn));
-    for name in names(&shown) {
-        let same = fs::read(shown.join(&name)).unwrap() == fs::read(drawn.join(&name)).unwrap();
-        assert!(same, "docs/sensing/{} is not what is drawn", name.display());
-    }
-    trained.unwrap()
-}
-
-/// What the README's third line of `conform` prints.
-fn conform(readme: &str) -> String {
-    let lines: Vec<_> = blocks(readme, "sh").into_iter().flat_map(str::lines).collect();
-    let line = |begin: &str| lines.iter().find(|line| line.contains(begin)).unwrap();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs-conform");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("worlds")).unwrap();
     for world in ["worlds/shape-6.toml", "worlds/shape-8.toml"] {
         fs::write(folder.join(world), read(world)).unwrap();
     }
-    let commands = [
-        line("simulate worlds/shape-6.toml --log"),
-        line("conform shape-6.mcap --world worlds/shape-8"),
-    ];
-    let printed = commands.map(|command| {
-        let words = command.split(" || ").next().unwrap().split(' ').skip(1);
-        let mut toposlam = Command::new(env!("CARGO_BIN_EXE_toposlam"));
-        String::from_utf8(toposlam.args(words).current_dir(&folder).output().unwrap().stdout)
-            .unwrap()
-    });
-    printed[1].clone()
+    for page in ["README.md", "docs/commands.md"] {
+        let page_text = read(page);
+        let mut blocks = blocks(&page_text).into_iter().peekable();
+        while let Some((kind, commands)) = blocks.next() {
+            let expected = blocks.next_if(|(kind, _)| *kind == "text");
+            let writes =
+                ["--log shape-6.mcap", "--stages steps"].iter().any(|o| commands.contains(o));
+            if kind != "sh" || (expected.is_none() && !writes) {
+                continue;
+            }
+            let printed = commands.lines().map(|command| run(command, &folder)).last().unwrap();
+            if let Some((_, expected)) = expected {
+                assert_eq!(expected, printed, "{page}: {commands}");
+            }
+        }
+    }
+    let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/sensing");
+    let drawn = folder.join("steps");
+    assert_eq!(file_names(&shown), file_names(&drawn));
+    for name in file_names(&shown) {
+        let same = fs::read(shown.join(&name)).unwrap() == fs::read(drawn.join(&name)).unwrap();
+        assert!(same, "docs/sensing/{} is not what is drawn", name.display());
+    }
 }
 
-/// Draw them again with the commands of the README, look at them, and commit them.
+/// The fenced blocks of a page: kind and content.
+fn blocks(page: &str) -> Vec<(&str, &str)> {
+    page.split("```").skip(1).step_by(2).map(|block| block.split_once('\n').unwrap()).collect()
+}
+
+/// What a command of the documents prints, with this program as `toposlam`.
+fn run(command: &str, folder: &Path) -> String {
+    let command = command.replace("cargo run --release --", "toposlam");
+    let program = Path::new(env!("CARGO_BIN_EXE_toposlam")).parent().unwrap().to_owned();
+    let others = env::var_os("PATH").unwrap();
+    let path = env::join_paths([program].into_iter().chain(env::split_paths(&others))).unwrap();
+    let mut bash = Command::new("bash");
+    bash.args(["-euo", "pipefail", "-c", &command]).current_dir(folder).env("PATH", path);
+    let output = bash.output().unwrap();
+    assert!(output.status.success(), "{command}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn file_names(folder: &Path) -> Vec<OsString> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    names
+}
+
+/// Draw them again with the commands of docs/commands.md, look at them, and commit them.
 #[test]
 fn the_pictures_are_what_the_program_draws() {
     for name in ["figure-1a", "figure-1b"] {
