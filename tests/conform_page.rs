@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod browser;
-
 use std::{fs, io::Cursor, path::Path};
 
 use toposlam::{
@@ -13,6 +11,8 @@ use toposlam::{
     report::{Covered, Line, Report, Told},
 };
 use toposlam_robot::conform::{Culprit, Verdict};
+
+use crate::browser;
 
 /// What a camera under a mirror might see.
 fn picture() -> Vec<u8> {

@@ -125,12 +125,20 @@ fn what_mapping_costs_a_robot_is_what_the_specification_says() {
 }
 
 #[test]
-fn every_test_of_the_model_is_in_its_fast_tier() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("model/tests");
-    let tier = fs::read_to_string(folder.join("fast_tier.rs")).unwrap();
-    for entry in fs::read_dir(folder).unwrap() {
-        let file = entry.unwrap().path();
-        let name = file.file_stem().unwrap().to_str().unwrap();
-        assert!(name == "fast_tier" || tier.contains(&format!("mod {name};\n")), "{name}");
+fn every_test_file_belongs_to_a_test_program() {
+    for package in ["model", "proofs", "robot", "vision", "."] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(package).join("tests");
+        let manifest = fs::read_to_string(folder.join("../Cargo.toml")).unwrap();
+        let modules = fs::read_to_string(folder.join("main.rs")).unwrap();
+        for entry in fs::read_dir(folder).unwrap() {
+            let file = entry.unwrap().path();
+            let name = file.file_stem().unwrap().to_str().unwrap();
+            let is_test = file.extension().is_some_and(|kind| kind == "rs")
+                || file.join("mod.rs").exists()
+                || file.join("main.rs").exists();
+            let listed = modules.contains(&format!("mod {name};\n"))
+                || manifest.contains(&format!("name = \"{name}\"\n"));
+            assert!(!is_test || name == "main" || listed, "{}", file.display());
+        }
     }
 }

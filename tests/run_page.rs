@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod browser;
-mod journal;
-
 use std::{fs, io::Cursor, path::Path};
 
 use toposlam::{
     page::run_page,
     picture::{png, run_svg},
 };
+
+use crate::{browser, journal};
 
 /// A few small pictures.
 fn pictures() -> Vec<Vec<u8>> {

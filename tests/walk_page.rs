@@ -4,12 +4,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod browser;
-
 use std::{
     path::{Path, PathBuf},
     process::Command,
 };
+
+use crate::browser;
 
 /// Writes the page of Figure 1 with this marker.
 fn write_page(marker: &str) -> PathBuf {

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use crate::{folder, names_in, run, stderr};
+use super::{folder, names_in, run, stderr};
 
 const WORLD: &str = "worlds/shape-6.toml";
 

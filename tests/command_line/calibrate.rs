@@ -6,7 +6,7 @@ use image::{ImageFormat, Rgb, RgbImage, imageops::crop_imm};
 use serde_json::Value;
 use toposlam_vision::camera::{Camera, Optics, SphericalMirror, calibration};
 
-use crate::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, said, stderr, stdout};
 
 /// Places in shape 8, none of which looks like another.
 const POSES: [&str; 6] =
@@ -180,7 +180,7 @@ fn what_is_known_comes_from_the_start_and_the_arguments() {
 #[test]
 fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
     let folder = folder("calibrate-refused");
-    let inputs = crate::folder("calibrate-refused-inputs");
+    let inputs = super::folder("calibrate-refused-inputs");
     let input = |name: &str, bytes: &[u8]| {
         fs::write(inputs.join(name), bytes).unwrap();
         inputs.join(name).to_str().unwrap().to_owned()

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use toposlam_model::format::plantri::{self, Code};
 
-use crate::{folder, objects, read_world, run, said, stderr, stdout, world_files};
+use super::{folder, objects, read_world, run, said, stderr, stdout, world_files};
 
 fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
     lines.iter().map(|line| line[key].as_u64().unwrap()).collect()
@@ -182,7 +182,7 @@ fn an_interrupted_check_prints_what_was_covered_and_does_not_hold() {
         process::{Command, Stdio},
     };
 
-    let mut check = crate::toposlam();
+    let mut check = super::toposlam();
     check.args(["check", "--json", "--edges", "3..=9"]);
     let mut check = check.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut out = BufReader::new(check.stdout.take().unwrap());

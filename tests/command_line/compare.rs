@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use serde_json::{Value, json};
 use toposlam_model::format::{named_world::NamedWorld, world_file};
 
-use crate::{folder, objects, read_world, said, world_files};
+use super::{folder, objects, read_world, said, world_files};
 
 #[test]
 fn figure_1a_and_figure_1b_are_not_isomorphic_and_not_mirror_images() {

@@ -16,7 +16,7 @@ use toposlam_robot::log::{
     writer::LogWriter,
 };
 
-use crate::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, said, stderr, stdout};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";

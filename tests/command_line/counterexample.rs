@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, fs};
 use serde_json::{Value, json};
 use toposlam_model::format::world_file;
 
-use crate::{folder, names_in, objects, read_world, run, said, stdout};
+use super::{folder, names_in, objects, read_world, run, said, stdout};
 
 /// The lines of a search, those of sizes and then the rest.
 fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, said};
+use super::{folder, said};
 
 const WORLD: &str = "worlds/shape-6.toml";
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, names_in, objects, read_world, run, stderr, stdout};
+use super::{folder, names_in, objects, read_world, run, stderr, stdout};
 
 /// The arguments that measure so few views that it is quick.
 const FEW: [&str; 10] = [

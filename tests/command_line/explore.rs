@@ -15,7 +15,7 @@ use toposlam_model::{
     world::{Action, GraphWorld},
 };
 
-use crate::{folder, objects, read_world, run, said, stdout, world_files};
+use super::{folder, objects, read_world, run, said, stdout, world_files};
 
 /// A run done again from its start: the robot and the marker where its doors, and what it does with
 /// the marker, lead.
@@ -129,7 +129,7 @@ fn the_map_is_written_in_the_format_that_its_name_says() {
     assert_eq!(graphs, [map.graph]);
     let drawn = fs::read_to_string(svg).unwrap();
     assert!(drawn.starts_with("<svg") && drawn.contains("</svg>"));
-    assert_eq!(crate::names_in(&folder), ["map.ec", "map.json", "map.svg", "map.toml"]);
+    assert_eq!(super::names_in(&folder), ["map.ec", "map.json", "map.svg", "map.toml"]);
 }
 
 #[test]

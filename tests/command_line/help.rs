@@ -2,7 +2,7 @@
 
 use std::{io::Read, process::Stdio};
 
-use crate::{run, said, stderr, toposlam};
+use super::{run, said, stderr, toposlam};
 
 const VERBS: [(&str, &[&str]); 18] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::json;
 
-use crate::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, said, stderr, stdout};
 
 const RUN: &str = "fuzz/corpus/mcap/of-a-run";
 

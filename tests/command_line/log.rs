@@ -10,7 +10,7 @@ use std::{
 use mcap::{MessageStream, Summary, read::Options};
 use serde_json::Value;
 
-use crate::{folder, objects, read_world, run, said, stderr, stdout};
+use super::{folder, objects, read_world, run, said, stderr, stdout};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 
@@ -197,7 +197,7 @@ fn the_log_of_an_interrupted_run_ends_with_that() {
 
     let folder = folder("log_interrupted");
     let log = log_in(&folder, "run");
-    let mut robot = crate::toposlam();
+    let mut robot = super::toposlam();
     // Far too long to end by itself.
     robot.args(["simulate", "worlds/building-25.toml", "--start", "north-west:west-upper"]);
     robot.arg("--log").arg(&log).stdout(Stdio::null()).stderr(Stdio::null());

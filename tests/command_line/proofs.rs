@@ -7,7 +7,7 @@ use serde_json::Value;
 use toposlam_model::format::world_file;
 use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::Misfit, theorems};
 
-use crate::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, said, stderr, stdout};
 
 /// The lemmas, the theorems and the totals.
 fn listed() -> (Vec<Value>, Vec<Value>, Value) {

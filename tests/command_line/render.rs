@@ -5,7 +5,7 @@ use std::fs;
 use image::{ImageFormat, RgbImage};
 use toposlam_vision::camera::{Camera, calibration};
 
-use crate::{folder, names_in, run, said, stderr};
+use super::{folder, names_in, run, said, stderr};
 
 const PLAN: &str = "worlds/shape-8.toml";
 

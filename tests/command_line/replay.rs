@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, objects, read_world, run, said, stderr, stdout};
+use super::{folder, objects, read_world, run, said, stderr, stdout};
 
 // paper: exp.off-line-time
 #[test]

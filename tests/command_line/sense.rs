@@ -10,7 +10,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::camera::{Camera, calibration};
 
-use crate::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [640, 480];
 /// A PNG of 69 bytes whose head promises two thousand million.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, names_in, objects, read_world, run, said, stderr, stdout};
+use super::{folder, names_in, objects, read_world, run, said, stderr, stdout};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
@@ -203,7 +203,7 @@ fn an_interrupted_run_tells_what_is_known_and_is_incomplete() {
         process::{Command, Stdio},
     };
 
-    let mut robot = crate::toposlam();
+    let mut robot = super::toposlam();
     // Far too long to end by itself.
     robot.args(["simulate", "worlds/building-25.toml", "--start", "north-west:west-upper"]);
     let mut robot = robot.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

@@ -13,7 +13,7 @@ use toposlam_vision::{
     colour::{ColourModel, Stripe, StripeKind},
 };
 
-use crate::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [320, 240];
 /// A PNG of 69 bytes whose head promises two thousand million.

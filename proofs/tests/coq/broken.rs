@@ -3,7 +3,7 @@
 
 use std::{fs, path::PathBuf};
 
-use crate::{Compiled, check, compiled, folder, source, text};
+use super::{Compiled, check, compiled, folder, source, text};
 
 /// The development with something changed in one file.
 struct Changed {

@@ -21,7 +21,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use crate::{OCAMLOPT, compiled, printed, source};
+use super::{OCAMLOPT, compiled, printed, source};
 
 /// Every start with up to so many edges; its facing dart is dart 0.
 fn starts(class: Class, most: usize) -> Vec<EmbeddedGraph> {

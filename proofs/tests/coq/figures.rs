@@ -4,7 +4,7 @@ use std::{fs, path::Path, process::Command};
 
 use toposlam_model::{embedded_graph::EmbeddedGraph, format::world_file};
 
-use crate::{compiled, printed, source};
+use super::{compiled, printed, source};
 
 /// The lists of `Figures.v`, without their ending, and the world files.
 const WORLDS: [(&str, &str); 6] = [

@@ -6,7 +6,7 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
-use crate::{here, scratch, table};
+use super::{here, scratch, table};
 
 const NAME: &str = "lemmas::retracing::the_way_back_retraces_the_path::kani";
 

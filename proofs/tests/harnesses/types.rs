@@ -8,7 +8,7 @@ use std::{
     sync::LazyLock,
 };
 
-use crate::{here, scratch, table, within};
+use super::{here, scratch, table, within};
 
 fn rustc() -> Command {
     let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));

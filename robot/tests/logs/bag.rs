@@ -2,7 +2,7 @@
 
 use toposlam_robot::log::{Format, error::Missing, reading::Log};
 
-use crate::written::{Closed, Said, bag, in_order, said};
+use super::written::{Closed, Said, bag, in_order, said};
 
 const COMPRESSIONS: [&str; 3] = ["none", "bz2", "lz4"];
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use toposlam_robot::log::{decode::decode, reading::Log};
 
-use crate::written::{Closed, Said, Way, bag, in_order, mcap_file, ways};
+use super::written::{Closed, Said, Way, bag, in_order, mcap_file, ways};
 
 /// Reads all that there is; what is wrong, if anything.
 fn read(bytes: &[u8]) -> Result<Vec<u64>, String> {

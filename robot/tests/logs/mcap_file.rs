@@ -2,7 +2,7 @@
 
 use toposlam_robot::log::{Format, error::Missing, reading::Log, topic::Encoding};
 
-use crate::written::{Said, Way, in_order, mcap_file, said, ways};
+use super::written::{Said, Way, in_order, mcap_file, said, ways};
 
 #[test]
 fn an_mcap_file_says_what_was_written_in_whatever_way() {

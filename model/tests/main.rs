@@ -1,5 +1,4 @@
-//! The fast tier: all tests of this folder in one program, for mutation testing, which links and runs
-//! it once for each mutant. `cargo test` leaves it out, and runs each file as a program of its own.
+//! Tests of the specification through its public interface.
 
 mod ambiguity;
 mod broken;

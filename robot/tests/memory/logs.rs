@@ -1,11 +1,9 @@
-//! No bytes make a reader of logs, of messages or of mappings take more memory than it states. The
-//! allocator of the whole program is watched, so this is a program of its own, with one test in it.
+//! No bytes make a reader of logs, of messages or of mappings take more memory than it states.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::{fs, hint::black_box, io::Cursor, path::Path};
 
-use peak_alloc::PeakAlloc;
 use toposlam_robot::log::{
     decode::decode,
     definition::{Definition, Dialect},
@@ -13,8 +11,7 @@ use toposlam_robot::log::{
     reading::Log,
 };
 
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
+use super::MEMORY;
 
 /// The most memory taken at any time while this runs.
 fn peak(run: impl FnOnce()) -> usize {
@@ -65,8 +62,7 @@ fn mapping_holds(text: &str) {
     assert!(taken <= stated, "{taken} for {}: {}", text.len(), &text[..text.len().min(60)]);
 }
 
-#[test]
-fn reading_takes_no_more_memory_than_stated() {
+pub(crate) fn reading_takes_no_more_memory_than_stated() {
     assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
     seeds_hold();
     zeros_hold();

@@ -1,12 +1,10 @@
-//! Sensing takes the same memory for the hundredth frame as for the first. The allocator of the whole
-//! program is watched, so this is a program of its own, with one test in it.
+//! Sensing takes the same memory for the hundredth frame as for the first.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::hint::black_box;
 
 use image::RgbImage;
-use peak_alloc::PeakAlloc;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::{
@@ -15,8 +13,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
+use super::MEMORY;
 
 /// Poses in shape-8: in a hallway, at a corner, at a tee.
 const POSES: [Pose; 3] = [
@@ -36,8 +33,7 @@ fn taken(sensor: &mut Sensor, pictures: &[RgbImage], rounds: u32) -> (usize, usi
     (MEMORY.current_usage(), MEMORY.peak_usage())
 }
 
-#[test]
-fn no_frame_takes_more_memory_than_the_frames_before_it() {
+pub(crate) fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let camera = Camera::superscout().sized([640, 480]);
     let rig = Rig::new(&camera);
     let look = Look::named("laboratory").unwrap();

@@ -1,0 +1,5 @@
+//! Tests of the robot through its public interface.
+
+mod logs;
+mod renderer;
+mod sensing;

@@ -1,0 +1,13 @@
+//! Tests of the whole program: the command line, the pages, the documents.
+
+mod atlas;
+mod browser;
+mod command_line;
+mod conform_page;
+mod docs;
+mod fuzz;
+mod journal;
+mod oracle;
+mod paper;
+mod run_page;
+mod walk_page;
