@@ -1,7 +1,7 @@
 //! What the specification says of a log, as a person reads it: the verdict, where the run first diverged
 //! and what would have been allowed there, what led there, what was covered. Sections 2 and 6.
 
-use toposlam_robot::conform::{Culprit, Verdict};
+use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 /// What is said of a log.
 #[derive(Clone, Debug)]
@@ -9,7 +9,7 @@ pub struct Report {
     /// The log's file.
     pub log: String,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: ConformVerdict,
     /// Why the verdict is no better, or what is said besides; in sentences.
     pub remarks: Vec<String>,
     /// What was judged, and against what, line by line: a name and what is said.
@@ -78,7 +78,7 @@ pub struct Told {
     /// Which message of the log, counted from 1, and where it begins in the file; none at the end.
     pub message: Option<(u64, u64)>,
     /// Whose fault it is.
-    pub culprit: Culprit,
+    pub culprit: FaultClass,
     /// A word for what does not fit.
     pub cause: &'static str,
     /// What happened.

@@ -10,7 +10,7 @@ use toposlam::{
     picture::{Picture, svg},
     report::{Covered, Line, Report, Told},
 };
-use toposlam_robot::conform::{Culprit, Verdict};
+use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use crate::browser;
 
@@ -57,7 +57,7 @@ fn conforming(log: &str, events: usize) -> Report {
     ];
     Report {
         log: log.to_owned(),
-        verdict: Verdict::Conforms,
+        verdict: ConformVerdict::Conforms,
         remarks: Vec::new(),
         facts: [
             ("format", "MCAP, zstd, 4811 messages on 6 topics, 12.4 MB"),
@@ -97,12 +97,12 @@ fn world() -> String {
 
 fn diverged(log: &str, events: usize, at: usize) -> Report {
     Report {
-        verdict: Verdict::Diverged,
+        verdict: ConformVerdict::Diverged,
         divergence: Some(Told {
             event: at,
             time: at as f64 * 4.7,
             message: Some((4711, 1_234_567)),
-            culprit: Culprit::Perception,
+            culprit: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors, no marker".to_owned(),
             why: "at none of the 2 poses left in the known world this is so".to_owned(),
@@ -128,7 +128,7 @@ fn diverged(log: &str, events: usize, at: usize) -> Report {
 
 fn incomplete(log: &str) -> Report {
     Report {
-        verdict: Verdict::Incomplete,
+        verdict: ConformVerdict::Incomplete,
         remarks: vec!["the log ends before the map is complete: its recorder stopped".to_owned()],
         tolerated: Vec::new(),
         ..conforming(log, 31)

@@ -23,8 +23,8 @@ use toposlam_model::format::{
 use toposlam_robot::log::{
     decode::decode,
     definition::{Definition, Dialect},
-    mapping::Mapping,
-    reading::Log,
+    reader::Log,
+    topic_map::TopicMap,
 };
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
 
@@ -342,7 +342,7 @@ fn seeds_are_what_they_are_called() {
                     .is_ok_and(|log| log.read_all().all(|message| message.is_ok())),
                 "ros1_message" => is_message(Dialect::Ros1, &bytes),
                 "cdr_message" => is_message(Dialect::Ros2, &bytes),
-                "log_mapping" => Mapping::read(&bytes).is_ok(),
+                "log_mapping" => TopicMap::read(&bytes).is_ok(),
                 "world_file" => world_file::read(&bytes).is_ok(),
                 _ => panic!("{target} is not known here"),
             };

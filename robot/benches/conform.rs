@@ -10,19 +10,19 @@ use toposlam_model::{
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::{Percept, Sighting},
-    trace::{self, Claim, Search, Trace, anywhere, follow, smallest},
+    trace::{Claim, Trace, TraceEvent, WorldSearch, anywhere, follow, smallest},
     world::GraphWorld,
 };
 use toposlam_robot::{
     conform::{
-        Driver, Event as LogEvent, Events, Evidence, Kind, KnownWorld, Perceived, Question, Quirks,
-        Source, gather, judge,
+        ConformConfig, Event as LogEvent, Events, Evidence, Kind, KnownWorld, Perceived, Quirks,
+        RunDriver, Source, extract, judge,
     },
     evaluation::random_plan::random_plan_with,
     log::{
-        mapping::Mapping,
-        messages::{self, Own, Stamp},
-        reading::Log,
+        messages::{self, ProjectMessage, Stamp},
+        reader::Log,
+        topic_map::TopicMap,
         writer::LogWriter,
     },
 };
@@ -34,10 +34,10 @@ fn main() {
 /// A run of Algorithm 1 in a plan with so many junctions.
 fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     let graph = plan.graph();
-    let mut events = vec![trace::Event::Perceived(GraphWorld::new(graph, Dart(0)).sensed())];
+    let mut events = vec![TraceEvent::Perceived(GraphWorld::new(graph, Dart(0)).sensed())];
     let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
         if let MappingEvent::Moved { door, percept } = event {
-            events.extend([trace::Event::Left(door), trace::Event::Perceived(percept)]);
+            events.extend([TraceEvent::Left(door), TraceEvent::Perceived(percept)]);
         }
     };
     let mut exploration = Exploration::new(graph.dart_count());
@@ -51,25 +51,25 @@ fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
 fn a_run(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
-    let event = |(place, event): (usize, trace::Event)| LogEvent {
+    let event = |(place, event): (usize, TraceEvent)| LogEvent {
         source: Source { time: place as u64, ..Source::default() },
         kind: match event {
-            trace::Event::Perceived(percept) => Kind::Perceived(Perceived {
+            TraceEvent::Perceived(percept) => Kind::Perceived(Perceived {
                 percept,
                 number: None,
                 form: None,
                 entry: None,
                 entry_off: None,
             }),
-            trace::Event::Left(door) => Kind::Left { door, number: None, off: None },
+            TraceEvent::Left(door) => Kind::Left { door, number: None, off: None },
         },
     };
     let events =
         Events { events: trace.events().enumerate().map(event).collect(), ..Events::default() };
-    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
-    let question = Question { world, driver: Driver::Algorithm1, search, dart_bound: 1000 };
+    let question = ConformConfig { world, driver: RunDriver::Algorithm1, search, dart_bound: 1000 };
     bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
 }
 
@@ -82,7 +82,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     for (place, event) in trace.events().enumerate() {
         let (time, moves) = (place as u64 * 1_000_000_000, place as u32 / 2);
         match event {
-            trace::Event::Perceived(Percept { degree, sighting }) => {
+            TraceEvent::Perceived(Percept { degree, sighting }) => {
                 let marker = match sighting {
                     Sighting::Pointing(door) => door.0.cast_signed(),
                     _ => -1,
@@ -92,7 +92,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
                 let told = messages::Percept { stamp, r#move: moves, degree, marker, form, entry };
                 log.write(messages::Percept::TOPIC, time, &told).unwrap();
             }
-            trace::Event::Left(door) => {
+            TraceEvent::Left(door) => {
                 let (stamp, r#move) = (Stamp::of(time), moves + 1);
                 let told = messages::Door { stamp, r#move, door: door.0 };
                 log.write(messages::Door::TOPIC, time, &told).unwrap();
@@ -100,14 +100,14 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         }
     }
     let bytes = log.finish().unwrap();
-    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
-    let question = Question { world, driver: Driver::Algorithm1, search, dart_bound: 1000 };
+    let question = ConformConfig { world, driver: RunDriver::Algorithm1, search, dart_bound: 1000 };
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
-        let mapping = Mapping::unambiguous(&log);
-        let gathered = gather(&log, &mapping, Evidence::Told, None, true, &()).unwrap();
+        let mapping = TopicMap::unambiguous(&log);
+        let gathered = extract(&log, &mapping, Evidence::Told, None, true, &()).unwrap();
         let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
         assert!(judgement.divergence.is_none() && judgement.places.len() == 10_000);
     });
@@ -120,6 +120,6 @@ fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
     let known = follow(&half, Claim::Part, 1000).exploration.map().clone();
-    let search = Search { class: Class::Multigraph, edges: 400, steps: Search::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
     bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
 }

@@ -9,7 +9,7 @@ use divan::{
     counter::{BytesCount, ItemsCount},
 };
 use mcap::{Compression, WriteOptions, records::MessageHeader};
-use toposlam_robot::log::{decode::decode, reading::Log};
+use toposlam_robot::log::{decode::decode, reader::Log};
 
 fn main() {
     divan::main();

@@ -8,8 +8,8 @@ use std::fmt;
 use crate::log::{
     decode::decode,
     definition::{Definition, Dialect},
-    mapping::Mapping,
-    reading::Log,
+    reader::Log,
+    topic_map::TopicMap,
     value::Value,
 };
 
@@ -71,11 +71,11 @@ fn log(bytes: &[u8]) {
         assert!(truncation.offset <= log.size());
         assert_is_a_message(truncation);
     }
-    tells(&log, &Mapping::unambiguous(&log));
+    tells(&log, &TopicMap::unambiguous(&log));
 }
 
 /// What a log tells, or what is wrong.
-fn tells(log: &Log, mapping: &Mapping) {
+fn tells(log: &Log, mapping: &TopicMap) {
     match mapping.bind(log) {
         Ok(bound) => {
             if let Some(Err(error)) = log.entries(&bound).find(Result::is_err) {
@@ -152,12 +152,12 @@ const LOG: &[u8] = include_bytes!("../../fuzz/corpus/mcap/of-a-run");
 /// # Panics
 /// Where that does not hold.
 pub fn log_mapping(bytes: &[u8]) {
-    let mapping = match Mapping::read(bytes) {
+    let mapping = match TopicMap::read(bytes) {
         Ok(mapping) => mapping,
         Err(error) => return assert_is_a_message(&error),
     };
     let text = mapping.to_toml();
-    match Mapping::read(text.as_bytes()) {
+    match TopicMap::read(text.as_bytes()) {
         Ok(again) => assert_eq!(again.to_toml(), text),
         Err(error) => panic!("{error}\n{text}"),
     }

@@ -18,12 +18,12 @@ use toposlam_vision::{image_file::ImageFile, sensing::Sensor};
 use crate::{
     explorer::{Explorer, ExplorerError, Eye, Observer, Round, Unreadable},
     log::{
-        entries::{Content, Entries, Picture as Photograph},
+        entries::{Content, Entries, LoggedImage as Photograph},
         error::LogError,
-        mapping::{Mapping, MappingError as WrongMapping, Role},
         messages,
-        reading::Log,
+        reader::Log,
         scene_of,
+        topic_map::{Role, TopicMap, TopicMapError},
     },
     robot::{Picture, Reckoned, Robot, RobotError},
 };
@@ -130,7 +130,7 @@ pub enum NotReplayed {
     Log(#[from] LogError),
     /// The mapping does not fit it.
     #[error(transparent)]
-    Mapping(#[from] WrongMapping),
+    TopicMap(#[from] TopicMapError),
     /// There is nothing to replay.
     #[error(
         "it has neither pictures nor scenes together with odometry and the commands of Algorithm 2, as \
@@ -152,7 +152,7 @@ pub enum NotReplayed {
 // paper: exp.off-line
 pub fn replay(
     log: &Log,
-    mapping: &Mapping,
+    mapping: &TopicMap,
     sensor: Option<Sensor>,
     dart_bound: usize,
 ) -> Result<Replay, NotReplayed> {
@@ -412,7 +412,7 @@ mod tests {
     use crate::{
         evaluation::{plans, runs::starts_of},
         explorer::Told as Teller,
-        log::{recorder::Recorder, shared::Shared},
+        log::{recorder::Recorder, shared_buffer::SharedBuffer},
         run::run,
         simulator::Setting,
     };
@@ -422,7 +422,7 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let mut setting = Setting::at_start(plan.clone(), facing, seed);
         setting.keeps_track = true;
-        let file = Shared::default();
+        let file = SharedBuffer::default();
         let recorder = Recorder::new(file.clone(), &messages::Run::default(), None).unwrap();
         let robot = setting.by_scene();
         let mut story = recorder.clone();
@@ -437,7 +437,7 @@ mod tests {
     fn a_log_gives_the_same_map_again_and_all_that_led_to_it() {
         for seed in 0..4 {
             let (log, exploration) = recorded(seed);
-            let mapping = Mapping::unambiguous(&log);
+            let mapping = TopicMap::unambiguous(&log);
             let replay = replay(&log, &mapping, None, 200).unwrap();
             assert_eq!((replay.error, replay.difference), (None, None));
             assert_eq!(replay.exploration.map(), exploration.map());
@@ -452,7 +452,7 @@ mod tests {
     #[test]
     fn a_bound_that_is_too_low_is_told_and_what_was_not_made_does_not_agree() {
         let (log, _) = recorded(0);
-        let mapping = Mapping::unambiguous(&log);
+        let mapping = TopicMap::unambiguous(&log);
         let replay = replay(&log, &mapping, None, 4).unwrap();
         assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
         assert!(!replay.doors.is_whole() && replay.map == Some(false));
@@ -461,7 +461,7 @@ mod tests {
     #[test]
     fn a_log_without_commands_is_not_replayed() {
         let (log, _) = recorded(0);
-        let mapping = Mapping::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
+        let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
         assert!(matches!(replay(&log, &mapping, None, 200), Err(NotReplayed::Nothing)));
     }
 }

@@ -1,9 +1,9 @@
 //! `toposlam conform LOG...`: logs held against the specification. Sections 2 and 4 to 6.
 
-mod described;
-mod known;
-mod minimised;
-mod tell;
+mod known_world;
+mod minimise;
+mod report;
+mod report_lines;
 
 use std::{
     io::Write,
@@ -15,11 +15,11 @@ use toposlam::page;
 use toposlam_model::{
     enumerate::{Class, Watch},
     marker::Marker,
-    trace::Search,
+    trace::WorldSearch,
 };
 use toposlam_robot::conform::{
-    Coverage, Driver, Evidence, Gathered, Judgement, Looking, NoEvents, NotJudged, Question,
-    Quirks, Verdict, gather, judge,
+    ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError, Judgement,
+    Looking, Quirks, RunCoverage, RunDriver, extract, judge,
 };
 
 use super::{
@@ -28,7 +28,7 @@ use super::{
     output,
     progress::Progress,
 };
-use known::Known;
+use known_world::Known;
 
 /// Hold logs of runs against the specification: do they conform, and if not, where, why, whose fault
 ///
@@ -45,7 +45,7 @@ Examples:
 
 Exit codes: 0 all conform, 1 one diverged, 2 bad usage or input, 3 one is incomplete: truncated, or
 its run did not come to its end, or worlds were not searched to the bound.")]
-pub(super) struct Arguments {
+pub(super) struct ConformArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
@@ -113,7 +113,7 @@ enum Made {
 /// A log that was judged.
 struct Judged {
     opened: OpenLog,
-    gathered: Gathered,
+    gathered: ExtractedRun,
     judgement: Judgement,
     known: Option<Known>,
 }
@@ -124,7 +124,7 @@ impl Looking for Progress {
     }
 }
 
-impl Arguments {
+impl ConformArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         self.check_places()?;
         let quirks = match &self.quirks {
@@ -136,7 +136,7 @@ impl Arguments {
             }
         };
         let mut reports = Vec::new();
-        let mut all = Coverage::default();
+        let mut all = RunCoverage::default();
         let mut worst = Outcome::Holds;
         for path in &self.logs {
             let judged = self.judge(path, &quirks)?;
@@ -145,14 +145,14 @@ impl Arguments {
             let shorter = self.shorter(&judged)?;
             let report = judged.report(path, &quirks, shorter, self.html.is_some());
             if self.json {
-                tell::json(out, &report, &judged.judgement)?;
+                report_lines::json(out, &report, &judged.judgement)?;
             } else {
-                tell::text(out, &report)?;
+                report_lines::text(out, &report)?;
             }
             reports.push(report);
         }
         if reports.len() > 1 {
-            tell::together(out, &reports, self.json)?;
+            report_lines::together(out, &reports, self.json)?;
         }
         if let Some(path) = &self.html {
             output::write_whole(path, page::conform_page(&reports).as_bytes())?;
@@ -201,7 +201,7 @@ impl Arguments {
         };
         let progress = Progress::endless("reading", "pictures")?;
         let sensor = opened.sensor();
-        let gathered = gather(
+        let gathered = extract(
             &opened.log,
             &opened.mapping,
             evidence,
@@ -210,14 +210,14 @@ impl Arguments {
             &progress,
         );
         let gathered = gathered.map_err(|error| match error {
-            NoEvents::Mapping(error) => opened.wrong_mapping(path, &error),
+            ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
             error => Failure::in_file(path, error),
         })?;
         let question = self.question(known.as_ref());
         let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
         progress.finish();
         let judgement = judgement.map_err(|error| match error {
-            NotJudged::Empty if gathered.pictures > 0 => Failure::in_file(
+            JudgeError::Empty if gathered.pictures > 0 => Failure::in_file(
                 path,
                 format!("in its {} pictures no junction is visited", gathered.pictures),
             ),
@@ -226,14 +226,14 @@ impl Arguments {
         Ok(Judged { opened, gathered, judgement, known })
     }
 
-    fn question<'k>(&self, known: Option<&'k Known>) -> Question<'k> {
-        Question {
+    fn question<'k>(&self, known: Option<&'k Known>) -> ConformConfig<'k> {
+        ConformConfig {
             world: known.map(Known::question),
             driver: match self.driver {
-                Who::Algorithm1 => Driver::Algorithm1,
-                Who::Anyone => Driver::Anyone,
+                Who::Algorithm1 => RunDriver::Algorithm1,
+                Who::Anyone => RunDriver::Anyone,
             },
-            search: Search { class: self.class, edges: self.edges, steps: Search::STEPS },
+            search: WorldSearch { class: self.class, edges: self.edges, steps: WorldSearch::STEPS },
             dart_bound: self.max_darts,
         }
     }
@@ -250,10 +250,10 @@ impl From<Made> for Evidence {
 }
 
 /// Of a divergence and what is incomplete, the divergence is worse.
-fn worse(worst: Outcome, verdict: Verdict) -> Outcome {
+fn worse(worst: Outcome, verdict: ConformVerdict) -> Outcome {
     match (worst, verdict) {
-        (Outcome::Violated, _) | (_, Verdict::Diverged) => Outcome::Violated,
-        (_, Verdict::Incomplete) | (Outcome::Incomplete, _) => Outcome::Incomplete,
-        (Outcome::Holds, Verdict::Conforms) => Outcome::Holds,
+        (Outcome::Violated, _) | (_, ConformVerdict::Diverged) => Outcome::Violated,
+        (_, ConformVerdict::Incomplete) | (Outcome::Incomplete, _) => Outcome::Incomplete,
+        (Outcome::Holds, ConformVerdict::Conforms) => Outcome::Holds,
     }
 }

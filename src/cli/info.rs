@@ -9,9 +9,9 @@ use std::{
 use serde::Serialize;
 use toposlam_robot::log::{
     Format,
-    mapping::{Guess, Mapping, guess},
-    reading::Log,
+    reader::Log,
     topic::{Encoding, Topic},
+    topic_map::{Guess, TopicMap, guess},
 };
 
 use super::{Failure, Outcome, input, json::print_object, output, text::grouped, text::print_rows};
@@ -27,7 +27,7 @@ Example:
   toposlam info run.mcap --write-mapping mapping.toml
 
 Ends with 3 if a log is truncated; what is in it up to there is told.")]
-pub(super) struct Arguments {
+pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
@@ -78,7 +78,7 @@ struct TopicLine<'l> {
     undecodable: Option<String>,
 }
 
-impl Arguments {
+impl InfoArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(path) = &self.write_mapping {
             output::check_place(path, &["toml"])?;
@@ -89,7 +89,7 @@ impl Arguments {
         let mapping = match &self.mapping {
             None => None,
             Some(path) => {
-                let read = Mapping::read(&input::read(path)?);
+                let read = TopicMap::read(&input::read(path)?);
                 Some((path, read.map_err(|error| Failure::in_file(path, error))?))
             }
         };
@@ -119,7 +119,7 @@ impl Arguments {
 }
 
 /// For everything that is or could be carried, the names of the topics.
-fn carriers<'l>(log: &'l Log, mapping: Option<&'l Mapping>) -> Vec<(&'static str, Vec<&'l str>)> {
+fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static str, Vec<&'l str>)> {
     if let Some(mapping) = mapping {
         let carriers = mapping.carriers();
         return carriers.map(|(role, carrier)| (role.name(), vec![&*carrier.topic])).collect();
@@ -243,7 +243,7 @@ fn print(
 
 /// Writes what only one topic could carry; what several could stands in comments.
 fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), Failure> {
-    let mapping = Mapping::unambiguous(log);
+    let mapping = TopicMap::unambiguous(log);
     if mapping.is_empty() {
         return Err(Failure::in_file(path, "there is nothing that only one topic could carry"));
     }

@@ -76,8 +76,8 @@ enum Verb {
     Train(train::Arguments),
     Sense(sense::Arguments),
     Evaluate(evaluate::Arguments),
-    Info(info::Arguments),
-    Conform(conform::Arguments),
+    Info(info::InfoArguments),
+    Conform(conform::ConformArguments),
     Replay(replay::Arguments),
     Completions(completions::CompletionsArguments),
 }

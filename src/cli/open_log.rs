@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use toposlam_model::marker::{self, Marker};
 use toposlam_robot::{
-    conform::{Evidence, NoEvents},
+    conform::{Evidence, ExtractError},
     log::{
-        entries::{Content, Picture},
-        mapping::{Mapping, MappingError, Role},
+        entries::{Content, LoggedImage},
         messages::Run,
-        reading::Log,
+        reader::Log,
+        topic_map::{Role, TopicMap, TopicMapError},
     },
 };
 use toposlam_vision::{
@@ -39,7 +39,7 @@ pub(super) struct LogOptions {
 /// A log, open.
 pub(super) struct OpenLog {
     pub(super) log: Log,
-    pub(super) mapping: Mapping,
+    pub(super) mapping: TopicMap,
     mapping_path: Option<PathBuf>,
     pub(super) run: Option<Run>,
     eyes: Option<(Camera, ColourModel)>,
@@ -52,10 +52,9 @@ impl OpenLog {
     pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, Failure> {
         let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
         let mapping = match &sources.mapping {
-            None => Mapping::unambiguous(&log),
-            Some(file) => {
-                Mapping::read(&input::read(file)?).map_err(|error| Failure::in_file(file, error))?
-            }
+            None => TopicMap::unambiguous(&log),
+            Some(file) => TopicMap::read(&input::read(file)?)
+                .map_err(|error| Failure::in_file(file, error))?,
         };
         let mapping_path = sources.mapping.clone();
         let mut opened = Self { log, mapping, mapping_path, run: None, eyes: None };
@@ -78,9 +77,9 @@ impl OpenLog {
             return Err(Failure::in_file(path, "it is empty: there is no message in it"));
         }
         if self.mapping_path.is_none() {
-            Mapping::from_log(&self.log).map_err(|error| Failure::in_file(path, error))?;
+            TopicMap::from_log(&self.log).map_err(|error| Failure::in_file(path, error))?;
         }
-        Err(Failure::in_file(path, NoEvents::NothingMapped))
+        Err(Failure::in_file(path, ExtractError::NothingMapped))
     }
 
     /// The camera and the colours: as they are given, or else as the log says.
@@ -128,7 +127,7 @@ impl OpenLog {
     }
 
     /// A mapping that does not fit its log.
-    pub(super) fn wrong_mapping(&self, log: &Path, error: &MappingError) -> Failure {
+    pub(super) fn wrong_mapping(&self, log: &Path, error: &TopicMapError) -> Failure {
         match &self.mapping_path {
             Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
             None => Failure::in_file(log, error),
@@ -139,7 +138,7 @@ impl OpenLog {
     pub(super) fn picture(&self, message: u64) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
         let mapping = match annotated {
-            Some(_) => Mapping::of(Role::Image, ANNOTATED),
+            Some(_) => TopicMap::of(Role::Image, ANNOTATED),
             None => self.mapping.only(&[Role::Image]),
         };
         let bound = mapping.bind(&self.log).ok()?;
@@ -152,12 +151,12 @@ impl OpenLog {
         }
         let Some(Content::Image(picture)) = last else { return None };
         let image = match (picture, annotated) {
-            (Picture::File(bytes), Some(_)) => return Some(bytes),
-            (Picture::File(bytes), None) => match &self.eyes {
+            (LoggedImage::File(bytes), Some(_)) => return Some(bytes),
+            (LoggedImage::File(bytes), None) => match &self.eyes {
                 None => return Some(bytes),
                 Some(_) => ImageFile::open(&bytes).ok()?.image().ok()?,
             },
-            (Picture::Pixels(image), _) => image,
+            (LoggedImage::Pixels(image), _) => image,
         };
         let drawn = match (&self.eyes, self.sensor()) {
             (Some((camera, _)), Some(mut sensor)) => {
@@ -172,7 +171,7 @@ impl OpenLog {
 }
 
 /// What a log says of itself at its beginning.
-fn head(path: &Path, log: &Log, mapping: &Mapping) -> Result<Option<Run>, Failure> {
+fn head(path: &Path, log: &Log, mapping: &TopicMap) -> Result<Option<Run>, Failure> {
     let failed = |error| Failure::in_file(path, error);
     let Ok(bound) = mapping.only(&[Role::Run]).bind(log) else { return Ok(None) };
     for entry in log.entries(&bound) {

@@ -84,7 +84,7 @@ impl Arguments {
         let replay = replay(&opened.log, &opened.mapping, opened.sensor(), self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
-            NotReplayed::Mapping(error) => opened.wrong_mapping(&self.log, &error),
+            NotReplayed::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
             error => Failure::in_file(&self.log, error),
         })?;
         if self.json {

@@ -10,7 +10,7 @@ use std::{
 use serde_json::Value;
 use toposlam_model::driving;
 use toposlam_robot::log::{
-    messages::{Door, Own, Percept, Scene, Stamp},
+    messages::{Door, Percept, ProjectMessage, Scene, Stamp},
     recorder::ODOM,
     standard::{Odometry, Twist},
     writer::LogWriter,

@@ -13,7 +13,7 @@ use crate::{
 
 /// Something that can happen in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Case {
+pub enum AlgorithmCase {
     /// Lines 21 to 23: an unexplored edge led to a new vertex.
     NewVertex,
     /// Lines 16 to 20: a hypothesis was confirmed, and a loop closed.
@@ -30,7 +30,7 @@ pub enum Case {
     MarkerMissed,
 }
 
-impl Case {
+impl AlgorithmCase {
     /// Every case.
     pub const ALL: [Self; 7] = [
         Self::NewVertex,
@@ -57,7 +57,7 @@ impl Case {
     }
 }
 
-impl fmt::Display for Case {
+impl fmt::Display for AlgorithmCase {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         out.pad(self.name())
     }
@@ -65,14 +65,14 @@ impl fmt::Display for Case {
 
 /// How often each case happened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Coverage {
-    counts: BTreeMap<Case, u64>,
+pub struct AlgorithmCoverage {
+    counts: BTreeMap<AlgorithmCase, u64>,
 }
 
-impl Coverage {
+impl AlgorithmCoverage {
     /// How often a case happened.
     #[must_use]
-    pub fn count(&self, case: Case) -> u64 {
+    pub fn count(&self, case: AlgorithmCase) -> u64 {
         self.counts.get(&case).copied().unwrap_or(0)
     }
 
@@ -83,7 +83,7 @@ impl Coverage {
         }
     }
 
-    fn add(&mut self, case: Case, count: u64) {
+    fn add(&mut self, case: AlgorithmCase, count: u64) {
         if count > 0 {
             *self.counts.entry(case).or_default() += count;
         }
@@ -91,25 +91,32 @@ impl Coverage {
 }
 
 /// Whoever counts listens.
-impl<W: ?Sized> Observer<W> for Coverage {
+impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
     fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
         match event {
             MappingEvent::Moved { percept, .. } => {
-                self.add(Case::MarkerSeen, u64::from(percept.sighting != Sighting::Nothing));
+                self.add(
+                    AlgorithmCase::MarkerSeen,
+                    u64::from(percept.sighting != Sighting::Nothing),
+                );
             }
             MappingEvent::Arrived { contradicted, .. } => {
-                self.add(Case::RejectedAtOnce, contradicted as u64);
+                self.add(AlgorithmCase::RejectedAtOnce, contradicted as u64);
             }
             MappingEvent::Rejected { expected, perceived, .. } => {
                 // The marker is expected at the end of the path, and nowhere else on it.
                 let at_the_end = expected.sighting != Sighting::Nothing;
                 let missed = at_the_end && perceived.sighting == Sighting::Nothing;
-                let case = if at_the_end { Case::RejectedAtTheEnd } else { Case::RejectedOnTheWay };
+                let case = if at_the_end {
+                    AlgorithmCase::RejectedAtTheEnd
+                } else {
+                    AlgorithmCase::RejectedOnTheWay
+                };
                 self.add(case, 1);
-                self.add(Case::MarkerMissed, u64::from(missed));
+                self.add(AlgorithmCase::MarkerMissed, u64::from(missed));
             }
-            MappingEvent::LoopClosed { .. } => self.add(Case::Confirmed, 1),
-            MappingEvent::VertexAdded { .. } => self.add(Case::NewVertex, 1),
+            MappingEvent::LoopClosed { .. } => self.add(AlgorithmCase::Confirmed, 1),
+            MappingEvent::VertexAdded { .. } => self.add(AlgorithmCase::NewVertex, 1),
             MappingEvent::Started { .. }
             | MappingEvent::Confirmed { .. }
             | MappingEvent::Movable(_) => {}
@@ -120,8 +127,8 @@ impl<W: ?Sized> Observer<W> for Coverage {
 /// How often each case happens when a world is mapped from each of its starts, with the default
 /// choices.
 #[must_use]
-pub fn reachable(graph: &EmbeddedGraph) -> Coverage {
-    let mut coverage = Coverage::default();
+pub fn reachable(graph: &EmbeddedGraph) -> AlgorithmCoverage {
+    let mut coverage = AlgorithmCoverage::default();
     let mut exploration = Exploration::new(DEFAULT_DART_BOUND);
     for facing in graph.darts() {
         // A world beyond the bound has been covered as far as a run goes.
@@ -143,18 +150,18 @@ mod tests {
     #[test]
     fn cases_are_counted() {
         let graph = lollipop();
-        let mut coverage = Coverage::default();
+        let mut coverage = AlgorithmCoverage::default();
         let mut exploration = Exploration::new(8);
         let mut world = GraphWorld::new(&graph, Dart(0));
         map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage).unwrap();
         // The tail leads to the fork, one way round to two corners; the last edge closes the loop, which
         // is found by going the rest of it and back along the tail.
-        let counts = Case::ALL.map(|case| coverage.count(case));
+        let counts = AlgorithmCase::ALL.map(|case| coverage.count(case));
         assert_eq!(counts[..2], [3, 1], "{coverage:?}");
-        assert_eq!(coverage.count(Case::MarkerSeen), 1);
+        assert_eq!(coverage.count(AlgorithmCase::MarkerSeen), 1);
         let mut twice = coverage.clone();
         twice.include(&coverage);
-        assert_eq!(Case::ALL.map(|case| twice.count(case)), counts.map(|count| 2 * count));
+        assert_eq!(AlgorithmCase::ALL.map(|case| twice.count(case)), counts.map(|count| 2 * count));
     }
 
     #[test]
@@ -167,11 +174,15 @@ mod tests {
             (along, none, [0, 1, 1]),
             (none, percept(Sighting::Lying(1)), [1, 0, 0]),
         ] {
-            let mut coverage = Coverage::default();
+            let mut coverage = AlgorithmCoverage::default();
             let event =
                 MappingEvent::Rejected { hypothesis: Dart(1), followed: 1, expected, perceived };
             coverage.event(&mut (), Exploration::new(0).journey(), event);
-            let cases = [Case::RejectedOnTheWay, Case::RejectedAtTheEnd, Case::MarkerMissed];
+            let cases = [
+                AlgorithmCase::RejectedOnTheWay,
+                AlgorithmCase::RejectedAtTheEnd,
+                AlgorithmCase::MarkerMissed,
+            ];
             assert_eq!(cases.map(|case| coverage.count(case)), counts);
         }
     }
@@ -185,8 +196,8 @@ mod tests {
         ])
         .unwrap();
         let reachable = reachable(&graph);
-        assert_eq!(reachable.count(Case::RejectedOnTheWay), 0);
-        assert_eq!(reachable.count(Case::Confirmed), 0);
-        assert_eq!(reachable.count(Case::NewVertex), 2 * 4);
+        assert_eq!(reachable.count(AlgorithmCase::RejectedOnTheWay), 0);
+        assert_eq!(reachable.count(AlgorithmCase::Confirmed), 0);
+        assert_eq!(reachable.count(AlgorithmCase::NewVertex), 2 * 4);
     }
 }

@@ -1,6 +1,6 @@
 //! A trace against a known world: all the poses that fit what was perceived so far. Section 2.1.
 
-use super::{Event, Trace};
+use super::{Trace, TraceEvent};
 use crate::{
     embedded_graph::EmbeddedGraph,
     marker::Marker,
@@ -28,12 +28,12 @@ pub struct Misfit {
     pub event: usize,
     /// Each way in which the robot may have stood before it (at a percept: in which it has come to
     /// stand), and why the event does not fit it.
-    pub candidates: Vec<(State, Why)>,
+    pub candidates: Vec<(State, MisfitReason)>,
 }
 
 /// Why an event does not fit a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum MisfitReason {
     /// Something else is perceived there.
     Percept {
         /// What.
@@ -70,7 +70,8 @@ pub fn poses(
         let judged: Vec<_> = states.iter().map(judged).collect();
         let fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
         if fit.is_empty() {
-            let why = |(state, after): (State, Result<State, Why>)| Some((state, after.err()?));
+            let why =
+                |(state, after): (State, Result<State, MisfitReason>)| Some((state, after.err()?));
             let candidates = judged.into_iter().filter_map(why).collect();
             let misfit = Some(Misfit { event: number, candidates });
             return Poses { left, alone, states, misfit };
@@ -87,18 +88,18 @@ fn after(
     graph: &EmbeddedGraph,
     marker: &impl Marker,
     state: State,
-    event: Event,
-) -> Result<State, Why> {
+    event: TraceEvent,
+) -> Result<State, MisfitReason> {
     let Some(facing) = state.placed else { return Ok(state) };
     let mut world = GraphWorld::with_marker(graph, marker, facing).at(state);
     match event {
-        Event::Perceived(percept) => {
+        TraceEvent::Perceived(percept) => {
             let expected = world.sensed();
-            if percept == expected { Ok(state) } else { Err(Why::Percept { expected }) }
+            if percept == expected { Ok(state) } else { Err(MisfitReason::Percept { expected }) }
         }
-        Event::Left(door) => match world.traverse(door) {
+        TraceEvent::Left(door) => match world.traverse(door) {
             Ok(()) => Ok(world.state()),
-            Err(Refused::NoSuchDoor { degree, .. }) => Err(Why::NoSuchDoor { degree }),
+            Err(Refused::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
             Err(_) => Ok(state),
         },
     }
@@ -123,10 +124,10 @@ mod tests {
         // Without a marker, from the end of the tail: 8 poses, one with degree 1.
         let trace = walked(&graph, Dart(0), &[Door(0), Door(1), Door(1)]);
         let bare = trace.events().map(|event| match event {
-            Event::Perceived(percept) => {
-                Event::Perceived(Percept { sighting: Sighting::Nothing, ..percept })
+            TraceEvent::Perceived(percept) => {
+                TraceEvent::Perceived(Percept { sighting: Sighting::Nothing, ..percept })
             }
-            door @ Event::Left(_) => door,
+            door @ TraceEvent::Left(_) => door,
         });
         let bare = Trace::new(bare).unwrap();
         let found = poses(&graph, &NoMarker, &anywhere(&graph, &NoMarker), &bare);
@@ -146,11 +147,14 @@ mod tests {
         let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
         let expected = Percept { degree: 3, sighting: Sighting::Nothing };
         assert_eq!(misfit.event, 2);
-        assert_eq!(misfit.candidates[0].1, Why::Percept { expected });
+        assert_eq!(misfit.candidates[0].1, MisfitReason::Percept { expected });
         trace.percepts[1].degree = 3;
         trace.doors[1] = Door(3);
         let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
-        assert_eq!((misfit.event, misfit.candidates[0].1), (3, Why::NoSuchDoor { degree: 3 }));
+        assert_eq!(
+            (misfit.event, misfit.candidates[0].1),
+            (3, MisfitReason::NoSuchDoor { degree: 3 })
+        );
     }
 
     proptest! {

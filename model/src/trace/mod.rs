@@ -1,22 +1,22 @@
 //! Recorded explorations, held against the specification: a known world, some world, Algorithm 1.
 //! Sections 2.1 and 2.3.
 
+mod algorithm_match;
 mod coverage;
-mod followed;
 mod known_world;
-mod shortened;
-mod some_world;
+mod shorten;
+mod world_search;
 
 use thiserror::Error;
 
-pub use coverage::{Case, Coverage, reachable};
-pub use followed::{
+pub use algorithm_match::{
     Allowed, Choosing, Claim, Departure, Followed, Purpose, Reached, TraceWorld, TraceWorldError,
     follow,
 };
-pub use known_world::{Misfit, Poses, Why, anywhere, poses};
-pub use shortened::shortened;
-pub use some_world::{Search, Smallest, smallest};
+pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
+pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses};
+pub use shorten::shortened;
+pub use world_search::{SmallestWorld, WorldSearch, smallest};
 
 use crate::percept::{Door, Percept};
 
@@ -32,7 +32,7 @@ pub struct Trace {
 
 /// Something that a robot perceived or did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum TraceEvent {
     /// It stood at a vertex and perceived this.
     Perceived(Percept),
     /// It left by this door.
@@ -41,7 +41,7 @@ pub enum Event {
 
 /// Events that do not take turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum NotInTurn {
+pub enum TraceOrderError {
     /// There is none.
     #[error("there is no event")]
     Empty,
@@ -64,21 +64,21 @@ impl Trace {
     ///
     /// # Errors
     /// The first event that is not in turn.
-    pub fn new(events: impl IntoIterator<Item = Event>) -> Result<Self, NotInTurn> {
+    pub fn new(events: impl IntoIterator<Item = TraceEvent>) -> Result<Self, TraceOrderError> {
         let (mut percepts, mut doors) = (Vec::new(), Vec::new());
         for (number, event) in events.into_iter().enumerate() {
             match event {
-                Event::Perceived(_) if number % 2 == 1 => {
-                    return Err(NotInTurn::NoDoor { event: number });
+                TraceEvent::Perceived(_) if number % 2 == 1 => {
+                    return Err(TraceOrderError::NoDoor { event: number });
                 }
-                Event::Left(_) if number % 2 == 0 => {
-                    return Err(NotInTurn::NoPercept { event: number });
+                TraceEvent::Left(_) if number % 2 == 0 => {
+                    return Err(TraceOrderError::NoPercept { event: number });
                 }
-                Event::Perceived(percept) => percepts.push(percept),
-                Event::Left(door) => doors.push(door),
+                TraceEvent::Perceived(percept) => percepts.push(percept),
+                TraceEvent::Left(door) => doors.push(door),
             }
         }
-        if percepts.is_empty() { Err(NotInTurn::Empty) } else { Ok(Self { percepts, doors }) }
+        if percepts.is_empty() { Err(TraceOrderError::Empty) } else { Ok(Self { percepts, doors }) }
     }
 
     /// The number of events; never 0.
@@ -89,7 +89,7 @@ impl Trace {
     }
 
     /// The events in order.
-    pub fn events(&self) -> impl Iterator<Item = Event> + '_ {
+    pub fn events(&self) -> impl Iterator<Item = TraceEvent> + '_ {
         (0..self.len()).map(|number| self.event(number))
     }
 
@@ -114,11 +114,11 @@ impl Trace {
     }
 
     /// An event of the trace, below its length.
-    fn event(&self, number: usize) -> Event {
+    fn event(&self, number: usize) -> TraceEvent {
         if number.is_multiple_of(2) {
-            Event::Perceived(self.percepts[number / 2])
+            TraceEvent::Perceived(self.percepts[number / 2])
         } else {
-            Event::Left(self.doors[number / 2])
+            TraceEvent::Left(self.doors[number / 2])
         }
     }
 
@@ -144,10 +144,10 @@ pub(crate) mod tests {
     /// What a robot perceives on a walk from a start.
     pub(crate) fn walked(graph: &EmbeddedGraph, facing: Dart, doors: &[Door]) -> Trace {
         let mut world = GraphWorld::new(graph, facing);
-        let mut events = vec![Event::Perceived(world.sensed())];
+        let mut events = vec![TraceEvent::Perceived(world.sensed())];
         for &door in doors {
             world.traverse(door).unwrap();
-            events.extend([Event::Left(door), Event::Perceived(world.sensed())]);
+            events.extend([TraceEvent::Left(door), TraceEvent::Perceived(world.sensed())]);
         }
         Trace::new(events).unwrap()
     }
@@ -179,13 +179,13 @@ pub(crate) mod tests {
 
     #[test]
     fn percepts_and_doors_take_turns() {
-        let percept = Event::Perceived(Percept { degree: 1, sighting: Sighting::Nothing });
-        let door = Event::Left(Door::BACK);
-        let trace = |events: &[Event]| Trace::new(events.iter().copied());
-        assert_eq!(trace(&[]), Err(NotInTurn::Empty));
-        assert_eq!(trace(&[door]), Err(NotInTurn::NoPercept { event: 0 }));
-        assert_eq!(trace(&[percept, percept]), Err(NotInTurn::NoDoor { event: 1 }));
-        assert_eq!(trace(&[percept, door, door]), Err(NotInTurn::NoPercept { event: 2 }));
+        let percept = TraceEvent::Perceived(Percept { degree: 1, sighting: Sighting::Nothing });
+        let door = TraceEvent::Left(Door::BACK);
+        let trace = |events: &[TraceEvent]| Trace::new(events.iter().copied());
+        assert_eq!(trace(&[]), Err(TraceOrderError::Empty));
+        assert_eq!(trace(&[door]), Err(TraceOrderError::NoPercept { event: 0 }));
+        assert_eq!(trace(&[percept, percept]), Err(TraceOrderError::NoDoor { event: 1 }));
+        assert_eq!(trace(&[percept, door, door]), Err(TraceOrderError::NoPercept { event: 2 }));
         let whole = [percept, door, percept, door];
         for length in 1..=whole.len() {
             let trace = trace(&whole[..length]).unwrap();

@@ -5,7 +5,7 @@ use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
     percept::{Door, Percept},
-    trace::{self, NotInTurn, Trace},
+    trace::{Trace, TraceEvent, TraceOrderError},
 };
 
 /// Where in the log something stands.
@@ -131,13 +131,13 @@ impl Events {
     ///
     /// # Errors
     /// Where percepts and doors do not take turns: the first that does not, by its place here.
-    pub fn trace(&self) -> Result<(Trace, Vec<usize>), NotInTurn> {
+    pub fn trace(&self) -> Result<(Trace, Vec<usize>), TraceOrderError> {
         let mut places = Vec::new();
         let mut taken = Vec::new();
         for (place, event) in self.events.iter().enumerate() {
             let event = match &event.kind {
-                Kind::Perceived(perceived) => trace::Event::Perceived(perceived.percept),
-                Kind::Left { door, .. } => trace::Event::Left(*door),
+                Kind::Perceived(perceived) => TraceEvent::Perceived(perceived.percept),
+                Kind::Left { door, .. } => TraceEvent::Left(*door),
                 Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided => continue,
             };
             places.push(place);
@@ -146,9 +146,13 @@ impl Events {
         let at = |event: usize| places.get(event).copied().unwrap_or(event);
         match Trace::new(taken) {
             Ok(trace) => Ok((trace, places)),
-            Err(NotInTurn::Empty) => Err(NotInTurn::Empty),
-            Err(NotInTurn::NoDoor { event }) => Err(NotInTurn::NoDoor { event: at(event) }),
-            Err(NotInTurn::NoPercept { event }) => Err(NotInTurn::NoPercept { event: at(event) }),
+            Err(TraceOrderError::Empty) => Err(TraceOrderError::Empty),
+            Err(TraceOrderError::NoDoor { event }) => {
+                Err(TraceOrderError::NoDoor { event: at(event) })
+            }
+            Err(TraceOrderError::NoPercept { event }) => {
+                Err(TraceOrderError::NoPercept { event: at(event) })
+            }
         }
     }
 

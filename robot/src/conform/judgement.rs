@@ -10,13 +10,13 @@ use toposlam_model::{
     mapping::{Contradiction, FACING},
     percept::Percept,
     trace::{
-        self, Claim, Departure, Followed, Misfit, NotInTurn, Poses, Purpose, Reached, Search,
-        Smallest, Trace, Why, follow, poses, smallest,
+        AlgorithmCoverage, Claim, Departure, Followed, Misfit, MisfitReason, Poses, Purpose,
+        Reached, SmallestWorld, Trace, TraceOrderError, WorldSearch, follow, poses, smallest,
     },
 };
 
 use super::{
-    cause::{Cause, Culprit, Divergence},
+    divergence::{Divergence, DivergenceCause, FaultClass},
     events::{Event, Events, Kind, OutOfOrder, Perceived},
     known_world::KnownWorld,
     quirks::Quirks,
@@ -24,20 +24,20 @@ use super::{
 
 /// What a run is held against.
 #[derive(Clone, Debug)]
-pub struct Question<'w> {
+pub struct ConformConfig<'w> {
     /// The world in which it was, where that is known.
     pub world: Option<KnownWorld<'w>>,
     /// Who took the doors.
-    pub driver: Driver,
+    pub driver: RunDriver,
     /// Which worlds are searched for one that explains the log, where none is known.
-    pub search: Search,
+    pub search: WorldSearch,
     /// How many darts Algorithm 1 may come to know.
     pub dart_bound: usize,
 }
 
 /// Who takes the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Driver {
+pub enum RunDriver {
     /// Algorithm 1, with any choices.
     Algorithm1,
     /// Anyone, wherever they like.
@@ -58,25 +58,25 @@ pub struct Judgement {
     /// How the robot may stand in the known world.
     pub poses: Option<Poses>,
     /// The smallest world that explains the log, where none is known.
-    pub smallest: Option<Smallest>,
+    pub smallest: Option<SmallestWorld>,
     /// How far Algorithm 1 goes along.
     pub followed: Option<Followed>,
     /// What the run went through.
-    pub coverage: Coverage,
+    pub coverage: RunCoverage,
     /// Divergences that were tolerated, in order, with the quirk's place in its file.
     pub tolerated: Vec<(Divergence, usize)>,
 }
 
 /// The cases that a run went through.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Coverage {
+pub struct RunCoverage {
     /// Of Algorithm 1.
-    pub algorithm: trace::Coverage,
+    pub algorithm: AlgorithmCoverage,
     /// Of perception: each kind of junction, from each of its entries.
     pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
-impl Coverage {
+impl RunCoverage {
     /// Takes in what happened in another run.
     pub fn include(&mut self, other: &Self) {
         self.algorithm.include(&other.algorithm);
@@ -88,7 +88,7 @@ impl Coverage {
 
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum ConformVerdict {
     /// All of it fits.
     Conforms,
     /// An event does not fit.
@@ -97,7 +97,7 @@ pub enum Verdict {
     Incomplete,
 }
 
-impl Verdict {
+impl ConformVerdict {
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -111,7 +111,7 @@ impl Verdict {
 
 /// Nothing that could be judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum NotJudged {
+pub enum JudgeError {
     /// There is no event.
     #[error("there is neither a percept nor a visit to a junction in it")]
     Empty,
@@ -126,10 +126,10 @@ pub enum NotJudged {
 /// Where there is no event, and where they are out of order.
 pub fn judge(
     mut events: Events,
-    question: &Question,
+    question: &ConformConfig,
     quirks: &Quirks,
     watch: &impl Watch,
-) -> Result<Judgement, NotJudged> {
+) -> Result<Judgement, JudgeError> {
     events.in_order()?;
     let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
     loop {
@@ -149,9 +149,9 @@ pub fn judge(
 /// Makes of an event what it should have been; `false` where that is not known.
 fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool {
     let expected = match &divergence.cause {
-        Cause::World(misfit) => expected_by(misfit),
-        Cause::Algorithm(departure) => expected_after(departure),
-        Cause::NotInTurn(_) | Cause::NoWorld { .. } => return false,
+        DivergenceCause::World(misfit) => expected_by(misfit),
+        DivergenceCause::Algorithm(departure) => expected_after(departure),
+        DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => return false,
         // It is passed over.
         _ => return true,
     };
@@ -171,8 +171,8 @@ fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool
 /// What should be perceived at every pose that is left.
 fn expected_by(misfit: &Misfit) -> Option<Percept> {
     let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
-        Why::Percept { expected } => Some(*expected),
-        Why::NoSuchDoor { .. } => None,
+        MisfitReason::Percept { expected } => Some(*expected),
+        MisfitReason::NoSuchDoor { .. } => None,
     });
     let first = expected.next()??;
     expected.all(|other| other == Some(first)).then_some(first)
@@ -191,19 +191,21 @@ fn expected_after(departure: &Departure) -> Option<Percept> {
 impl Judgement {
     fn new(
         events: &Events,
-        question: &Question,
+        question: &ConformConfig,
         tolerated: &[(Divergence, usize)],
         watch: &impl Watch,
-    ) -> Result<Self, NotJudged> {
+    ) -> Result<Self, JudgeError> {
         let mut found = Found { tolerated, first: None };
         let (trace, places) = match events.trace() {
             Ok(all) => all,
-            Err(NotInTurn::Empty) => return Err(NotJudged::Empty),
-            Err(not @ (NotInTurn::NoDoor { event } | NotInTurn::NoPercept { event })) => {
-                found.note(event, Cause::NotInTurn(not));
+            Err(TraceOrderError::Empty) => return Err(JudgeError::Empty),
+            Err(
+                not @ (TraceOrderError::NoDoor { event } | TraceOrderError::NoPercept { event }),
+            ) => {
+                found.note(event, DivergenceCause::NotInTurn(not));
                 match event.checked_sub(1).map(|last| events.up_to(last).trace()) {
                     Some(Ok(before)) => before,
-                    _ => return Err(NotJudged::Empty),
+                    _ => return Err(JudgeError::Empty),
                 }
             }
         };
@@ -219,7 +221,7 @@ impl Judgement {
             poses: None,
             smallest: None,
             followed: None,
-            coverage: Coverage { junctions: junctions(events), ..Coverage::default() },
+            coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
             trace,
             places: places.clone(),
@@ -229,17 +231,17 @@ impl Judgement {
             let poses = poses(known.graph, &known.marker, &known.states, trace);
             if let Some(misfit) = &poses.misfit {
                 let culprit = known.culprit(trace, misfit);
-                found.note_as(at(misfit.event), Cause::World(misfit.clone()), culprit);
+                found.note_as(at(misfit.event), DivergenceCause::World(misfit.clone()), culprit);
             }
             judgement.poses = Some(poses);
         }
         let mut explored = None;
-        if question.driver == Driver::Algorithm1 {
+        if question.driver == RunDriver::Algorithm1 {
             let claim = if events.is_said_whole() { Claim::Whole } else { Claim::Part };
             let followed = follow(trace, claim, question.dart_bound);
             match &followed.reached {
                 Reached::Departure(departure) => {
-                    found.note(at(departure.event), Cause::Algorithm(departure.clone()));
+                    found.note(at(departure.event), DivergenceCause::Algorithm(departure.clone()));
                 }
                 Reached::Mapped => explored = followed.exploration.map().complete().cloned(),
                 Reached::EndOfTrace => {}
@@ -262,19 +264,19 @@ impl Judgement {
                 .map_or(0, |followed| followed.exploration.map().dart_count());
             // A bound below what is known already would be none.
             let edges = question.search.edges.max(darts.div_ceil(2) + BEYOND);
-            let search = Search { edges, ..question.search };
+            let search = WorldSearch { edges, ..question.search };
             // Algorithm 1 has told its world from every other; one that it has not done with has all that
             // it knows.
             let smallest = if let Some(graph) = explored {
-                Smallest::World { graph, marker: Some(FACING) }
+                SmallestWorld::World { graph, marker: Some(FACING) }
             } else {
                 let followed = judgement.followed.as_ref();
                 let known = followed.map(|followed| followed.exploration.map());
                 smallest(trace, known, search, watch)
             };
-            if let Smallest::None { event } = smallest {
+            if let SmallestWorld::None { event } = smallest {
                 // It is the fault of an event, if of any, before which all is explained.
-                found.note(at(event.min(trace.len() - 1)), Cause::NoWorld { edges });
+                found.note(at(event.min(trace.len() - 1)), DivergenceCause::NoWorld { edges });
             }
             judgement.smallest = Some(smallest);
         }
@@ -284,15 +286,15 @@ impl Judgement {
 
     /// The verdict.
     #[must_use]
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
-            return Verdict::Diverged;
+            return ConformVerdict::Diverged;
         }
-        let searched = !matches!(self.smallest, Some(Smallest::Unfinished { .. }));
+        let searched = !matches!(self.smallest, Some(SmallestWorld::Unfinished { .. }));
         if searched && self.events.is_whole(self.followed.is_some()) {
-            Verdict::Conforms
+            ConformVerdict::Conforms
         } else {
-            Verdict::Incomplete
+            ConformVerdict::Incomplete
         }
     }
 
@@ -302,7 +304,7 @@ impl Judgement {
     pub fn candidates(&self) -> usize {
         match (&self.poses, &self.smallest) {
             (Some(poses), _) => poses.states.len(),
-            (None, Some(Smallest::World { .. })) => 1,
+            (None, Some(SmallestWorld::World { .. })) => 1,
             _ => 0,
         }
     }
@@ -321,13 +323,13 @@ struct Found<'t> {
 }
 
 impl Found<'_> {
-    fn note(&mut self, event: usize, cause: Cause) {
+    fn note(&mut self, event: usize, cause: DivergenceCause) {
         let culprit = cause.culprit();
         self.note_as(event, cause, culprit);
     }
 
     /// Of two at one event the one noted first counts.
-    fn note_as(&mut self, event: usize, cause: Cause, culprit: Culprit) {
+    fn note_as(&mut self, event: usize, cause: DivergenceCause, culprit: FaultClass) {
         let same = |other: &Divergence| other.event == event && other.cause.name() == cause.name();
         let tolerated = self.tolerated.iter().any(|(tolerated, _)| same(tolerated));
         let earlier = self.first.as_ref().is_none_or(|first| event < first.event);

@@ -6,11 +6,11 @@ use toposlam_model::{
     mapping::FACING,
     marker::Marker,
     percept::Percept,
-    trace::{self, Misfit, Trace, Why, poses},
+    trace::{Misfit, MisfitReason, Trace, TraceEvent, poses},
     world::State,
 };
 
-use super::cause::Culprit;
+use super::divergence::FaultClass;
 
 /// A known world, and how the robot may stand in it at first.
 #[derive(Clone, Debug)]
@@ -26,13 +26,13 @@ pub struct KnownWorld<'w> {
 impl KnownWorld<'_> {
     /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
     /// perceived this one thing wrongly, it is motion's.
-    pub(super) fn culprit(&self, trace: &Trace, misfit: &Misfit) -> Culprit {
+    pub(super) fn culprit(&self, trace: &Trace, misfit: &Misfit) -> FaultClass {
         if !misfit.event.is_multiple_of(2) {
-            return Culprit::Algorithm;
+            return FaultClass::Algorithm;
         }
         let moves = misfit.event / 2;
         let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
-            let Why::Percept { expected } = why else { return None };
+            let MisfitReason::Percept { expected } = why else { return None };
             Some(self.fitting(&ahead(trace, moves, expected), &[state]))
         });
         let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
@@ -41,7 +41,7 @@ impl KnownWorld<'_> {
         let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
         let came_elsewhere =
             self.fitting(&ahead(trace, moves, trace.percepts()[moves]), &elsewhere);
-        if came_elsewhere > perceived_wrongly { Culprit::Motion } else { Culprit::Perception }
+        if came_elsewhere > perceived_wrongly { FaultClass::Motion } else { FaultClass::Perception }
     }
 
     /// How many events fit.
@@ -62,7 +62,7 @@ const AHEAD: usize = 12;
 
 /// What follows some moves, with another first percept.
 fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
-    let first = trace::Event::Perceived(first);
+    let first = TraceEvent::Perceived(first);
     let rest = trace.events().skip(2 * moves + 1).take(AHEAD);
     // They take turns as before, whatever the first percept is.
     Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::cause::{Divergence, NAMES};
+use super::divergence::{Divergence, NAMES};
 
 /// What is tolerated.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

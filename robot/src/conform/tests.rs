@@ -11,7 +11,7 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    trace::{Search, anywhere},
+    trace::{WorldSearch, anywhere},
     world::GraphWorld,
 };
 
@@ -52,7 +52,7 @@ impl Log {
     }
 
     fn told(&self) -> Events {
-        let mut telling = Telling::default();
+        let mut telling = RecordedEvents::default();
         for (message, (reckoned, line)) in self.lines.iter().enumerate() {
             telling.moved(reckoned.odometry);
             let source = source(message, reckoned);
@@ -69,7 +69,7 @@ impl Log {
     }
 
     fn derived(&self) -> Vec<Event> {
-        let mut derivation = Derivation::new(true);
+        let mut derivation = InferredEvents::new(true);
         for (message, (reckoned, line)) in self.lines.iter().enumerate() {
             if let Line::Scene(scene) = line {
                 derivation.see(source(message, reckoned), scene, &reckoned.odometry);
@@ -122,22 +122,22 @@ fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     log
 }
 
-fn question(plan: &FloorPlan, facing: Option<Dart>) -> Question<'_> {
+fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
     let graph = plan.graph();
     let states = match facing {
         Some(facing) => vec![GraphWorld::new(graph, facing).state()],
         None => anywhere(graph, &Directional),
     };
     let world = Some(KnownWorld { graph, marker: &Directional, states });
-    Question { world, ..without_world() }
+    ConformConfig { world, ..without_world() }
 }
 
-fn without_world() -> Question<'static> {
-    let search = Search { class: Class::Multigraph, edges: 12, steps: 1_000_000 };
-    Question { world: None, driver: Driver::Algorithm1, search, dart_bound: DARTS }
+fn without_world() -> ConformConfig<'static> {
+    let search = WorldSearch { class: Class::Multigraph, edges: 12, steps: 1_000_000 };
+    ConformConfig { world: None, driver: RunDriver::Algorithm1, search, dart_bound: DARTS }
 }
 
-fn judged(events: &Events, question: &Question) -> Judgement {
+fn judged(events: &Events, question: &ConformConfig) -> Judgement {
     judge(events.clone(), question, &Quirks::default(), &()).unwrap()
 }
 
@@ -151,7 +151,7 @@ fn good_logs_of_every_plan_conform() {
                 let judgement = judged(&events, &question);
                 assert_eq!(
                     (judgement.verdict(), &judgement.divergence),
-                    (Verdict::Conforms, &None),
+                    (ConformVerdict::Conforms, &None),
                     "{name} from {facing:?}"
                 );
             }
@@ -316,12 +316,12 @@ impl Log {
 }
 
 /// At which event a log is told not to conform, from 0.
-fn told_at(log: &Log, moves: u32, question: &Question) -> Option<usize> {
+fn told_at(log: &Log, moves: u32, question: &ConformConfig) -> Option<usize> {
     let mut events = log.told();
     events.ending.as_mut().unwrap().moves = moves;
     match judge(events, question, &Quirks::default(), &()) {
-        Err(NotJudged::OutOfOrder(out)) => Some(out.event - 1),
-        Err(NotJudged::Empty) => Some(0),
+        Err(JudgeError::OutOfOrder(out)) => Some(out.event - 1),
+        Err(JudgeError::Empty) => Some(0),
         Ok(judgement) => judgement.divergence.map(|divergence| divergence.event),
     }
 }
@@ -371,7 +371,7 @@ fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() 
     let mut events = good.told();
     events.map = Some((vec![2], vec![1, 0]));
     let divergence = judged(&events, &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.cause), (end, Cause::Map));
+    assert_eq!((divergence.event, divergence.cause), (end, DivergenceCause::Map));
 }
 
 #[test]
@@ -381,11 +381,11 @@ fn half_a_run_is_incomplete_and_one_that_says_that_it_is_whole_diverges() {
     let good = log(&plan, facing, 1).told();
     let question = question(&plan, Some(facing));
     let half = good.up_to(4);
-    assert_eq!(judged(&half, &question).verdict(), Verdict::Incomplete);
+    assert_eq!(judged(&half, &question).verdict(), ConformVerdict::Incomplete);
     let ending = Ending { moves: 2, ..good.ending.clone().unwrap() };
     let whole = Events { ending: Some(ending), ..half };
     let divergence = judged(&whole, &question).divergence.unwrap();
-    assert!(matches!(divergence.cause, Cause::Unfinished { .. }), "{divergence:?}");
+    assert!(matches!(divergence.cause, DivergenceCause::Unfinished { .. }), "{divergence:?}");
 }
 
 #[test]
@@ -405,7 +405,7 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
         kinds
     };
     let events = |percepts: &[Percept]| {
-        let mut telling = Telling::default();
+        let mut telling = RecordedEvents::default();
         for (moves, percept) in percepts.iter().enumerate() {
             let marker = match percept.sighting {
                 Sighting::Pointing(door) => door.0.cast_signed(),
@@ -423,26 +423,26 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
         }
         Events { events: telling.finish(), ..Events::default() }
     };
-    let question = Question { driver: Driver::Anyone, ..question(&plan, Some(facing)) };
+    let question = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, Some(facing)) };
     let right = walk(&told);
     assert_eq!(judged(&events(&right), &question).divergence, None);
     // One percept is false.
     let mut false_percept = right.clone();
     false_percept[3].degree = 5;
     let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.culprit), (6, Culprit::Perception));
+    assert_eq!((divergence.event, divergence.culprit), (6, FaultClass::Perception));
     // Nothing follows that could tell: a percept that is so elsewhere is false all the same.
     let mut last = right.clone();
     let degree = &mut last.last_mut().unwrap().degree;
     *degree = if *degree == 2 { 3 } else { 2 };
     let divergence = judged(&events(&last), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.culprit), (16, Culprit::Perception));
+    assert_eq!((divergence.event, divergence.culprit), (16, FaultClass::Perception));
     // One door was not the one that was told; everything after it is of another place.
     let mut made = told;
     made[2] = Door(0);
     let elsewhere = walk(&made);
     let divergence = judged(&events(&elsewhere), &question).divergence.unwrap();
-    assert_eq!(divergence.culprit, Culprit::Motion);
+    assert_eq!(divergence.culprit, FaultClass::Motion);
 }
 
 #[test]
@@ -458,10 +458,10 @@ fn a_quirk_is_tolerated_and_counted() {
     let text = "[[quirk]]\nname = \"glare\"\ncause = \"percept\"\nreason = \"the window\"";
     let quirks = Quirks::read(text).unwrap();
     let judgement = judge(log.told(), &question, &quirks, &()).unwrap();
-    assert_eq!((judgement.verdict(), judgement.tolerated.len()), (Verdict::Conforms, 1));
+    assert_eq!((judgement.verdict(), judgement.tolerated.len()), (ConformVerdict::Conforms, 1));
     let elsewhere = Quirks::read(&format!("{text}\nevent = 1")).unwrap();
     let judgement = judge(log.told(), &question, &elsewhere, &()).unwrap();
-    assert_eq!(judgement.verdict(), Verdict::Diverged);
+    assert_eq!(judgement.verdict(), ConformVerdict::Diverged);
 }
 
 proptest! {
@@ -497,8 +497,8 @@ proptest! {
         let Ok(judgement) = judge(log.told(), &question, &Quirks::default(), &()) else {
             return Ok(());
         };
-        if let Some(Shorter { events: short, by_itself }) = shorter(&judgement, &question, &()) {
-            let anyone = Question { world: None, driver: Driver::Anyone, ..question.clone() };
+        if let Some(ShortenedRun { events: short, by_itself }) = shorten_run(&judgement, &question, &()) {
+            let anyone = ConformConfig { world: None, driver: RunDriver::Anyone, ..question.clone() };
             let question = if by_itself { anyone } else { question };
             let divergence = judgement.divergence.unwrap();
             prop_assert!(short.events.len() <= divergence.event + 2);

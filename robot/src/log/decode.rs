@@ -7,8 +7,8 @@
 use thiserror::Error;
 
 use super::{
-    definition::{Count, Definition, Dialect, Field, Kind},
-    value::{Numbers, Order, Value, number},
+    definition::{Count, Definition, Dialect, Field, FieldType},
+    value::{ByteOrder, Numbers, Value, number},
 };
 
 /// Why bytes are not a message of a definition.
@@ -21,7 +21,7 @@ pub struct DecodeError {
     pub field: String,
     /// What is wrong.
     #[source]
-    pub cause: Cause,
+    pub cause: DecodeErrorKind,
 }
 
 fn in_field(field: &str) -> String {
@@ -30,7 +30,7 @@ fn in_field(field: &str) -> String {
 
 /// What is wrong at a byte.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Cause {
+pub enum DecodeErrorKind {
     /// The message is shorter than its definition.
     #[error("{needed} more bytes are needed, and {left} are left")]
     Short {
@@ -69,7 +69,7 @@ const PADDING: usize = 7;
 /// # Errors
 /// If the bytes are not a message of the definition. No bytes make it panic.
 pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'a>, DecodeError> {
-    let mut at = Decoder { definition, bytes, next: 0, origin: 0, order: Order::Little };
+    let mut at = Decoder { definition, bytes, next: 0, origin: 0, order: ByteOrder::Little };
     if definition.dialect() == Dialect::Ros2 {
         at.encapsulation().map_err(|(offset, cause)| DecodeError {
             offset,
@@ -92,14 +92,14 @@ pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'
         return Err(DecodeError {
             offset: at.next,
             field: String::new(),
-            cause: Cause::LeftOver(left),
+            cause: DecodeErrorKind::LeftOver(left),
         });
     }
     Ok(Value::Struct(root, values))
 }
 
 /// What is wrong, and at which byte.
-type Failure = (usize, Cause);
+type Failure = (usize, DecodeErrorKind);
 
 struct Decoder<'a> {
     definition: &'a Definition,
@@ -108,7 +108,7 @@ struct Decoder<'a> {
     next: usize,
     /// From where multiples are counted.
     origin: usize,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl<'a> Decoder<'a> {
@@ -116,9 +116,9 @@ impl<'a> Decoder<'a> {
         let head = self.take(4)?;
         let kind = head.iter().take(2).fold(0, |kind, byte| kind << 8 | u16::from(*byte));
         self.order = match kind {
-            0 => Order::Big,
-            1 => Order::Little,
-            _ => return Err((0, Cause::Encapsulation(kind))),
+            0 => ByteOrder::Big,
+            1 => ByteOrder::Little,
+            _ => return Err((0, DecodeErrorKind::Encapsulation(kind))),
         };
         self.origin = self.next;
         Ok(())
@@ -137,7 +137,11 @@ impl<'a> Decoder<'a> {
 
     fn need(&self, needed: u64) -> Result<(), Failure> {
         let left = self.left();
-        if needed > left as u64 { Err((self.next, Cause::Short { needed, left })) } else { Ok(()) }
+        if needed > left as u64 {
+            Err((self.next, DecodeErrorKind::Short { needed, left }))
+        } else {
+            Ok(())
+        }
     }
 
     fn align(&mut self, size: usize) -> Result<(), Failure> {
@@ -150,13 +154,13 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    fn number(&mut self, kind: Kind, size: usize) -> Result<Value<'a>, Failure> {
+    fn number(&mut self, kind: FieldType, size: usize) -> Result<Value<'a>, Failure> {
         self.align(size)?;
         Ok(number(kind, self.order, self.take(size)?))
     }
 
     fn length(&mut self) -> Result<u32, Failure> {
-        match self.number(Kind::Unsigned(4), 4)? {
+        match self.number(FieldType::Unsigned(4), 4)? {
             Value::Unsigned(length) => Ok(length as u32),
             _ => Ok(0),
         }
@@ -174,18 +178,18 @@ impl<'a> Decoder<'a> {
             Count::AtMost(most) => {
                 let found = self.length()?;
                 if found > most {
-                    return Err((start, Cause::TooMany { found, most }));
+                    return Err((start, DecodeErrorKind::TooMany { found, most }));
                 }
                 self.list(field.kind, found)
             }
         }
     }
 
-    fn list(&mut self, kind: Kind, many: u32) -> Result<Value<'a>, Failure> {
+    fn list(&mut self, kind: FieldType, many: u32) -> Result<Value<'a>, Failure> {
         let needed = u64::from(many).saturating_mul(self.definition.least(kind) as u64);
         self.need(needed)?;
         match kind {
-            Kind::Bool | Kind::Int(_) | Kind::Unsigned(_) | Kind::Float(_) => {
+            FieldType::Bool | FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_) => {
                 let size = self.definition.least(kind);
                 if many > 0 {
                     self.align(size)?;
@@ -203,20 +207,24 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn one(&mut self, kind: Kind) -> Result<Value<'a>, Failure> {
+    fn one(&mut self, kind: FieldType) -> Result<Value<'a>, Failure> {
         match kind {
-            Kind::Bool => self.number(kind, 1),
-            Kind::Int(size) | Kind::Unsigned(size) | Kind::Float(size) => {
+            FieldType::Bool => self.number(kind, 1),
+            FieldType::Int(size) | FieldType::Unsigned(size) | FieldType::Float(size) => {
                 self.number(kind, size.into())
             }
-            Kind::Text => self.text(),
-            Kind::WideText => Err((self.next, Cause::WideText)),
-            Kind::Time | Kind::Duration => {
-                let part = if kind == Kind::Time { Kind::Unsigned(4) } else { Kind::Int(4) };
+            FieldType::Text => self.text(),
+            FieldType::WideText => Err((self.next, DecodeErrorKind::WideText)),
+            FieldType::Time | FieldType::Duration => {
+                let part = if kind == FieldType::Time {
+                    FieldType::Unsigned(4)
+                } else {
+                    FieldType::Int(4)
+                };
                 let [sec, nanosec] = [self.number(part, 4)?, self.number(part, 4)?];
                 Ok(Value::Time(sec.i64().unwrap_or_default(), nanosec.i64().unwrap_or_default()))
             }
-            Kind::Struct(index) => {
+            FieldType::Struct(index) => {
                 let Some(made) = self.definition.get(index) else {
                     return Ok(Value::List(Vec::new()));
                 };

@@ -2,15 +2,15 @@
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
-pub use super::picture::Picture;
+pub use super::image::LoggedImage;
 use super::{
     decode::decode,
-    error::{Cause, LogError},
-    mapping::{Bound, Carried, Part, Role},
+    error::{LogError, LogErrorKind},
+    from_value::FromValue,
+    image::image_of,
     messages::{Command, Door, End, Hypothesis, Map, Percept, Run, Scene, Stamp},
-    own::Read,
-    picture::picture,
-    reading::{Log, Message, Messages},
+    reader::{Log, RawMessage, RawMessages},
+    topic_map::{Bound, Carried, Part, Role},
     value::Value,
 };
 
@@ -19,7 +19,7 @@ use super::{
 pub struct Entry {
     /// When it was recorded, in nanoseconds.
     pub time: u64,
-    /// Where it is in the file: see [`Message::offset`].
+    /// Where it is in the file: see [`RawMessage::offset`].
     pub offset: u64,
     /// The how-manyeth message of the log it is; the first is 1.
     pub number: u64,
@@ -43,7 +43,7 @@ pub enum Content {
     /// The last entry of a log that is whole.
     End(End),
     /// What the camera sees.
-    Image(Picture),
+    Image(LoggedImage),
     /// Where the robot is by its wheels.
     Odometry(Odometry),
     /// What it is told to do: metres, and radians counter-clockwise, each second.
@@ -73,7 +73,7 @@ pub enum Content {
 pub struct Entries<'l> {
     log: &'l Log,
     bound: Bound,
-    messages: Messages<'l>,
+    messages: RawMessages<'l>,
     /// What the last message carries beyond its first.
     next: Vec<Entry>,
 }
@@ -119,22 +119,22 @@ impl Iterator for Entries<'_> {
 }
 
 /// What one message tells.
-fn entries(log: &Log, bound: &Bound, message: &Message) -> Result<Vec<Entry>, LogError> {
+fn entries(log: &Log, bound: &Bound, message: &RawMessage) -> Result<Vec<Entry>, LogError> {
     let Some(topic) = log.topics().get(message.topic) else { return Ok(Vec::new()) };
     let Ok(definition) = &topic.definition else { return Ok(Vec::new()) };
     let name = || topic.name.clone();
     let value = decode(definition, &message.bytes).map_err(|error| {
         let (number, topic) = (message.number, name());
-        Cause::Message { number, topic, error: Box::new(error) }.at(message.offset)
+        LogErrorKind::Message { number, topic, error: Box::new(error) }.at(message.offset)
     })?;
     let stamp = stamp(&value, message.time);
     let carried = bound.carried.iter().filter(|carried| carried.topic == message.topic);
     let entries = carried.map(|carried| {
         let content = content(carried, &value, stamp).map_err(|what| {
             let (number, topic) = (message.number, name());
-            Cause::Content { number, topic, what }.at(message.offset)
+            LogErrorKind::Content { number, topic, what }.at(message.offset)
         })?;
-        let Message { time, offset, number, topic, .. } = *message;
+        let RawMessage { time, offset, number, topic, .. } = *message;
         Ok(Entry { time, offset, number, topic, stamp, content })
     });
     entries.collect()
@@ -147,7 +147,7 @@ fn stamp(value: &Value<'_>, time: u64) -> Stamp {
 
 fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content, String> {
     Ok(match carried.role {
-        Role::Image => Content::Image(picture(value)?),
+        Role::Image => Content::Image(image_of(value)?),
         Role::Odometry => Content::Odometry(odometry(carried, value)?),
         Role::Motion => Content::Motion {
             forward: number(carried, value, Part::Forward)? * carried.length.in_metres(),
@@ -177,8 +177,8 @@ fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content
     })
 }
 
-fn own<M: Read>(value: &Value<'_>) -> Result<M, String> {
-    M::read(value)
+fn own<M: FromValue>(value: &Value<'_>) -> Result<M, String> {
+    M::from_value(value)
         .map_err(|field| format!("its field `{field}` is missing, or is not what it should be"))
 }
 

@@ -14,20 +14,20 @@ pub struct LogError {
     pub offset: u64,
     /// What is wrong.
     #[source]
-    pub cause: Cause,
+    pub cause: LogErrorKind,
 }
 
 /// A file that cannot be read cannot be so at any byte.
-fn place(offset: u64, cause: &Cause) -> String {
+fn place(offset: u64, cause: &LogErrorKind) -> String {
     match cause {
-        Cause::Unreadable(_) => String::new(),
+        LogErrorKind::Unreadable(_) => String::new(),
         _ => format!("byte {offset}: "),
     }
 }
 
 /// What is wrong at a byte of a log.
 #[derive(Debug, Error)]
-pub enum Cause {
+pub enum LogErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
@@ -95,7 +95,7 @@ pub enum Cause {
     },
 }
 
-impl Cause {
+impl LogErrorKind {
     pub(super) fn at(self, offset: u64) -> LogError {
         LogError { offset, cause: self }
     }
@@ -109,12 +109,12 @@ pub struct Truncation {
     pub offset: u64,
     /// What shows that there should be more.
     #[source]
-    pub cause: Missing,
+    pub cause: TruncationKind,
 }
 
 /// What is missing at the end of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Missing {
+pub enum TruncationKind {
     /// The rest of a record.
     #[error("it ends in the middle of a record")]
     RestOfRecord,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::messages::Own;
+use super::messages::ProjectMessage;
 
 /// A message that a log can hold.
 pub trait Message: Serialize {
@@ -13,12 +13,12 @@ pub trait Message: Serialize {
     /// Its definition.
     const DEFINITION: &'static str;
     /// The types that it uses, and those that they use.
-    const USES: &'static [Definition];
+    const USES: &'static [TypeDefinition];
 }
 
 /// A type and its definition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Definition {
+pub struct TypeDefinition {
     /// Its name, as definitions refer to it: `PACKAGE/TYPE`.
     pub name: &'static str,
     /// Its definition.
@@ -28,7 +28,7 @@ pub struct Definition {
 /// The definition of a published type.
 macro_rules! definition {
     ($package:literal, $name:literal) => {
-        $crate::log::message::Definition {
+        $crate::log::message::TypeDefinition {
             name: concat!($package, "/", $name),
             text: include_str!(concat!("../../msgs/", $package, "/msg/", $name, ".msg")),
         }
@@ -37,13 +37,13 @@ macro_rules! definition {
 pub(super) use definition;
 
 /// A time, which nearly every message tells.
-pub(super) const TIME: Definition = definition!("builtin_interfaces", "Time");
+pub(super) const TIME: TypeDefinition = definition!("builtin_interfaces", "Time");
 
 /// The project's messages are made of numbers, words and a time.
-impl<M: Own> Message for M {
+impl<M: ProjectMessage> Message for M {
     const TYPE: &'static str = M::TYPE;
     const DEFINITION: &'static str = M::DEFINITION;
-    const USES: &'static [Definition] = &[TIME];
+    const USES: &'static [TypeDefinition] = &[TIME];
 }
 
 /// All that a reader needs to know of a message, as the encoding `ros2msg` of MCAP has it: its
@@ -51,7 +51,7 @@ impl<M: Own> Message for M {
 #[must_use]
 pub fn schema<M: Message>() -> String {
     let mut text = M::DEFINITION.to_owned();
-    for Definition { name, text: used } in M::USES {
+    for TypeDefinition { name, text: used } in M::USES {
         // Writing to a string cannot fail.
         let _ = write!(text, "{:=<80}\nMSG: {name}\n{used}", "");
     }

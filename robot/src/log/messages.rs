@@ -29,7 +29,7 @@ impl Stamp {
 }
 
 /// A message of the project.
-pub trait Own: Serialize {
+pub trait ProjectMessage: Serialize {
     /// Its type, as ROS 2 names it.
     const TYPE: &'static str;
     /// Its definition, without those that it uses.
@@ -48,7 +48,7 @@ macro_rules! own {
             $($(#[$field_doc])* pub $field: $type,)*
         }
 
-        impl Own for $name {
+        impl ProjectMessage for $name {
             const TYPE: &'static str = concat!("toposlam_msgs/msg/", stringify!($name));
             const DEFINITION: &'static str =
                 include_str!(concat!("../../msgs/toposlam_msgs/msg/", stringify!($name), ".msg"));

@@ -3,27 +3,27 @@
 mod container;
 pub mod decode;
 pub mod definition;
+mod encode;
 pub mod entries;
 pub mod error;
-mod in_order;
-pub mod mapping;
+mod from_value;
+mod image;
+mod merge;
 pub mod message;
 pub mod messages;
-mod own;
-mod picture;
-pub mod reading;
+pub mod reader;
 pub mod recorder;
 #[cfg(test)]
-pub(crate) mod shared;
+pub(crate) mod shared_buffer;
 mod source;
 pub mod standard;
-mod told;
 pub mod topic;
+pub mod topic_map;
 pub mod value;
 mod world_hash;
 pub mod writer;
 
 pub use container::{Format, MOST_GROWTH};
-pub use told::scene as scene_message;
-pub(crate) use told::scene_of;
+pub use encode::scene as scene_message;
+pub(crate) use encode::scene_of;
 pub use world_hash::world_hash;

@@ -15,11 +15,11 @@ use toposlam_model::{
 use toposlam_vision::{annotate, camera::Camera, image_file::ImageFile};
 
 use super::{
+    encode,
     message::Message,
-    messages::{self, End, Own, Stamp},
+    messages::{self, End, ProjectMessage, Stamp},
     standard::{CompressedImage, Odometry, TFMessage, Twist},
-    told,
-    writer::{LogWriter, WriteError},
+    writer::{LogWriteError, LogWriter},
 };
 use crate::{
     explorer::{ExplorerError, Observer, Round},
@@ -79,7 +79,7 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// Where the file does not take it.
-    pub fn new(out: W, run: &messages::Run, camera: Option<Camera>) -> Result<Self, WriteError> {
+    pub fn new(out: W, run: &messages::Run, camera: Option<Camera>) -> Result<Self, LogWriteError> {
         let mut out = LogWriter::new(out)?;
         out.note(NOTE, entries(run))?;
         out.write(messages::Run::TOPIC, 0, run)?;
@@ -105,7 +105,7 @@ impl<W: Write> Recorder<W> {
         robot: &R,
         moves: u64,
         error: Option<&MappingError<ExplorerError>>,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), LogWriteError> {
         let mut log = self.0.borrow_mut();
         log.catch_up(robot);
         let (ending, cause) = match error {
@@ -114,7 +114,7 @@ impl<W: Write> Recorder<W> {
             Some(error) => ("gave-up", error.to_string()),
         };
         let (stamp, ending) = (log.stamp(), ending.to_owned());
-        log.tell(&End { stamp, moves: told::count(moves), ending, cause });
+        log.tell(&End { stamp, moves: encode::count(moves), ending, cause });
         match (log.error.take(), log.out.take()) {
             (Some(error), _) => Err(error),
             (None, Some(out)) => out.finish().map(|_| ()),
@@ -127,17 +127,17 @@ impl<W: Write, R: Robot<View: Photograph>> Observer<R> for Recorder<W> {
     fn round(&mut self, robot: &R, round: &Round<R::View>) {
         let mut log = self.0.borrow_mut();
         log.catch_up(robot);
-        let taken = Stamp::of(told::nanoseconds(round.picture.taken));
+        let taken = Stamp::of(encode::nanoseconds(round.picture.taken));
         if let Some(file) = round.picture.view.file() {
             log.say(IMAGE, &CompressedImage::new(taken, file));
             if let Some(annotated) = log.annotated(file, round.scene) {
                 log.say(ANNOTATED, &CompressedImage::new(taken, &annotated));
             }
         }
-        log.tell(&told::scene(taken, round.scene));
+        log.tell(&encode::scene(taken, round.scene));
         if let Ok(Step::Go(command)) = round.step {
             let stamp = log.stamp();
-            log.tell(&told::command(stamp, round.state, *command));
+            log.tell(&encode::command(stamp, round.state, *command));
         }
     }
 
@@ -145,14 +145,14 @@ impl<W: Write, R: Robot<View: Photograph>> Observer<R> for Recorder<W> {
         let mut log = self.0.borrow_mut();
         log.catch_up(robot);
         log.moves += 1;
-        let (stamp, moves) = (log.stamp(), told::count(log.moves));
+        let (stamp, moves) = (log.stamp(), encode::count(log.moves));
         log.tell(&messages::Door { stamp, r#move: moves, door: door.0 });
     }
 
     fn arrived(&mut self, robot: &R, _: Option<Door>, at: &Standing) {
         let mut log = self.0.borrow_mut();
         log.catch_up(robot);
-        let percept = told::percept(log.stamp(), log.moves, at);
+        let percept = encode::percept(log.stamp(), log.moves, at);
         log.tell(&percept);
     }
 
@@ -165,10 +165,10 @@ impl<W: Write, X: ?Sized> mapping::Observer<X> for Recorder<W> {
     fn event(&mut self, _: &mut X, journey: &Journey, event: MappingEvent) {
         let mut log = self.0.borrow_mut();
         let stamp = log.stamp();
-        if let Some(step) = told::hypothesis(stamp, journey, event) {
+        if let Some(step) = encode::hypothesis(stamp, journey, event) {
             log.tell(&step);
         }
-        if let Some(map) = told::map(stamp, journey, event) {
+        if let Some(map) = encode::map(stamp, journey, event) {
             log.tell(&map);
         }
     }
@@ -179,7 +179,7 @@ struct Log<W: Write> {
     /// Gone when the log has ended.
     out: Option<LogWriter<W>>,
     /// The first.
-    error: Option<WriteError>,
+    error: Option<LogWriteError>,
     camera: Option<Camera>,
     /// The robot's time, in nanoseconds.
     now: u64,
@@ -200,7 +200,7 @@ impl<W: Write> Log<W> {
     }
 
     /// Writes a message of the project now.
-    fn tell<M: Own>(&mut self, message: &M) {
+    fn tell<M: ProjectMessage>(&mut self, message: &M) {
         self.say(M::TOPIC, message);
     }
 
@@ -210,7 +210,7 @@ impl<W: Write> Log<W> {
 
     /// It is as late as this.
     fn at(&mut self, seconds: f64) {
-        self.now = self.now.max(told::nanoseconds(seconds));
+        self.now = self.now.max(encode::nanoseconds(seconds));
     }
 
     /// Writes what the wheels did since something was last written.
@@ -232,7 +232,7 @@ impl<W: Write> Log<W> {
             self.say(CMD_VEL, &twist);
         }
         self.at(sample.reckoned.time);
-        let stamp = Stamp::of(told::nanoseconds(sample.reckoned.time));
+        let stamp = Stamp::of(encode::nanoseconds(sample.reckoned.time));
         let odometry = Odometry::new(stamp, &sample.reckoned.odometry, twist);
         self.say(ODOM, &odometry);
         self.say(TF, &TFMessage { transforms: &[odometry.transform()] });
@@ -275,7 +275,7 @@ mod tests {
     use crate::{
         evaluation::{plans, runs::starts_of},
         explorer::Told,
-        log::shared::Shared,
+        log::shared_buffer::SharedBuffer,
         run::{Run, run},
         simulator::{Fault, FaultKind, Setting},
     };
@@ -286,7 +286,7 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let mut setting = Setting::at_start(plan.clone(), facing, 5);
         (setting.keeps_track, setting.faults) = (true, fault.into_iter().collect());
-        let file = Shared::default();
+        let file = SharedBuffer::default();
         let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
         let recorder = Recorder::new(file.clone(), &head, None).unwrap();
         let (run, robot, _) = run(

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 use toposlam_model::driving::odometry;
 
 use super::{
-    message::{Definition, Message, TIME, definition},
+    message::{Message, TIME, TypeDefinition, definition},
     messages::Stamp,
 };
 
@@ -19,11 +19,11 @@ pub const BASE: &str = "base_link";
 /// The frame of the camera.
 pub const CAMERA: &str = "camera";
 
-const HEADER: Definition = definition!("std_msgs", "Header");
-const VECTOR: Definition = definition!("geometry_msgs", "Vector3");
-const POINT: Definition = definition!("geometry_msgs", "Point");
-const QUATERNION: Definition = definition!("geometry_msgs", "Quaternion");
-const TWIST: Definition = definition!("geometry_msgs", "Twist");
+const HEADER: TypeDefinition = definition!("std_msgs", "Header");
+const VECTOR: TypeDefinition = definition!("geometry_msgs", "Vector3");
+const POINT: TypeDefinition = definition!("geometry_msgs", "Point");
+const QUATERNION: TypeDefinition = definition!("geometry_msgs", "Quaternion");
+const TWIST: TypeDefinition = definition!("geometry_msgs", "Twist");
 
 /// When, and in which frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -49,7 +49,7 @@ pub struct CompressedImage<'a> {
 impl Message for CompressedImage<'_> {
     const TYPE: &'static str = "sensor_msgs/msg/CompressedImage";
     const DEFINITION: &'static str = definition!("sensor_msgs", "CompressedImage").text;
-    const USES: &'static [Definition] = &[HEADER, TIME];
+    const USES: &'static [TypeDefinition] = &[HEADER, TIME];
 }
 
 impl<'a> CompressedImage<'a> {
@@ -115,7 +115,7 @@ pub struct Twist {
 impl Message for Twist {
     const TYPE: &'static str = "geometry_msgs/msg/Twist";
     const DEFINITION: &'static str = TWIST.text;
-    const USES: &'static [Definition] = &[VECTOR];
+    const USES: &'static [TypeDefinition] = &[VECTOR];
 }
 
 impl Twist {
@@ -173,7 +173,7 @@ pub struct Odometry {
 impl Message for Odometry {
     const TYPE: &'static str = "nav_msgs/msg/Odometry";
     const DEFINITION: &'static str = definition!("nav_msgs", "Odometry").text;
-    const USES: &'static [Definition] = &[
+    const USES: &'static [TypeDefinition] = &[
         HEADER,
         TIME,
         definition!("geometry_msgs", "PoseWithCovariance"),
@@ -244,7 +244,7 @@ pub struct TFMessage<'a> {
 impl Message for TFMessage<'_> {
     const TYPE: &'static str = "tf2_msgs/msg/TFMessage";
     const DEFINITION: &'static str = definition!("tf2_msgs", "TFMessage").text;
-    const USES: &'static [Definition] = &[
+    const USES: &'static [TypeDefinition] = &[
         definition!("geometry_msgs", "TransformStamped"),
         HEADER,
         TIME,

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use super::{
-    definition::{Kind, Struct},
+    definition::{FieldType, Struct},
     messages::Stamp,
 };
 
@@ -35,13 +35,13 @@ pub enum Value<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<'a> {
     pub(super) bytes: &'a [u8],
-    pub(super) kind: Kind,
-    pub(super) order: Order,
+    pub(super) kind: FieldType,
+    pub(super) order: ByteOrder,
 }
 
 /// Which byte of a number comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum ByteOrder {
     /// The least.
     Little,
     /// The greatest.
@@ -78,30 +78,32 @@ impl<'a> Numbers<'a> {
 
     fn size(&self) -> usize {
         match self.kind {
-            Kind::Int(bytes) | Kind::Unsigned(bytes) | Kind::Float(bytes) => bytes.max(1).into(),
+            FieldType::Int(bytes) | FieldType::Unsigned(bytes) | FieldType::Float(bytes) => {
+                bytes.max(1).into()
+            }
             _ => 1,
         }
     }
 }
 
 /// A truth or a number, of its bytes.
-pub(super) fn number<'a>(kind: Kind, order: Order, bytes: &[u8]) -> Value<'a> {
+pub(super) fn number<'a>(kind: FieldType, order: ByteOrder, bytes: &[u8]) -> Value<'a> {
     let mut all = [0; 8];
     let used = bytes.iter().take(8);
     match order {
-        Order::Little => all.iter_mut().zip(used).for_each(|(to, from)| *to = *from),
-        Order::Big => all.iter_mut().zip(used.rev()).for_each(|(to, from)| *to = *from),
+        ByteOrder::Little => all.iter_mut().zip(used).for_each(|(to, from)| *to = *from),
+        ByteOrder::Big => all.iter_mut().zip(used.rev()).for_each(|(to, from)| *to = *from),
     }
     let unsigned = u64::from_le_bytes(all);
     match kind {
-        Kind::Bool => Value::Bool(unsigned != 0),
-        Kind::Int(bytes) => {
+        FieldType::Bool => Value::Bool(unsigned != 0),
+        FieldType::Int(bytes) => {
             // The sign goes up to the last bit.
             let unused = 64_u32.saturating_sub(8 * u32::from(bytes)).min(63);
             Value::Int(unsigned.wrapping_shl(unused).cast_signed() >> unused)
         }
-        Kind::Float(4) => Value::Float(f32::from_bits(unsigned as u32).into()),
-        Kind::Float(_) => Value::Float(f64::from_bits(unsigned)),
+        FieldType::Float(4) => Value::Float(f32::from_bits(unsigned as u32).into()),
+        FieldType::Float(_) => Value::Float(f64::from_bits(unsigned)),
         _ => Value::Unsigned(unsigned),
     }
 }
@@ -183,9 +185,11 @@ impl<'a> Value<'a> {
     #[must_use]
     pub fn bytes(&self) -> Option<&'a [u8]> {
         match *self {
-            Self::Numbers(Numbers { bytes, kind: Kind::Unsigned(1) | Kind::Int(1), .. }) => {
-                Some(bytes)
-            }
+            Self::Numbers(Numbers {
+                bytes,
+                kind: FieldType::Unsigned(1) | FieldType::Int(1),
+                ..
+            }) => Some(bytes),
             _ => None,
         }
     }

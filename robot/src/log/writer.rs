@@ -29,7 +29,7 @@ const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 /// Why a log cannot be written.
 #[derive(Debug, Error)]
-pub enum WriteError {
+pub enum LogWriteError {
     /// The file does not take it.
     #[error(transparent)]
     File(#[from] io::Error),
@@ -46,7 +46,7 @@ pub enum WriteError {
     },
 }
 
-impl From<McapError> for WriteError {
+impl From<McapError> for LogWriteError {
     fn from(error: McapError) -> Self {
         match error {
             McapError::Io(error) => Self::File(error),
@@ -84,7 +84,7 @@ impl<W: Write> LogWriter<W> {
     ///
     /// # Errors
     /// Where the file does not take it.
-    pub fn new(out: W) -> Result<Self, WriteError> {
+    pub fn new(out: W) -> Result<Self, LogWriteError> {
         let options = WriteOptions::new()
             .profile("ros2")
             .library("toposlam")
@@ -106,7 +106,7 @@ impl<W: Write> LogWriter<W> {
         &mut self,
         name: &str,
         entries: BTreeMap<String, String>,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), LogWriteError> {
         self.chunk = None;
         Ok(self.out.write_metadata(&Metadata { name: name.to_owned(), metadata: entries })?)
     }
@@ -120,11 +120,11 @@ impl<W: Write> LogWriter<W> {
         topic: &str,
         time: u64,
         message: &M,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), LogWriteError> {
         self.body.clear();
         self.body.extend(ENCAPSULATION);
         cdr_encoding::to_writer::<M, LittleEndian, _>(&mut self.body, message)
-            .map_err(|cause| WriteError::Message { topic: topic.to_owned(), cause })?;
+            .map_err(|cause| LogWriteError::Message { topic: topic.to_owned(), cause })?;
         let bytes = self.body.len();
         if let Some(chunk) = self.chunk
             && (chunk.bytes + bytes > CHUNK_BYTES || time.saturating_sub(chunk.begun) > CHUNK_TIME)
@@ -142,7 +142,7 @@ impl<W: Write> LogWriter<W> {
     ///
     /// # Errors
     /// Where the file does not take it.
-    pub fn flush(&mut self) -> Result<(), WriteError> {
+    pub fn flush(&mut self) -> Result<(), LogWriteError> {
         self.chunk = None;
         Ok(self.out.flush()?)
     }
@@ -151,7 +151,7 @@ impl<W: Write> LogWriter<W> {
     ///
     /// # Errors
     /// Where the file does not take it.
-    pub fn finish(mut self) -> Result<W, WriteError> {
+    pub fn finish(mut self) -> Result<W, LogWriteError> {
         self.out.finish()?;
         let mut out = self.out.into_inner().into_inner();
         out.flush()?;
@@ -159,7 +159,7 @@ impl<W: Write> LogWriter<W> {
     }
 
     /// The channel of a topic, and the number of its next message.
-    fn next_of<M: Message>(&mut self, topic: &str) -> Result<(u16, u32), WriteError> {
+    fn next_of<M: Message>(&mut self, topic: &str) -> Result<(u16, u32), LogWriteError> {
         let known = if let Some(known) = self.topics.get_mut(topic) {
             known
         } else {
@@ -182,7 +182,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::log::messages::{Command, Door, Own, Percept, Stamp};
+    use crate::log::messages::{Command, Door, Percept, ProjectMessage, Stamp};
 
     const SECOND: u64 = 1_000_000_000;
 
@@ -240,11 +240,14 @@ mod tests {
         let schema = message.channel.schema.as_ref().unwrap();
         assert_eq!(
             (schema.name.as_str(), schema.encoding.as_str()),
-            (<Door as Own>::TYPE, "ros2msg")
+            (<Door as ProjectMessage>::TYPE, "ros2msg")
         );
         let text = String::from_utf8(schema.data.to_vec()).unwrap();
         let time = "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-        assert!(text.starts_with(<Door as Own>::DEFINITION) && text.ends_with(time), "{text}");
+        assert!(
+            text.starts_with(<Door as ProjectMessage>::DEFINITION) && text.ends_with(time),
+            "{text}"
+        );
         assert_eq!(message.channel.message_encoding, "cdr");
     }
 
@@ -308,7 +311,7 @@ mod tests {
             (0..20).for_each(|t| log.write(Door::TOPIC, t * SECOND, &Door::default()).unwrap());
         });
         for bytes in 0..needed.len() {
-            let Err(WriteError::File(error)) = fill(bytes) else {
+            let Err(LogWriteError::File(error)) = fill(bytes) else {
                 panic!("{bytes} bytes are enough")
             };
             assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{bytes}");

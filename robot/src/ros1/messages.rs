@@ -19,7 +19,7 @@ pub(super) const SECOND: Nanoseconds = 1_000_000_000;
 
 /// A type of message: its name, and its definition with those that it uses.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kind {
+pub(super) struct MessageKind {
     pub(super) name: &'static str,
     pub(super) definition: &'static str,
 }
@@ -53,13 +53,13 @@ macro_rules! quaternion {
 }
 
 /// What the wheels are told.
-pub(super) const TWIST: Kind = Kind {
+pub(super) const TWIST: MessageKind = MessageKind {
     name: "geometry_msgs/Twist",
     definition: concat!("Vector3 linear\nVector3 angular\n", vector!("geometry_msgs/Vector3")),
 };
 
 /// Where the robot is by its wheels.
-pub(super) const ODOMETRY: Kind = Kind {
+pub(super) const ODOMETRY: MessageKind = MessageKind {
     name: "nav_msgs/Odometry",
     definition: concat!(
         "Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n",
@@ -76,13 +76,13 @@ pub(super) const ODOMETRY: Kind = Kind {
 };
 
 /// The file of a photograph.
-pub(super) const PICTURE: Kind = Kind {
+pub(super) const PICTURE: MessageKind = MessageKind {
     name: "sensor_msgs/CompressedImage",
     definition: concat!("Header header\nstring format\nuint8[] data\n", header!()),
 };
 
 /// Where frames are in each other.
-pub(super) const FRAMES: Kind = Kind {
+pub(super) const FRAMES: MessageKind = MessageKind {
     name: "tf2_msgs/TFMessage",
     definition: concat!(
         "geometry_msgs/TransformStamped[] transforms\n",

@@ -13,7 +13,7 @@ use tokio::{
     time::timeout,
 };
 
-use super::messages::Kind;
+use super::messages::MessageKind;
 use crate::robot::RobotError;
 
 /// The master answers within this, or is taken not to be there.
@@ -54,10 +54,10 @@ impl Node {
     }
 
     /// Says that it will speak on a topic.
-    pub(super) fn speak(&self, topic: &str, kind: Kind) -> Result<Speaker, RobotError> {
+    pub(super) fn speak(&self, topic: &str, kind: MessageKind) -> Result<Speaker, RobotError> {
         let handle = self.handle(topic)?;
         let advertised = async {
-            let Kind { name, definition } = kind;
+            let MessageKind { name, definition } = kind;
             timeout(ANSWER, handle.advertise_any(topic, name, definition, UNDER_WAY, false)).await
         };
         let publisher = match self.runner.block_on(advertised) {

@@ -1,6 +1,6 @@
 //! ROS 1 bags.
 
-use toposlam_robot::log::{Format, error::Missing, reading::Log};
+use toposlam_robot::log::{Format, error::TruncationKind, reader::Log};
 
 use super::written::{Closed, Said, bag, in_order, said};
 
@@ -33,7 +33,7 @@ fn a_bag_without_an_index_says_the_same_and_was_not_closed() {
         let length = bytes.len() as u64;
         let log = Log::of_bytes(bytes).unwrap();
         let truncation = log.truncation().unwrap();
-        assert_eq!((truncation.offset, &truncation.cause), (length, &Missing::Index));
+        assert_eq!((truncation.offset, &truncation.cause), (length, &TruncationKind::Index));
         assert_eq!(log.messages_total(), 40);
         assert_eq!(said(&log), all);
     }

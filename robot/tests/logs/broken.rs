@@ -1,7 +1,7 @@
 //! What is wrong with a log is told in one message, with its place; and no bytes make a reader panic.
 
 use proptest::prelude::*;
-use toposlam_robot::log::{decode::decode, reading::Log};
+use toposlam_robot::log::{decode::decode, reader::Log};
 
 use super::written::{Closed, Said, Way, bag, in_order, mcap_file, ways};
 

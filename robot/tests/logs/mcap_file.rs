@@ -1,6 +1,6 @@
 //! MCAP files.
 
-use toposlam_robot::log::{Format, error::Missing, reading::Log, topic::Encoding};
+use toposlam_robot::log::{Format, error::TruncationKind, reader::Log, topic::Encoding};
 
 use super::written::{Said, Way, in_order, mcap_file, said, ways};
 
@@ -54,7 +54,7 @@ fn an_mcap_file_that_is_cut_says_what_stands_before_the_cut() {
     }
     let whole = mcap_file(&[&all], ways()[0]);
     let cut = Log::of_bytes(whole[..whole.len() - 1].to_vec()).unwrap();
-    assert_eq!(cut.truncation().unwrap().cause, Missing::End);
+    assert_eq!(cut.truncation().unwrap().cause, TruncationKind::End);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::{
     process::Command,
 };
 
-use toposlam_robot::log::{decode::decode, reading::Log};
+use toposlam_robot::log::{decode::decode, reader::Log};
 
 /// The bags, if they are there; `TOPOSLAM_LOGS` tells where.
 fn folder() -> Option<PathBuf> {

@@ -4,10 +4,10 @@ use std::{collections::BTreeMap, io::Cursor};
 
 use mcap::{WriteOptions, records::MessageHeader};
 use toposlam_robot::log::{
-    entries::{Content, Entry, Picture, UNTOLD},
-    mapping::{Guess, Mapping, Role, guess},
+    entries::{Content, Entry, LoggedImage, UNTOLD},
     messages::Stamp,
-    reading::Log,
+    reader::Log,
+    topic_map::{Guess, Role, TopicMap, guess},
 };
 
 /// A topic: its name, the type and the definition of its messages, and what these say, one a second.
@@ -104,14 +104,14 @@ pub(crate) fn all() -> Vec<u8> {
     log_of(&[image(), odometry(), twist(), percept(), junction(), place()])
 }
 
-fn entries(log: &Log, mapping: &Mapping) -> Vec<Entry> {
+fn entries(log: &Log, mapping: &TopicMap) -> Vec<Entry> {
     log.entries(&mapping.bind(log).unwrap()).map(Result::unwrap).collect()
 }
 
 #[test]
 fn what_is_usual_needs_no_mapping_file() {
     let log = Log::of_bytes(all()).unwrap();
-    let mapping = Mapping::from_log(&log).unwrap();
+    let mapping = TopicMap::from_log(&log).unwrap();
     let roles: Vec<_> = mapping.carriers().map(|(role, carrier)| (role, &*carrier.topic)).collect();
     assert_eq!(
         roles,
@@ -123,7 +123,7 @@ fn what_is_usual_needs_no_mapping_file() {
         ]
     );
     let [image, odometry, motion, percept] = &entries(&log, &mapping)[..] else { panic!() };
-    assert_eq!(image.content, Content::Image(Picture::File(b"JPEG".to_vec())));
+    assert_eq!(image.content, Content::Image(LoggedImage::File(b"JPEG".to_vec())));
     assert_eq!((image.time, image.stamp), (1_000_000_000, Stamp { sec: 7, nanosec: 5 }));
     let Content::Odometry(at) = &odometry.content else { panic!() };
     assert_eq!(at.position, [1.0, 2.0]);
@@ -144,7 +144,7 @@ fn messages_of_others_are_read_through_paths_and_units() {
         length = \"inches\"\nangle = \"degrees\"\n\
         [percept]\ntopic = \"/junction\"\ndegree = \"exits\"\nmarker = \"arrow[0]\"\n\
         [door]\ntopic = \"/junction\"\ndoor = \"exits\"\n";
-    let entries = entries(&log, &Mapping::read(mapping.as_bytes()).unwrap());
+    let entries = entries(&log, &TopicMap::read(mapping.as_bytes()).unwrap());
     let [percept, door, odometry, lost, _] = &entries[..] else { panic!("{entries:?}") };
     let Content::Percept(percept) = &percept.content else { panic!() };
     assert_eq!((percept.r#move, percept.degree, percept.marker), (UNTOLD, 4, 2));
@@ -173,11 +173,11 @@ fn where_several_topics_could_carry_the_same_none_is_chosen() {
         ]
     );
     assert_eq!(
-        Mapping::from_log(&log).unwrap_err().to_string(),
+        TopicMap::from_log(&log).unwrap_err().to_string(),
         "2 topics could carry odometry: /odom, /goal; a mapping file tells which does"
     );
     assert_eq!(
-        Mapping::unambiguous(&log).to_toml(),
+        TopicMap::unambiguous(&log).to_toml(),
         "[image]\ntopic = \"/camera/image/compressed\"\n"
     );
 }
@@ -207,7 +207,7 @@ fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
             "line 3, column 14: \"pose.position\" does not lead to a quaternion in a geometry_msgs/PoseStamped",
         ),
     ] {
-        let mapping = Mapping::read(mapping.as_bytes()).unwrap();
+        let mapping = TopicMap::read(mapping.as_bytes()).unwrap();
         let found = mapping.bind(&log).unwrap_err().to_string();
         assert!(found.starts_with(message), "{found}");
     }
@@ -217,7 +217,7 @@ fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
 fn a_message_that_does_not_say_what_it_should_is_told_with_its_number() {
     let wrong = |topic: Topic, mapping: &str| {
         let log = Log::of_bytes(log_of(&[topic])).unwrap();
-        let mapping = Mapping::read(mapping.as_bytes()).unwrap();
+        let mapping = TopicMap::read(mapping.as_bytes()).unwrap();
         let mut entries = log.entries(&mapping.bind(&log).unwrap());
         let error = entries.find_map(Result::err).unwrap().to_string();
         assert!(entries.next().is_none());
@@ -265,7 +265,7 @@ fn a_message_that_does_not_say_what_it_should_is_told_with_its_number() {
     );
     assert!(wrong(raw("bayer", [2, 1], 6, &[0; 6]), mapping).contains("\"bayer\" cannot be read"));
     let log = Log::of_bytes(log_of(&[raw("bgr8", [2, 1], 8, &[1, 2, 3, 4, 5, 6, 0, 0])])).unwrap();
-    let entries = entries(&log, &Mapping::read(mapping.as_bytes()).unwrap());
-    let Content::Image(Picture::Pixels(pixels)) = &entries[0].content else { panic!() };
+    let entries = entries(&log, &TopicMap::read(mapping.as_bytes()).unwrap());
+    let Content::Image(LoggedImage::Pixels(pixels)) = &entries[0].content else { panic!() };
     assert_eq!((pixels.dimensions(), &pixels.as_raw()[..]), ((2, 1), &[3, 2, 1, 6, 5, 4][..]));
 }

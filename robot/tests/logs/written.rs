@@ -7,7 +7,7 @@ use std::{
 };
 
 use mcap::{Compression, WriteOptions, Writer, records::MessageHeader};
-use toposlam_robot::log::reading::{Log, Message};
+use toposlam_robot::log::reader::{Log, RawMessage};
 
 /// A message to be written: its topic, its time, its number.
 pub(crate) type Said = (u32, u64, u32);
@@ -227,7 +227,7 @@ pub(crate) fn said(log: &Log) -> Vec<Said> {
     log.read_all().enumerate().map(|(nth, message)| one(log, nth, &message.unwrap())).collect()
 }
 
-fn one(log: &Log, nth: usize, message: &Message) -> Said {
+fn one(log: &Log, nth: usize, message: &RawMessage) -> Said {
     assert_eq!(message.number, nth as u64 + 1);
     assert!(message.offset < log.size());
     let topic = &log.topics()[message.topic];

@@ -7,8 +7,8 @@ use std::{fs, hint::black_box, io::Cursor, path::Path};
 use toposlam_robot::log::{
     decode::decode,
     definition::{Definition, Dialect},
-    mapping::Mapping,
-    reading::Log,
+    reader::Log,
+    topic_map::TopicMap,
 };
 
 use super::MEMORY;
@@ -56,7 +56,7 @@ fn message_holds(dialect: Dialect, text: &str, bytes: &[u8]) {
 
 fn mapping_holds(text: &str) {
     let taken = peak(|| {
-        let _ = black_box(Mapping::read(text.as_bytes()).map_err(|error| error.to_string()));
+        let _ = black_box(TopicMap::read(text.as_bytes()).map_err(|error| error.to_string()));
     });
     let stated = 512 * text.len() + 4096;
     assert!(taken <= stated, "{taken} for {}: {}", text.len(), &text[..text.len().min(60)]);

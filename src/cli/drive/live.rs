@@ -17,7 +17,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::{Explorer, Observer, Round},
-    log::{messages, recorder, world_hash, writer::WriteError},
+    log::{messages, recorder, world_hash, writer::LogWriteError},
     robot::{Robot, RobotError},
     ros1::{LiveRobot, Topics},
 };
@@ -151,7 +151,7 @@ impl Arguments {
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 
-    fn unwritten(&self, error: &WriteError) -> Failure {
+    fn unwritten(&self, error: &LogWriteError) -> Failure {
         let path = self.log.clone().unwrap_or_default();
         Failure::in_file(&path, format!("cannot be written: {error}"))
     }

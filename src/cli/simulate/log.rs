@@ -3,7 +3,7 @@
 use std::fs::File;
 
 use toposlam_robot::{
-    log::{messages, recorder, world_hash, writer::WriteError},
+    log::{messages, recorder, world_hash, writer::LogWriteError},
     simulator::PICTURE_TIME,
 };
 use toposlam_vision::{
@@ -44,7 +44,7 @@ impl Arguments {
     }
 
     /// The log could not be written.
-    pub(super) fn unwritten(&self, error: &WriteError) -> Failure {
+    pub(super) fn unwritten(&self, error: &LogWriteError) -> Failure {
         let path = self.log.clone().unwrap_or_default();
         Failure::in_file(&path, format!("cannot be written: {error}"))
     }

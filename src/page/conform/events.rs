@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use toposlam_robot::conform::Verdict;
+use toposlam_robot::conform::ConformVerdict;
 
-use super::{each, words};
+use super::{each, wording};
 use crate::{
     page::clock,
     picture::escaped,
@@ -97,6 +97,6 @@ fn diverging(event: usize, time: f64, what: &str, id: &str) -> String {
         "<tr class=off{id}><td>{event}<td>{}<td>{}<td>{} does not fit\n",
         clock(time),
         escaped(what),
-        words::sign(Verdict::Diverged),
+        wording::sign(ConformVerdict::Diverged),
     )
 }

@@ -1,6 +1,6 @@
 //! What is said of one log.
 
-use super::{Level, coverage, each, events, panel, short_list, words};
+use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
     page::clock,
     picture::escaped,
@@ -40,16 +40,16 @@ fn verdict(report: &Report, log: usize, level: Level) -> String {
     let name = report.verdict.name();
     let heading = level.heading(&format!(
         "{}<strong>{}</strong> <span class=\"of\">{}</span>",
-        words::sign(report.verdict),
-        words::sentence(name).trim_end_matches('.'),
+        wording::sign(report.verdict),
+        wording::sentence(name).trim_end_matches('.'),
         escaped(&report.log),
     ));
     let because = match &report.divergence {
         Some(told) => because(told, report, log),
-        None => format!("<p>{}</p>\n", words::fits(report)),
+        None => format!("<p>{}</p>\n", wording::fits(report)),
     };
     let remarks =
-        each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&words::sentence(remark))));
+        each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&wording::sentence(remark))));
     format!(
         "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{remarks}\
          </div>\n</div>\n"
@@ -72,9 +72,9 @@ fn because(told: &Told, report: &Report, log: usize) -> String {
         "<p class=\"what\"><b>{}</b> {}</p>\n\
          <p><span class=\"chip\">{culprit}</span> {}</p>\n\
          <p class=\"faint\">{} \u{b7} {} min{message} \u{b7} cause <code>{}</code></p>\n",
-        escaped(&words::sentence(what)),
-        escaped(&words::sentence(why)),
-        words::sentence(words::did(*culprit)),
+        escaped(&wording::sentence(what)),
+        escaped(&wording::sentence(why)),
+        wording::sentence(wording::did(*culprit)),
         events::link(log, *event, &place),
         clock(*time),
         escaped(cause),
@@ -109,7 +109,7 @@ fn shorter(report: &Report, level: Level) -> String {
         1..=FEW => format!("<ol class=\"shorter\">\n{events}</ol>\n"),
         count => format!(
             "<details><summary>{}</summary>\n<ol class=\"shorter\">\n{events}</ol>\n</details>\n",
-            words::counted(count, "event")
+            wording::counted(count, "event")
         ),
     };
     let command = report.command.as_ref().map_or_else(String::new, |command| {
@@ -152,7 +152,7 @@ fn tolerated(report: &Report, log: usize, level: Level) -> String {
                 1 => "once".to_owned(),
                 times => format!("{times} times"),
             },
-            escaped(&words::sentence(reason)),
+            escaped(&wording::sentence(reason)),
         )
     };
     let list = format!("<ul>\n{}</ul>\n", each(&report.tolerated, quirk));
@@ -174,7 +174,7 @@ fn facts(report: &Report, level: Level) -> String {
 }
 
 fn picture(report: &Report, level: Level) -> String {
-    let Some(address) = report.picture.as_deref().and_then(words::picture_address) else {
+    let Some(address) = report.picture.as_deref().and_then(wording::picture_address) else {
         return String::new();
     };
     let image = format!("<img alt=\"The picture of the robot's camera\" src=\"{address}\">\n");
@@ -188,7 +188,7 @@ fn world(report: &Report, level: Level) -> String {
     // Only of a known world is it known what can be reached.
     let known = report.coverage.iter().any(|case| case.reachable.is_some());
     let name = if known { "The known world" } else { "The smallest world that explains the log" };
-    let address = words::svg_address(svg);
+    let address = wording::svg_address(svg);
     let image = format!("<img class=\"world\" alt=\"A drawing of the world\" src=\"{address}\">\n");
     panel(level, "", name, &image)
 }

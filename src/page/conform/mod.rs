@@ -6,8 +6,8 @@
 mod coverage;
 mod events;
 mod log;
-mod together;
-mod words;
+mod summary;
+mod wording;
 
 #[cfg(test)]
 mod tests;
@@ -26,10 +26,10 @@ pub fn conform_page(reports: &[Report]) -> String {
     let alone = matches!(reports, [_]);
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
     filled(PAGE, |place| match place {
-        "title" => escaped(&words::title(reports)),
-        "icon" => words::icon(words::worst(reports)),
+        "title" => escaped(&wording::title(reports)),
+        "icon" => wording::icon(wording::worst(reports)),
         "style" => STYLE.concat(),
-        "together" if !alone => together::section(reports),
+        "together" if !alone => summary::section(reports),
         "logs" => each(&numbered, |(report, number)| {
             log::section(report, *number, if alone { Level::First } else { Level::Second })
         }),

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, collections::BTreeSet};
 
-use toposlam_robot::conform::{Culprit, Verdict};
+use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use super::*;
 use crate::report::{Covered, Line, Told};
@@ -23,7 +23,7 @@ fn line(number: usize) -> Line {
 fn conforming(events: usize) -> Report {
     Report {
         log: "logs/shape-6.mcap".to_owned(),
-        verdict: Verdict::Conforms,
+        verdict: ConformVerdict::Conforms,
         remarks: Vec::new(),
         facts: vec![("world", "shape-6".to_owned()), ("driver", "Algorithm 1".to_owned())],
         events: (1..=events).map(line).collect(),
@@ -45,12 +45,12 @@ fn conforming(events: usize) -> Report {
 
 fn diverged(events: usize, at: usize) -> Report {
     Report {
-        verdict: Verdict::Diverged,
+        verdict: ConformVerdict::Diverged,
         divergence: Some(Told {
             event: at,
             time: at as f64 / 2.0,
             message: Some((4711, 1_234_567)),
-            culprit: Culprit::Perception,
+            culprit: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors".to_owned(),
             why: "at none of the 2 poses left in the known world this is so".to_owned(),
@@ -66,7 +66,7 @@ fn diverged(events: usize, at: usize) -> Report {
 
 fn incomplete() -> Report {
     Report {
-        verdict: Verdict::Incomplete,
+        verdict: ConformVerdict::Incomplete,
         remarks: vec!["the log ends before the map is complete".to_owned()],
         ..conforming(5)
     }

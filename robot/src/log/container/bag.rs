@@ -8,7 +8,7 @@ use std::{collections::BTreeMap, ops::Range};
 
 use super::{Compression, Listener, Record, Scan, Section, u32_at, u64_at, unreadable};
 use crate::log::{
-    error::{Cause, LogError, Missing, Truncation},
+    error::{LogError, LogErrorKind, Truncation, TruncationKind},
     source::{Source, Window},
 };
 
@@ -126,7 +126,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
         let truncated = |cause| Truncation { offset: at, cause };
         // Lengths that go beyond the end of the file.
         let Some((header, body)) = lengths(&mut window, at).map_err(unreadable(at))? else {
-            return Ok(scan.truncated(truncated(Missing::RestOfRecord)));
+            return Ok(scan.truncated(truncated(TruncationKind::RestOfRecord)));
         };
         let read = one(&mut window, at, header, body.clone(), &mut scan, listener);
         match read? {
@@ -136,16 +136,18 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
             Ok(_) => {}
             // A recorder that fell writes no length of its last chunk, and what stands there is no record.
             Err(what) if head.as_ref().is_some_and(|head: &Head| head.index == 0) => {
-                return Ok(scan.truncated(truncated(Missing::Malformed(what))));
+                return Ok(scan.truncated(truncated(TruncationKind::Malformed(what))));
             }
-            Err(what) => return Err(Cause::Malformed(what).at(at)),
+            Err(what) => return Err(LogErrorKind::Malformed(what).at(at)),
         }
         at = body.end;
     }
     let cause = match head {
-        None => Missing::End,
-        Some(Head { index: 0, .. }) => Missing::Index,
-        Some(head) if head.connections != connections || head.chunks != chunks => Missing::End,
+        None => TruncationKind::End,
+        Some(Head { index: 0, .. }) => TruncationKind::Index,
+        Some(head) if head.connections != connections || head.chunks != chunks => {
+            TruncationKind::End
+        }
         Some(_) => {
             scan.end_loose();
             return Ok(scan);

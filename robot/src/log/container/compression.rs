@@ -4,7 +4,7 @@ use std::io::Read;
 
 use lz4_flex::frame::FrameDecoder;
 
-use crate::log::error::Cause;
+use crate::log::error::LogErrorKind;
 
 /// How many times as long as it is in the file a chunk can be; what says more is not decompressed.
 pub const MOST_GROWTH: u64 = 1000;
@@ -24,7 +24,7 @@ pub(super) enum Compression {
 
 impl Compression {
     /// As a bag calls it.
-    pub(super) fn of_bag(name: &[u8]) -> Result<Self, Cause> {
+    pub(super) fn of_bag(name: &[u8]) -> Result<Self, LogErrorKind> {
         match name {
             b"none" => Ok(Self::None),
             b"bz2" => Ok(Self::Bz2),
@@ -34,7 +34,7 @@ impl Compression {
     }
 
     /// As MCAP calls it.
-    pub(super) fn of_mcap(name: &[u8]) -> Result<Self, Cause> {
+    pub(super) fn of_mcap(name: &[u8]) -> Result<Self, LogErrorKind> {
         match name {
             b"" => Ok(Self::None),
             b"lz4" => Ok(Self::Lz4),
@@ -44,9 +44,9 @@ impl Compression {
     }
 }
 
-fn unknown(name: &[u8], known: &'static str) -> Cause {
+fn unknown(name: &[u8], known: &'static str) -> LogErrorKind {
     let beginning = name.get(..name.len().min(20)).unwrap_or_default();
-    Cause::Compression(String::from_utf8_lossy(beginning).into_owned(), known)
+    LogErrorKind::Compression(String::from_utf8_lossy(beginning).into_owned(), known)
 }
 
 /// The bytes of a chunk, which says how long it is, and perhaps its checksum.
@@ -55,14 +55,14 @@ pub(super) fn decompress(
     bytes: Vec<u8>,
     size: u64,
     checksum: u32,
-) -> Result<Vec<u8>, Cause> {
+) -> Result<Vec<u8>, LogErrorKind> {
     let compressed = bytes.len() as u64;
     if compressed == 0 && size == 0 {
         // What a recorder that falls leaves of a chunk that it is compressing.
         return Ok(bytes);
     }
     if size > compressed.saturating_mul(MOST_GROWTH) {
-        return Err(Cause::Growth { compressed, size });
+        return Err(LogErrorKind::Growth { compressed, size });
     }
     let whole = match compression {
         Compression::None => bytes,
@@ -78,20 +78,20 @@ pub(super) fn decompress(
     };
     let found = whole.len() as u64;
     if found != size {
-        return Err(Cause::Size { told: size, found });
+        return Err(LogErrorKind::Size { told: size, found });
     }
     if checksum != 0 && crc32fast::hash(&whole) != checksum {
-        return Err(Cause::Checksum);
+        return Err(LogErrorKind::Checksum);
     }
     Ok(whole)
 }
 
-fn read(decoder: impl Read, size: u64) -> Result<Vec<u8>, Cause> {
+fn read(decoder: impl Read, size: u64) -> Result<Vec<u8>, LogErrorKind> {
     let mut whole = Vec::new();
     decoder.take(size.saturating_add(1)).read_to_end(&mut whole).map_err(|error| fails(&error))?;
     Ok(whole)
 }
 
-fn fails(error: &impl ToString) -> Cause {
-    Cause::Undecompressable(error.to_string().replace(char::is_control, " "))
+fn fails(error: &impl ToString) -> LogErrorKind {
+    LogErrorKind::Undecompressable(error.to_string().replace(char::is_control, " "))
 }

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, io, ops::Range};
 
 use super::{Compression, Listener, Record, Scan, Section, u16_at, u32_at, u64_at, unreadable};
 use crate::log::{
-    error::{Cause, LogError, Missing, Truncation},
+    error::{LogError, LogErrorKind, Truncation, TruncationKind},
     source::{Source, Window},
 };
 
@@ -86,7 +86,11 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
             Some((op, start..start.checked_add(length)?))
         });
         let Some((op, content)) = content.filter(|(_, content)| window.within(content.end)) else {
-            let cause = if at == source.length() { Missing::End } else { Missing::RestOfRecord };
+            let cause = if at == source.length() {
+                TruncationKind::End
+            } else {
+                TruncationKind::RestOfRecord
+            };
             return Ok(scan.truncated(Truncation { offset: at, cause }));
         };
         let record = at..content.end;
@@ -99,7 +103,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
     }
     let end = window.get(at, MAGIC.len() as u64).map_err(unreadable(at))?;
     if end != Some(MAGIC) {
-        return Ok(scan.truncated(Truncation { offset: at, cause: Missing::End }));
+        return Ok(scan.truncated(Truncation { offset: at, cause: TruncationKind::End }));
     }
     scan.end_loose();
     // An index that does not tell all is none.
@@ -122,8 +126,8 @@ fn one(
     scan: &mut Scan,
     listener: &mut Listener<'_>,
     total: &mut Option<u64>,
-) -> io::Result<Result<(), Cause>> {
-    const SHORT: Cause = Cause::Malformed("it is shorter than what it says");
+) -> io::Result<Result<(), LogErrorKind>> {
+    const SHORT: LogErrorKind = LogErrorKind::Malformed("it is shorter than what it says");
     let most = match op {
         MESSAGE => MESSAGE_HEAD as u64,
         SCHEMA | CHANNEL => u64::MAX,
@@ -185,7 +189,7 @@ fn one(
 }
 
 /// The chunk that begins with some bytes; `None` if it is too short.
-fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Section, Cause>> {
+fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Section, LogErrorKind>> {
     let times = [u64_at(bytes, 0)?, u64_at(bytes, 8)?];
     let (size, checksum) = (u64_at(bytes, 16)?, u32_at(bytes, 24)?);
     // A name that goes beyond what was read is not that of a compression.

@@ -17,7 +17,7 @@ use compression::{Compression, decompress};
 pub(super) use mcap::MAGIC as MCAP_MAGIC;
 
 use super::{
-    error::{Cause, LogError, Truncation},
+    error::{LogError, LogErrorKind, Truncation},
     source::Source,
 };
 
@@ -139,7 +139,7 @@ impl Section {
     ///
     /// Takes at most [`MOST_GROWTH`] bytes for each byte that it has in the file, and 16 MiB besides.
     pub(super) fn load(&self, source: &Source) -> Result<Vec<u8>, LogError> {
-        let wrong = |cause: Cause| cause.at(self.offset);
+        let wrong = |cause: LogErrorKind| cause.at(self.offset);
         let bytes = source.read(self.bytes.clone()).map_err(|error| wrong(error.into()))?;
         decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
     }
@@ -178,7 +178,7 @@ impl Section {
                 }
                 Err(what) => {
                     at = usize::MAX;
-                    Err(Cause::Malformed(what).at(self.place(start)))
+                    Err(LogErrorKind::Malformed(what).at(self.place(start)))
                 }
             })
         })
@@ -201,5 +201,5 @@ fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
 }
 
 fn unreadable(offset: u64) -> impl Fn(io::Error) -> LogError {
-    move |error| Cause::Unreadable(error).at(offset)
+    move |error| LogErrorKind::Unreadable(error).at(offset)
 }

@@ -20,22 +20,22 @@ fn ros1() -> Vec<u8> {
     bytes
 }
 
-fn cdr(order: Order) -> Vec<u8> {
+fn cdr(order: ByteOrder) -> Vec<u8> {
     let [one, two] = match order {
-        Order::Little => [1, 0],
-        Order::Big => [0, 0],
+        ByteOrder::Little => [1, 0],
+        ByteOrder::Big => [0, 0],
     };
     let mut bytes = vec![0, one, two, 0];
     let four = |number: i32| match order {
-        Order::Little => number.to_le_bytes(),
-        Order::Big => number.to_be_bytes(),
+        ByteOrder::Little => number.to_le_bytes(),
+        ByteOrder::Big => number.to_be_bytes(),
     };
     bytes.extend([7, 9, 2].map(four).concat());
     // At 12: a text of two bytes, a number, and on to 16.
     bytes.extend([b'f', 0, 250, 0]);
     bytes.extend(match order {
-        Order::Little => 1.5_f64.to_le_bytes(),
-        Order::Big => 1.5_f64.to_be_bytes(),
+        ByteOrder::Little => 1.5_f64.to_le_bytes(),
+        ByteOrder::Big => 1.5_f64.to_be_bytes(),
     });
     bytes.extend([1, 0, 1, 0]);
     bytes.extend([2, 3, -4, 3].map(four).concat());
@@ -43,8 +43,8 @@ fn cdr(order: Order) -> Vec<u8> {
     bytes.extend([b'h', b'i', 0, 0]);
     bytes.extend(four(1));
     bytes.extend(match order {
-        Order::Little => [254, 255, 0, 0],
-        Order::Big => [255, 254, 0, 0],
+        ByteOrder::Little => [254, 255, 0, 0],
+        ByteOrder::Big => [255, 254, 0, 0],
     });
     bytes.extend(four(2));
     bytes.extend([b's', 0, 0, 0]);
@@ -55,8 +55,8 @@ fn cdr(order: Order) -> Vec<u8> {
 
 #[test]
 fn a_message_says_the_same_in_ros_1_and_in_either_order_of_cdr() {
-    let little = cdr(Order::Little);
-    let big = cdr(Order::Big);
+    let little = cdr(ByteOrder::Little);
+    let big = cdr(ByteOrder::Big);
     for (dialect, bytes) in
         [(Dialect::Ros1, &ros1()), (Dialect::Ros2, &little), (Dialect::Ros2, &big)]
     {
@@ -87,15 +87,15 @@ fn a_message_says_the_same_in_ros_1_and_in_either_order_of_cdr() {
 
 #[test]
 fn a_message_that_is_cut_is_short_wherever_that_is() {
-    for (dialect, bytes) in [(Dialect::Ros1, ros1()), (Dialect::Ros2, cdr(Order::Little))] {
+    for (dialect, bytes) in [(Dialect::Ros1, ros1()), (Dialect::Ros2, cdr(ByteOrder::Little))] {
         let definition = definition(dialect, TEXT);
         for length in 0..bytes.len() {
             let error = decode(&definition, &bytes[..length]).unwrap_err();
-            assert!(matches!(error.cause, Cause::Short { .. }), "{length}: {error}");
+            assert!(matches!(error.cause, DecodeErrorKind::Short { .. }), "{length}: {error}");
             assert!(error.offset <= length);
         }
         let longer = [&bytes[..], &[0; 8]].concat();
-        assert_eq!(decode(&definition, &longer).unwrap_err().cause, Cause::LeftOver(8));
+        assert_eq!(decode(&definition, &longer).unwrap_err().cause, DecodeErrorKind::LeftOver(8));
     }
 }
 

@@ -12,12 +12,12 @@ pub struct DefinitionError {
     pub line: usize,
     /// What is wrong.
     #[source]
-    pub cause: Cause,
+    pub cause: DefinitionErrorKind,
 }
 
 /// What is wrong at a line. What is quoted is cut to a few words.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Cause {
+pub enum DefinitionErrorKind {
     /// It is neither a field nor a constant.
     #[error("`{0}` is neither a field nor a constant")]
     Malformed(String),
@@ -53,7 +53,7 @@ pub enum Cause {
     TooLong,
 }
 
-impl Cause {
+impl DefinitionErrorKind {
     pub(super) fn at(self, line: usize) -> DefinitionError {
         DefinitionError { line, cause: self }
     }

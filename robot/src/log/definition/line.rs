@@ -2,12 +2,12 @@
 
 use super::{
     Count, Dialect,
-    error::{Cause, quoted},
+    error::{DefinitionErrorKind, quoted},
 };
 
 /// What a line says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Line<'t> {
+pub(super) enum DefinitionLine<'t> {
     /// Nothing.
     Empty,
     /// What follows belongs to another message.
@@ -19,40 +19,43 @@ pub(super) enum Line<'t> {
 }
 
 /// Reads one line.
-pub(super) fn line(dialect: Dialect, text: &str) -> Result<Line<'_>, Cause> {
+pub(super) fn line(
+    dialect: Dialect,
+    text: &str,
+) -> Result<DefinitionLine<'_>, DefinitionErrorKind> {
     let trimmed = text.trim();
     if trimmed.len() >= 3 && trimmed.bytes().all(|byte| byte == b'=') {
-        return Ok(Line::Separator);
+        return Ok(DefinitionLine::Separator);
     }
     let bare = trimmed.split('#').next().unwrap_or_default().trim_end();
     if bare.is_empty() {
-        return Ok(Line::Empty);
+        return Ok(DefinitionLine::Empty);
     }
-    let malformed = || Cause::Malformed(quoted(trimmed));
+    let malformed = || DefinitionErrorKind::Malformed(quoted(trimmed));
     let (written, rest) = bare.split_once(char::is_whitespace).ok_or_else(malformed)?;
     let rest = rest.trim_start();
     let (type_name, count) = type_of(written).ok_or_else(malformed)?;
     let end = rest.find(|letter: char| letter.is_whitespace() || letter == '=');
     let (name, after) = rest.split_at(end.unwrap_or(rest.len()));
     if !is_name(name) {
-        return Err(Cause::NotAName(quoted(name)));
+        return Err(DefinitionErrorKind::NotAName(quoted(name)));
     }
     let after = after.trim_start();
     if let Some(value) = after.strip_prefix('=') {
         if count != Count::One {
-            return Err(Cause::ConstantType(quoted(written)));
+            return Err(DefinitionErrorKind::ConstantType(quoted(written)));
         }
         // A text of ROS 1 is all that follows, `#` and all.
         let value = match (dialect, type_name) {
             (Dialect::Ros1, "string") => trimmed.split_once('=').map_or(value, |(_, all)| all),
             _ => value,
         };
-        return Ok(Line::Constant { type_name, name, value: value.trim() });
+        return Ok(DefinitionLine::Constant { type_name, name, value: value.trim() });
     }
     match dialect {
         Dialect::Ros1 if !after.is_empty() => Err(malformed()),
         // What follows the name in ROS 2 is a default, which no recorded message needs.
-        _ => Ok(Line::Field { type_name, count, name }),
+        _ => Ok(DefinitionLine::Field { type_name, count, name }),
     }
 }
 

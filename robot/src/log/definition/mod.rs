@@ -9,7 +9,7 @@ mod error;
 mod line;
 mod resolve;
 
-pub use error::{Cause, DefinitionError};
+pub use error::{DefinitionError, DefinitionErrorKind};
 
 /// Which of the two languages a definition is written in, and which rules its messages follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -53,14 +53,14 @@ pub struct Field {
     /// Its name.
     pub name: String,
     /// What it is, or what each in its list is.
-    pub kind: Kind,
+    pub kind: FieldType,
     /// Whether it is a list.
     pub count: Count,
 }
 
 /// What a field is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FieldType {
     /// `bool`.
     Bool,
     /// A whole number with a sign, of so many bytes. `byte` in ROS 1.
@@ -128,10 +128,10 @@ impl Definition {
 
     /// What stands at a path such as `pose.position.x` or `doors[0]`, if anything can.
     #[must_use]
-    pub fn at(&self, path: &str) -> Option<(Kind, Count)> {
-        let mut here = (Kind::Struct(0), Count::One);
+    pub fn at(&self, path: &str) -> Option<(FieldType, Count)> {
+        let mut here = (FieldType::Struct(0), Count::One);
         for step in path.split('.') {
-            let (Kind::Struct(index), Count::One) = here else { return None };
+            let (FieldType::Struct(index), Count::One) = here else { return None };
             let (name, indices) = step.split_once('[').unwrap_or((step, ""));
             let (_, field) = self.get(index)?.field(name)?;
             here = (field.kind, field.count);
@@ -149,18 +149,20 @@ impl Definition {
     }
 
     /// The fewest bytes that one of a kind can have, padding not counted.
-    pub(super) fn least(&self, kind: Kind) -> usize {
+    pub(super) fn least(&self, kind: FieldType) -> usize {
         least(kind, &self.structs)
     }
 }
 
-fn least(kind: Kind, structs: &[Struct]) -> usize {
+fn least(kind: FieldType, structs: &[Struct]) -> usize {
     match kind {
-        Kind::Bool => 1,
-        Kind::Int(bytes) | Kind::Unsigned(bytes) | Kind::Float(bytes) => bytes.into(),
-        Kind::Text | Kind::WideText => 4,
-        Kind::Time | Kind::Duration => 8,
-        Kind::Struct(index) => structs.get(index).map_or(0, |found| found.least),
+        FieldType::Bool => 1,
+        FieldType::Int(bytes) | FieldType::Unsigned(bytes) | FieldType::Float(bytes) => {
+            bytes.into()
+        }
+        FieldType::Text | FieldType::WideText => 4,
+        FieldType::Time | FieldType::Duration => 8,
+        FieldType::Struct(index) => structs.get(index).map_or(0, |found| found.least),
     }
 }
 

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
-    Cause, Count, Definition, DefinitionError, Dialect, Field, Kind, MOST_BYTES, MOST_DEPTH,
-    MOST_FIELDS, Struct,
+    Count, Definition, DefinitionError, DefinitionErrorKind, Dialect, Field, FieldType, MOST_BYTES,
+    MOST_DEPTH, MOST_FIELDS, Struct,
     error::quoted,
     least,
-    line::{Line, line},
+    line::{DefinitionLine, line},
     short_name,
 };
 
@@ -15,7 +15,7 @@ use super::{
 struct Section<'t> {
     name: String,
     line: usize,
-    lines: Vec<(usize, Line<'t>)>,
+    lines: Vec<(usize, DefinitionLine<'t>)>,
 }
 
 /// What the text need not define.
@@ -30,7 +30,7 @@ pub(super) fn resolve(
     text: &str,
 ) -> Result<Definition, DefinitionError> {
     if text.len().saturating_add(type_name.len()) > MOST_BYTES {
-        return Err(Cause::TooLong.at(1));
+        return Err(DefinitionErrorKind::TooLong.at(1));
     }
     let mut sections = sections(dialect, type_name, text)?;
     if dialect == Dialect::Ros2 {
@@ -81,12 +81,12 @@ fn sections<'t>(
     let mut numbered = text.lines().enumerate().map(|(nth, text)| (nth + 1, text));
     while let Some((number, text)) = numbered.next() {
         match line(dialect, text).map_err(|cause| cause.at(number))? {
-            Line::Empty => {}
-            Line::Separator => {
+            DefinitionLine::Empty => {}
+            DefinitionLine::Separator => {
                 let next = numbered.find(|(_, text)| !text.trim().is_empty());
                 let Some((number, text)) = next else { break };
                 let name = text.trim().strip_prefix("MSG:").map(|name| short_name(name.trim()));
-                let malformed = || Cause::Malformed(quoted(text.trim())).at(number);
+                let malformed = || DefinitionErrorKind::Malformed(quoted(text.trim())).at(number);
                 let name = name.filter(|name| !name.is_empty()).ok_or_else(malformed)?;
                 let next = Section { name, line: number, lines: Vec::new() };
                 sections.push(std::mem::replace(&mut section, next));
@@ -126,7 +126,7 @@ impl Resolver<'_> {
     ) -> Result<(), DefinitionError> {
         let Some(section) = self.sections.get(index) else { return Ok(()) };
         if depth > MOST_DEPTH {
-            return Err(Cause::TooDeep.at(section.line));
+            return Err(DefinitionErrorKind::TooDeep.at(section.line));
         }
         within.insert(index);
         let mut made = Struct {
@@ -139,21 +139,23 @@ impl Resolver<'_> {
         let mut size = Size { fields: 0, depth: 1 };
         for (number, told) in &section.lines {
             let (type_name, count, name) = match *told {
-                Line::Constant { type_name, name, value } => {
+                DefinitionLine::Constant { type_name, name, value } => {
                     if self.primitive(type_name).is_none() {
-                        return Err(Cause::ConstantType(quoted(type_name)).at(*number));
+                        return Err(
+                            DefinitionErrorKind::ConstantType(quoted(type_name)).at(*number)
+                        );
                     }
                     made.constants.push((name.to_owned(), value.to_owned()));
                     continue;
                 }
-                Line::Field { type_name, count, name } => (type_name, count, name),
-                Line::Empty | Line::Separator => continue,
+                DefinitionLine::Field { type_name, count, name } => (type_name, count, name),
+                DefinitionLine::Empty | DefinitionLine::Separator => continue,
             };
             let kind = self.kind(type_name, &section.name).map_err(|cause| cause.at(*number))?;
             size.fields += 1;
-            if let Kind::Struct(part) = kind {
+            if let FieldType::Struct(part) = kind {
                 if within.contains(&part) {
-                    return Err(Cause::PartOfItself(quoted(type_name)).at(*number));
+                    return Err(DefinitionErrorKind::PartOfItself(quoted(type_name)).at(*number));
                 }
                 if structs.get(part).is_none_or(Option::is_none) {
                     self.add(part, depth + 1, structs, sizes, within)?;
@@ -163,22 +165,22 @@ impl Resolver<'_> {
                 size.depth = size.depth.max(part.depth + 1);
             }
             if size.depth > MOST_DEPTH {
-                return Err(Cause::TooDeep.at(*number));
+                return Err(DefinitionErrorKind::TooDeep.at(*number));
             }
             if size.fields > MOST_FIELDS {
-                return Err(Cause::TooManyFields.at(*number));
+                return Err(DefinitionErrorKind::TooManyFields.at(*number));
             }
             if !names.insert(name) {
-                return Err(Cause::TwoFields(quoted(name)).at(*number));
+                return Err(DefinitionErrorKind::TwoFields(quoted(name)).at(*number));
             }
             let one = match kind {
-                Kind::Struct(part) => {
+                FieldType::Struct(part) => {
                     structs.get(part).and_then(Option::as_ref).map_or(0, |s| s.least)
                 }
                 primitive => least(primitive, &[]),
             };
             if one == 0 && count != Count::One {
-                return Err(Cause::ListOfNothing(quoted(type_name)).at(*number));
+                return Err(DefinitionErrorKind::ListOfNothing(quoted(type_name)).at(*number));
             }
             made.least = made.least.saturating_add(match count {
                 Count::One => one,
@@ -190,7 +192,7 @@ impl Resolver<'_> {
         if made.fields.is_empty() && self.dialect == Dialect::Ros2 {
             // As rosidl does, for a struct of C has at least one member.
             let name = "structure_needs_at_least_one_member".to_owned();
-            made.fields.push(Field { name, kind: Kind::Unsigned(1), count: Count::One });
+            made.fields.push(Field { name, kind: FieldType::Unsigned(1), count: Count::One });
             made.least = 1;
         }
         within.remove(&index);
@@ -203,7 +205,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    fn kind(&self, type_name: &str, user: &str) -> Result<Kind, Cause> {
+    fn kind(&self, type_name: &str, user: &str) -> Result<FieldType, DefinitionErrorKind> {
         if let Some(kind) = self.primitive(type_name) {
             return Ok(kind);
         }
@@ -218,34 +220,34 @@ impl Resolver<'_> {
             },
         };
         if let Some(&index) = self.names.get(full.as_str()) {
-            return Ok(Kind::Struct(index));
+            return Ok(FieldType::Struct(index));
         }
         // Some writers leave the package out.
         let alike = self.last_parts.get(type_name).map(Vec::as_slice).unwrap_or_default();
         match alike {
-            [index] => Ok(Kind::Struct(*index)),
-            [] => Err(Cause::UnknownType(quoted(type_name))),
-            _ => Err(Cause::TwoTypes(quoted(type_name))),
+            [index] => Ok(FieldType::Struct(*index)),
+            [] => Err(DefinitionErrorKind::UnknownType(quoted(type_name))),
+            _ => Err(DefinitionErrorKind::TwoTypes(quoted(type_name))),
         }
     }
 
-    fn primitive(&self, type_name: &str) -> Option<Kind> {
+    fn primitive(&self, type_name: &str) -> Option<FieldType> {
         Some(match (type_name, self.dialect) {
-            ("bool", _) => Kind::Bool,
-            ("int8", _) | ("byte", Dialect::Ros1) => Kind::Int(1),
-            ("int16", _) => Kind::Int(2),
-            ("int32", _) => Kind::Int(4),
-            ("int64", _) => Kind::Int(8),
-            ("uint8" | "char", _) | ("byte", Dialect::Ros2) => Kind::Unsigned(1),
-            ("uint16", _) => Kind::Unsigned(2),
-            ("uint32", _) => Kind::Unsigned(4),
-            ("uint64", _) => Kind::Unsigned(8),
-            ("float32", _) => Kind::Float(4),
-            ("float64", _) => Kind::Float(8),
-            ("string", _) => Kind::Text,
-            ("wstring", Dialect::Ros2) => Kind::WideText,
-            ("time", Dialect::Ros1) => Kind::Time,
-            ("duration", Dialect::Ros1) => Kind::Duration,
+            ("bool", _) => FieldType::Bool,
+            ("int8", _) | ("byte", Dialect::Ros1) => FieldType::Int(1),
+            ("int16", _) => FieldType::Int(2),
+            ("int32", _) => FieldType::Int(4),
+            ("int64", _) => FieldType::Int(8),
+            ("uint8" | "char", _) | ("byte", Dialect::Ros2) => FieldType::Unsigned(1),
+            ("uint16", _) => FieldType::Unsigned(2),
+            ("uint32", _) => FieldType::Unsigned(4),
+            ("uint64", _) => FieldType::Unsigned(8),
+            ("float32", _) => FieldType::Float(4),
+            ("float64", _) => FieldType::Float(8),
+            ("string", _) => FieldType::Text,
+            ("wstring", Dialect::Ros2) => FieldType::WideText,
+            ("time", Dialect::Ros1) => FieldType::Time,
+            ("duration", Dialect::Ros1) => FieldType::Duration,
             _ => return None,
         })
     }

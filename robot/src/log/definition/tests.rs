@@ -27,13 +27,13 @@ fn a_message_of_ros_1_is_resolved_through_its_sections() {
         [("LEFT", "1"), ("WORD", "a # b")].map(|(a, b)| (a.into(), b.into()))
     );
     assert_eq!(root.field("K").unwrap().1.count, Count::Fixed(9));
-    let Kind::Struct(header) = root.fields[0].kind else { panic!() };
+    let FieldType::Struct(header) = root.fields[0].kind else { panic!() };
     let header = definition.get(header).unwrap();
-    assert_eq!(header.fields[1].kind, Kind::Time);
-    let Kind::Struct(part) = root.fields[1].kind else { panic!() };
+    assert_eq!(header.fields[1].kind, FieldType::Time);
+    let FieldType::Struct(part) = root.fields[1].kind else { panic!() };
     let kinds: Vec<_> =
         definition.get(part).unwrap().fields.iter().map(|field| field.kind).collect();
-    assert_eq!(kinds, [Kind::Int(1), Kind::Unsigned(1)]);
+    assert_eq!(kinds, [FieldType::Int(1), FieldType::Unsigned(1)]);
     assert_eq!(root.least, 16 + 4 + 72);
 }
 
@@ -47,11 +47,11 @@ fn a_message_of_ros_2_has_bounds_and_defaults() {
     let definition = ros2(&text).unwrap();
     let root = definition.root();
     assert_eq!(root.fields[2].count, Count::AtMost(5));
-    assert_eq!(root.fields[3].kind, Kind::Unsigned(1));
-    assert_eq!(root.fields[5].kind, Kind::WideText);
+    assert_eq!(root.fields[3].kind, FieldType::Unsigned(1));
+    assert_eq!(root.fields[5].kind, FieldType::WideText);
     assert_eq!(root.fields[6].count, Count::Fixed(2));
     assert_eq!(root.constants, [("MOST".to_owned(), "4".to_owned())]);
-    let Kind::Struct(stamp) = root.fields[0].kind else { panic!() };
+    let FieldType::Struct(stamp) = root.fields[0].kind else { panic!() };
     assert_eq!(definition.get(stamp).unwrap().fields[1].name, "nanosec");
     // A message without fields takes a byte.
     assert_eq!(ros2("").unwrap().root().least, 1);

@@ -16,7 +16,7 @@ use super::Trace;
 
 /// What is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Search {
+pub struct WorldSearch {
     /// The class of worlds.
     pub class: Class,
     /// Worlds have at most so many edges.
@@ -25,14 +25,14 @@ pub struct Search {
     pub steps: u64,
 }
 
-impl Search {
+impl WorldSearch {
     /// So many steps are a second's work.
     pub const STEPS: u64 = 500_000;
 }
 
 /// The smallest world that explains a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Smallest {
+pub enum SmallestWorld {
     /// A world; of those with as few edges the first found.
     World {
         /// The world; the robot starts with dart 0 behind it.
@@ -60,9 +60,9 @@ pub enum Smallest {
 pub fn smallest(
     trace: &Trace,
     known: Option<&PartialMap>,
-    search: Search,
+    search: WorldSearch,
     watch: &impl Watch,
-) -> Smallest {
+) -> SmallestWorld {
     let mut growing = Growing::new(trace, search.class, watch);
     growing.steps = search.steps;
     // A world has as many darts as the vertices that were told apart by their degrees.
@@ -74,22 +74,22 @@ pub fn smallest(
     let darts = darts.max(known.map_or(1, |map| map.dart_count() as u64));
     let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX);
     if least > MOST_EDGES {
-        return Smallest::Unfinished { edges: least - 1 };
+        return SmallestWorld::Unfinished { edges: least - 1 };
     }
     for edges in least..=search.edges.min(MOST_EDGES) {
         growing.edges = edges;
         if growing.begin(known) {
             let (graph, marker) = (growing.world.graph(), growing.world.marker.map(Dart));
-            return Smallest::World { graph, marker };
+            return SmallestWorld::World { graph, marker };
         }
         if growing.stopped {
-            return Smallest::Unfinished { edges: edges - 1 };
+            return SmallestWorld::Unfinished { edges: edges - 1 };
         }
     }
     if search.edges > MOST_EDGES {
-        return Smallest::Unfinished { edges: MOST_EDGES };
+        return SmallestWorld::Unfinished { edges: MOST_EDGES };
     }
-    Smallest::None { event: growing.farthest }
+    SmallestWorld::None { event: growing.farthest }
 }
 
 /// Worlds with more edges are not tried: the search is as deep as a world has edges.
@@ -412,14 +412,14 @@ mod tests {
         isomorphism::code,
         marker::Directional,
         trace::{
-            Claim, Event, follow, poses,
+            Claim, TraceEvent, follow, poses,
             tests::{explored, lollipop, walked},
         },
         world::{GraphWorld, State},
     };
 
-    fn search(class: Class, edges: usize) -> Search {
-        Search { class, edges, steps: 10_000_000 }
+    fn search(class: Class, edges: usize) -> WorldSearch {
+        WorldSearch { class, edges, steps: 10_000_000 }
     }
 
     /// The number of edges of the smallest world, by trying them all: every start, with the marker
@@ -453,10 +453,11 @@ mod tests {
 
     #[test]
     fn a_ring_of_three_explains_a_walk_round_a_ring_of_four_without_a_marker() {
-        let corner = Event::Perceived(Percept { degree: 2, sighting: Sighting::Nothing });
-        let trace = Trace::new([corner, Event::Left(Door(1))].repeat(4)).unwrap();
+        let corner = TraceEvent::Perceived(Percept { degree: 2, sighting: Sighting::Nothing });
+        let trace = Trace::new([corner, TraceEvent::Left(Door(1))].repeat(4)).unwrap();
         for (class, edges) in [(Class::Multigraph, 1), (Class::Simple, 3)] {
-            let Smallest::World { graph, marker } = smallest(&trace, None, search(class, 9), &())
+            let SmallestWorld::World { graph, marker } =
+                smallest(&trace, None, search(class, 9), &())
             else {
                 panic!("{class}")
             };
@@ -471,24 +472,25 @@ mod tests {
         // The end of the tail is left and come back to, and looks different.
         trace.percepts[2].degree = 3;
         let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
-        assert_eq!(found, Smallest::None { event: 4 });
+        assert_eq!(found, SmallestWorld::None { event: 4 });
     }
 
     #[test]
     fn there_is_one_marker() {
-        let percept =
-            |degree| Event::Perceived(Percept { degree, sighting: Sighting::Pointing(Door::BACK) });
+        let percept = |degree| {
+            TraceEvent::Perceived(Percept { degree, sighting: Sighting::Pointing(Door::BACK) })
+        };
         // An end and a corner are not one vertex.
-        let trace = Trace::new([percept(1), Event::Left(Door(0)), percept(2)]).unwrap();
+        let trace = Trace::new([percept(1), TraceEvent::Left(Door(0)), percept(2)]).unwrap();
         let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
-        assert_eq!(found, Smallest::None { event: 2 });
+        assert_eq!(found, SmallestWorld::None { event: 2 });
     }
 
     #[test]
     fn a_search_that_is_cut_short_says_so() {
         let trace = explored(&lollipop(), Dart(0));
-        let short = Search { steps: 3, ..search(Class::Multigraph, 6) };
-        assert!(matches!(smallest(&trace, None, short, &()), Smallest::Unfinished { .. }));
+        let short = WorldSearch { steps: 3, ..search(Class::Multigraph, 6) };
+        assert!(matches!(smallest(&trace, None, short, &()), SmallestWorld::Unfinished { .. }));
     }
 
     proptest! {
@@ -502,7 +504,7 @@ mod tests {
             let trace = trace.up_to(part.index(trace.len()));
             let known = follow(&trace, Claim::Part, 100).exploration.map().clone();
             let edges = |known| match smallest(&trace, known, search(Class::Multigraph, 6), &()) {
-                Smallest::World { graph, marker } => {
+                SmallestWorld::World { graph, marker } => {
                     assert!(explains(&graph, marker, &trace));
                     graph.edge_count()
                 }
@@ -517,7 +519,7 @@ mod tests {
         ) {
             let trace = explored(&graph, Dart(0));
             let found = smallest(&trace, None, search(Class::Multigraph, 12), &());
-            let Smallest::World { graph: found, marker } = found else { panic!("{found:?}") };
+            let SmallestWorld::World { graph: found, marker } = found else { panic!("{found:?}") };
             prop_assert_eq!(marker, Some(Dart(0)));
             prop_assert_eq!(code(&found, Dart(0)), code(&graph, Dart(0)));
         }
@@ -532,20 +534,20 @@ mod tests {
             let facing = Dart(marked.index(graph.dart_count()) as u32);
             let mut world = GraphWorld::new(&graph, facing);
             world = world.clone().at(State { pose: Dart(0), ..world.state() });
-            let mut events = vec![Event::Perceived(world.sensed())];
+            let mut events = vec![TraceEvent::Perceived(world.sensed())];
             for step in walk {
                 let door = Door(u32::from(step) % world.sensed().degree);
                 crate::world::World::traverse(&mut world, door).unwrap();
-                events.extend([Event::Left(door), Event::Perceived(world.sensed())]);
+                events.extend([TraceEvent::Left(door), TraceEvent::Perceived(world.sensed())]);
             }
             let trace = Trace::new(events).unwrap();
             let edges = match smallest(&trace, None, search(class, 5), &()) {
-                Smallest::World { graph, marker } => {
+                SmallestWorld::World { graph, marker } => {
                     prop_assert!(explains(&graph, marker, &trace));
                     Some(graph.edge_count())
                 }
-                Smallest::None { .. } => None,
-                Smallest::Unfinished { .. } => panic!("it was cut short"),
+                SmallestWorld::None { .. } => None,
+                SmallestWorld::Unfinished { .. } => panic!("it was cut short"),
             };
             prop_assert_eq!(edges, by_trying_all(&trace, class, 5));
         }

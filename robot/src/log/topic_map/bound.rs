@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{Angle, Carrier, Cause, Length, Mapping, MappingError, Part, Role};
+use super::{Angle, Carrier, Cause, Length, Part, Role, TopicMap, TopicMapError};
 use crate::log::{
-    definition::{Count, Definition, Kind},
+    definition::{Count, Definition, FieldType},
     topic::Topic,
 };
 
@@ -35,12 +35,12 @@ impl Bound {
     }
 }
 
-pub(super) fn bind(mapping: &Mapping, topics: &[Topic]) -> Result<Bound, MappingError> {
+pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<Bound, TopicMapError> {
     let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
     Ok(Bound { carried: carried.collect::<Result<_, _>>()? })
 }
 
-fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, MappingError> {
+fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
     let wrong = |cause: Cause| cause.at(carrier.place.clone());
     let (index, topic) = named(&carrier.topic, topics).map_err(wrong)?;
     let definition = topic.definition.as_ref().map_err(|why| {
@@ -111,11 +111,12 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Caus
 fn leads(definition: &Definition, path: &str, part: Part) -> bool {
     let found = definition.at(path);
     if part != Part::Quaternion {
-        let number = |kind| matches!(kind, Kind::Int(_) | Kind::Unsigned(_) | Kind::Float(_));
+        let number =
+            |kind| matches!(kind, FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_));
         return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);
     }
     ["x", "y", "z", "w"].iter().all(|name| {
         let part = definition.at(&format!("{path}.{name}"));
-        part.is_some_and(|(kind, count)| matches!(kind, Kind::Float(_)) && count == Count::One)
+        part.is_some_and(|(kind, count)| matches!(kind, FieldType::Float(_)) && count == Count::One)
     })
 }

@@ -11,14 +11,16 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::PartialMap,
     percept::Percept,
-    trace::{Case, Choosing, Reached, Smallest, Why},
+    trace::{AlgorithmCase, Choosing, MisfitReason, Reached, SmallestWorld},
 };
 use toposlam_robot::{
-    conform::{Cause, Divergence, Event, Evidence, Kind, Perceived, Quirks, Verdict},
+    conform::{
+        ConformVerdict, Divergence, DivergenceCause, Event, Evidence, Kind, Perceived, Quirks,
+    },
     evaluation::class::FORMS,
 };
 
-use super::{Judged, minimised::Minimised};
+use super::{Judged, minimise::Minimised};
 use crate::cli::text::{counted, grouped, vertices};
 
 /// So many ways are told one by one.
@@ -60,7 +62,7 @@ impl Judged {
         }
     }
 
-    fn remarks(&self, verdict: Verdict) -> Vec<String> {
+    fn remarks(&self, verdict: ConformVerdict) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(truncation) = self.opened.log.truncation() {
             remarks.push(format!("the log is {truncation}"));
@@ -74,13 +76,13 @@ impl Judged {
             (Some(_), None) => remarks.push("the log does not tell how the run ended".to_owned()),
             _ => {}
         }
-        if let Some(Smallest::Unfinished { edges }) = self.judgement.smallest {
+        if let Some(SmallestWorld::Unfinished { edges }) = self.judgement.smallest {
             remarks.push(format!(
                 "no world with up to {} explains it; not all larger ones were tried",
                 counted(edges, "edge")
             ));
         }
-        if let (Verdict::Conforms, Some(followed)) = (verdict, &self.judgement.followed)
+        if let (ConformVerdict::Conforms, Some(followed)) = (verdict, &self.judgement.followed)
             && followed.reached == Reached::EndOfTrace
         {
             remarks.push("it ends before the map is complete".to_owned());
@@ -121,7 +123,7 @@ impl Judged {
                 };
                 facts.push(("world", format!("{}, {from}; {fit}", world.name)));
             }
-            (_, _, Some(Smallest::World { graph, .. })) => {
+            (_, _, Some(SmallestWorld::World { graph, .. })) => {
                 let (edges, count) = (counted(graph.edge_count(), "edge"), graph.vertex_count());
                 let smallest = format!("{edges}, {}", vertices(count));
                 facts.push((
@@ -205,15 +207,15 @@ impl Judged {
     }
 
     /// What would have been allowed.
-    fn allowed(&self, cause: &Cause) -> Vec<String> {
+    fn allowed(&self, cause: &DivergenceCause) -> Vec<String> {
         match cause {
-            Cause::World(misfit) => {
-                let candidate = |(state, why): &(toposlam_model::world::State, Why)| {
+            DivergenceCause::World(misfit) => {
+                let candidate = |(state, why): &(toposlam_model::world::State, MisfitReason)| {
                     let pose = self.known.as_ref().map(|known| known.pose(state.pose));
                     let pose = pose.unwrap_or_default();
                     match why {
-                        Why::Percept { expected } => format!("{pose}: {expected}"),
-                        Why::NoSuchDoor { degree } => {
+                        MisfitReason::Percept { expected } => format!("{pose}: {expected}"),
+                        MisfitReason::NoSuchDoor { degree } => {
                             format!("{pose}: doors 0 to {}", degree.saturating_sub(1))
                         }
                     }
@@ -224,18 +226,18 @@ impl Judged {
                 }
                 told
             }
-            Cause::Algorithm(departure) => {
+            DivergenceCause::Algorithm(departure) => {
                 departure.allowed.iter().map(ToString::to_string).collect()
             }
-            Cause::Number { expected, .. } => vec![format!("number {expected}")],
-            Cause::Moves { made, .. } => vec![counted(*made, "move")],
+            DivergenceCause::Number { expected, .. } => vec![format!("number {expected}")],
+            DivergenceCause::Moves { made, .. } => vec![counted(*made, "move")],
             _ => Vec::new(),
         }
     }
 
     fn coverage(&self) -> Vec<Covered> {
         let Judged { judgement, known, .. } = self;
-        let cases = Case::ALL.into_iter().map(|case| Covered {
+        let cases = AlgorithmCase::ALL.into_iter().map(|case| Covered {
             case: case.name().to_owned(),
             count: judgement.coverage.algorithm.count(case),
             reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),
@@ -264,7 +266,7 @@ impl Judged {
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
             (Some(known), _) => Some(picture::svg(&Picture::from(&known.world))),
-            (None, Some(Smallest::World { graph, marker })) => {
+            (None, Some(SmallestWorld::World { graph, marker })) => {
                 let start = marker.or(Some(Dart(0)));
                 let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
                 Some(picture::svg(&Picture::from(&world)))

@@ -19,7 +19,7 @@ const TOLD: f64 = 1.0;
 
 /// Makes events of percepts, doors and odometry as they come.
 #[derive(Clone, Debug, Default)]
-pub struct Telling {
+pub struct RecordedEvents {
     events: Vec<Event>,
     /// Where the robot was of late, by its wheels: as far back as a direction needs.
     way: VecDeque<Odometry>,
@@ -27,7 +27,7 @@ pub struct Telling {
     left: Option<(Odometry, usize, f64)>,
 }
 
-impl Telling {
+impl RecordedEvents {
     /// The robot is there by its wheels.
     pub fn moved(&mut self, odometry: Odometry) {
         if let Some((from, event, direction)) = self.left
@@ -125,7 +125,7 @@ mod tests {
 
     /// A robot that comes to a T by its stem, says that it leaves by a door, and drives somewhere.
     fn offs(door: u32, to: [f64; 2], entry: f64) -> (Option<f64>, Option<f64>) {
-        let mut telling = Telling::default();
+        let mut telling = RecordedEvents::default();
         let at = |position| Odometry { position, heading: 0.0 };
         telling.moved(at([0.0, 0.0]));
         telling.perceived(Source::default(), &percept(0, [true, true, false, true], PI));

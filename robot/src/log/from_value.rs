@@ -48,15 +48,15 @@ impl<T: Field, const MANY: usize> Field for [T; MANY] {
 }
 
 /// A message of the project.
-pub(super) trait Read: Sized {
+pub(super) trait FromValue: Sized {
     /// The message that a value is, or the field that it lacks.
-    fn read(value: &Value<'_>) -> Result<Self, &'static str>;
+    fn from_value(value: &Value<'_>) -> Result<Self, &'static str>;
 }
 
 macro_rules! read {
     ($($name:ident { $($field:ident)* })*) => {$(
-        impl Read for $name {
-            fn read(value: &Value<'_>) -> Result<Self, &'static str> {
+        impl FromValue for $name {
+            fn from_value(value: &Value<'_>) -> Result<Self, &'static str> {
                 let Value::Struct(made, values) = value else { return Err("") };
                 $(
                     let name = stringify!($field).trim_start_matches("r#");

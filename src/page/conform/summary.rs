@@ -1,6 +1,6 @@
 //! What is said of several logs together.
 
-use super::{Level, coverage, each, panel, words};
+use super::{Level, coverage, each, panel, wording};
 use crate::{
     picture::escaped,
     report::{Report, Told},
@@ -8,11 +8,11 @@ use crate::{
 
 /// The verdicts, each with a link to its log, and what all logs cover.
 pub(super) fn section(reports: &[Report]) -> String {
-    let worst = words::worst(reports);
+    let worst = wording::worst(reports);
     let heading = Level::First.heading(&format!(
         "{}<strong>{}</strong>",
-        words::sign(worst),
-        words::sentence(&words::tally(reports)).trim_end_matches('.'),
+        wording::sign(worst),
+        wording::sentence(&wording::tally(reports)).trim_end_matches('.'),
     ));
     let verdict = worst.name();
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
@@ -21,7 +21,7 @@ pub(super) fn section(reports: &[Report]) -> String {
     } else {
         format!(
             "<div class=\"because\"><table class=\"logs\">\n<thead><tr><th scope=\"col\">Log</th>\
-             <th scope=\"col\">Verdict</th><th scope=\"col\">Why</th>\
+             <th scope=\"col\">ConformVerdict</th><th scope=\"col\">Why</th>\
              <th scope=\"col\" class=\"right\">Events</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\
              </div>\n",
             each(&numbered, |(report, number)| row(report, *number))
@@ -48,7 +48,7 @@ fn row(report: &Report, number: usize) -> String {
             format!("<span class=\"chip\">{culprit}</span> event {event}: {}", escaped(what))
         }
         None => {
-            report.remarks.first().map_or_else(|| words::fits(report), |remark| escaped(remark))
+            report.remarks.first().map_or_else(|| wording::fits(report), |remark| escaped(remark))
         }
     };
     format!(
@@ -56,7 +56,7 @@ fn row(report: &Report, number: usize) -> String {
          <td class=\"is {verdict}\">{}{verdict}</td><td>{why}</td>\
          <td class=\"right number\">{}</td></tr>\n",
         escaped(&report.log),
-        words::sign(report.verdict),
+        wording::sign(report.verdict),
         report.events.len(),
     )
 }

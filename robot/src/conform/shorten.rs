@@ -4,20 +4,20 @@ use std::mem::discriminant;
 
 use toposlam_model::{
     enumerate::Watch,
-    trace::{self, Trace, shortened},
+    trace::{Trace, TraceEvent, shortened},
 };
 
 use super::{
-    cause::{Cause, Divergence},
+    divergence::{Divergence, DivergenceCause},
     events::{Event, Events, Kind, Perceived, Source},
-    gathered::{Seen, derived},
-    judgement::{Driver, Judgement, Question, judge},
+    extract::{Seen, derived},
+    judgement::{ConformConfig, Judgement, RunDriver, judge},
     quirks::Quirks,
 };
 
 /// A log that diverges in the same way as a longer one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shorter {
+pub struct ShortenedRun {
     /// Its events.
     pub events: Events,
     /// Whether it diverges by itself, in whatever world and whoever drives.
@@ -30,15 +30,21 @@ pub struct Shorter {
 /// Where percepts and doors diverge, stretches of moves are left out; where an event contradicts itself
 /// or odometry, all but the last events are.
 #[must_use]
-pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -> Option<Shorter> {
+pub fn shorten_run(
+    judgement: &Judgement,
+    question: &ConformConfig,
+    watch: &impl Watch,
+) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
-    let anyone = Question { world: None, driver: Driver::Anyone, ..question.clone() };
-    let judged = |events: &Events, question: &Question| {
+    let anyone = ConformConfig { world: None, driver: RunDriver::Anyone, ..question.clone() };
+    let judged = |events: &Events, question: &ConformConfig| {
         let judgement = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
         judgement.divergence.filter(|found| alike(found, divergence))
     };
     match divergence.cause {
-        Cause::World(_) | Cause::Algorithm(_) | Cause::NoWorld { .. } => {
+        DivergenceCause::World(_)
+        | DivergenceCause::Algorithm(_)
+        | DivergenceCause::NoWorld { .. } => {
             let last = judgement.places.iter().position(|&place| place == divergence.event)?;
             let shows = |trace: &Trace| {
                 let events = of_trace(trace);
@@ -48,9 +54,12 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
             let cut = judgement.trace.up_to(last);
             let short = shortened(&cut, shows);
             let events = Events { head: judgement.events.head.clone(), ..of_trace(&short) };
-            judged(&events, question).map(|_| Shorter { events, by_itself: false })
+            judged(&events, question).map(|_| ShortenedRun { events, by_itself: false })
         }
-        Cause::Unfinished { .. } | Cause::Map | Cause::WrongMap | Cause::Moves { .. } => None,
+        DivergenceCause::Unfinished { .. }
+        | DivergenceCause::Map
+        | DivergenceCause::WrongMap
+        | DivergenceCause::Moves { .. } => None,
         _ => {
             // What odometry says of a door comes with the event after it.
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
@@ -58,7 +67,7 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
                 let events = judgement.events.from(first, last)?;
                 let found = judged(&events, &anyone)?;
                 let same = found.event == divergence.event - first;
-                same.then_some(Shorter { events, by_itself: true })
+                same.then_some(ShortenedRun { events, by_itself: true })
             })
         }
     }
@@ -67,7 +76,7 @@ pub fn shorter(judgement: &Judgement, question: &Question, watch: &impl Watch) -
 /// The least that was seen of which the event at a place among those derived from all is derived; `None`
 /// where it cannot be derived but with all, or is none that shows in what was seen alone.
 #[must_use]
-pub fn shorter_seen<'s>(seen: &'s [Seen], event: &Event) -> Option<&'s [Seen]> {
+pub fn shorten_frames<'s>(seen: &'s [Seen], event: &Event) -> Option<&'s [Seen]> {
     let alone = matches!(event.kind, Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided);
     let end = seen.partition_point(|seen| seen.source <= event.source);
     let shows = |first: &usize| {
@@ -87,7 +96,7 @@ const FAR: usize = 400;
 /// expectation.
 fn alike(one: &Divergence, other: &Divergence) -> bool {
     match (&one.cause, &other.cause) {
-        (Cause::World(one), Cause::World(other)) => {
+        (DivergenceCause::World(one), DivergenceCause::World(other)) => {
             let mut why = one.candidates.iter().map(|(_, why)| why);
             why.all(|why| other.candidates.iter().any(|(_, other)| other == why))
         }
@@ -97,18 +106,18 @@ fn alike(one: &Divergence, other: &Divergence) -> bool {
 
 /// Events of percepts and doors alone, a second apart.
 fn of_trace(trace: &Trace) -> Events {
-    let event = |(place, event): (usize, trace::Event)| {
+    let event = |(place, event): (usize, TraceEvent)| {
         let moves = place as u32 / 2;
         let source = Source { time: place as u64 * 1_000_000_000, ..Source::default() };
         let kind = match event {
-            trace::Event::Perceived(percept) => Kind::Perceived(Perceived {
+            TraceEvent::Perceived(percept) => Kind::Perceived(Perceived {
                 percept,
                 number: Some(moves),
                 form: None,
                 entry: None,
                 entry_off: None,
             }),
-            trace::Event::Left(door) => Kind::Left { door, number: Some(moves + 1), off: None },
+            TraceEvent::Left(door) => Kind::Left { door, number: Some(moves + 1), off: None },
         };
         Event { source, kind }
     };

@@ -8,13 +8,13 @@ use std::{
 
 use super::{
     container::{Record, Section},
-    error::{Cause, LogError},
-    reading::Log,
+    error::{LogError, LogErrorKind},
+    reader::Log,
 };
 
 /// A message of a log, not yet decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Message {
+pub struct RawMessage {
     /// Which topic of the log it is on.
     pub topic: usize,
     /// When it was recorded, in nanoseconds.
@@ -31,7 +31,7 @@ pub struct Message {
 const HELD: u64 = 64 << 20;
 
 /// The messages of a log in the order of their times.
-pub struct Messages<'l> {
+pub struct RawMessages<'l> {
     log: &'l Log,
     /// Whether each topic is wanted.
     wanted: Vec<bool>,
@@ -65,7 +65,7 @@ struct Held {
     asked: u64,
 }
 
-impl<'l> Messages<'l> {
+impl<'l> RawMessages<'l> {
     pub(super) fn new(log: &'l Log, topics: &[usize]) -> Self {
         let mut ahead: Vec<usize> = (0..log.sections.len()).collect();
         let start = |section: usize| log.sections.get(section).and_then(|section| section.times);
@@ -90,7 +90,7 @@ impl<'l> Messages<'l> {
         self.held_bytes = 0;
     }
 
-    fn message(&mut self) -> Result<Option<Message>, LogError> {
+    fn message(&mut self) -> Result<Option<RawMessage>, LogError> {
         loop {
             while let Some(&section) = self.ahead.last() {
                 let start = self.log.sections.get(section).and_then(|section| section.times);
@@ -114,7 +114,7 @@ impl<'l> Messages<'l> {
             self.release(next.section);
             let Some(bytes) = bytes else { continue };
             let section = self.log.sections.get(next.section);
-            return Ok(Some(Message {
+            return Ok(Some(RawMessage {
                 topic: next.topic,
                 time: next.time,
                 offset: section.map_or(0, |section| section.place(next.at)),
@@ -132,11 +132,11 @@ impl<'l> Messages<'l> {
         let mut waiting = 0;
         for read in section.records(log.format, &bytes) {
             let (at, Record::Message { connection, time, bytes }) = read? else { continue };
-            let wrong = |cause: Cause| cause.at(section.place(at));
+            let wrong = |cause: LogErrorKind| cause.at(section.place(at));
             let topic = log.connections.get(&connection).copied();
-            let topic = topic.ok_or_else(|| wrong(Cause::UnknownConnection(connection)))?;
+            let topic = topic.ok_or_else(|| wrong(LogErrorKind::UnknownConnection(connection)))?;
             if time < start {
-                return Err(wrong(Cause::TooOld));
+                return Err(wrong(LogErrorKind::TooOld));
             }
             let [start, end] = [bytes.start, bytes.end].map(|within| at + within);
             self.waiting.push(Reverse(Waiting { time, section: index, at, start, end, topic }));
@@ -195,8 +195,8 @@ impl<'l> Messages<'l> {
     }
 }
 
-impl Iterator for Messages<'_> {
-    type Item = Result<Message, LogError>;
+impl Iterator for RawMessages<'_> {
+    type Item = Result<RawMessage, LogError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let next = self.message();

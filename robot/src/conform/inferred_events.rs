@@ -14,7 +14,7 @@ use toposlam_model::{
 
 use super::{
     events::{Event, Kind, Perceived, Source},
-    told::direction,
+    recorded_events::direction,
 };
 
 /// A junction is visited when its turning point comes as near as this, in metres.
@@ -28,7 +28,7 @@ const AWAY: f64 = 0.6;
 
 /// Makes events of scenes as they come.
 #[derive(Clone, Debug)]
-pub struct Derivation {
+pub struct InferredEvents {
     events: Vec<Event>,
     approach: Option<Approach>,
     /// What was seen since the last junction.
@@ -52,7 +52,7 @@ struct Approach {
     visited: Source,
 }
 
-impl Derivation {
+impl InferredEvents {
     /// Nothing has happened yet. A robot that is `marked` puts its marker down where it begins.
     #[must_use]
     pub fn new(marked: bool) -> Self {
@@ -209,7 +209,7 @@ mod tests {
     use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
 
     use super::*;
-    use crate::conform::{Seen, derived, shorter_seen};
+    use crate::conform::{Seen, derived, shorten_frames};
 
     /// What a robot sees that looks along x and has come along it; the junction has a door behind it and
     /// one to its left.
@@ -318,11 +318,11 @@ mod tests {
         let long = vec![(hallway(), [-2.0, 0.0], 0.0); 50];
         let seen = seen(&[long, visit(), vec![aside]].concat());
         let events = derived(&seen, false);
-        let least = shorter_seen(&seen, events.last().unwrap()).unwrap();
+        let least = shorten_frames(&seen, events.last().unwrap()).unwrap();
         // Two pictures of the junction, and where the robot went.
         assert_eq!(least.len(), 3);
         assert!(matches!(derived(least, false).last().unwrap().kind, Kind::Aside { .. }));
         // A percept does not show in what was seen alone.
-        assert_eq!(shorter_seen(&seen, &events[0]), None);
+        assert_eq!(shorten_frames(&seen, &events[0]), None);
     }
 }

@@ -8,7 +8,7 @@ use super::{Part, Role};
 /// Why a mapping cannot be read, or does not fit its log.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{place}{cause}")]
-pub struct MappingError {
+pub struct TopicMapError {
     /// Where.
     pub place: Place,
     /// What is wrong there.
@@ -104,11 +104,11 @@ pub enum Cause {
 }
 
 impl Cause {
-    pub(super) fn in_file(self) -> MappingError {
+    pub(super) fn in_file(self) -> TopicMapError {
         self.at(Place::File)
     }
 
-    pub(super) fn at(self, place: Place) -> MappingError {
-        MappingError { place, cause: self }
+    pub(super) fn at(self, place: Place) -> TopicMapError {
+        TopicMapError { place, cause: self }
     }
 }

@@ -4,17 +4,19 @@ use std::{f64::consts::PI, path::Path};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Sighting};
 use toposlam_robot::{
-    conform::{Event, Events, Kind, Perceived, Seen, Shorter, direction, shorter, shorter_seen},
+    conform::{
+        Event, Events, Kind, Perceived, Seen, ShortenedRun, direction, shorten_frames, shorten_run,
+    },
     log::{
         entries::UNTOLD,
-        messages::{Door, Own, Percept, Run, Scene, Stamp},
+        messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
         recorder::ODOM,
         scene_message, standard,
-        writer::{LogWriter, WriteError},
+        writer::{LogWriteError, LogWriter},
     },
 };
 
-use super::{Arguments, Failure, Judged};
+use super::{ConformArguments, Failure, Judged};
 use crate::cli::output;
 
 /// A shorter log.
@@ -27,11 +29,13 @@ pub(super) struct Minimised {
 /// A robot that left a junction drove on so far, in metres.
 const ON: f64 = 2.0;
 
-impl Arguments {
+impl ConformArguments {
     /// A shorter log, written where that is asked for.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, Failure> {
         let question = self.question(judged.known.as_ref());
-        let Some(Shorter { events, by_itself }) = shorter(&judged.judgement, &question, &()) else {
+        let Some(ShortenedRun { events, by_itself }) =
+            shorten_run(&judged.judgement, &question, &())
+        else {
             if let Some(path) = &self.minimise {
                 let why = match judged.judgement.divergence {
                     None => "there is no divergence to show",
@@ -47,7 +51,7 @@ impl Arguments {
         let run = judged.opened.run.as_ref();
         let divergence = judged.judgement.divergence.as_ref();
         let event = divergence.and_then(|found| judged.judgement.events.events.get(found.event));
-        let seen = event.and_then(|event| shorter_seen(&judged.gathered.seen, event));
+        let seen = event.and_then(|event| shorten_frames(&judged.gathered.seen, event));
         let bytes = match seen {
             Some(seen) => write_seen(seen, run),
             None => write(&events, run),
@@ -80,7 +84,7 @@ impl Arguments {
 
 /// Events as a log tells them: percepts, doors, and odometry where a door was not the one that was
 /// taken, or the entry not where the robot came from.
-fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
+fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
@@ -119,7 +123,7 @@ fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
 }
 
 /// What was seen, as a log tells it: scenes and odometry.
-fn write_seen(seen: &[Seen], run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
+fn write_seen(seen: &[Seen], run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = seen.first().map_or(0, |seen| seen.source.time);
     for Seen { source, scene, odometry: there } in seen {
@@ -132,7 +136,7 @@ fn write_seen(seen: &[Seen], run: Option<&Run>) -> Result<Vec<u8>, WriteError> {
 }
 
 /// A log with the head of another; what its pictures needed is no longer needed.
-fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, WriteError> {
+fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
     let mut log = LogWriter::new(Vec::new())?;
     let run = run.cloned().unwrap_or_default();
     log.write(Run::TOPIC, 0, &Run { calibration: String::new(), colours: String::new(), ..run })?;

@@ -8,14 +8,14 @@ use toposlam_model::{
 };
 
 use super::{
-    cause::{Cause, OFF},
+    divergence::{DivergenceCause, OFF},
     events::{Ending, Events, Kind, Perceived},
     known_world::KnownWorld,
 };
 
 impl Events {
     /// What each event contradicts by itself, in order.
-    pub(super) fn own_faults(&self) -> Vec<(usize, Cause)> {
+    pub(super) fn own_faults(&self) -> Vec<(usize, DivergenceCause)> {
         let mut faults = Vec::new();
         let mut moves = 0;
         for (place, event) in self.events.iter().enumerate() {
@@ -24,31 +24,31 @@ impl Events {
                 Kind::Perceived(perceived) => {
                     let Perceived { percept, number, form, entry_off, .. } = perceived;
                     if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(Cause::Number { expected: moves, told });
+                        fault(DivergenceCause::Number { expected: moves, told });
                     }
                     let doors = form.map_or(percept.degree, JunctionShape::degree);
                     if doors != percept.degree {
-                        fault(Cause::Form { degree: percept.degree, doors });
+                        fault(DivergenceCause::Form { degree: percept.degree, doors });
                     }
                     if let Some(off) = entry_off.filter(|&off| off > OFF) {
-                        fault(Cause::Entry { off });
+                        fault(DivergenceCause::Entry { off });
                     }
                 }
                 Kind::Left { number, off, .. } => {
                     moves += 1;
                     if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(Cause::Number { expected: moves, told });
+                        fault(DivergenceCause::Number { expected: moves, told });
                     }
                     // Where a robot went aside, an event of its own says so.
                     let own = self.events.get(place + 1).map(|event| &event.kind);
                     let told = matches!(own, Some(Kind::Aside { .. }));
                     if let Some(off) = off.filter(|&off| off > OFF && !told) {
-                        fault(Cause::Aside { off });
+                        fault(DivergenceCause::Aside { off });
                     }
                 }
-                Kind::Aside { off } => fault(Cause::Aside { off: *off }),
-                Kind::TurnedBack => fault(Cause::TurnedBack),
-                Kind::Undecided => fault(Cause::Undecided),
+                Kind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
+                Kind::TurnedBack => fault(DivergenceCause::TurnedBack),
+                Kind::Undecided => fault(DivergenceCause::Undecided),
             }
         }
         faults
@@ -59,20 +59,20 @@ impl Events {
         &self,
         followed: &Followed,
         known: Option<&KnownWorld>,
-    ) -> Vec<Cause> {
+    ) -> Vec<DivergenceCause> {
         let map = followed.exploration.map();
         let mapped = self.is_said_whole();
         let mut faults = Vec::new();
         match (&followed.reached, map.complete()) {
             (Reached::EndOfTrace, _) if mapped => {
-                faults.push(Cause::Unfinished { unexplored: map.unexplored_count() });
+                faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
             }
             (Reached::Mapped, Some(graph)) => {
                 if self.map.as_ref().is_some_and(|told| *told != in_numbers(map)) {
-                    faults.push(Cause::Map);
+                    faults.push(DivergenceCause::Map);
                 }
                 if known.is_some_and(|known| !known.has(graph)) {
-                    faults.push(Cause::WrongMap);
+                    faults.push(DivergenceCause::WrongMap);
                 }
             }
             _ => {}
@@ -86,10 +86,10 @@ impl Events {
     }
 
     /// Whether the log says another number of moves than it has.
-    pub(super) fn false_moves(&self, trace: &Trace) -> Option<Cause> {
+    pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
         let made = trace.percepts().len() - 1;
         let told = self.ending.as_ref()?.moves;
-        (made != told as usize).then_some(Cause::Moves { made, told })
+        (made != told as usize).then_some(DivergenceCause::Moves { made, told })
     }
 
     /// Whether this is all of a run; of one that Algorithm 1 drives, to its end.

@@ -17,7 +17,7 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{Arguments, Failure};
+use super::{ConformArguments, Failure};
 use crate::cli::input;
 
 /// A known world.
@@ -28,7 +28,7 @@ pub(super) struct Known {
     pub(super) start: Option<Dart>,
     states: Vec<State>,
     /// How often each case is gone through from all starts.
-    pub(super) reachable: trace::Coverage,
+    pub(super) reachable: trace::AlgorithmCoverage,
     /// The kinds of junctions from each of their entries, where the world is a floor plan.
     pub(super) forms: Option<Vec<JunctionShape>>,
 }
@@ -39,7 +39,7 @@ const ANY: &str = "any";
 impl Known {
     pub(super) fn new(
         path: &Path,
-        arguments: &Arguments,
+        arguments: &ConformArguments,
         run: Option<&Run>,
     ) -> Result<Self, Failure> {
         let world = input::read_world(path)?;

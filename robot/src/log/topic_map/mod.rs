@@ -1,4 +1,4 @@
-//! Mapping files: which topics of a log carry what, whoever recorded it.
+//! Topic maps: which topics of a log carry what, whoever recorded it.
 //!
 //! ```toml
 //! [image]                        # sensor_msgs CompressedImage, or Image in rgb8, bgr8 or mono8
@@ -38,7 +38,7 @@ mod role;
 
 pub use bound::Bound;
 pub(super) use bound::Carried;
-pub use error::{Cause, MappingError};
+pub use error::{Cause, TopicMapError};
 pub use guess::{Guess, guess};
 pub use role::{Angle, Length, Part, Role};
 
@@ -46,11 +46,11 @@ use std::{collections::BTreeMap, fmt::Write};
 
 use toposlam_model::format::place::Place;
 
-use super::reading::Log;
+use super::reader::Log;
 
 /// Which topics carry what.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Mapping {
+pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
 }
 
@@ -86,14 +86,14 @@ impl Carrier {
     }
 }
 
-impl Mapping {
+impl TopicMap {
     /// Reads a mapping file.
     ///
     /// Takes at most 512 bytes of memory for each byte of it, and 4096 besides.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place. No bytes make it panic.
-    pub fn read(bytes: &[u8]) -> Result<Self, MappingError> {
+    pub fn read(bytes: &[u8]) -> Result<Self, TopicMapError> {
         read::read(bytes)
     }
 
@@ -101,7 +101,7 @@ impl Mapping {
     ///
     /// # Errors
     /// If several topics could carry the same: which.
-    pub fn from_log(log: &Log) -> Result<Self, MappingError> {
+    pub fn from_log(log: &Log) -> Result<Self, TopicMapError> {
         let guesses = guess(log.topics());
         if let Some(Guess { role, topics }) = guesses.iter().find(|guess| guess.topics.len() > 1) {
             let names = topics.iter().filter_map(|topic| log.topics().get(*topic));
@@ -159,7 +159,7 @@ impl Mapping {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place in the mapping file.
-    pub fn bind(&self, log: &Log) -> Result<Bound, MappingError> {
+    pub fn bind(&self, log: &Log) -> Result<Bound, TopicMapError> {
         bound::bind(self, log.topics())
     }
 

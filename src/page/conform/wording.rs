@@ -3,19 +3,19 @@
 use std::collections::BTreeSet;
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use toposlam_robot::conform::{Culprit, Verdict};
+use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use crate::report::Report;
 
 /// The worst verdict of all; where there is none, nothing is known.
-pub(super) fn worst(reports: &[Report]) -> Verdict {
+pub(super) fn worst(reports: &[Report]) -> ConformVerdict {
     let any = |verdict| reports.iter().any(|report| report.verdict == verdict);
-    if any(Verdict::Diverged) {
-        Verdict::Diverged
-    } else if any(Verdict::Incomplete) || reports.is_empty() {
-        Verdict::Incomplete
+    if any(ConformVerdict::Diverged) {
+        ConformVerdict::Diverged
+    } else if any(ConformVerdict::Incomplete) || reports.is_empty() {
+        ConformVerdict::Incomplete
     } else {
-        Verdict::Conforms
+        ConformVerdict::Conforms
     }
 }
 
@@ -33,13 +33,13 @@ pub(super) fn tally(reports: &[Report]) -> String {
         return "no log was judged".to_owned();
     }
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
-    let told = [Verdict::Diverged, Verdict::Incomplete, Verdict::Conforms]
+    let told = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
         .map(|verdict| (count(verdict), verdict));
     let told: Vec<_> = told
         .iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, verdict)| match (verdict, count) {
-            (Verdict::Conforms, 2..) => format!("{count} conform"),
+            (ConformVerdict::Conforms, 2..) => format!("{count} conform"),
             _ => format!("{count} {}", verdict.name()),
         })
         .collect();
@@ -76,28 +76,28 @@ pub(super) fn fits(report: &Report) -> String {
 }
 
 /// What a culprit did.
-pub(super) fn did(culprit: Culprit) -> &'static str {
+pub(super) fn did(culprit: FaultClass) -> &'static str {
     match culprit {
-        Culprit::Perception => "the robot perceived what is not so",
-        Culprit::Motion => "the robot did not go where it was told to go",
-        Culprit::Algorithm => {
+        FaultClass::Perception => "the robot perceived what is not so",
+        FaultClass::Motion => "the robot did not go where it was told to go",
+        FaultClass::Algorithm => {
             "the robot was told to go where Algorithm 1 does not go, or its map is wrong"
         }
-        Culprit::Log => "the log does not agree with itself",
+        FaultClass::Log => "the log does not agree with itself",
     }
 }
 
 /// The lines of a verdict's sign: a tick, a cross, three dots.
-fn strokes(verdict: Verdict) -> &'static str {
+fn strokes(verdict: ConformVerdict) -> &'static str {
     match verdict {
-        Verdict::Conforms => "M4 13l5.5 5.5L20 6",
-        Verdict::Diverged => "M5.5 5.5l13 13m0-13l-13 13",
-        Verdict::Incomplete => "M4.5 12h.01M12 12h.01M19.5 12h.01",
+        ConformVerdict::Conforms => "M4 13l5.5 5.5L20 6",
+        ConformVerdict::Diverged => "M5.5 5.5l13 13m0-13l-13 13",
+        ConformVerdict::Incomplete => "M4.5 12h.01M12 12h.01M19.5 12h.01",
     }
 }
 
 /// A verdict's sign, as an element of the page.
-pub(super) fn sign(verdict: Verdict) -> String {
+pub(super) fn sign(verdict: ConformVerdict) -> String {
     let strokes = strokes(verdict);
     format!(
         "<svg class=\"sign\" viewBox=\"0 0 24 24\" aria-hidden=\"true\"><path d=\"{strokes}\"/></svg>"
@@ -105,11 +105,11 @@ pub(super) fn sign(verdict: Verdict) -> String {
 }
 
 /// A verdict's sign, as the address of an image.
-pub(super) fn icon(verdict: Verdict) -> String {
+pub(super) fn icon(verdict: ConformVerdict) -> String {
     let (ground, ink) = match verdict {
-        Verdict::Conforms => ("#00684f", "#fff"),
-        Verdict::Diverged => ("#b23a00", "#fff"),
-        Verdict::Incomplete => ("#ffcf33", "#2b2100"),
+        ConformVerdict::Conforms => ("#00684f", "#fff"),
+        ConformVerdict::Diverged => ("#b23a00", "#fff"),
+        ConformVerdict::Incomplete => ("#ffcf33", "#2b2100"),
     };
     svg_address(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-4 -4 32 32\">\

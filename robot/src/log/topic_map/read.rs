@@ -1,4 +1,4 @@
-//! Reading a mapping file: bytes in, a [`Mapping`] out, or the one thing that is wrong.
+//! Reading a mapping file: bytes in, a [`TopicMap`] out, or the one thing that is wrong.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -8,9 +8,9 @@ use toml::{
 };
 use toposlam_model::format::place::Place;
 
-use super::{Angle, Carrier, Cause, Length, Mapping, MappingError, Part, Role};
+use super::{Angle, Carrier, Cause, Length, Part, Role, TopicMap, TopicMapError};
 
-pub(super) fn read(bytes: &[u8]) -> Result<Mapping, MappingError> {
+pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
     let text = std::str::from_utf8(bytes)
         .map_err(|error| Cause::NotText.at(Place::at_byte(bytes, error.valid_up_to())))?;
     let file = File { text };
@@ -31,7 +31,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mapping, MappingError> {
     if carriers.is_empty() {
         return Err(Cause::Empty.in_file());
     }
-    Ok(Mapping { carriers })
+    Ok(TopicMap { carriers })
 }
 
 struct File<'t> {
@@ -43,7 +43,7 @@ impl File<'_> {
         Place::at_byte(self.text.as_bytes(), byte)
     }
 
-    fn unknown(&self, key: &Spanned<Cow<'_, str>>, known: String) -> MappingError {
+    fn unknown(&self, key: &Spanned<Cow<'_, str>>, known: String) -> TopicMapError {
         let name = key.get_ref().chars().take(60).collect();
         Cause::UnknownKey { key: name, known }.at(self.place(key.span().start))
     }
@@ -53,7 +53,7 @@ impl File<'_> {
         role: Role,
         start: usize,
         table: &DeTable<'_>,
-    ) -> Result<Carrier, MappingError> {
+    ) -> Result<Carrier, TopicMapError> {
         let mut topic = None;
         let mut carrier = Carrier::usual("");
         let units = [

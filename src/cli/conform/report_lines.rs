@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
 use toposlam::report::{Covered, Report, Told};
-use toposlam_robot::conform::{Culprit, Judgement, Verdict};
+use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
 
 use super::Failure;
 use crate::cli::{json::print_object, text::counted, text::print_hanging};
@@ -121,11 +121,11 @@ pub(super) fn text(out: &mut dyn Write, report: &Report) -> Result<(), Failure> 
     Ok(())
 }
 
-fn in_words(verdict: Verdict) -> &'static str {
+fn in_words(verdict: ConformVerdict) -> &'static str {
     match verdict {
-        Verdict::Conforms => "conforms",
-        Verdict::Diverged => "diverges",
-        Verdict::Incomplete => "incomplete: it conforms as far as it goes",
+        ConformVerdict::Conforms => "conforms",
+        ConformVerdict::Diverged => "diverges",
+        ConformVerdict::Incomplete => "incomplete: it conforms as far as it goes",
     }
 }
 
@@ -201,11 +201,11 @@ pub(super) fn together(
 ) -> Result<(), Failure> {
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let [conform, diverged, incomplete] =
-        [Verdict::Conforms, Verdict::Diverged, Verdict::Incomplete].map(count);
+        [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);
     let coverage = Report::coverage_of(reports);
     let culprits = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.culprit));
     if as_json {
-        let mut classes: BTreeMap<_, _> = Culprit::ALL.map(|one| (one.name(), 0)).into();
+        let mut classes: BTreeMap<_, _> = FaultClass::ALL.map(|one| (one.name(), 0)).into();
         for culprit in culprits {
             *classes.entry(culprit.name()).or_default() += 1;
         }

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
-use toposlam_model::trace::{Departure, Misfit, NotInTurn};
+use toposlam_model::trace::{Departure, Misfit, TraceOrderError};
 
 /// Where a run first does something that the specification does not.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,14 +10,14 @@ pub struct Divergence {
     /// Which event, from 0; the number of events where one is missing at the end.
     pub event: usize,
     /// Why it does not fit.
-    pub cause: Cause,
+    pub cause: DivergenceCause,
     /// Whose fault that is.
-    pub culprit: Culprit,
+    pub culprit: FaultClass,
 }
 
 /// Whose fault a divergence is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Culprit {
+pub enum FaultClass {
     /// The robot perceived what is not so.
     Perception,
     /// The robot did not go where it was told to go.
@@ -28,7 +28,7 @@ pub enum Culprit {
     Log,
 }
 
-impl Culprit {
+impl FaultClass {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Perception, Self::Motion, Self::Algorithm, Self::Log];
 
@@ -44,7 +44,7 @@ impl Culprit {
     }
 }
 
-impl fmt::Display for Culprit {
+impl fmt::Display for FaultClass {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         out.pad(self.name())
     }
@@ -55,9 +55,9 @@ pub(super) const OFF: f64 = FRAC_PI_6;
 
 /// Why an event does not fit.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cause {
+pub enum DivergenceCause {
     /// Percepts and doors do not take turns.
-    NotInTurn(NotInTurn),
+    NotInTurn(TraceOrderError),
     /// Its number is not that of its place.
     Number {
         /// How many moves there were.
@@ -114,29 +114,29 @@ pub enum Cause {
     },
 }
 
-impl Cause {
+impl DivergenceCause {
     /// Whose fault it is, as far as the event itself tells.
     #[must_use]
-    pub fn culprit(&self) -> Culprit {
+    pub fn culprit(&self) -> FaultClass {
         match self {
             Self::NotInTurn(_) | Self::Number { .. } | Self::Form { .. } | Self::Moves { .. } => {
-                Culprit::Log
+                FaultClass::Log
             }
-            Self::Aside { .. } | Self::TurnedBack => Culprit::Motion,
-            Self::Entry { .. } | Self::Undecided | Self::NoWorld { .. } => Culprit::Perception,
-            Self::Unfinished { .. } | Self::Map | Self::WrongMap => Culprit::Algorithm,
+            Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
+            Self::Entry { .. } | Self::Undecided | Self::NoWorld { .. } => FaultClass::Perception,
+            Self::Unfinished { .. } | Self::Map | Self::WrongMap => FaultClass::Algorithm,
             Self::World(misfit) => {
                 if misfit.event.is_multiple_of(2) {
-                    Culprit::Perception
+                    FaultClass::Perception
                 } else {
-                    Culprit::Algorithm
+                    FaultClass::Algorithm
                 }
             }
             Self::Algorithm(departure) => {
                 if departure.event.is_multiple_of(2) {
-                    Culprit::Perception
+                    FaultClass::Perception
                 } else {
-                    Culprit::Algorithm
+                    FaultClass::Algorithm
                 }
             }
         }
@@ -186,7 +186,7 @@ pub(super) const NAMES: [&str; 16] = [
     "moves",
 ];
 
-impl fmt::Display for Cause {
+impl fmt::Display for DivergenceCause {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let degrees = |off: f64| format!("{:.0} degrees", off.to_degrees());
         match self {

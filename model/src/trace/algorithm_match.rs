@@ -8,7 +8,7 @@ use std::{
 
 use thiserror::Error;
 
-use super::{Coverage, Trace};
+use super::{AlgorithmCoverage, Trace};
 use crate::{
     embedded_graph::Dart,
     mapping::{
@@ -29,7 +29,7 @@ pub struct Followed {
     /// What it knew then.
     pub exploration: Exploration,
     /// The cases that it went through.
-    pub coverage: Coverage,
+    pub coverage: AlgorithmCoverage,
     /// The choices that are not the default ones.
     script: Option<Script>,
 }
@@ -185,7 +185,7 @@ pub enum Claim {
 pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
     let mut world = TraceWorld { trace, moves: 0 };
     let mut exploration = Exploration::new(bound);
-    let mut coverage = Coverage::default();
+    let mut coverage = AlgorithmCoverage::default();
     let run = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
     let reached = match &run {
         Ok(()) if world.moves == trace.doors().len() => Some(Reached::Mapped),
@@ -217,7 +217,7 @@ pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
         _ => Choosing::Other { from },
     };
     let mut followed = Followed { choosing, reached, exploration, coverage, script: Some(script) };
-    let mut coverage = Coverage::default();
+    let mut coverage = AlgorithmCoverage::default();
     followed.exploration = followed.again(trace, bound, &mut coverage);
     Followed { coverage, ..followed }
 }
@@ -470,7 +470,7 @@ mod tests {
         mapping::{FACING, Journey, MappingEvent},
         percept::Sighting,
         trace::{
-            Event,
+            TraceEvent,
             tests::{explored, lollipop, walked},
         },
         world::GraphWorld,
@@ -536,7 +536,8 @@ mod tests {
     #[test]
     fn a_start_without_the_marker_departs_at_once() {
         let percept = Percept { degree: 2, sighting: Sighting::Nothing };
-        let followed = follow(&Trace::new([Event::Perceived(percept)]).unwrap(), Claim::Part, 100);
+        let followed =
+            follow(&Trace::new([TraceEvent::Perceived(percept)]).unwrap(), Claim::Part, 100);
         let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         assert_eq!(departure.event, 0);
         let contradiction = Contradiction::Start { perceived: percept };

@@ -1,7 +1,7 @@
 use super::*;
 
 fn wrong(text: &str) -> String {
-    Mapping::read(text.as_bytes()).unwrap_err().to_string()
+    TopicMap::read(text.as_bytes()).unwrap_err().to_string()
 }
 
 const WHOLE: &str = "\
@@ -23,14 +23,14 @@ degree = \"exits\"
 
 #[test]
 fn a_mapping_is_written_as_it_was_read() {
-    let mapping = Mapping::read(WHOLE.as_bytes()).unwrap();
+    let mapping = TopicMap::read(WHOLE.as_bytes()).unwrap();
     let odometry = mapping.carrier(Role::Odometry).unwrap();
     assert_eq!((odometry.length, odometry.angle), (Length::Inches, Angle::Degrees));
     assert_eq!(odometry.paths[&Part::Heading], "at[0].theta");
     assert_eq!(mapping.to_toml(), WHOLE);
     let strange = "[run]\ntopic = \"/a\\\"\\n\\u0001'b\"\n";
-    let strange = Mapping::read(strange.as_bytes()).unwrap();
-    assert_eq!(Mapping::read(strange.to_toml().as_bytes()).unwrap().to_toml(), strange.to_toml());
+    let strange = TopicMap::read(strange.as_bytes()).unwrap();
+    assert_eq!(TopicMap::read(strange.to_toml().as_bytes()).unwrap().to_toml(), strange.to_toml());
 }
 
 #[test]
@@ -69,6 +69,6 @@ fn what_is_wrong_is_told_with_its_line_and_column() {
         let found = wrong(text);
         assert!(found.starts_with(message), "{text}: {found}");
     }
-    let bytes = Mapping::read(b"[image]\ntopic = \"\xff\"").unwrap_err();
+    let bytes = TopicMap::read(b"[image]\ntopic = \"\xff\"").unwrap_err();
     assert_eq!(bytes.to_string(), "line 2, column 10: this is not UTF-8 text");
 }

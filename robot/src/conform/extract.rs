@@ -13,16 +13,16 @@ use toposlam_vision::{
 };
 
 use super::{
-    Derivation, Telling,
+    InferredEvents, RecordedEvents,
     events::{Ending, Event, Events, Head, Source},
 };
 use crate::log::{
-    entries::{Content, Entry, Picture},
+    entries::{Content, Entry, LoggedImage},
     error::LogError,
-    mapping::{Mapping, MappingError, Role},
     messages,
-    reading::Log,
+    reader::Log,
     scene_of,
+    topic_map::{Role, TopicMap, TopicMapError},
 };
 
 /// What events are made of.
@@ -38,7 +38,7 @@ pub enum Evidence {
 
 /// What was made of a log.
 #[derive(Clone, Debug)]
-pub struct Gathered {
+pub struct ExtractedRun {
     /// The events, and what the log says of itself.
     pub events: Events,
     /// What they are made of.
@@ -66,13 +66,13 @@ pub struct Seen {
 
 /// Why there are no events.
 #[derive(Debug, Error)]
-pub enum NoEvents {
+pub enum ExtractError {
     /// The log cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
     /// The mapping does not fit it.
     #[error(transparent)]
-    Mapping(#[from] MappingError),
+    TopicMap(#[from] TopicMapError),
     /// Nothing that could be judged is mapped.
     #[error(
         "it has neither percepts and doors, nor scenes or pictures together with odometry, as far as the \
@@ -124,13 +124,13 @@ const TOGETHER: usize = 32;
 impl Evidence {
     /// What events can be made of where such things are mapped: the first in the order of this list.
     #[must_use]
-    pub fn of(mapping: &Mapping) -> Option<Self> {
+    pub fn of(mapping: &TopicMap) -> Option<Self> {
         [Self::Told, Self::Scenes, Self::Pictures].into_iter().find(|one| one.is_in(mapping))
     }
 
     /// Whether events can be made of it where such things are mapped.
     #[must_use]
-    pub fn is_in(self, mapping: &Mapping) -> bool {
+    pub fn is_in(self, mapping: &TopicMap) -> bool {
         let needed = match self {
             Self::Told => [Role::Percept, Role::Door],
             Self::Scenes => [Role::Scene, Role::Odometry],
@@ -153,20 +153,20 @@ impl Evidence {
 ///
 /// # Errors
 /// Where the log cannot be read, and where there is nothing in it of which events could be made.
-pub fn gather(
+pub fn extract(
     log: &Log,
-    mapping: &Mapping,
+    mapping: &TopicMap,
     evidence: Evidence,
     sensor: Option<&Sensor>,
     marked: bool,
     watch: &impl Looking,
-) -> Result<Gathered, NoEvents> {
+) -> Result<ExtractedRun, ExtractError> {
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
     let threads = rayon::current_num_threads();
     let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
     let bound = mapping.only(asked).bind(log)?;
-    let mut gathering = Gathering {
-        telling: Telling::default(),
+    let mut gathering = Extraction {
+        telling: RecordedEvents::default(),
         track: Vec::new(),
         seen: Vec::new(),
         waiting: Vec::new(),
@@ -182,7 +182,7 @@ pub fn gather(
         gathering.take(entry?)?;
     }
     gathering.look()?;
-    let Gathering { telling, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
+    let Extraction { telling, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
         Some(Seen { source, scene, odometry })
@@ -192,27 +192,27 @@ pub fn gather(
         Evidence::Told => telling.finish(),
         Evidence::Scenes | Evidence::Pictures => derived(&seen, marked),
     };
-    Ok(Gathered { events, evidence, run, seen, pictures, unreadable })
+    Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable })
 }
 
 /// The events of what was seen.
 #[must_use]
 pub fn derived(seen: &[Seen], marked: bool) -> Vec<Event> {
-    let mut derivation = Derivation::new(marked);
+    let mut derivation = InferredEvents::new(marked);
     for Seen { source, scene, odometry } in seen {
         derivation.see(*source, scene, odometry);
     }
     derivation.finish()
 }
 
-struct Gathering<'w, W> {
-    telling: Telling,
+struct Extraction<'w, W> {
+    telling: RecordedEvents,
     /// Where the robot was, and when.
     track: Vec<(u64, Odometry)>,
     /// What was seen, and when the picture was taken.
     seen: Vec<(Source, u64, Scene)>,
     /// Pictures that have not been looked at.
-    waiting: Vec<(Source, u64, Picture)>,
+    waiting: Vec<(Source, u64, LoggedImage)>,
     run: Option<messages::Run>,
     /// When the last percept or door was.
     last: u64,
@@ -224,15 +224,15 @@ struct Gathering<'w, W> {
     unreadable: u64,
 }
 
-impl<W: Looking> Gathering<'_, W> {
-    fn take(&mut self, entry: Entry) -> Result<(), NoEvents> {
+impl<W: Looking> Extraction<'_, W> {
+    fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
         let Entry { time, offset, number, stamp, content, .. } = entry;
         let source = Source { time, message: number, offset };
         let stamp = stamp.nanoseconds();
         if matches!(content, Content::Percept(_) | Content::Door(_)) {
             let before = std::mem::replace(&mut self.last, stamp);
             if stamp < before {
-                return Err(NoEvents::OutOfOrder { message: number, time: stamp, before });
+                return Err(ExtractError::OutOfOrder { message: number, time: stamp, before });
             }
         }
         match content {
@@ -243,7 +243,7 @@ impl<W: Looking> Gathering<'_, W> {
                 self.track.push((stamp, odometry));
             }
             Content::Scene(told) => {
-                let scene = scene_of(&told).ok_or(NoEvents::Scene { message: number })?;
+                let scene = scene_of(&told).ok_or(ExtractError::Scene { message: number })?;
                 self.seen.push((source, stamp, scene));
             }
             Content::Image(picture) => {
@@ -273,16 +273,16 @@ impl<W: Looking> Gathering<'_, W> {
     }
 
     /// Looks at the pictures that wait.
-    fn look(&mut self) -> Result<(), NoEvents> {
+    fn look(&mut self) -> Result<(), ExtractError> {
         if self.waiting.is_empty() {
             return Ok(());
         }
         if self.sensors.is_empty() {
-            return Err(NoEvents::NoEyes);
+            return Err(ExtractError::NoEyes);
         }
         let share = self.waiting.len().div_ceil(self.sensors.len());
         let shares = self.sensors.par_iter_mut().zip(self.waiting.par_chunks(share));
-        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, Picture)])| {
+        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, LoggedImage)])| {
             pictures.iter().map(|(_, _, picture)| sense(sensor, picture)).collect::<Vec<_>>()
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
@@ -293,7 +293,7 @@ impl<W: Looking> Gathering<'_, W> {
             match scene {
                 None => self.unreadable += 1,
                 Some(scene) => {
-                    let scene = scene.map_err(|cause| NoEvents::Size { message, cause })?;
+                    let scene = scene.map_err(|cause| ExtractError::Size { message, cause })?;
                     self.seen.push((source, time, scene));
                 }
             }
@@ -303,10 +303,10 @@ impl<W: Looking> Gathering<'_, W> {
 }
 
 /// What a picture shows; `None` where it is no image.
-fn sense(sensor: &mut Sensor, picture: &Picture) -> Option<Result<Scene, WrongSize>> {
+fn sense(sensor: &mut Sensor, picture: &LoggedImage) -> Option<Result<Scene, WrongSize>> {
     match picture {
-        Picture::Pixels(image) => Some(sensor.sense(image)),
-        Picture::File(bytes) => {
+        LoggedImage::Pixels(image) => Some(sensor.sense(image)),
+        LoggedImage::File(bytes) => {
             let image = ImageFile::open(bytes).and_then(ImageFile::image).ok()?;
             Some(sensor.sense(&image))
         }

@@ -2,10 +2,10 @@
 
 use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
 
-pub use super::in_order::{Message, Messages};
+pub use super::merge::{RawMessage, RawMessages};
 use super::{
     container::{self, BAG_MAGIC, Format, MCAP_MAGIC, Record, Section},
-    error::{Cause, LogError, Truncation},
+    error::{LogError, LogErrorKind, Truncation},
     source::{Source, Storage},
     topic::{Topic, Topics},
 };
@@ -31,7 +31,7 @@ impl Log {
     /// # Errors
     /// As [`Log::new`].
     pub fn open(path: &Path) -> Result<Self, LogError> {
-        Self::new(File::open(path).map_err(|error| Cause::from(error).at(0))?)
+        Self::new(File::open(path).map_err(|error| LogErrorKind::from(error).at(0))?)
     }
 
     /// A log that is in memory.
@@ -52,7 +52,8 @@ impl Log {
     /// If it is no log, cannot be read, or is damaged, with where; not where it only ends too early. No
     /// bytes make it panic.
     pub fn new(storage: impl Storage + 'static) -> Result<Self, LogError> {
-        let source = Source::new(Box::new(storage)).map_err(|error| Cause::from(error).at(0))?;
+        let source =
+            Source::new(Box::new(storage)).map_err(|error| LogErrorKind::from(error).at(0))?;
         let format = format(&source)?;
         let mut topics = Topics::default();
         let scan = container::scan(format, &source, &mut |record| topics.hear(record))?;
@@ -145,19 +146,20 @@ impl Log {
     /// Chunks that overlap in time are in memory together, up to 64 MiB; where that is not enough, they
     /// are read again.
     #[must_use]
-    pub fn read(&self, topics: &[usize]) -> Messages<'_> {
-        Messages::new(self, topics)
+    pub fn read(&self, topics: &[usize]) -> RawMessages<'_> {
+        RawMessages::new(self, topics)
     }
 
     /// The messages of all topics.
     #[must_use]
-    pub fn read_all(&self) -> Messages<'_> {
-        Messages::new(self, &(0..self.topics.len()).collect::<Vec<_>>())
+    pub fn read_all(&self) -> RawMessages<'_> {
+        RawMessages::new(self, &(0..self.topics.len()).collect::<Vec<_>>())
     }
 }
 
 fn format(source: &Source) -> Result<Format, LogError> {
-    let head = source.read(0..source.length().min(16)).map_err(|error| Cause::from(error).at(0))?;
+    let head =
+        source.read(0..source.length().min(16)).map_err(|error| LogErrorKind::from(error).at(0))?;
     if head.starts_with(MCAP_MAGIC) {
         return Ok(Format::Mcap);
     }
@@ -168,9 +170,9 @@ fn format(source: &Source) -> Result<Format, LogError> {
         head.strip_prefix(b"#ROSBAG V").and_then(|rest| rest.split(|&byte| byte == b'\n').next());
     Err(match version {
         Some(version) => {
-            Cause::Version(String::from_utf8_lossy(version).replace(char::is_control, " "))
+            LogErrorKind::Version(String::from_utf8_lossy(version).replace(char::is_control, " "))
         }
-        None => Cause::NotALog,
+        None => LogErrorKind::NotALog,
     }
     .at(0))
 }
@@ -190,7 +192,7 @@ fn look_through(
         topics.hear(&record);
         let Record::Message { connection, time, .. } = record else { continue };
         if !topics.connections.contains_key(&connection) {
-            return Err(Cause::UnknownConnection(connection).at(section.place(at)));
+            return Err(LogErrorKind::UnknownConnection(connection).at(section.place(at)));
         }
         *counts.entry(connection).or_default() += 1;
         let [first, last] = times.unwrap_or([time; 2]);
