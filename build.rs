@@ -58,7 +58,9 @@ fn embed_citations() -> Result<(), String> {
 /// The citation, as it is written in Rust.
 fn literal(citation: &Citation) -> String {
     let Citation { id, file, line, kind } = citation;
-    format!("Citation {{ id: {id:?}, file: {file:?}, line: {line}, kind: Kind::{kind:?} }},\n")
+    format!(
+        "Citation {{ id: {id:?}, file: {file:?}, line: {line}, kind: CitationKind::{kind:?} }},\n"
+    )
 }
 
 /// Adds the files of Rust and of Coq in a folder of the workspace and below it.

@@ -5,7 +5,7 @@ use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 /// What is said of a log.
 #[derive(Clone, Debug)]
-pub struct Report {
+pub struct LogReport {
     /// The log's file.
     pub log: String,
     /// The verdict.
@@ -15,11 +15,11 @@ pub struct Report {
     /// What was judged, and against what, line by line: a name and what is said.
     pub facts: Vec<(&'static str, String)>,
     /// Every event.
-    pub events: Vec<Line>,
+    pub events: Vec<EventLine>,
     /// Where the run first diverged.
-    pub divergence: Option<Told>,
+    pub divergence: Option<DivergenceReport>,
     /// How often each case was gone through, and whether it can be in the known world.
-    pub coverage: Vec<Covered>,
+    pub coverage: Vec<CoveredCase>,
     /// What was tolerated: the quirk's name, its reason, and at which events, counted from 1.
     pub tolerated: Vec<(String, String, Vec<usize>)>,
     /// A shorter log that diverges in the same way, event by event.
@@ -32,12 +32,12 @@ pub struct Report {
     pub world: Option<String>,
 }
 
-impl Report {
+impl LogReport {
     /// How often each case was gone through in several logs together; one that can be in any of their
     /// worlds can be.
     #[must_use]
-    pub fn coverage_of(reports: &[Self]) -> Vec<Covered> {
-        let mut together: Vec<Covered> = Vec::new();
+    pub fn coverage_of(reports: &[Self]) -> Vec<CoveredCase> {
+        let mut together: Vec<CoveredCase> = Vec::new();
         for covered in reports.iter().flat_map(|report| &report.coverage) {
             match together.iter_mut().find(|known| known.case == covered.case) {
                 None => together.push(covered.clone()),
@@ -57,7 +57,7 @@ impl Report {
 
 /// An event, as a line.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct EventLine {
     /// Which event, counted from 1.
     pub number: usize,
     /// When, in seconds since the first message.
@@ -70,7 +70,7 @@ pub struct Line {
 
 /// A divergence, as a person reads it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct DivergenceReport {
     /// Which event, counted from 1; one more than there are, where one is missing at the end.
     pub event: usize,
     /// When, in seconds since the first message.
@@ -91,7 +91,7 @@ pub struct Told {
 
 /// A case and how often it was gone through.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Covered {
+pub struct CoveredCase {
     /// Its name.
     pub case: String,
     /// How often.

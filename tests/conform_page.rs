@@ -7,8 +7,8 @@ use std::{fs, io::Cursor, path::Path};
 use toposlam::{
     model::format::world_file,
     page::conform_page,
-    picture::{Picture, svg},
-    report::{Covered, Line, Report, Told},
+    picture::{WorldPicture, svg},
+    report::{CoveredCase, EventLine, LogReport, DivergenceReport},
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
@@ -33,7 +33,7 @@ fn picture() -> Vec<u8> {
     file.into_inner()
 }
 
-fn conforming(log: &str, events: usize) -> Report {
+fn conforming(log: &str, events: usize) -> LogReport {
     let line = |number: usize| {
         let (what, then) = if number % 2 == 1 {
             ("perceives 3 doors, no marker", "2 poses are left: corner:0, tee:1")
@@ -41,7 +41,7 @@ fn conforming(log: &str, events: usize) -> Report {
             ("leaves by door 1", "it is in a hallway; the same 2 poses are left")
         };
         let time = number as f64 * 4.7;
-        Line { number, time, what: what.to_owned(), then: then.to_owned() }
+        EventLine { number, time, what: what.to_owned(), then: then.to_owned() }
     };
     let cases = [
         ("new-vertex", 12, true),
@@ -55,7 +55,7 @@ fn conforming(log: &str, events: usize) -> Report {
         ("junction: T entered by the stem", 5, true),
         ("junction: L to the left", 0, false),
     ];
-    Report {
+    LogReport {
         log: log.to_owned(),
         verdict: ConformVerdict::Conforms,
         remarks: Vec::new(),
@@ -71,7 +71,7 @@ fn conforming(log: &str, events: usize) -> Report {
         events: (1..=events).map(line).collect(),
         divergence: None,
         coverage: cases
-            .map(|(case, count, reachable)| Covered {
+            .map(|(case, count, reachable)| CoveredCase {
                 case: case.to_owned(),
                 count,
                 reachable: Some(reachable),
@@ -92,13 +92,13 @@ fn conforming(log: &str, events: usize) -> Report {
 fn world() -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-6.toml");
     let world = world_file::read(&fs::read(file).unwrap()).unwrap();
-    svg(&Picture::from(&world))
+    svg(&WorldPicture::from(&world))
 }
 
-fn diverged(log: &str, events: usize, at: usize) -> Report {
-    Report {
+fn diverged(log: &str, events: usize, at: usize) -> LogReport {
+    LogReport {
         verdict: ConformVerdict::Diverged,
-        divergence: Some(Told {
+        divergence: Some(DivergenceReport {
             event: at,
             time: at as f64 * 4.7,
             message: Some((4711, 1_234_567)),
@@ -126,8 +126,8 @@ fn diverged(log: &str, events: usize, at: usize) -> Report {
     }
 }
 
-fn incomplete(log: &str) -> Report {
-    Report {
+fn incomplete(log: &str) -> LogReport {
+    LogReport {
         verdict: ConformVerdict::Incomplete,
         remarks: vec!["the log ends before the map is complete: its recorder stopped".to_owned()],
         tolerated: Vec::new(),

@@ -6,7 +6,7 @@ use std::{env, ffi::OsString, fs, path::Path, process::Command};
 
 use toposlam::{
     model::format::{named_world::NamedWorld, world_file},
-    picture::{Picture, svg},
+    picture::{WorldPicture, svg},
 };
 
 fn read(path: &str) -> String {
@@ -90,7 +90,7 @@ fn the_pictures_are_what_the_program_draws() {
     for name in ["figure-1a", "figure-1b"] {
         let world: NamedWorld =
             world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap();
-        assert!(svg(&Picture::from(&world)) == read(&format!("docs/{name}.svg")), "{name}");
+        assert!(svg(&WorldPicture::from(&world)) == read(&format!("docs/{name}.svg")), "{name}");
     }
     let way = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shape-8-run.svg");
     toposlam(&["simulate", "worlds/shape-8.toml", "--svg", way.to_str().unwrap()]);

@@ -10,7 +10,8 @@ use std::{
 };
 
 use toposlam::paper::{
-    CITATIONS, Citation, Kind, Requirement, Status, TABLE, Trace, citations, requirements,
+    CITATIONS, Citation, CitationKind, PaperTrace, Requirement, Status, TABLE, citations,
+    requirements,
 };
 
 fn table() -> Vec<Requirement> {
@@ -28,7 +29,7 @@ fn lines_of(output: &Output) -> Vec<&str> {
 #[test]
 fn every_citation_is_of_a_requirement() {
     let requirements = table();
-    let unknown: Vec<_> = Trace::new(&requirements, CITATIONS)
+    let unknown: Vec<_> = PaperTrace::new(&requirements, CITATIONS)
         .unknown
         .iter()
         .map(|Citation { id, file, line, .. }| format!("{file}:{line}: `{id}`"))
@@ -39,7 +40,7 @@ fn every_citation_is_of_a_requirement() {
 #[test]
 fn everything_done_is_cited_by_code_and_by_a_test() {
     let requirements = table();
-    let trace = Trace::new(&requirements, CITATIONS);
+    let trace = PaperTrace::new(&requirements, CITATIONS);
     let code = trace.rows.iter().filter(|row| row.lacks_code());
     let tests = trace.rows.iter().filter(|row| row.lacks_tests());
     let lacking: Vec<_> = code
@@ -96,7 +97,7 @@ fn an_unknown_id_and_a_missing_citation_are_noticed() {
     let code = "// paper: alg1.4\n// paper: alg2.4";
     let test = "// paper: alg1.4, alg9.9";
     let both: Vec<_> = citations("src/a.rs", code).chain(citations("tests/a.rs", test)).collect();
-    let faults = |cited: &[Citation]| Trace::new(&done, cited).faults().collect::<Vec<_>>();
+    let faults = |cited: &[Citation]| PaperTrace::new(&done, cited).faults().collect::<Vec<_>>();
     assert_eq!(
         faults(&both),
         [
@@ -110,9 +111,14 @@ fn an_unknown_id_and_a_missing_citation_are_noticed() {
         ["alg1.4: done, but no code cites it", "alg2.4: done, but no code and no test cites it",]
     );
     let complete = ["alg1.4", "alg2.4"].map(|id| {
-        [Kind::Code, Kind::Test].map(|kind| Citation { id, file: "src/a.rs", line: 1, kind })
+        [CitationKind::Code, CitationKind::Test].map(|kind| Citation {
+            id,
+            file: "src/a.rs",
+            line: 1,
+            kind,
+        })
     });
-    assert!(Trace::new(&done, complete.as_flattened()).holds());
+    assert!(PaperTrace::new(&done, complete.as_flattened()).holds());
 }
 
 #[test]
@@ -120,13 +126,13 @@ fn an_open_requirement_need_not_be_cited() {
     let open: Vec<_> =
         table().into_iter().filter(|requirement| requirement.status != Status::Done).collect();
     assert!(!open.is_empty());
-    assert!(Trace::new(&open, &[]).holds());
+    assert!(PaperTrace::new(&open, &[]).holds());
 }
 
 #[test]
 fn the_verb_answers_1_exactly_where_something_is_missing() {
     let requirements = table();
-    let holds = Trace::new(&requirements, CITATIONS).holds();
+    let holds = PaperTrace::new(&requirements, CITATIONS).holds();
     for arguments in [&[][..], &["--json"], &["--open"], &["--section", "4"]] {
         let code = toposlam_paper(arguments).status.code();
         assert_eq!(code, Some(i32::from(!holds)), "{arguments:?}");

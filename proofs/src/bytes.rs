@@ -17,7 +17,7 @@ impl Bytes {
         Self { bytes, choices: Vec::new() }
     }
 
-    /// The choices made so far, with which a [`Replay`](crate::Replay) makes the case again.
+    /// The choices made so far, with which a [`CaseReplay`](crate::CaseReplay) makes the case again.
     #[must_use]
     pub fn choices(&self) -> &[u8] {
         &self.choices

@@ -19,14 +19,14 @@ pub trait Choose {
     /// Whether this is a case to go on with; the lemma says nothing about the others.
     fn assume(&mut self, condition: bool) -> bool;
 
-    /// Shows a person what was chosen. Only a [`Replay`](crate::Replay) looks.
+    /// Shows a person what was chosen. Only a [`CaseReplay`](crate::CaseReplay) looks.
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {
         let _ = exhibit;
     }
 }
 
 /// What a lemma comes to in one case.
-pub type Case = Result<(), Stop>;
+pub type CaseResult = Result<(), Stop>;
 
 /// Why a lemma does not hold in a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub enum Stop {
 /// # Errors
 /// [`Stop::Excluded`].
 #[inline]
-pub fn given(choose: &mut impl Choose, condition: bool) -> Case {
+pub fn given(choose: &mut impl Choose, condition: bool) -> CaseResult {
     if choose.assume(condition) { Ok(()) } else { Err(Stop::Excluded) }
 }
 
@@ -51,12 +51,12 @@ pub fn given(choose: &mut impl Choose, condition: bool) -> Case {
 /// # Errors
 /// [`Stop::Fails`].
 #[inline]
-pub fn claim(what: &'static str, holds: bool) -> Case {
+pub fn claim(what: &'static str, holds: bool) -> CaseResult {
     if holds { Ok(()) } else { Err(Stop::Fails(what)) }
 }
 
 /// What a lemma comes to, where that the code panics is one way to fail.
-pub(crate) fn unless_it_panics(lemma: impl FnOnce() -> Case) -> Case {
+pub(crate) fn unless_it_panics(lemma: impl FnOnce() -> CaseResult) -> CaseResult {
     let ended = panic::catch_unwind(AssertUnwindSafe(lemma));
     ended.unwrap_or(Err(Stop::Fails("the code does not panic")))
 }

@@ -199,14 +199,14 @@ mod tests {
     use toposlam_model::isomorphism::code;
 
     use super::*;
-    use crate::odometer::Odometer;
+    use crate::odometer::ChoiceOdometer;
 
     /// OEIS A000698, shifted by one, as the model's own enumeration has it.
     #[test]
     fn every_start_is_drawn_once() {
         for (edges, count) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {
             let mut codes = Vec::new();
-            let drawn = Odometer::exhaust(
+            let drawn = ChoiceOdometer::exhaust(
                 |choose| {
                     let graph = start::<5>(choose, edges)?;
                     codes.push(code(&graph, Dart(0)));
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn every_permutation_is_drawn_once() {
         let mut drawn = Vec::new();
-        let count = Odometer::exhaust(
+        let count = ChoiceOdometer::exhaust(
             |choose| {
                 drawn.push(permutation::<5>(choose, 5));
                 Ok(())
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn every_pairing_is_drawn_once() {
         let mut drawn = Vec::new();
-        let count = Odometer::exhaust(
+        let count = ChoiceOdometer::exhaust(
             |choose| {
                 drawn.push(pairing::<8>(choose, 8));
                 Ok(())
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn numbers_are_drawn_from_both_ends() {
         let mut drawn = Vec::new();
-        let count = Odometer::exhaust(
+        let count = ChoiceOdometer::exhaust(
             |choose| {
                 drawn.push(number::<1>(choose));
                 Ok(())

@@ -2,9 +2,9 @@
 
 use crate::{
     bytes::Bytes,
-    choose::Case,
-    odometer::{Counterexample, Odometer},
-    replay::{Misfit, Replay, Shown},
+    choose::CaseResult,
+    odometer::{ChoiceOdometer, Counterexample},
+    replay::{CaseReplay, CaseView, ChoicesError},
 };
 
 /// A lemma: a sentence, and the engines that check it.
@@ -34,9 +34,9 @@ pub struct Exhaustive {
     /// How many cases there are within it: a check that finds another number does not hold.
     pub cases: u64,
     /// The lemma, for a driver that goes through all cases.
-    pub body: fn(&mut Odometer) -> Case,
+    pub body: fn(&mut ChoiceOdometer) -> CaseResult,
     /// The lemma, for making one case again.
-    pub replay: fn(&mut Replay) -> Case,
+    pub replay: fn(&mut CaseReplay) -> CaseResult,
 }
 
 /// The check of a lemma on cases drawn at random.
@@ -45,9 +45,9 @@ pub struct Sampled {
     /// The bound, in words.
     pub bound: &'static str,
     /// The lemma, for a driver that is given bytes.
-    pub body: fn(&mut Bytes) -> Case,
+    pub body: fn(&mut Bytes) -> CaseResult,
     /// The lemma, for making one case again.
-    pub replay: fn(&mut Replay) -> Case,
+    pub replay: fn(&mut CaseReplay) -> CaseResult,
 }
 
 /// The check of a lemma by Kani.
@@ -63,7 +63,7 @@ pub struct Kani {
 
 /// Why the exhaustive check of a lemma does not hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Failure {
+pub enum LemmaFailure {
     /// The lemma fails in a case.
     Case(Counterexample),
     /// There are more or fewer cases than there must be.
@@ -81,11 +81,13 @@ impl Lemma {
     ///
     /// # Errors
     /// The first case in which it fails; or that the number of cases is not what it must be.
-    pub fn check(&self, progress: &mut impl FnMut(u64)) -> Result<u64, Failure> {
+    pub fn check(&self, progress: &mut impl FnMut(u64)) -> Result<u64, LemmaFailure> {
         let Exhaustive { body, cases: pinned, .. } = self.exhaustive;
-        match Odometer::exhaust(body, progress) {
-            Err(counterexample) => Err(Failure::Case(counterexample)),
-            Ok(found) if found != pinned || found == 0 => Err(Failure::Cases { pinned, found }),
+        match ChoiceOdometer::exhaust(body, progress) {
+            Err(counterexample) => Err(LemmaFailure::Case(counterexample)),
+            Ok(found) if found != pinned || found == 0 => {
+                Err(LemmaFailure::Cases { pinned, found })
+            }
             Ok(found) => Ok(found),
         }
     }
@@ -94,8 +96,8 @@ impl Lemma {
     ///
     /// # Errors
     /// Where the choices are not those of a case.
-    pub fn replay(&self, choices: &[u8]) -> Result<Shown, Misfit> {
-        Replay::show(self.exhaustive.replay, choices)
+    pub fn replay(&self, choices: &[u8]) -> Result<CaseView, ChoicesError> {
+        CaseReplay::show(self.exhaustive.replay, choices)
     }
 }
 
@@ -163,7 +165,7 @@ macro_rules! declare {
                     #[kani::proof]
                     #[kani::unwind($unwind)]
                     fn kani() {
-                        let case: $crate::Case = $kani(&mut $crate::symbolic::Symbolic);
+                        let case: $crate::CaseResult = $kani(&mut $crate::symbolic::Symbolic);
                         let holds = case.is_ok();
                         assert!(holds);
                         kani::cover!(holds, "there is a case");
@@ -201,10 +203,10 @@ pub(crate) mod tests {
         let lemma = named(lemmas, name);
         match lemma.check(&mut |_| {}) {
             Ok(_) => {}
-            Err(Failure::Cases { pinned, found }) => {
+            Err(LemmaFailure::Cases { pinned, found }) => {
                 panic!("there are {found} cases; there must be {pinned}, and at least one")
             }
-            Err(Failure::Case(Counterexample { choices, claim, .. })) => panic!(
+            Err(LemmaFailure::Case(Counterexample { choices, claim, .. })) => panic!(
                 "it does not hold that {claim}:\n  toposlam proofs --run {name} --choices {}",
                 listed(&choices)
             ),

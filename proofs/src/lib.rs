@@ -1,10 +1,10 @@
 //! The lemmas on which the correctness of the mapping rests, each one body with three drivers.
 //!
 //! A lemma is a plain function over [`Choose`]: it chooses a case, and answers whether what it
-//! claims holds there. An [`Odometer`] makes it choose in every way within a bound, so that the
+//! claims holds there. An [`ChoiceOdometer`] makes it choose in every way within a bound, so that the
 //! lemma is proved for all of these cases; property tests let it choose from [`Bytes`] at larger
 //! bounds, and shrink what fails; under [Kani](https://github.com/model-checking/kani) each choice
-//! is symbolic. A [`Replay`] makes one case again and shows it to a person.
+//! is symbolic. A [`CaseReplay`] makes one case again and shows it to a person.
 //!
 //! From the ground up:
 //!
@@ -35,8 +35,8 @@ pub mod symbolic;
 pub mod theorems;
 
 pub use bytes::Bytes;
-pub use choose::{Case, Choose, Exhibit, Stop};
+pub use choose::{CaseResult, Choose, Exhibit, Stop};
 pub use lemma::Lemma;
-pub use odometer::{Counterexample, Odometer};
-pub use replay::Replay;
+pub use odometer::{ChoiceOdometer, Counterexample};
+pub use replay::CaseReplay;
 pub use theorems::Theorem;

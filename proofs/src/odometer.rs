@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use crate::choose::{Case, Choose, Stop, unless_it_panics};
+use crate::choose::{CaseResult, Choose, Stop, unless_it_panics};
 
 /// Chooses in every way, one case after the other, the latest choice turning fastest.
 #[derive(Clone, Debug, Default)]
-pub struct Odometer {
+pub struct ChoiceOdometer {
     /// The choices of this case, each with how many there are.
     digits: Vec<(u8, u8)>,
     /// How many of them have been made.
@@ -15,14 +15,14 @@ pub struct Odometer {
     wavered: bool,
 }
 
-impl Odometer {
+impl ChoiceOdometer {
     /// Makes every case, and answers how many there are of which the lemma speaks. Each time after
     /// so many cases it tells `progress` how many there were.
     ///
     /// # Errors
     /// The first case in which the lemma fails.
     pub fn exhaust(
-        mut lemma: impl FnMut(&mut Self) -> Case,
+        mut lemma: impl FnMut(&mut Self) -> CaseResult,
         progress: &mut impl FnMut(u64),
     ) -> Result<u64, Counterexample> {
         let mut odometer = Self::default();
@@ -69,7 +69,7 @@ impl Odometer {
 /// How many cases pass between two tellings of progress.
 const PROGRESS: u64 = 1 << 16;
 
-impl Choose for Odometer {
+impl Choose for ChoiceOdometer {
     #[inline]
     fn below(&mut self, n: u8) -> u8 {
         assert!(n > 0, "there is something to choose from");
@@ -93,7 +93,7 @@ impl Choose for Odometer {
 /// A case in which a lemma fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counterexample {
-    /// The choices, with which a [`Replay`](crate::Replay) makes it again.
+    /// The choices, with which a [`CaseReplay`](crate::CaseReplay) makes it again.
     pub choices: Vec<u8>,
     /// What should hold, and does not.
     pub claim: &'static str,
@@ -120,8 +120,10 @@ mod tests {
     use super::*;
     use crate::choose::{claim, given};
 
-    fn exhaust(lemma: impl FnMut(&mut Odometer) -> Case) -> Result<u64, Counterexample> {
-        Odometer::exhaust(lemma, &mut |_| {})
+    fn exhaust(
+        lemma: impl FnMut(&mut ChoiceOdometer) -> CaseResult,
+    ) -> Result<u64, Counterexample> {
+        ChoiceOdometer::exhaust(lemma, &mut |_| {})
     }
 
     #[test]

@@ -2,21 +2,21 @@
 
 use std::fmt;
 
-use crate::choose::{Case, Choose, Exhibit, unless_it_panics};
+use crate::choose::{CaseResult, Choose, Exhibit, unless_it_panics};
 
 /// Makes one case again, from a list of choices, and keeps what it shows.
 #[derive(Clone, Debug, Default)]
-pub struct Replay {
+pub struct CaseReplay {
     choices: Vec<u8>,
     /// How many of them have been made, or would have been.
     made: usize,
-    misfit: Option<Misfit>,
+    misfit: Option<ChoicesError>,
     exhibits: Vec<Exhibit>,
 }
 
 /// A list of choices that is not one of the lemma's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Misfit {
+pub enum ChoicesError {
     /// There is no so high choice.
     TooHigh {
         /// The place in the list, from 1.
@@ -42,7 +42,7 @@ pub enum Misfit {
     },
 }
 
-impl fmt::Display for Misfit {
+impl fmt::Display for ChoicesError {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::TooHigh { place, choice, of } => {
@@ -60,39 +60,42 @@ impl fmt::Display for Misfit {
 
 /// A case that was made again.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct CaseView {
     /// What the lemma comes to in it.
-    pub case: Case,
+    pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
     pub exhibits: Vec<Exhibit>,
 }
 
-impl Replay {
+impl CaseReplay {
     /// Makes a case again.
     ///
     /// # Errors
     /// Where the choices are not those of a case.
-    pub fn show(lemma: impl FnOnce(&mut Self) -> Case, choices: &[u8]) -> Result<Shown, Misfit> {
+    pub fn show(
+        lemma: impl FnOnce(&mut Self) -> CaseResult,
+        choices: &[u8],
+    ) -> Result<CaseView, ChoicesError> {
         let mut replay = Self { choices: choices.to_vec(), ..Self::default() };
         let case = unless_it_panics(|| lemma(&mut replay));
         let (choices, needed) = (replay.choices.len(), replay.made);
         match replay.misfit {
             Some(misfit) => Err(misfit),
-            None if needed > choices => Err(Misfit::TooFew { choices, needed }),
-            None if needed < choices => Err(Misfit::TooMany { choices, needed }),
-            None => Ok(Shown { case, exhibits: replay.exhibits }),
+            None if needed > choices => Err(ChoicesError::TooFew { choices, needed }),
+            None if needed < choices => Err(ChoicesError::TooMany { choices, needed }),
+            None => Ok(CaseView { case, exhibits: replay.exhibits }),
         }
     }
 }
 
-impl Choose for Replay {
+impl Choose for CaseReplay {
     fn below(&mut self, n: u8) -> u8 {
         assert!(n > 0, "there is something to choose from");
         self.made += 1;
         match self.choices.get(self.made - 1) {
             Some(&choice) if choice < n => choice,
             Some(&choice) => {
-                let misfit = Misfit::TooHigh { place: self.made, choice, of: n };
+                let misfit = ChoicesError::TooHigh { place: self.made, choice, of: n };
                 self.misfit.get_or_insert(misfit);
                 0
             }

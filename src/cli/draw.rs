@@ -8,7 +8,7 @@ use std::{
 
 use clap::ValueEnum;
 
-use toposlam::picture::{Picture, png, svg};
+use toposlam::picture::{WorldPicture, png, svg};
 
 use toposlam_model::{format::dot, marker::Marker};
 
@@ -55,7 +55,7 @@ impl DrawArguments {
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = || svg(&Picture { marker: self.marker, ..Picture::from(&world) });
+        let drawn = || svg(&WorldPicture { marker: self.marker, ..WorldPicture::from(&world) });
         let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
             Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,

@@ -10,7 +10,7 @@ use std::{
     slice,
 };
 
-use toposlam::picture::{self, Picture};
+use toposlam::picture::{self, WorldPicture};
 use toposlam_model::{
     check::{Algorithm, Algorithm1, Flaw, MovableMarker, RunState, judge},
     embedded_graph::Dart,
@@ -180,7 +180,7 @@ impl ExploreArguments {
                 (map.start, "")
             };
             let caption = format!("mapped in {moves} moves{hand}");
-            let drawn = Picture { caption: &caption, start, ..Picture::from(map) };
+            let drawn = WorldPicture { caption: &caption, start, ..WorldPicture::from(map) };
             output::write_whole(path, picture::svg(&drawn).as_bytes())?;
         }
         Ok(())

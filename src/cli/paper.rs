@@ -6,7 +6,9 @@ use std::{
 };
 
 use serde::Serialize;
-use toposlam::paper::{CITATIONS, Citation, Row, Status, TABLE, Trace, requirements};
+use toposlam::paper::{
+    CITATIONS, Citation, PaperTrace, Status, TABLE, TracedRequirement, requirements,
+};
 
 use super::{Failure, Outcome, json::print_object, text::print_hanging};
 
@@ -33,7 +35,7 @@ impl PaperArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let requirements =
             requirements(TABLE).map_err(|error| Failure::at("tests/paper.toml", error))?;
-        let trace = Trace::new(&requirements, CITATIONS);
+        let trace = PaperTrace::new(&requirements, CITATIONS);
         let mut rows: Vec<_> = trace.rows.iter().collect();
         if let Some(section) = &self.section {
             rows.retain(|row| row.requirement.is_in(section));
@@ -83,7 +85,11 @@ struct TotalsLine {
 }
 
 /// The rows and then the totals, one JSON object a line.
-fn print_json(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> Result<(), Failure> {
+fn print_json(
+    out: &mut dyn Write,
+    rows: &[&TracedRequirement],
+    trace: &PaperTrace,
+) -> Result<(), Failure> {
     let place = |citation: &Citation| format!("{}:{}", citation.file, citation.line);
     for row in rows {
         let requirement = row.requirement;
@@ -118,7 +124,11 @@ fn print_json(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> Result<(), F
 }
 
 /// The rows by section, for people, and then the totals.
-fn print_table(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> io::Result<()> {
+fn print_table(
+    out: &mut dyn Write,
+    rows: &[&TracedRequirement],
+    trace: &PaperTrace,
+) -> io::Result<()> {
     let id_width = rows.iter().map(|row| row.requirement.id.len()).max();
     let id_width = id_width.unwrap_or_default();
     for section in rows.chunk_by(|a, b| a.requirement.section == b.requirement.section) {
@@ -141,7 +151,7 @@ fn print_table(out: &mut dyn Write, rows: &[&Row], trace: &Trace) -> io::Result<
     Ok(())
 }
 
-fn print_row(out: &mut dyn Write, row: &Row, id_width: usize) -> io::Result<()> {
+fn print_row(out: &mut dyn Write, row: &TracedRequirement, id_width: usize) -> io::Result<()> {
     let requirement = row.requirement;
     let line = requirement.line.map(|line| line.to_string());
     let line = line.unwrap_or_default();
@@ -178,7 +188,7 @@ fn places(citations: &[Citation]) -> String {
         .join("; ")
 }
 
-fn done(rows: &[&Row]) -> usize {
-    let is_done = |row: &&&Row| row.requirement.status == Status::Done;
+fn done(rows: &[&TracedRequirement]) -> usize {
+    let is_done = |row: &&&TracedRequirement| row.requirement.status == Status::Done;
     rows.iter().filter(is_done).count()
 }

@@ -3,7 +3,7 @@
 
 /// Whether a citation says "here it is implemented" or "here it is checked".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum CitationKind {
     /// In code.
     Code,
     /// In a test: in a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`,
@@ -21,7 +21,7 @@ pub struct Citation<'a> {
     /// The line in the file; the first is 1.
     pub line: usize,
     /// What is there: code or a test.
-    pub kind: Kind,
+    pub kind: CitationKind,
 }
 
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
@@ -30,11 +30,11 @@ pub struct Citation<'a> {
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
     let in_coq = file.rsplit('.').next() == Some("v");
     let tested = file.split('/').any(|part| ["tests", "tests.rs", "lemmas"].contains(&part));
-    let mut kind = if tested || in_coq { Kind::Test } else { Kind::Code };
+    let mut kind = if tested || in_coq { CitationKind::Test } else { CitationKind::Code };
     let comment = if in_coq { in_coq_comment } else { in_rust_comment };
     text.lines().zip(1..).flat_map(move |(source, line)| {
         if source.starts_with("#[cfg(test)]") {
-            kind = Kind::Test;
+            kind = CitationKind::Test;
         }
         let kind = kind;
         cited(comment(source)).map(move |id| Citation { id, file, line, kind })
@@ -70,7 +70,7 @@ fn is_in_string(text: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn found<'a>(file: &'a str, text: &'a str) -> Vec<(&'a str, usize, Kind)> {
+    fn found<'a>(file: &'a str, text: &'a str) -> Vec<(&'a str, usize, CitationKind)> {
         citations(file, text).map(|citation| (citation.id, citation.line, citation.kind)).collect()
     }
 
@@ -79,7 +79,11 @@ mod tests {
         let text = "fn f() {\n    // paper: alg1.4, alg1.5\n    g(); // paper: alg1.6\n}\n";
         assert_eq!(
             found("src/mapping.rs", text),
-            [("alg1.4", 2, Kind::Code), ("alg1.5", 2, Kind::Code), ("alg1.6", 3, Kind::Code)]
+            [
+                ("alg1.4", 2, CitationKind::Code),
+                ("alg1.5", 2, CitationKind::Code),
+                ("alg1.6", 3, CitationKind::Code)
+            ]
         );
     }
 
@@ -87,17 +91,17 @@ mod tests {
     fn below_cfg_test_under_tests_and_in_a_lemma_a_citation_is_a_test() {
         let text = "// paper: world.graph\n#[cfg(test)]\nmod tests {\n    // paper: world.graph\n}";
         let kinds = |file| citations(file, text).map(|c| c.kind).collect::<Vec<_>>();
-        assert_eq!(kinds("model/src/a.rs"), [Kind::Code, Kind::Test]);
-        assert_eq!(kinds("model/tests/a.rs"), [Kind::Test, Kind::Test]);
-        assert_eq!(kinds("model/src/a/tests.rs"), [Kind::Test, Kind::Test]);
-        assert_eq!(kinds("proofs/src/lemmas/a.rs"), [Kind::Test, Kind::Test]);
-        assert_eq!(kinds("src/latests/a.rs"), [Kind::Code, Kind::Test]);
+        assert_eq!(kinds("model/src/a.rs"), [CitationKind::Code, CitationKind::Test]);
+        assert_eq!(kinds("model/tests/a.rs"), [CitationKind::Test, CitationKind::Test]);
+        assert_eq!(kinds("model/src/a/tests.rs"), [CitationKind::Test, CitationKind::Test]);
+        assert_eq!(kinds("proofs/src/lemmas/a.rs"), [CitationKind::Test, CitationKind::Test]);
+        assert_eq!(kinds("src/latests/a.rs"), [CitationKind::Code, CitationKind::Test]);
     }
 
     #[test]
     fn what_a_theorem_cites_is_checked() {
         let text = "Theorem walk_inj : True. (* paper: motion.path, alg1.10 *)\nProof. by []. Qed.";
-        let ids = [("motion.path", 1, Kind::Test), ("alg1.10", 1, Kind::Test)];
+        let ids = [("motion.path", 1, CitationKind::Test), ("alg1.10", 1, CitationKind::Test)];
         assert_eq!(found("proofs/coq/Theorems.v", text), ids);
         for none in ["(** Paper: 2.1. *)", "(* the paper: alg1.1 *)", "(* paper: alg1.1"] {
             assert_eq!(found("proofs/coq/Theorems.v", none), [], "{none}");
@@ -120,8 +124,8 @@ mod tests {
     fn a_sloppy_citation_is_found_and_so_can_be_refused() {
         assert_eq!(
             found("a.rs", "// paper: alg1.1 and more"),
-            [("alg1.1 and more", 1, Kind::Code)]
+            [("alg1.1 and more", 1, CitationKind::Code)]
         );
-        assert_eq!(found("a.rs", "// paper:"), [("", 1, Kind::Code)]);
+        assert_eq!(found("a.rs", "// paper:"), [("", 1, CitationKind::Code)]);
     }
 }

@@ -8,9 +8,9 @@ mod citation;
 mod requirement;
 mod trace;
 
-pub use citation::{Citation, Kind, citations};
+pub use citation::{Citation, CitationKind, citations};
 pub use requirement::{Requirement, Status, TableError, requirements};
-pub use trace::{Row, Trace};
+pub use trace::{PaperTrace, TracedRequirement};
 
 /// The table of requirements, as it is written.
 pub const TABLE: &str = include_str!("../../tests/paper.toml");

@@ -1,10 +1,10 @@
 //! Requirements and citations, brought together; and whether they fit.
 
-use super::{Citation, Kind, Requirement, Status};
+use super::{Citation, CitationKind, Requirement, Status};
 
 /// A requirement, and where it is cited.
 #[derive(Clone, Debug)]
-pub struct Row<'a> {
+pub struct TracedRequirement<'a> {
     /// The requirement.
     pub requirement: &'a Requirement,
     /// Where it is implemented.
@@ -13,7 +13,7 @@ pub struct Row<'a> {
     pub tests: Vec<Citation<'a>>,
 }
 
-impl Row<'_> {
+impl TracedRequirement<'_> {
     /// Whether the requirement is said to be done, and no code cites it.
     #[must_use]
     pub fn lacks_code(&self) -> bool {
@@ -29,14 +29,14 @@ impl Row<'_> {
 
 /// Every requirement with where it is cited, and the citations of what is no requirement.
 #[derive(Clone, Debug)]
-pub struct Trace<'a> {
+pub struct PaperTrace<'a> {
     /// The requirements, in the order of their table.
-    pub rows: Vec<Row<'a>>,
+    pub rows: Vec<TracedRequirement<'a>>,
     /// The citations whose id is not in the table.
     pub unknown: Vec<Citation<'a>>,
 }
 
-impl<'a> Trace<'a> {
+impl<'a> PaperTrace<'a> {
     /// Brings requirements and citations together.
     #[must_use]
     pub fn new(requirements: &'a [Requirement], citations: &[Citation<'a>]) -> Self {
@@ -49,10 +49,10 @@ impl<'a> Trace<'a> {
         };
         let rows = requirements
             .iter()
-            .map(|requirement| Row {
+            .map(|requirement| TracedRequirement {
                 requirement,
-                code: cited(requirement, Kind::Code),
-                tests: cited(requirement, Kind::Test),
+                code: cited(requirement, CitationKind::Code),
+                tests: cited(requirement, CitationKind::Test),
             })
             .collect();
         let unknown = citations

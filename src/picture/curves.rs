@@ -19,14 +19,14 @@ pub(super) struct Curve {
 
 /// A place where a curve begins or ends: on the border of a disc, facing outwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Door {
+pub(super) struct DoorKnob {
     /// The place on the border.
     pub(super) at: Point,
     /// The direction outwards, of length 1.
     pub(super) out: Point,
 }
 
-impl Door {
+impl DoorKnob {
     pub(super) fn new(centre: Point, radius: f64, angle: f64) -> Self {
         let out = Point::polar(angle, 1.0);
         Self { at: centre + out * radius, out }
@@ -35,13 +35,13 @@ impl Door {
 
 impl Curve {
     /// One cubic with handles of the given lengths.
-    pub(super) fn cubic(from: Door, to: Door, handles: [f64; 2]) -> Self {
+    pub(super) fn cubic(from: DoorKnob, to: DoorKnob, handles: [f64; 2]) -> Self {
         let controls = [from.at + from.out * handles[0], to.at + to.out * handles[1]];
         Self::new(from.at, vec![[controls[0], controls[1], to.at]])
     }
 
     /// A smooth chain of cubics by way of the given points.
-    pub(super) fn by_way_of(from: Door, way: &[Point], to: Door) -> Self {
+    pub(super) fn by_way_of(from: DoorKnob, way: &[Point], to: DoorKnob) -> Self {
         let points: Vec<_> =
             [from.at].into_iter().chain(way.iter().copied()).chain([to.at]).collect();
         let last = points.len() - 1;
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_curve_can_be_turned_around_and_cut_off() {
-        let door = |x: f64, angle| Door::new(Point::new(x, 0.0), 1.0, angle);
+        let door = |x: f64, angle| DoorKnob::new(Point::new(x, 0.0), 1.0, angle);
         let way = [Point::new(3.0, 4.0), Point::new(9.0, -2.0)];
         let curve = Curve::by_way_of(door(0.0, 0.0), &way, door(12.0, 1.0));
         let back = curve.reversed();

@@ -4,21 +4,21 @@
 use crate::model::embedded_graph::{Dart, EmbeddedGraph};
 
 use super::{
-    Picture, Place,
+    Placement, WorldPicture,
     curves::Curve,
     doors::door_directions,
     geometry::{Extent, Point},
     layout::{self, Layout},
     routes::{self, Crossings},
-    scale::{Purpose, scale},
-    size::Size,
-    ways::Errand,
+    scale::{ScalePurpose, scale},
+    size::DrawingSize,
+    ways::UnroutedEdge,
 };
 
 /// Everything at its place.
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
-    pub(super) size: Size,
+    pub(super) size: DrawingSize,
     /// The centre of each vertex's disc.
     pub(super) centres: Vec<Point>,
     /// The direction of each dart's door.
@@ -30,7 +30,7 @@ pub(super) struct Drawing {
     /// The ink of each edge: 0, or one that no edge that it crosses has.
     pub(super) inks: Vec<usize>,
     /// The ground, for floor plans.
-    pub(super) floor: Option<Floor>,
+    pub(super) floor: Option<FloorScale>,
     /// So many vertices are known; the others stand for unknown ends of edges.
     pub(super) known: usize,
     /// A box that stays free, so that pictures of a series are equally large.
@@ -39,7 +39,7 @@ pub(super) struct Drawing {
 
 /// What the picture shows of the ground.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Floor {
+pub(super) struct FloorScale {
     /// Units of the picture in a metre.
     pub(super) metre: f64,
     /// Units of the picture in the width of a hallway.
@@ -50,46 +50,46 @@ pub(super) struct Floor {
 pub(super) const INKS: usize = 7;
 
 impl Drawing {
-    pub(super) fn of(picture: &Picture) -> Self {
-        Self::sized(picture, Size::of(picture.graph, picture.vertex_names))
+    pub(super) fn of(picture: &WorldPicture) -> Self {
+        Self::sized(picture, DrawingSize::of(picture.graph, picture.vertex_names))
     }
 
     /// The drawing with discs and names of these sizes.
-    pub(super) fn sized(picture: &Picture, size: Size) -> Self {
+    pub(super) fn sized(picture: &WorldPicture, size: DrawingSize) -> Self {
         let graph = picture.graph;
-        let place = picture.place.of_all(graph.vertex_count());
+        let place = picture.placement.of_all(graph.vertex_count());
         let mut layout = match place.positions() {
             Some(positions) => layout::given(graph, positions),
             None => layout::lay_out(graph),
         };
         let purpose = match place {
-            Place::Free => Purpose::Usual,
-            Place::At(_) => Purpose::Given,
-            Place::FloorPlan { .. } => Purpose::FloorPlan,
+            Placement::Free => ScalePurpose::Usual,
+            Placement::At(_) => ScalePurpose::Given,
+            Placement::FloorPlan { .. } => ScalePurpose::FloorPlan,
         };
         let unit = scale(graph, &layout.vertices, &size, purpose);
         for point in layout.vertices.iter_mut().chain(layout.bends.iter_mut().flatten()) {
             *point = *point * unit;
         }
         let doors = doors(graph, &layout, &size);
-        let errands: Vec<_> = graph
+        let edge_routes: Vec<_> = graph
             .edges()
             .zip(&layout.bends)
-            .map(|((dart, other), bends)| Errand {
+            .map(|((dart, other), bends)| UnroutedEdge {
                 vertices: [graph.vertex(dart).at(), graph.vertex(other).at()],
                 directions: [doors[dart.at()], doors[other.at()]],
                 bends: bends.clone(),
             })
             .collect();
-        let crossings = if graph.genus() == 0 && place == Place::Free {
+        let crossings = if graph.genus() == 0 && place == Placement::Free {
             Crossings::Needless
         } else {
             Crossings::Needed
         };
-        let curves = routes::routes(&errands, &layout.vertices, &size, crossings);
+        let curves = routes::routes(&edge_routes, &layout.vertices, &size, crossings);
         Self {
             inks: inks(&curves),
-            ends: errands.iter().map(|errand| errand.vertices).collect(),
+            ends: edge_routes.iter().map(|route| route.vertices).collect(),
             edges: graph
                 .edges()
                 .zip(curves)
@@ -98,10 +98,10 @@ impl Drawing {
             centres: layout.vertices,
             doors,
             floor: match place {
-                Place::FloorPlan { hallway_width, .. } => {
-                    Some(Floor { metre: unit, width: unit * hallway_width })
+                Placement::FloorPlan { hallway_width, .. } => {
+                    Some(FloorScale { metre: unit, width: unit * hallway_width })
                 }
-                Place::Free | Place::At(_) => None,
+                Placement::Free | Placement::At(_) => None,
             },
             known: graph.vertex_count(),
             room: Extent::EMPTY,
@@ -137,7 +137,7 @@ impl Drawing {
 }
 
 /// The direction of each dart's door: as its edge would leave, where the clockwise order allows.
-fn doors(graph: &EmbeddedGraph, layout: &Layout, size: &Size) -> Vec<f64> {
+fn doors(graph: &EmbeddedGraph, layout: &Layout, size: &DrawingSize) -> Vec<f64> {
     let mut towards = vec![None; graph.dart_count()];
     for ((dart, other), bends) in graph.edges().zip(&layout.bends) {
         let ends = [dart, other].map(|end| graph.vertex(end).at());

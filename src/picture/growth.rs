@@ -9,7 +9,10 @@ use crate::model::{
     marker::Directional,
 };
 
-use super::{Picture, Place, curves::Curve, drawing::Drawing, geometry::Extent, size::Size, svg};
+use super::{
+    Placement, WorldPicture, curves::Curve, drawing::Drawing, geometry::Extent, size::DrawingSize,
+    svg,
+};
 
 /// The radius of the circle in which an unexplored edge ends.
 const OPEN: f64 = 5.0;
@@ -50,7 +53,7 @@ impl<'a> Whole<'a> {
     fn new(map: &'a PartialMap) -> Option<Self> {
         let graph = with_open_ends(map)?;
         let names = names(&graph, map.vertex_count());
-        let mut size = Size::of(&graph, &names);
+        let mut size = DrawingSize::of(&graph, &names);
         size.discs[map.vertex_count()..].fill(OPEN);
         let drawing = Drawing::sized(&picture(&graph, &names), size);
         let mut edge = vec![0; graph.dart_count()];
@@ -152,14 +155,14 @@ fn names(graph: &EmbeddedGraph, known: usize) -> Vec<String> {
     (0..graph.vertex_count()).map(name).collect()
 }
 
-fn picture<'a>(graph: &'a EmbeddedGraph, vertex_names: &'a [String]) -> Picture<'a> {
-    Picture {
+fn picture<'a>(graph: &'a EmbeddedGraph, vertex_names: &'a [String]) -> WorldPicture<'a> {
+    WorldPicture {
         graph,
         vertex_names,
         edge_names: None,
         start: Some(FACING),
         marker: &Directional,
-        place: Place::Free,
+        placement: Placement::Free,
         title: "",
         caption: "",
     }

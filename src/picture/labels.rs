@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::{
-    Picture,
+    WorldPicture,
     drawing::Drawing,
     geometry::{Extent, Point},
     signs::Sign,
@@ -14,7 +14,7 @@ use super::{
 
 /// What a label names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum LabelKind {
     /// A vertex, inside its disc.
     Inside,
     /// A vertex, beside its disc.
@@ -31,7 +31,7 @@ pub(super) struct Label {
     pub(super) centre: Point,
     /// The font size.
     pub(super) size: f64,
-    pub(super) kind: Kind,
+    pub(super) kind: LabelKind,
 }
 
 /// From one line of a text to the next, in font sizes.
@@ -55,7 +55,7 @@ const AWAY: [f64; 5] = [3.0, 8.0, 16.0, 28.0, 44.0];
 const COVERED: f64 = 300.0;
 
 /// The labels of vertices and edges.
-pub(super) fn labels(drawing: &Drawing, picture: &Picture, signs: &[Sign]) -> Vec<Label> {
+pub(super) fn labels(drawing: &Drawing, picture: &WorldPicture, signs: &[Sign]) -> Vec<Label> {
     let mut labels = Vec::new();
     let size = &drawing.size;
     let named = drawing.centres.iter().zip(picture.vertex_names).enumerate();
@@ -64,7 +64,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture, signs: &[Sign]) -> Ve
             Names::Nowhere => {}
             Names::Inside | Names::Broken => {
                 let lines = size.lines(name);
-                labels.push(Label { lines, centre, size: size.name, kind: Kind::Inside });
+                labels.push(Label { lines, centre, size: size.name, kind: LabelKind::Inside });
             }
             Names::Beside => {
                 let places = beside(centre, size.discs[vertex] + size.knob, name, size.name);
@@ -85,7 +85,7 @@ pub(super) fn labels(drawing: &Drawing, picture: &Picture, signs: &[Sign]) -> Ve
                 lines: vec![name.clone()],
                 centre: curve.at(share),
                 size: EDGE_SIZE,
-                kind: Kind::Edge,
+                kind: LabelKind::Edge,
             });
             labels.extend(roomiest(drawing, signs, &labels, Some(number), places));
         }
@@ -100,7 +100,7 @@ fn beside(centre: Point, reach: f64, name: &str, size: f64) -> Vec<Label> {
         for lines in [vec![name.to_owned()], text::in_two(name)] {
             for turn in 0..24 {
                 let angle = TAU * f64::from(turn) / 24.0;
-                let kind = Kind::Beside;
+                let kind = LabelKind::Beside;
                 let mut label = Label { lines: lines.clone(), centre, size, kind };
                 let half = label.extent().size() * 0.5;
                 let aside = Point::new(angle.cos() * half.x, angle.sin() * half.y);
@@ -145,7 +145,7 @@ fn covered(
         let shared = extent.shared_area(&other.extent());
         cost += if shared > 0.0 { COVERED + shared } else { 0.0 };
     }
-    if label.kind == Kind::Beside {
+    if label.kind == LabelKind::Beside {
         for hallway in drawing.hallways() {
             cost += extent.shared_area(&hallway);
         }

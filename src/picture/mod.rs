@@ -49,7 +49,7 @@ pub(crate) use text::escaped;
 
 /// What to draw.
 #[derive(Clone, Copy, Debug)]
-pub struct Picture<'a> {
+pub struct WorldPicture<'a> {
     /// The world.
     pub graph: &'a EmbeddedGraph,
     /// The name of each vertex.
@@ -61,14 +61,14 @@ pub struct Picture<'a> {
     /// The kind of marker.
     pub marker: &'a dyn Marker,
     /// Where the vertices are.
-    pub place: Place<'a>,
+    pub placement: Placement<'a>,
     /// Stands above the picture; may be empty.
     pub title: &'a str,
     /// Stands below the picture, the cost of exploring it for example; may be empty.
     pub caption: &'a str,
 }
 
-impl Picture<'_> {
+impl WorldPicture<'_> {
     /// What lies where.
     fn parts(&self) -> Vec<MarkerPart> {
         self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
@@ -120,9 +120,9 @@ impl Picture<'_> {
 
 /// Where the vertices of a picture are.
 ///
-/// Positions that are not finite, or not one a vertex, count as [`Place::Free`].
+/// Positions that are not finite, or not one a vertex, count as [`Placement::Free`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Place<'a> {
+pub enum Placement<'a> {
     /// Wherever the picture is clearest.
     #[default]
     Free,
@@ -137,7 +137,7 @@ pub enum Place<'a> {
     },
 }
 
-impl<'a> Place<'a> {
+impl<'a> Placement<'a> {
     /// The positions, where there are any.
     #[must_use]
     pub fn positions(self) -> Option<&'a [[f64; 2]]> {
@@ -156,7 +156,7 @@ impl<'a> Place<'a> {
     }
 }
 
-impl<'a> From<&'a NamedWorld> for Place<'a> {
+impl<'a> From<&'a NamedWorld> for Placement<'a> {
     fn from(world: &'a NamedWorld) -> Self {
         match (&world.positions, &world.plan) {
             (None, _) => Self::Free,
@@ -168,7 +168,7 @@ impl<'a> From<&'a NamedWorld> for Place<'a> {
     }
 }
 
-impl<'a> From<&'a NamedWorld> for Picture<'a> {
+impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
     /// The picture of a world with its own names, a directional marker at its start, and its name
     /// as the title.
     fn from(world: &'a NamedWorld) -> Self {
@@ -178,7 +178,7 @@ impl<'a> From<&'a NamedWorld> for Picture<'a> {
             edge_names: world.edge_names.as_deref(),
             start: world.start,
             marker: &Directional,
-            place: Place::from(world),
+            placement: Placement::from(world),
             title: &world.name,
             caption: &world.about,
         }
@@ -187,6 +187,6 @@ impl<'a> From<&'a NamedWorld> for Picture<'a> {
 
 /// The picture as an SVG document. The same picture gives the same bytes.
 #[must_use]
-pub fn svg(picture: &Picture) -> String {
+pub fn svg(picture: &WorldPicture) -> String {
     svg::document(picture, &drawing::Drawing::of(picture), svg::Legend::Below)
 }

@@ -23,7 +23,7 @@ pub enum PictureError {
     Svg(#[from] usvg::Error),
     /// The image has no size, or one that does not fit in memory.
     #[error("an image of {width} x {height} pixels cannot be made")]
-    Size {
+    DrawingSize {
         /// In pixels.
         width: u32,
         /// In pixels.
@@ -53,7 +53,7 @@ pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
     let scale = scale(size.width().max(size.height()));
     let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));
     let mut image =
-        tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
+        tiny_skia::Pixmap::new(width, height).ok_or(PictureError::DrawingSize { width, height })?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
     image.encode_png().map_err(|error| PictureError::Png(error.to_string()))

@@ -4,8 +4,8 @@
 use super::{
     curves::Curve,
     geometry::{Extent, Point, crossing, wrapped},
-    size::Size,
-    ways::{Discs, Errand},
+    size::DrawingSize,
+    ways::{Discs, UnroutedEdge},
 };
 
 /// Edges up to which every curve is weighed against every other.
@@ -24,9 +24,9 @@ pub(super) enum Crossings {
 
 /// A curve for each edge.
 pub(super) fn routes(
-    errands: &[Errand],
+    edge_routes: &[UnroutedEdge],
     centres: &[Point],
-    size: &Size,
+    size: &DrawingSize,
     crossings: Crossings,
 ) -> Vec<Curve> {
     let room = Room {
@@ -36,23 +36,23 @@ pub(super) fn routes(
         },
         discs: Discs { centres, size },
     };
-    let mut chosen: Vec<Curve> = errands.iter().map(|errand| room.discs.plain(errand)).collect();
-    if errands.len() > WEIGHED {
+    let mut chosen: Vec<Curve> = edge_routes.iter().map(|route| room.discs.plain(route)).collect();
+    if edge_routes.len() > WEIGHED {
         return chosen;
     }
-    let offers: Vec<Vec<(f64, Curve)>> = errands
+    let offers: Vec<Vec<(f64, Curve)>> = edge_routes
         .iter()
-        .map(|errand| {
+        .map(|route| {
             room.discs
-                .candidates(errand)
+                .candidates(route)
                 .into_iter()
-                .map(|curve| (room.cost_alone(errand, &curve), curve))
+                .map(|curve| (room.cost_alone(route, &curve), curve))
                 .collect()
         })
         .collect();
     for _ in 0..ROUNDS {
         let mut changed = false;
-        for edge in 0..errands.len() {
+        for edge in 0..edge_routes.len() {
             let mut best = (f64::INFINITY, None);
             for (place, (alone, curve)) in offers[edge].iter().enumerate() {
                 if *alone >= best.0 {
@@ -106,7 +106,7 @@ struct Room<'a> {
 
 impl Room<'_> {
     /// What a curve costs whatever the others do.
-    fn cost_alone(&self, errand: &Errand, curve: &Curve) -> f64 {
+    fn cost_alone(&self, route: &UnroutedEdge, curve: &Curve) -> f64 {
         let base = self.discs.size.base;
         let mut cost = 0.16 * curve.length() / base;
         let mut last = None;
@@ -126,7 +126,7 @@ impl Room<'_> {
             }
             last = Some(step.angle());
         }
-        let doors = self.discs.doors(errand);
+        let doors = self.discs.doors(route);
         for (vertex, &centre) in self.discs.centres.iter().enumerate() {
             let clear = self.discs.size.discs[vertex] + self.discs.size.knob + 0.3 * base;
             if !Extent::around(centre, clear, clear).meets(&curve.extent) {
@@ -134,7 +134,7 @@ impl Room<'_> {
             }
             let own = |point: Point| {
                 (0..2).any(|end| {
-                    errand.vertices[end] == vertex
+                    route.vertices[end] == vertex
                         && point.distance(doors[end].at) < self.discs.size.knob + 0.45 * base
                         && (point - doors[end].at).dot(doors[end].out) > -0.5
                 })

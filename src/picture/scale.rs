@@ -6,12 +6,12 @@ use crate::model::embedded_graph::EmbeddedGraph;
 use super::{
     geometry::{Extent, Point},
     layout,
-    size::{Names, Size},
+    size::{DrawingSize, Names},
 };
 
 /// What the scale is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(super) enum ScalePurpose {
     /// A layout whose usual edge has length 1.
     Usual,
     /// Positions that are given.
@@ -28,13 +28,18 @@ const LONGEST: f64 = 600.0;
 const SMALL: [f64; 2] = [520.0, 1.4];
 
 /// Units of the picture in a unit of the layout.
-pub(super) fn scale(graph: &EmbeddedGraph, places: &[Point], size: &Size, purpose: Purpose) -> f64 {
+pub(super) fn scale(
+    graph: &EmbeddedGraph,
+    places: &[Point],
+    size: &DrawingSize,
+    purpose: ScalePurpose,
+) -> f64 {
     let lines: Vec<_> = graph
         .edges()
         .map(|(dart, other)| [graph.vertex(dart).at(), graph.vertex(other).at()])
         .filter(|[u, v]| u != v)
         .collect();
-    if purpose == Purpose::Usual {
+    if purpose == ScalePurpose::Usual {
         usual(graph, places, size, &lines)
     } else {
         given(places, size, purpose, &lines)
@@ -42,7 +47,7 @@ pub(super) fn scale(graph: &EmbeddedGraph, places: &[Point], size: &Size, purpos
 }
 
 /// As the nearest of the given positions demand.
-fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) -> f64 {
+fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[usize; 2]]) -> f64 {
     let reach = |vertex: usize| size.discs[vertex] + size.knob;
     let mut scale = 0.0_f64;
     let mut demand = |units: f64, distance: f64| {
@@ -54,7 +59,7 @@ fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) 
         for (other, &there) in places.iter().enumerate().take(vertex) {
             demand(reach(vertex) + reach(other) + 4.0, place.distance(there));
         }
-        if purpose == Purpose::FloorPlan {
+        if purpose == ScalePurpose::FloorPlan {
             for &[u, v] in lines.iter().filter(|ends| !ends.contains(&vertex)) {
                 let distance = place.distance_to_segment(places[u], places[v]);
                 demand(reach(vertex) + 2.0, distance);
@@ -63,7 +68,7 @@ fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) 
     }
     // Along an edge: the marker fits between the doors, or there is room for a bow.
     let between = match purpose {
-        Purpose::FloorPlan => 24.0,
+        ScalePurpose::FloorPlan => 24.0,
         _ => 1.2 * size.base,
     };
     for &[u, v] in lines {
@@ -79,7 +84,7 @@ fn given(places: &[Point], size: &Size, purpose: Purpose, lines: &[[usize; 2]]) 
 }
 
 /// As edges of length 1 look well, or larger where vertices are nearer than that.
-fn usual(graph: &EmbeddedGraph, places: &[Point], size: &Size, lines: &[[usize; 2]]) -> f64 {
+fn usual(graph: &EmbeddedGraph, places: &[Point], size: &DrawingSize, lines: &[[usize; 2]]) -> f64 {
     // Curves that cross want more room than straight ones, names beside discs even more.
     let discs = match (size.names, graph.genus()) {
         (Names::Beside, _) => 8.5,
@@ -116,10 +121,10 @@ mod tests {
             ("c", vec!["b"]),
         ]);
         let graph = graph.unwrap();
-        let size = Size::of(&graph, &["a", "b", "c"].map(str::to_owned));
+        let size = DrawingSize::of(&graph, &["a", "b", "c"].map(str::to_owned));
         let metre = |far: f64| {
             let places = [0.0, 4.0, far].map(|x| Point::new(x, 0.0));
-            scale(&graph, &places, &size, Purpose::FloorPlan)
+            scale(&graph, &places, &size, ScalePurpose::FloorPlan)
         };
         assert_eq!(metre(40.0).to_bits(), metre(80.0).to_bits());
         assert!((4.0 * metre(40.0) - (2.0 * (size.discs[0] + size.knob) + 24.0)).abs() < 1e-9);

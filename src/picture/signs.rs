@@ -1,7 +1,7 @@
 //! The signs of a marker: what lies where, drawn in red.
 
 use super::{
-    Picture,
+    WorldPicture,
     drawing::Drawing,
     geometry::{Extent, Point},
 };
@@ -25,7 +25,7 @@ pub(super) enum Sign {
 pub(super) const ARROW: f64 = 12.0;
 
 /// The signs of the marker of a picture.
-pub(super) fn signs(picture: &Picture, drawing: &Drawing) -> Vec<Sign> {
+pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
     let mut signs: Vec<Sign> = Vec::new();
     let scale = if drawing.size.knob > 0.0 { 1.35 } else { 0.9 };
     for part in picture.parts() {
@@ -70,7 +70,7 @@ const CLEAR: f64 = 14.0;
 
 /// The place of a mark on a dart's edge, clear of other edges, discs and the edge's name as far as
 /// there is room; and the direction there away from the dart's vertex.
-fn on_edge(picture: &Picture, drawing: &Drawing, dart: Dart) -> Option<(Point, f64)> {
+fn on_edge(picture: &WorldPicture, drawing: &Drawing, dart: Dart) -> Option<(Point, f64)> {
     let number = drawing.edges.iter().position(|&(one, other, _)| one == dart || other == dart)?;
     let (first, _, curve) = &drawing.edges[number];
     let away = if *first == dart { 1.0 } else { -1.0 };
@@ -142,7 +142,7 @@ mod tests {
 
     /// What is drawn for a marker, in a letter a sign, and what is said of it.
     fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
-        let picture = Picture { marker: named(marker).unwrap(), ..Picture::from(world) };
+        let picture = WorldPicture { marker: named(marker).unwrap(), ..WorldPicture::from(world) };
         let letter = |sign: &Sign| match sign {
             Sign::Ring { look: MarkerLook::One, .. } => 'o',
             Sign::Ring { look: MarkerLook::Other, .. } => 'x',

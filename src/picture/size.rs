@@ -22,7 +22,7 @@ pub(super) enum Names {
 
 /// The sizes that fit one graph and its names.
 #[derive(Clone, Debug)]
-pub(super) struct Size {
+pub(super) struct DrawingSize {
     /// The radius of a usual disc; other lengths are measured by it.
     pub(super) base: f64,
     /// The radius of each vertex's disc: larger where many doors need room.
@@ -50,7 +50,7 @@ const KNOB: f64 = 6.5;
 /// Between a name and the knobs to its left and right.
 const CLEAR: f64 = 2.0;
 
-impl Size {
+impl DrawingSize {
     pub(super) fn of(graph: &EmbeddedGraph, names: &[String]) -> Self {
         if graph.vertex_count() > layout::POLISHED || graph.edge_count() > 2 * layout::POLISHED {
             return Self::plain(graph, names);
@@ -119,14 +119,14 @@ fn room(disc: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn size(names: &[&str]) -> Size {
+    fn size(names: &[&str]) -> DrawingSize {
         let lists = names.iter().enumerate().map(|(at, name)| {
             let near = [at.wrapping_sub(1), at + 1];
             (*name, near.iter().filter_map(|&at| names.get(at)).copied().collect())
         });
         let graph = EmbeddedGraph::from_neighbour_lists(&lists.collect::<Vec<(_, Vec<_>)>>());
         let names: Vec<_> = names.iter().map(|&name| name.to_owned()).collect();
-        Size::of(&graph.unwrap(), &names)
+        DrawingSize::of(&graph.unwrap(), &names)
     }
 
     #[test]

@@ -4,14 +4,14 @@
 use std::f64::consts::TAU;
 
 use super::{
-    curves::{Curve, Door},
+    curves::{Curve, DoorKnob},
     geometry::{Point, turn, wrapped},
-    size::Size,
+    size::DrawingSize,
 };
 
 /// An edge that wants a curve.
 #[derive(Clone, Debug)]
-pub(super) struct Errand {
+pub(super) struct UnroutedEdge {
     /// The vertices at its ends.
     pub(super) vertices: [usize; 2],
     /// The directions of its doors.
@@ -25,58 +25,58 @@ pub(super) struct Errand {
 pub(super) struct Discs<'a> {
     /// The middle of each.
     pub(super) centres: &'a [Point],
-    pub(super) size: &'a Size,
+    pub(super) size: &'a DrawingSize,
 }
 
 impl Discs<'_> {
     /// The doors at the ends of an edge.
-    pub(super) fn doors(&self, errand: &Errand) -> [Door; 2] {
+    pub(super) fn doors(&self, edge: &UnroutedEdge) -> [DoorKnob; 2] {
         [0, 1].map(|end| {
-            let vertex = errand.vertices[end];
-            Door::new(self.centres[vertex], self.size.discs[vertex], errand.directions[end])
+            let vertex = edge.vertices[end];
+            DoorKnob::new(self.centres[vertex], self.size.discs[vertex], edge.directions[end])
         })
     }
 
     /// The curve that an edge takes where nothing is weighed.
-    pub(super) fn plain(&self, errand: &Errand) -> Curve {
-        let [from, to] = self.doors(errand);
-        if errand.vertices[0] == errand.vertices[1] {
-            let handle = 3.0 * self.size.discs[errand.vertices[0]];
+    pub(super) fn plain(&self, edge: &UnroutedEdge) -> Curve {
+        let [from, to] = self.doors(edge);
+        if edge.vertices[0] == edge.vertices[1] {
+            let handle = 3.0 * self.size.discs[edge.vertices[0]];
             return Curve::cubic(from, to, [handle, handle]);
         }
-        if errand.bends.is_empty() {
+        if edge.bends.is_empty() {
             let handle = from.at.distance(to.at) / 3.0;
             return Curve::cubic(from, to, [handle, handle]);
         }
-        Curve::by_way_of(from, &errand.bends, to)
+        Curve::by_way_of(from, &edge.bends, to)
     }
 
     /// All curves that are offered, the plain one first.
-    pub(super) fn candidates(&self, errand: &Errand) -> Vec<Curve> {
-        let mut curves = vec![self.plain(errand)];
-        if !errand.bends.is_empty() {
-            let [from, to] = self.doors(errand);
+    pub(super) fn candidates(&self, edge: &UnroutedEdge) -> Vec<Curve> {
+        let mut curves = vec![self.plain(edge)];
+        if !edge.bends.is_empty() {
+            let [from, to] = self.doors(edge);
             let middle = (from.at + to.at) * 0.5;
             for stretch in [1.0, 1.15, 1.3, 1.5] {
-                let bends = errand.bends.iter();
+                let bends = edge.bends.iter();
                 let way: Vec<_> = bends.map(|&bend| middle + (bend - middle) * stretch).collect();
                 curves.push(Curve::by_way_of(from, &way, to));
             }
         }
-        if errand.vertices[0] == errand.vertices[1] {
-            self.petals(errand, &mut curves);
+        if edge.vertices[0] == edge.vertices[1] {
+            self.petals(edge, &mut curves);
         } else {
-            self.bows(errand, &mut curves);
+            self.bows(edge, &mut curves);
         }
         curves
     }
 
     /// Loops: wide and narrow, around either side of the disc.
-    fn petals(&self, errand: &Errand, curves: &mut Vec<Curve>) {
-        let [from, to] = self.doors(errand);
-        let vertex = errand.vertices[0];
+    fn petals(&self, edge: &UnroutedEdge, curves: &mut Vec<Curve>) {
+        let [from, to] = self.doors(edge);
+        let vertex = edge.vertices[0];
         let (centre, radius) = (self.centres[vertex], self.size.discs[vertex]);
-        let clockwise = turn(errand.directions[0], errand.directions[1]);
+        let clockwise = turn(edge.directions[0], edge.directions[1]);
         for gap in [clockwise, clockwise - TAU] {
             if gap.abs() < 2.3 {
                 for reach in [3.2, 3.7, 4.3, 5.0, 6.0] {
@@ -89,7 +89,7 @@ impl Discs<'_> {
                 let way: Vec<_> = (0..stops)
                     .map(|stop| {
                         let share = (stop as f64 + 0.5) / stops as f64;
-                        let angle = errand.directions[0] + gap * share;
+                        let angle = edge.directions[0] + gap * share;
                         centre + Point::polar(angle, radius + level * self.size.base)
                     })
                     .collect();
@@ -99,8 +99,8 @@ impl Discs<'_> {
     }
 
     /// Edges between two vertices: straight on, in a bow to either side, or around their own discs.
-    fn bows(&self, errand: &Errand, curves: &mut Vec<Curve>) {
-        let [from, to] = self.doors(errand);
+    fn bows(&self, edge: &UnroutedEdge, curves: &mut Vec<Curve>) {
+        let [from, to] = self.doors(edge);
         let span = from.at.distance(to.at);
         for one in [0.33, 0.5, 0.75, 1.1] {
             for two in [0.33, 0.5, 0.75, 1.1] {
@@ -116,7 +116,7 @@ impl Discs<'_> {
                 curves.push(Curve::by_way_of(from, &[by], to));
             }
         }
-        let swings = [self.swings(errand, 0), self.swings(errand, 1)];
+        let swings = [self.swings(edge, 0), self.swings(edge, 1)];
         for first in &swings[0] {
             for second in &swings[1] {
                 let way: Vec<_> = first.iter().chain(second.iter().rev()).copied().collect();
@@ -128,11 +128,11 @@ impl Discs<'_> {
     }
 
     /// Ways around the disc from which the edge leaves in the wrong direction.
-    fn swings(&self, errand: &Errand, end: usize) -> Vec<Vec<Point>> {
-        let vertex = errand.vertices[end];
+    fn swings(&self, edge: &UnroutedEdge, end: usize) -> Vec<Vec<Point>> {
+        let vertex = edge.vertices[end];
         let (centre, radius) = (self.centres[vertex], self.size.discs[vertex]);
-        let out = errand.directions[end];
-        let straight = (self.centres[errand.vertices[1 - end]] - centre).angle();
+        let out = edge.directions[end];
+        let straight = (self.centres[edge.vertices[1 - end]] - centre).angle();
         let mut ways = vec![Vec::new()];
         let off = wrapped(straight - out).abs();
         if off > 0.7 {

@@ -5,7 +5,7 @@ use std::{fs, process::Output};
 
 use serde_json::Value;
 use toposlam_model::format::world_file;
-use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::Misfit, theorems};
+use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::ChoicesError, theorems};
 
 use super::{folder, objects, run, said, stderr, stdout};
 
@@ -31,7 +31,7 @@ fn case_with_a_walk() -> (&'static Lemma, Vec<u8>) {
         let mut choices = Vec::new();
         loop {
             match lemma.replay(&choices) {
-                Err(Misfit::TooFew { needed, .. }) => choices.resize(needed, 0),
+                Err(ChoicesError::TooFew { needed, .. }) => choices.resize(needed, 0),
                 shown => return (lemma, choices, shown.unwrap()),
             }
         }

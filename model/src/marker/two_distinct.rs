@@ -1,6 +1,6 @@
 //! Two undirected markers that look different, at the ends of an edge.
 
-use super::{MarkerLook, Marker, MarkerPart};
+use super::{Marker, MarkerLook, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     percept::Sighting,

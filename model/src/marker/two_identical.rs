@@ -1,6 +1,6 @@
 //! Two undirected markers that look alike, at the ends of an edge.
 
-use super::{MarkerLook, Marker, MarkerPart, TwoDistinct, two_distinct::vertices};
+use super::{Marker, MarkerLook, MarkerPart, TwoDistinct, two_distinct::vertices};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,
@@ -43,6 +43,8 @@ impl Marker for TwoIdentical {
     }
 
     fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart> {
-        vertices(graph, facing).map(|vertex| MarkerPart::At { vertex, look: MarkerLook::One }).to_vec()
+        vertices(graph, facing)
+            .map(|vertex| MarkerPart::At { vertex, look: MarkerLook::One })
+            .to_vec()
     }
 }

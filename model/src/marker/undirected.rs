@@ -1,6 +1,6 @@
 //! One undirected marker that stays where it is. Section 2.2.
 
-use super::{MarkerLook, Marker, MarkerPart};
+use super::{Marker, MarkerLook, MarkerPart};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     percept::Sighting,

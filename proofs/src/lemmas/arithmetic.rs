@@ -7,7 +7,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, claim, given},
+    choose::{CaseResult, Choose, Exhibit, claim, given},
     draw,
     lemma::declare,
 };
@@ -70,7 +70,7 @@ fn darts_and_degree<const NIBBLES: u32>(choose: &mut impl Choose) -> Result<[u32
 }
 
 // paper: percept.doors
-fn doors<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
+fn doors<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
     let [from, to, degree] = darts_and_degree::<NIBBLES>(choose)?;
     let wide = u64::from;
     let door = Door::between(from, to, degree);
@@ -87,7 +87,7 @@ fn doors<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
     claim("seen from where the one was counted, it is the other", again == Door(to))
 }
 
-fn turned<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
+fn turned<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
     let [door, entry, degree] = darts_and_degree::<NIBBLES>(choose)?;
     let sighting = match choose.below(6) {
         0 => Sighting::Nothing,
@@ -109,7 +109,7 @@ fn turned<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
 
 fn behind<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = Door(draw::number::<NIBBLES>(choose));
@@ -125,7 +125,7 @@ fn behind<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
 /// The most darts that a graph can have, and one more that makes no edge.
 const MOST_DARTS: usize = 2 * MAX_EDGES + 1;
 
-fn the_highest<C: Choose, const NIBBLES: u32>(choose: &mut C) -> Case {
+fn the_highest<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
     // Around each place where anything could change.
     let mut near = || {
         let place = [0, MOST_DARTS as u32][usize::from(choose.below(2))];

@@ -9,7 +9,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim, given},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim, given},
     definition::is_bisimulation,
     draw,
     lemma::declare,
@@ -96,7 +96,7 @@ fn shown(Relation(pairs): &Relation) -> Exhibit {
 
 fn for_ever<C: Choose, const LEAST: usize, const MOST: usize, const ACTIONS: usize>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let marker = marker(choose, |_| true);
     let one = draw::start_of::<LEAST, MOST>(choose)?;
     let other = draw::start_of::<LEAST, MOST>(choose)?;
@@ -119,7 +119,7 @@ fn for_ever<C: Choose, const LEAST: usize, const MOST: usize, const ACTIONS: usi
     claim("they perceive the same", agree)
 }
 
-fn verified<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn verified<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let marker = marker(choose, |marker| !marker.is_movable());
     let one = draw::start::<MOST>(choose, LEAST)?;
     let other = draw::start_of::<1, MOST>(choose)?;
@@ -140,7 +140,7 @@ fn verified<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) ->
     claim("the verifier tells it", relation.verify(&here, &there) == is_one)
 }
 
-fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let marker = marker(choose, |_| true);
     let one = draw::start_of::<LEAST, MOST>(choose)?;
     let other = draw::start_of::<LEAST, MOST>(choose)?;
@@ -182,7 +182,7 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
 }
 
 // paper: marker.undirected-insufficient
-fn spared<C: Choose>(choose: &mut C) -> Case {
+fn spared<C: Choose>(choose: &mut C) -> CaseResult {
     let [one, other] = figure_1::worlds(choose)?;
     let comparison = Comparison::new(&Undirected, (&one, Dart(0)), (&other, Dart(0)));
     let Some(mut relation) = comparison.relation([Dart(0), Dart(0)]) else {

@@ -6,7 +6,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim},
     definition::isomorphic,
     draw,
     lemma::declare,
@@ -70,7 +70,7 @@ fn same_words(one: &[u32], other: &[u32]) -> bool {
 // paper: world.unlabelled
 fn relabelled<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usize>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (copy, facing) = copy_of::<DARTS>(choose, &graph)?;
     let (one, other) = (code(&graph, Dart(0)), code(&copy, facing));
@@ -79,7 +79,7 @@ fn relabelled<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usi
     claim("the copy becomes equal to it", as_discovered(&copy, facing) == graph)
 }
 
-fn same_code<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn same_code<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let one = draw::start_of::<LEAST, MOST>(choose)?;
     let here = draw::dart(choose, &one);
     let other = draw::start_of::<LEAST, MOST>(choose)?;
@@ -90,7 +90,7 @@ fn same_code<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -
 /// The same, but that the other start is as likely a copy of the one.
 fn copy_or_other<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usize>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let one = draw::start_of::<LEAST, MOST>(choose)?;
     let (other, there) = if choose.below(2) == 0 {
         copy_of::<DARTS>(choose, &one)?
@@ -107,7 +107,7 @@ fn compare(
     choose: &mut impl Choose,
     (one, here): (&EmbeddedGraph, Dart),
     (other, there): (&EmbeddedGraph, Dart),
-) -> Case {
+) -> CaseResult {
     choose.show(|| Exhibit::Value {
         name: "facing",
         value: format!("dart {} of the first, dart {} of the second", here.0, there.0),

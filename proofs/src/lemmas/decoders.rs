@@ -11,7 +11,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim},
     definition::{is_simple, is_world},
     draw,
     lemma::declare,
@@ -124,7 +124,7 @@ fn again(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, Stop> {
     Ok(written)
 }
 
-fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> Case {
+fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let bytes = bytes::<MOST, LETTERS>(choose, 0);
     let (worlds, is_whole) = worlds(&bytes, Code::Planar)?;
     if !is_whole {
@@ -140,20 +140,20 @@ fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) 
     claim("writing gives the bytes back", told == Some(bytes.as_slice()))
 }
 
-fn wide_planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> Case {
+fn wide_planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let file = [b">>planar_code be<<", bytes::<MOST, LETTERS>(choose, 0).as_slice()].concat();
     let (worlds, is_whole) = worlds(&file, Code::Planar)?;
     claim("the worlds are simple", worlds.iter().all(is_simple))?;
     if is_whole { again(&worlds, Code::Planar).map(drop) } else { Ok(()) }
 }
 
-fn edge_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> Case {
+fn edge_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let (worlds, is_whole) = worlds(&bytes::<MOST, LETTERS>(choose, 255), Code::Edge)?;
     if is_whole { again(&worlds, Code::Edge).map(drop) } else { Ok(()) }
 }
 
 /// Any bytes are read without a panic, as no more worlds than bytes.
-fn only_read<C: Choose, const LENGTH: usize, const EDGE_CODE: u8>(choose: &mut C) -> Case {
+fn only_read<C: Choose, const LENGTH: usize, const EDGE_CODE: u8>(choose: &mut C) -> CaseResult {
     let mut bytes = [0; LENGTH];
     let mut place = 0;
     while place < LENGTH {
@@ -175,7 +175,9 @@ fn only_read<C: Choose, const LENGTH: usize, const EDGE_CODE: u8>(choose: &mut C
 }
 
 // paper: world.embedding
-fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let world = NamedWorld::numbered("case", "", graph, None);
     let world = NamedWorld { start: Some(draw::dart(choose, &world.graph)), ..world };
@@ -280,7 +282,7 @@ fn all_reached(lists: &Lists, joined: impl Fn(usize, usize) -> bool) -> bool {
     reached.len() == lists.len()
 }
 
-fn neighbour_lists<C: Choose>(choose: &mut C) -> Case {
+fn neighbour_lists<C: Choose>(choose: &mut C) -> CaseResult {
     let lists = lists::<3, 3>(choose, 4);
     let list_of = |name: &str| lists.iter().find(|(vertex, _)| *vertex == name);
     let are_mutual = lists.iter().all(|(vertex, list)| {
@@ -309,7 +311,7 @@ fn neighbour_lists<C: Choose>(choose: &mut C) -> Case {
     }
 }
 
-fn edge_lists<C: Choose>(choose: &mut C) -> Case {
+fn edge_lists<C: Choose>(choose: &mut C) -> CaseResult {
     let lists = lists::<3, 3>(choose, 3);
     let ends: Vec<&str> = lists.iter().flat_map(|(_, list)| list.iter().copied()).collect();
     let is_twice = |edge: &&str| ends.iter().filter(|end| *end == edge).count() == 2;
@@ -331,7 +333,7 @@ fn edge_lists<C: Choose>(choose: &mut C) -> Case {
     }
 }
 
-fn world_files<C: Choose>(choose: &mut C) -> Case {
+fn world_files<C: Choose>(choose: &mut C) -> CaseResult {
     let table = ["clockwise", "doors"][usize::from(choose.below(2))];
     let lists = lists::<3, 2>(choose, 3);
     let mut text = format!("[{table}]\n");

@@ -22,7 +22,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim},
     hallways::{Budget, FORMS, HALF_WIDTH, HallwayDrive, PathDriver, PictureEvidence},
     lemma::declare,
 };
@@ -196,7 +196,7 @@ fn wide_scene(choose: &mut impl Choose) -> Place {
     }
 }
 
-fn limits(Command { turn, forward }: Command) -> Case {
+fn limits(Command { turn, forward }: Command) -> CaseResult {
     claim("it turns by an angle in (-pi, pi]", -PI < turn && turn <= PI)?;
     claim("it goes ahead by at most a unit", (0.0..=UNIT).contains(&forward) && UNIT <= 0.5)?;
     claim("no turn is too little to be done", turn == 0.0 || turn.abs() >= LEAST_TURN)?;
@@ -210,7 +210,9 @@ fn stands(form: JunctionShape) -> Standing {
 }
 
 // paper: alg2.2, drive.clear, drive.unclear
-fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(choose: &mut C) -> Case {
+fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(
+    choose: &mut C,
+) -> CaseResult {
     let mut driver = D::begin(TWO_DOORS[1][0], &stands(FORMS[1]), LEG);
     let mut odometry = Odometry::default();
     let before = choose.below(1 + BEFORE);
@@ -231,7 +233,7 @@ fn no_command_exceeds_a_unit<C: Choose, D: PathDriver, const BEFORE: u8>(choose:
 }
 
 // paper: alg2.20, alg2.21, alg2.22, alg2.23, alg2.24
-fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> Case {
+fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> CaseResult {
     let form = FORMS[usize::from(choose.below(6))];
     let door = choose.below(form.degree() as u8);
     let queue = match choose.below(3) {
@@ -361,7 +363,7 @@ const HALFWAY: f64 = 1.6;
 // paper: alg2.23, alg2.25, drive.turn, drive.path
 fn doors_in_order<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES: u8>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(14))];
     let (second, then) = EXITS[usize::from(choose.below(14))];
     let legs = [(Door(door), 3.2, FORMS[second]), (Door(then), 3.2, FORMS[3])];
@@ -374,7 +376,7 @@ fn doors_in_order<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES:
 // paper: alg2.3
 fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     const FAR: f64 = 2.0;
     let queue: &'static [Door] = [&[], ONE_DOOR[2], TWO_DOORS[1][0]][usize::from(choose.below(3))];
     let form = FORMS[if queue.len() == 1 { 4 } else { 1 }];
@@ -415,7 +417,7 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
 }
 
 // paper: alg2.7, alg2.15, alg2.22, drive.path
-fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> Case {
+fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(14))];
     let form = FORMS[usize::from(choose.below(6))];
     let length = [3.2, 4.1][usize::from(choose.below(2))];
@@ -437,7 +439,7 @@ fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> Cas
 // paper: alg2.15, alg2.27, drive.path
 fn no_false_arrival<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKES: u8>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let (first, door) = EXITS[usize::from(choose.below(6))];
     let form = FORMS[usize::from(choose.below(6))];
     let sight = SIGHTS[usize::from(choose.below(3))];

@@ -6,7 +6,7 @@ use toposlam_model::embedded_graph::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, claim, given},
+    choose::{CaseResult, Choose, Exhibit, claim, given},
     definition::{is_connected, is_involution_without_fixed_points, is_permutation},
     draw,
     lemma::declare,
@@ -108,18 +108,18 @@ fn altered<const MOST: usize>(
 
 fn opposite_is_checked<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let n = length::<LEAST, MOST>(choose);
     check_opposite(&array::<MOST, NIBBLES>(choose, n)[..n])
 }
 
-fn altered_opposite<C: Choose, const MOST: usize>(choose: &mut C) -> Case {
+fn altered_opposite<C: Choose, const MOST: usize>(choose: &mut C) -> CaseResult {
     let n = length::<0, MOST>(choose) / 2 * 2;
     let array = draw::pairing::<MOST>(choose, n);
     check_opposite(&altered(choose, array, n)[..n])
 }
 
-fn check_opposite(array: &[u32]) -> Case {
+fn check_opposite(array: &[u32]) -> CaseResult {
     let fault = opposite_fault(array);
     claim(
         "it is accepted exactly if it is an involution without fixed points",
@@ -141,18 +141,18 @@ fn check_opposite(array: &[u32]) -> Case {
 
 fn clockwise_is_checked<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let n = length::<LEAST, MOST>(choose);
     check_clockwise::<MOST>(&array::<MOST, NIBBLES>(choose, n)[..n])
 }
 
-fn altered_clockwise<C: Choose, const MOST: usize>(choose: &mut C) -> Case {
+fn altered_clockwise<C: Choose, const MOST: usize>(choose: &mut C) -> CaseResult {
     let n = length::<0, MOST>(choose);
     let array = draw::permutation::<MOST>(choose, n);
     check_clockwise::<MOST>(&altered(choose, array, n)[..n])
 }
 
-fn check_clockwise<const MOST: usize>(array: &[u32]) -> Case {
+fn check_clockwise<const MOST: usize>(array: &[u32]) -> CaseResult {
     let fault = clockwise_fault(array, &mut [false; MOST]);
     claim(
         "it is accepted exactly if it is a permutation",
@@ -219,7 +219,7 @@ fn orbit(clockwise: &[u32], dart: usize) -> u32 {
 // paper: world.graph, world.embedding
 fn arrays_are_accepted<C: Choose, const LEAST: usize, const MOST: usize, const NIBBLES: u32>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let n = length::<LEAST, MOST>(choose);
     let opposite = array::<MOST, NIBBLES>(choose, n);
     let opposite = &opposite[..n];
@@ -247,7 +247,7 @@ fn permutations_are_accepted<
     const DARTS: usize,
 >(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let darts = 2 * length::<LEAST, MOST>(choose);
     let opposite = draw::pairing::<DARTS>(choose, darts);
     let opposite = &opposite[..darts];
@@ -268,7 +268,7 @@ fn permutations_are_accepted<
     }
 }
 
-fn closed_sets<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn closed_sets<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut within = [[false; 2]; MOST];
     let within = within.as_flattened_mut();

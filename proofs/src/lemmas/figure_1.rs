@@ -11,7 +11,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim, given},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim, given},
     definition::isomorphic,
     draw,
     lemma::declare,
@@ -88,7 +88,7 @@ fn related([one, other]: &[EmbeddedGraph; 2], here: Dart, there: Dart) -> bool {
 }
 
 // paper: fig1.different
-fn differ<C: Choose>(choose: &mut C) -> Case {
+fn differ<C: Choose>(choose: &mut C) -> CaseResult {
     let [one, other] = worlds(choose)?;
     let there = draw::dart(choose, &other);
     choose.show(|| Exhibit::Value { name: "dart", value: there.0.to_string() });
@@ -96,7 +96,7 @@ fn differ<C: Choose>(choose: &mut C) -> Case {
 }
 
 // paper: fig1.base
-fn base<C: Choose>(choose: &mut C) -> Case {
+fn base<C: Choose>(choose: &mut C) -> CaseResult {
     let worlds = worlds(choose)?;
     claim("the starts are related", related(&worlds, FACING, FACING))?;
     let door = draw::door(choose, &worlds[0], FACING);
@@ -107,7 +107,7 @@ fn base<C: Choose>(choose: &mut C) -> Case {
 }
 
 // paper: fig1.step
-fn step<C: Choose>(choose: &mut C) -> Case {
+fn step<C: Choose>(choose: &mut C) -> CaseResult {
     let worlds = worlds(choose)?;
     let (here, there) = (draw::dart(choose, &worlds[0]), draw::dart(choose, &worlds[1]));
     given(choose, related(&worlds, here, there))?;
@@ -124,11 +124,11 @@ mod tests {
     use toposlam_model::format::world_file;
 
     use super::*;
-    use crate::replay::Replay;
+    use crate::replay::CaseReplay;
 
     #[test]
     fn the_worlds_are_those_of_the_files() {
-        let worlds = worlds(&mut Replay::default()).unwrap();
+        let worlds = worlds(&mut CaseReplay::default()).unwrap();
         for (graph, name) in worlds.into_iter().zip(["figure-1a", "figure-1b"]) {
             let file = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
             let world = world_file::read(&fs::read(Path::new(&file)).unwrap()).unwrap();

@@ -16,7 +16,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, Stop, claim},
+    choose::{CaseResult, Choose, Exhibit, Stop, claim},
     draw::{self, DrawnChoices},
     lemma::declare,
 };
@@ -160,7 +160,7 @@ impl<C: Choose> Choices for Noted<'_, C> {
 fn run<'g, C: Choose>(
     choose: &mut C,
     graph: &'g EmbeddedGraph,
-    mut judge: impl FnMut(&Truth, &Journey, MappingEvent) -> Case,
+    mut judge: impl FnMut(&Truth, &Journey, MappingEvent) -> CaseResult,
 ) -> Result<(Exploration, Truth<'g>), Stop> {
     let latest = Cell::new(FACING);
     let heeded = |event| match event {
@@ -199,7 +199,7 @@ fn ends_round(event: MappingEvent) -> bool {
 }
 
 // paper: alg1.19, alg1.22, alg1.located
-fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     run(choose, &graph, |truth, journey, event| {
         if ends_round(event) || matches!(event, MappingEvent::Started { .. }) {
@@ -211,7 +211,7 @@ fn the_map_embeds<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut
     Ok(())
 }
 
-fn embeds(truth: &Truth, journey: &Journey) -> Case {
+fn embeds(truth: &Truth, journey: &Journey) -> CaseResult {
     let Truth { graph, pose, image, .. } = truth;
     let map = journey.map();
     claim("each dart of the map is one of the world", image.len() == map.dart_count())?;
@@ -231,7 +231,9 @@ fn embeds(truth: &Truth, journey: &Journey) -> Case {
 }
 
 // paper: alg1.16, alg1.validation
-fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut explored = FACING;
     run(choose, &graph, |truth, journey, event| match event {
@@ -251,7 +253,9 @@ fn confirmed_is_true<C: Choose, const LEAST: usize, const MOST: usize>(choose: &
 }
 
 // paper: alg1.7, alg1.13, alg1.hypotheses
-fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut truly = None;
     run(choose, &graph, |truth, _, event| match event {
@@ -272,7 +276,9 @@ fn true_is_not_rejected<C: Choose, const LEAST: usize, const MOST: usize>(choose
 }
 
 // paper: alg1.4, alg1.20, alg1.23
-fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let mut rounds = 0;
     let mut unexplored = 0;
@@ -303,7 +309,7 @@ fn one_edge_a_round<C: Choose, const LEAST: usize, const MOST: usize>(choose: &m
 }
 
 // paper: cost.bound
-fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let m = graph.edge_count() as u64;
     let mut round = 0;
@@ -326,7 +332,7 @@ fn a_round_costs<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut 
     Ok(())
 }
 
-fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> Case {
+fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> CaseResult {
     let (m, n) = (1 + u64::from(choose.below(MOST)), 1 + u64::from(choose.below(MOST)));
     choose.show(|| Exhibit::Value { name: "m, n", value: format!("{m}, {n}") });
     let mut sum = 0;
@@ -340,7 +346,7 @@ fn the_sum<C: Choose, const MOST: u8>(choose: &mut C) -> Case {
 }
 
 // paper: alg1.isomorphic, alg1.terminates, cost.bound
-fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn the_theorem<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (exploration, truth) = run(choose, &graph, |_, _, _| Ok(()))?;
     let Some(map) = exploration.map().complete() else {

@@ -3,7 +3,7 @@
 use toposlam_model::percept::{Door, retrace};
 
 use crate::{
-    choose::{Case, Choose, Exhibit, claim},
+    choose::{CaseResult, Choose, Exhibit, claim},
     draw,
     lemma::declare,
 };
@@ -26,7 +26,7 @@ declare! {
 // paper: alg1.15, motion.path
 fn the_way_back<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: usize>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let pose = draw::dart(choose, &graph);
     let moves = 1 + usize::from(choose.below(MOVES as u8));

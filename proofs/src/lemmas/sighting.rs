@@ -7,7 +7,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, claim, given},
+    choose::{CaseResult, Choose, Exhibit, claim, given},
     draw,
     lemma::declare,
 };
@@ -45,7 +45,7 @@ declare! {
 }
 
 // paper: marker.directional-sufficient
-fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let facing = Dart(0);
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
@@ -71,7 +71,7 @@ fn directional<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C)
 }
 
 // paper: alg1.15
-fn turned<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn turned<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = draw::door(choose, &graph, pose);
@@ -85,7 +85,7 @@ fn turned<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> C
 }
 
 // paper: marker.undirected-insufficient
-fn undirected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn undirected<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
     for pose in [one, other] {

@@ -8,7 +8,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    choose::{Case, Choose, Exhibit, claim, given},
+    choose::{CaseResult, Choose, Exhibit, claim, given},
     draw,
     lemma::declare,
 };
@@ -45,7 +45,9 @@ fn common_door(choose: &mut impl Choose, graph: &EmbeddedGraph, one: Dart, other
 }
 
 // paper: motion.door
-fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> Case {
+fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(
+    choose: &mut C,
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
     let door = common_door(choose, &graph, one, other);
@@ -60,7 +62,7 @@ fn a_door_is_injective<C: Choose, const LEAST: usize, const MOST: usize>(choose:
 // paper: alg1.validation
 fn validation_is_sound<C: Choose, const LEAST: usize, const MOST: usize, const MOVES: usize>(
     choose: &mut C,
-) -> Case {
+) -> CaseResult {
     let graph = draw::start_of::<LEAST, MOST>(choose)?;
     let (one, other) = (draw::dart(choose, &graph), draw::dart(choose, &graph));
     let moves = usize::from(choose.below(MOVES as u8 + 1));

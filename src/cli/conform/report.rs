@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use toposlam::{
-    picture::{self, Picture},
-    report::{Covered, Line, Report, Told},
+    picture::{self, WorldPicture},
+    report::{CoveredCase, EventLine, LogReport, DivergenceReport},
 };
 use toposlam_model::{
     embedded_graph::Dart,
@@ -34,7 +34,7 @@ impl Judged {
         quirks: &Quirks,
         shorter: Option<Minimised>,
         shown: bool,
-    ) -> Report {
+    ) -> LogReport {
         let verdict = self.judgement.verdict();
         let divergence = self.judgement.divergence.as_ref();
         let picture = divergence.filter(|_| shown).and_then(|divergence| {
@@ -46,7 +46,7 @@ impl Judged {
             let events = shorter.events.events.iter().map(|event| what(&event.kind));
             (events.collect(), shorter.command)
         });
-        Report {
+        LogReport {
             log: path.display().to_string(),
             verdict,
             remarks: self.remarks(verdict),
@@ -159,7 +159,7 @@ impl Judged {
     }
 
     /// Every event, and where the robot is after it.
-    fn lines(&self) -> Vec<Line> {
+    fn lines(&self) -> Vec<EventLine> {
         let judgement = &self.judgement;
         let begun = self.opened.log.start().unwrap_or(0);
         let mut before = String::new();
@@ -179,7 +179,7 @@ impl Judged {
             if let Some(then) = &then {
                 before.clone_from(then);
             }
-            Line {
+            EventLine {
                 number: number + 1,
                 time: event.source.time.saturating_sub(begun) as f64 / 1e9,
                 what: what(&event.kind),
@@ -189,12 +189,12 @@ impl Judged {
         judgement.events.events.iter().enumerate().map(line).collect()
     }
 
-    fn told(&self, divergence: &Divergence) -> Told {
+    fn told(&self, divergence: &Divergence) -> DivergenceReport {
         let events = &self.judgement.events.events;
         let begun = self.opened.log.start().unwrap_or(0);
         let event = events.get(divergence.event);
         let time = event.or(events.last()).map_or(begun, |event| event.source.time);
-        Told {
+        DivergenceReport {
             event: divergence.event + 1,
             time: time.saturating_sub(begun) as f64 / 1e9,
             message: event.map(|event| (event.source.message, event.source.offset)),
@@ -235,14 +235,14 @@ impl Judged {
         }
     }
 
-    fn coverage(&self) -> Vec<Covered> {
+    fn coverage(&self) -> Vec<CoveredCase> {
         let Judged { judgement, known, .. } = self;
-        let cases = AlgorithmCase::ALL.into_iter().map(|case| Covered {
+        let cases = AlgorithmCase::ALL.into_iter().map(|case| CoveredCase {
             case: case.name().to_owned(),
             count: judgement.coverage.algorithm.count(case),
             reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),
         });
-        let junctions = FORMS.into_iter().map(|(form, name)| Covered {
+        let junctions = FORMS.into_iter().map(|(form, name)| CoveredCase {
             case: name.to_owned(),
             count: judgement.coverage.junctions.get(&form).copied().unwrap_or(0),
             reachable: known
@@ -265,11 +265,11 @@ impl Judged {
     /// The known world, or the smallest that explains the log, as a drawing.
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
-            (Some(known), _) => Some(picture::svg(&Picture::from(&known.world))),
+            (Some(known), _) => Some(picture::svg(&WorldPicture::from(&known.world))),
             (None, Some(SmallestWorld::World { graph, marker })) => {
                 let start = marker.or(Some(Dart(0)));
                 let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
-                Some(picture::svg(&Picture::from(&world)))
+                Some(picture::svg(&WorldPicture::from(&world)))
             }
             _ => None,
         }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
-use toposlam::report::{Covered, Report, Told};
+use toposlam::report::{CoveredCase, LogReport, DivergenceReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
 
 use super::Failure;
@@ -55,7 +55,7 @@ struct Together<'r> {
 
 pub(super) fn json(
     out: &mut dyn Write,
-    report: &Report,
+    report: &LogReport,
     judgement: &Judgement,
 ) -> Result<(), Failure> {
     let told = report.divergence.as_ref();
@@ -90,11 +90,11 @@ pub(super) fn json(
     print_object(out, &line)
 }
 
-fn counts(coverage: &[Covered]) -> BTreeMap<&str, u64> {
+fn counts(coverage: &[CoveredCase]) -> BTreeMap<&str, u64> {
     coverage.iter().map(|covered| (&*covered.case, covered.count)).collect()
 }
 
-pub(super) fn text(out: &mut dyn Write, report: &Report) -> Result<(), Failure> {
+pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), Failure> {
     match &report.divergence {
         None => writeln!(out, "{}: {}", report.log, in_words(report.verdict))?,
         Some(told) => diverged(out, report, told)?,
@@ -129,8 +129,8 @@ fn in_words(verdict: ConformVerdict) -> &'static str {
     }
 }
 
-fn diverged(out: &mut dyn Write, report: &Report, told: &Told) -> Result<(), Failure> {
-    let Told { event, time, message, culprit, what, why, allowed, .. } = told;
+fn diverged(out: &mut dyn Write, report: &LogReport, told: &DivergenceReport) -> Result<(), Failure> {
+    let DivergenceReport { event, time, message, culprit, what, why, allowed, .. } = told;
     writeln!(
         out,
         "{}: diverges at event {event} of {}, at {time:.1} s: {culprit}",
@@ -172,9 +172,9 @@ fn diverged(out: &mut dyn Write, report: &Report, told: &Told) -> Result<(), Fai
 }
 
 /// The cases that were gone through, those that were not, and those that cannot be.
-fn covered(coverage: &[Covered]) -> String {
+fn covered(coverage: &[CoveredCase]) -> String {
     // A run that diverged may go through what its world does not have.
-    let possible = |covered: &&Covered| covered.count > 0 || covered.reachable != Some(false);
+    let possible = |covered: &&CoveredCase| covered.count > 0 || covered.reachable != Some(false);
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
     let told: Vec<_> =
@@ -196,13 +196,13 @@ fn covered(coverage: &[Covered]) -> String {
 /// What is said of several logs together.
 pub(super) fn together(
     out: &mut dyn Write,
-    reports: &[Report],
+    reports: &[LogReport],
     as_json: bool,
 ) -> Result<(), Failure> {
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);
-    let coverage = Report::coverage_of(reports);
+    let coverage = LogReport::coverage_of(reports);
     let culprits = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.culprit));
     if as_json {
         let mut classes: BTreeMap<_, _> = FaultClass::ALL.map(|one| (one.name(), 0)).into();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toposlam::picture::{Picture, svg};
+use toposlam::picture::{WorldPicture, svg};
 use toposlam_model::{
     ambiguity::AmbiguitySearch,
     enumerate::Class,
@@ -58,7 +58,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
         for found in found {
             found.write(folder)?;
             for world in found.worlds() {
-                let picture = Picture { marker: *marker, ..Picture::from(world) };
+                let picture = WorldPicture { marker: *marker, ..WorldPicture::from(world) };
                 let path = folder.join(format!("{}.svg", world.name));
                 output::write_whole(&path, svg(&picture).as_bytes())?;
             }

@@ -47,7 +47,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// What is heard of a check.
 enum News {
     Cases(u64),
-    Ended(Result<u64, lemma::Failure>),
+    Ended(Result<u64, lemma::LemmaFailure>),
 }
 
 /// Checks a lemma.
@@ -87,12 +87,12 @@ pub(super) fn check_lemma(lemma: &Lemma, watch: &impl Watch) -> Result<LemmaChec
     Ok(LemmaCheck { ending, seconds: begun.elapsed().as_secs_f64() })
 }
 
-impl From<Result<u64, lemma::Failure>> for CheckEnd {
-    fn from(result: Result<u64, lemma::Failure>) -> Self {
+impl From<Result<u64, lemma::LemmaFailure>> for CheckEnd {
+    fn from(result: Result<u64, lemma::LemmaFailure>) -> Self {
         match result {
             Ok(cases) => Self::Holds { cases },
-            Err(lemma::Failure::Case(counterexample)) => Self::Fails(counterexample),
-            Err(lemma::Failure::Cases { pinned, found }) => Self::Miscounted { pinned, found },
+            Err(lemma::LemmaFailure::Case(counterexample)) => Self::Fails(counterexample),
+            Err(lemma::LemmaFailure::Cases { pinned, found }) => Self::Miscounted { pinned, found },
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use toposlam_proofs::{Lemma, Replay, Stop, choose, lemma::Sampled, odometer::listed};
+use toposlam_proofs::{CaseReplay, Lemma, Stop, choose, lemma::Sampled, odometer::listed};
 
 use super::{
     Engine,
@@ -16,7 +16,7 @@ pub(super) struct LemmaCase<'a> {
     lemma: &'a Lemma,
     engine: Engine,
     choices: &'a [u8],
-    case: choose::Case,
+    case: choose::CaseResult,
     pub(super) shown: CaseView,
 }
 
@@ -34,7 +34,7 @@ impl<'a> LemmaCase<'a> {
                 return Err(Failure::at("--engine", format!("{} is not sampled", lemma.name)));
             }
         };
-        let made = Replay::show(replay, choices)
+        let made = CaseReplay::show(replay, choices)
             .map_err(|misfit| Failure::at("--choices", format!("{}: {misfit}", lemma.name)))?;
         let shown = CaseView::new(&command(lemma, engine, choices), &made.exhibits);
         Ok(Self { lemma, engine, choices, case: made.case, shown })

@@ -10,7 +10,7 @@ use toposlam_model::{
     percept::{Door, Sighting},
 };
 use toposlam_proofs::{
-    Case, Choose, Exhibit, Odometer, Replay, Stop,
+    CaseReplay, CaseResult, ChoiceOdometer, Choose, Exhibit, Stop,
     choose::{claim, given},
     draw,
     lemma::Exhaustive,
@@ -36,8 +36,8 @@ fn objects(text: &str) -> Vec<Value> {
 fn lemma(
     name: &'static str,
     cases: u64,
-    body: fn(&mut Odometer) -> Case,
-    replay: fn(&mut Replay) -> Case,
+    body: fn(&mut ChoiceOdometer) -> CaseResult,
+    replay: fn(&mut CaseReplay) -> CaseResult,
 ) -> Lemma {
     let exhaustive = Exhaustive { bound: "a few", cases, body, replay };
     let (sentence, paper, file) = ("It is so.", "2.1", "here.rs");
@@ -45,7 +45,7 @@ fn lemma(
 }
 
 /// False: at a vertex with an undirected marker the robot may have come in by any dart.
-fn a_marker_tells_the_entry<C: Choose>(choose: &mut C) -> Case {
+fn a_marker_tells_the_entry<C: Choose>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<1, 2>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = draw::door(choose, &graph, pose);
@@ -57,7 +57,7 @@ fn a_marker_tells_the_entry<C: Choose>(choose: &mut C) -> Case {
     claim("the robot has come in by the facing dart", pose == Dart(0))
 }
 
-fn numbers_are_low<C: Choose>(choose: &mut C) -> Case {
+fn numbers_are_low<C: Choose>(choose: &mut C) -> CaseResult {
     let number = choose.below(6);
     given(choose, number < 4)?;
     claim("it is below 4", number < 4)
@@ -194,7 +194,7 @@ fn another_number_of_cases_does_not_hold() {
 
 #[test]
 fn a_lemma_without_a_case_does_not_hold_nor_does_a_check_without_a_lemma() {
-    fn excluded<C>(_: &mut C) -> Case {
+    fn excluded<C>(_: &mut C) -> CaseResult {
         Err(Stop::Excluded)
     }
     let (outcome, text) = run(&[lemma("none", 0, excluded, excluded)], &["--run", "none"]);
@@ -207,7 +207,7 @@ fn a_lemma_without_a_case_does_not_hold_nor_does_a_check_without_a_lemma() {
 /// Each walk goes as far as it can, if there is its world.
 #[test]
 fn several_worlds_are_numbered() {
-    fn two_worlds<C: Choose>(choose: &mut C) -> Case {
+    fn two_worlds<C: Choose>(choose: &mut C) -> CaseResult {
         let walk = |world, dart, door| {
             let (marker, pose) = (&Undirected, Dart(dart));
             move || Exhibit::Walk { world, marker, pose, doors: vec![Door(door)] }
@@ -237,7 +237,7 @@ fn several_worlds_are_numbered() {
 
 #[test]
 fn the_command_of_a_case_without_choices_can_be_given_to_a_shell() {
-    fn never<C>(_: &mut C) -> Case {
+    fn never<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
     let lemmas = [lemma("never", 1, never, never)];
@@ -249,10 +249,10 @@ fn the_command_of_a_case_without_choices_can_be_given_to_a_shell() {
 
 #[test]
 fn a_case_that_comes_out_otherwise_is_not_shown_as_the_one_that_failed() {
-    fn fails<C>(_: &mut C) -> Case {
+    fn fails<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
-    fn holds<C>(_: &mut C) -> Case {
+    fn holds<C>(_: &mut C) -> CaseResult {
         claim("one is one", true)
     }
     let (outcome, text) = run(&[lemma("moody", 1, fails, holds)], &["--run", "moody"]);
@@ -284,7 +284,7 @@ fn a_part_of_a_name_will_do_if_no_other_has_it() {
 
 #[test]
 fn a_lemma_that_panics_fails_in_that_case() {
-    fn panics<C: Choose>(choose: &mut C) -> Case {
+    fn panics<C: Choose>(choose: &mut C) -> CaseResult {
         let number = choose.below(4);
         assert!(number < 2, "a lemma of a test does this");
         claim("it is below 2", number < 2)
@@ -304,7 +304,7 @@ fn whoever_breaks_off_waits_for_no_case() {
             true
         }
     }
-    fn endless<C>(_: &mut C) -> Case {
+    fn endless<C>(_: &mut C) -> CaseResult {
         loop {
             thread::sleep(Duration::from_secs(60));
         }

@@ -1,10 +1,10 @@
 //! Which cases were gone through, and how often.
 
 use super::each;
-use crate::{picture::escaped, report::Covered};
+use crate::{picture::escaped, report::CoveredCase};
 
 /// A table of the cases.
-pub(super) fn table(cases: &[Covered]) -> String {
+pub(super) fn table(cases: &[CoveredCase]) -> String {
     let most = cases.iter().map(|case| case.count).max().unwrap_or(0).max(1);
     format!(
         "<table class=\"coverage\">\n<thead class=\"unseen\"><tr><th scope=\"col\">Case</th>\
@@ -14,7 +14,7 @@ pub(super) fn table(cases: &[Covered]) -> String {
     )
 }
 
-fn row(case: &Covered, most: u64) -> String {
+fn row(case: &CoveredCase, most: u64) -> String {
     let name = escaped(&case.case);
     let (class, told) = match (case.count, case.reachable) {
         (0, Some(false)) => ("beyond", "<td colspan=\"2\">not reachable</td>".to_owned()),
@@ -37,7 +37,7 @@ fn row(case: &Covered, most: u64) -> String {
 }
 
 /// How many of the cases that can be gone through were.
-pub(super) fn summary(cases: &[Covered]) -> String {
+pub(super) fn summary(cases: &[CoveredCase]) -> String {
     let met = cases.iter().filter(|case| case.count > 0).count();
     let beyond = cases.iter().filter(|case| case.count == 0 && case.reachable == Some(false));
     let beyond = beyond.count();
@@ -53,8 +53,8 @@ pub(super) fn summary(cases: &[Covered]) -> String {
 mod tests {
     use super::*;
 
-    fn case(case: &str, count: u64, reachable: Option<bool>) -> Covered {
-        Covered { case: case.to_owned(), count, reachable }
+    fn case(case: &str, count: u64, reachable: Option<bool>) -> CoveredCase {
+        CoveredCase { case: case.to_owned(), count, reachable }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::{each, wording};
 use crate::{
     page::clock,
     picture::escaped,
-    report::{Line, Report},
+    report::{EventLine, LogReport},
 };
 
 /// So many steps led to a divergence.
@@ -17,7 +17,7 @@ const BEFORE: usize = 3;
 const LEAF: usize = 100;
 
 /// The steps before the divergence, and it.
-pub(super) fn before(report: &Report) -> Option<String> {
+pub(super) fn before(report: &LogReport) -> Option<String> {
     let told = report.divergence.as_ref()?;
     let earlier = report.events.partition_point(|line| line.number < told.event);
     let last = report.events.get(earlier.saturating_sub(BEFORE)..earlier)?;
@@ -28,11 +28,11 @@ pub(super) fn before(report: &Report) -> Option<String> {
 }
 
 /// All events, in a part of the page that a reader has to open.
-pub(super) fn all(report: &Report, log: usize) -> String {
+pub(super) fn all(report: &LogReport, log: usize) -> String {
     let off = report.divergence.as_ref().map(|told| told.event);
     let let_pass: BTreeSet<_> =
         report.tolerated.iter().flat_map(|(_, _, events)| events).copied().collect();
-    let row = |line: &Line| {
+    let row = |line: &EventLine| {
         if off == Some(line.number) {
             let id = id(log, line.number);
             return diverging(line.number, line.time, &line.what, &id);
@@ -42,7 +42,8 @@ pub(super) fn all(report: &Report, log: usize) -> String {
         }
         row(line, "", "")
     };
-    let leaf = |lines: &[Line]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
+    let leaf =
+        |lines: &[EventLine]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
     // What is missing at the end has no line of its own.
     let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
     let missing = missing.map_or_else(String::new, |told| {
@@ -68,7 +69,7 @@ fn id(log: usize, event: usize) -> String {
     format!(" id=event-{log}-{event}")
 }
 
-fn has_divergence(report: &Report) -> bool {
+fn has_divergence(report: &LogReport) -> bool {
     let off = report.divergence.as_ref().map(|told| told.event);
     report.events.iter().any(|line| off == Some(line.number))
 }
@@ -82,7 +83,7 @@ fn table(rows: &str) -> String {
 }
 
 /// A line. End tags may be left out, and there are many of them.
-fn row(line: &Line, class: &str, id: &str) -> String {
+fn row(line: &EventLine, class: &str, id: &str) -> String {
     format!(
         "<tr{class}{id}><td>{}<td>{}<td>{}<td>{}\n",
         line.number,

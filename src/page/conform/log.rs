@@ -4,14 +4,14 @@ use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
     page::clock,
     picture::escaped,
-    report::{Report, Told},
+    report::{LogReport, DivergenceReport},
 };
 
 /// So much of a list is shown at once.
 const FEW: usize = 12;
 
 /// All that is said of a log, by its number among the logs.
-pub(super) fn section(report: &Report, number: usize, level: Level) -> String {
+pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String {
     let beneath = level.beneath();
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
@@ -36,7 +36,7 @@ pub(super) fn section(report: &Report, number: usize, level: Level) -> String {
 }
 
 /// The verdict and why.
-fn verdict(report: &Report, log: usize, level: Level) -> String {
+fn verdict(report: &LogReport, log: usize, level: Level) -> String {
     let name = report.verdict.name();
     let heading = level.heading(&format!(
         "{}<strong>{}</strong> <span class=\"of\">{}</span>",
@@ -57,8 +57,8 @@ fn verdict(report: &Report, log: usize, level: Level) -> String {
 }
 
 /// Where the run diverged, how, and whose fault that is.
-fn because(told: &Told, report: &Report, log: usize) -> String {
-    let Told { event, time, message, culprit, cause, what, why, .. } = told;
+fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
+    let DivergenceReport { event, time, message, culprit, cause, what, why, .. } = told;
     let of = report.events.len();
     let place = if *event > of {
         format!("After all {of} events")
@@ -81,7 +81,7 @@ fn because(told: &Told, report: &Report, log: usize) -> String {
     )
 }
 
-fn allowed(report: &Report, level: Level) -> String {
+fn allowed(report: &LogReport, level: Level) -> String {
     let allowed = report.divergence.as_ref().map(|told| &told.allowed);
     let Some(allowed) = allowed.filter(|allowed| !allowed.is_empty()) else {
         return String::new();
@@ -90,7 +90,7 @@ fn allowed(report: &Report, level: Level) -> String {
     panel(level, "allowed", "What would have been allowed here", &list)
 }
 
-fn before(report: &Report, log: usize, level: Level) -> String {
+fn before(report: &LogReport, log: usize, level: Level) -> String {
     let Some(table) = events::before(report) else {
         return String::new();
     };
@@ -102,7 +102,7 @@ fn before(report: &Report, log: usize, level: Level) -> String {
     panel(level, "before", "What led there", &(table + &more))
 }
 
-fn shorter(report: &Report, level: Level) -> String {
+fn shorter(report: &LogReport, level: Level) -> String {
     let events = each(&report.shorter, |event| format!("<li>{}</li>\n", escaped(event)));
     let events = match report.shorter.len() {
         0 => String::new(),
@@ -125,7 +125,7 @@ fn shorter(report: &Report, level: Level) -> String {
     panel(level, "late", "A shorter log that diverges in the same way", &(events + &command))
 }
 
-fn tolerated(report: &Report, log: usize, level: Level) -> String {
+fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
     if report.tolerated.is_empty() {
         return String::new();
     }
@@ -159,7 +159,7 @@ fn tolerated(report: &Report, log: usize, level: Level) -> String {
     panel(level, "late", "Known, and tolerated", &list)
 }
 
-fn facts(report: &Report, level: Level) -> String {
+fn facts(report: &LogReport, level: Level) -> String {
     if report.facts.is_empty() {
         return String::new();
     }
@@ -173,7 +173,7 @@ fn facts(report: &Report, level: Level) -> String {
     panel(level, "late", "What was judged", &table)
 }
 
-fn picture(report: &Report, level: Level) -> String {
+fn picture(report: &LogReport, level: Level) -> String {
     let Some(address) = report.picture.as_deref().and_then(wording::picture_address) else {
         return String::new();
     };
@@ -181,7 +181,7 @@ fn picture(report: &Report, level: Level) -> String {
     panel(level, "camera", "What the camera saw", &image)
 }
 
-fn world(report: &Report, level: Level) -> String {
+fn world(report: &LogReport, level: Level) -> String {
     let Some(svg) = &report.world else {
         return String::new();
     };
@@ -193,7 +193,7 @@ fn world(report: &Report, level: Level) -> String {
     panel(level, "", name, &image)
 }
 
-fn covered(report: &Report, level: Level) -> String {
+fn covered(report: &LogReport, level: Level) -> String {
     if report.coverage.is_empty() {
         return String::new();
     }

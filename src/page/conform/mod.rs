@@ -13,7 +13,7 @@ mod wording;
 mod tests;
 
 use super::{PAGE_STYLE, filled};
-use crate::{picture::escaped, report::Report};
+use crate::{picture::escaped, report::LogReport};
 
 const PAGE: &str = include_str!("../browser/conform.html");
 const STYLE: [&str; 2] = [PAGE_STYLE, include_str!("../browser/conform.css")];
@@ -22,7 +22,7 @@ const SCRIPT: &str = include_str!("../browser/conform.js");
 /// The page of these reports as an HTML document, in their order; of several, with what is said of them
 /// together above. The same reports give the same bytes.
 #[must_use]
-pub fn conform_page(reports: &[Report]) -> String {
+pub fn conform_page(reports: &[LogReport]) -> String {
     let alone = matches!(reports, [_]);
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
     filled(PAGE, |place| match place {

@@ -3,11 +3,11 @@
 use super::{Level, coverage, each, panel, wording};
 use crate::{
     picture::escaped,
-    report::{Report, Told},
+    report::{LogReport, DivergenceReport},
 };
 
 /// The verdicts, each with a link to its log, and what all logs cover.
-pub(super) fn section(reports: &[Report]) -> String {
+pub(super) fn section(reports: &[LogReport]) -> String {
     let worst = wording::worst(reports);
     let heading = Level::First.heading(&format!(
         "{}<strong>{}</strong>",
@@ -27,7 +27,7 @@ pub(super) fn section(reports: &[Report]) -> String {
             each(&numbered, |(report, number)| row(report, *number))
         )
     };
-    let cases = Report::coverage_of(reports);
+    let cases = LogReport::coverage_of(reports);
     let covered = if cases.is_empty() {
         String::new()
     } else {
@@ -41,10 +41,10 @@ pub(super) fn section(reports: &[Report]) -> String {
     )
 }
 
-fn row(report: &Report, number: usize) -> String {
+fn row(report: &LogReport, number: usize) -> String {
     let verdict = report.verdict.name();
     let why = match &report.divergence {
-        Some(Told { event, culprit, what, .. }) => {
+        Some(DivergenceReport { event, culprit, what, .. }) => {
             format!("<span class=\"chip\">{culprit}</span> event {event}: {}", escaped(what))
         }
         None => {

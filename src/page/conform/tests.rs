@@ -5,10 +5,10 @@ use std::{cell::RefCell, collections::BTreeSet};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use super::*;
-use crate::report::{Covered, Line, Told};
+use crate::report::{CoveredCase, EventLine, DivergenceReport};
 
-fn line(number: usize) -> Line {
-    Line {
+fn line(number: usize) -> EventLine {
+    EventLine {
         number,
         time: number as f64 / 2.0,
         what: if number % 2 == 1 {
@@ -20,8 +20,8 @@ fn line(number: usize) -> Line {
     }
 }
 
-fn conforming(events: usize) -> Report {
-    Report {
+fn conforming(events: usize) -> LogReport {
+    LogReport {
         log: "logs/shape-6.mcap".to_owned(),
         verdict: ConformVerdict::Conforms,
         remarks: Vec::new(),
@@ -29,7 +29,7 @@ fn conforming(events: usize) -> Report {
         events: (1..=events).map(line).collect(),
         divergence: None,
         coverage: [("new-vertex", 9, true), ("confirmed", 0, true), ("marker-missed", 0, false)]
-            .map(|(case, count, can)| Covered {
+            .map(|(case, count, can)| CoveredCase {
                 case: case.to_owned(),
                 count,
                 reachable: Some(can),
@@ -43,10 +43,10 @@ fn conforming(events: usize) -> Report {
     }
 }
 
-fn diverged(events: usize, at: usize) -> Report {
-    Report {
+fn diverged(events: usize, at: usize) -> LogReport {
+    LogReport {
         verdict: ConformVerdict::Diverged,
-        divergence: Some(Told {
+        divergence: Some(DivergenceReport {
             event: at,
             time: at as f64 / 2.0,
             message: Some((4711, 1_234_567)),
@@ -64,8 +64,8 @@ fn diverged(events: usize, at: usize) -> Report {
     }
 }
 
-fn incomplete() -> Report {
-    Report {
+fn incomplete() -> LogReport {
+    LogReport {
         verdict: ConformVerdict::Incomplete,
         remarks: vec!["the log ends before the map is complete".to_owned()],
         ..conforming(5)
@@ -105,7 +105,7 @@ fn words_of_a_log_are_text_wherever_they_stand() {
     if let Some(told) = &mut report.divergence {
         (told.what, told.why, told.allowed) = (nasty(), nasty(), vec![nasty(); 20]);
     }
-    let quiet = Report { log: nasty(), remarks: vec![nasty()], ..conforming(0) };
+    let quiet = LogReport { log: nasty(), remarks: vec![nasty()], ..conforming(0) };
     for reports in [vec![report.clone()], vec![report, quiet]] {
         let page = conform_page(&reports);
         assert_eq!(page.matches("<script").count(), 1, "the template's own");
@@ -119,7 +119,7 @@ fn words_of_a_log_are_text_wherever_they_stand() {
 
 #[test]
 fn each_verdict_has_its_word_sign_and_colour() {
-    let of = |report: Report| conform_page(&[report]);
+    let of = |report: LogReport| conform_page(&[report]);
     let pages = [of(conforming(4)), of(diverged(4, 3)), of(incomplete())];
     for (page, [name, word]) in pages.iter().zip([
         ["conforms", "Conforms"],
@@ -181,9 +181,9 @@ fn what_there_is_not_takes_no_room() {
     for name in ["What the camera saw", "What led there", "tolerated", "A shorter log"] {
         assert!(!page.contains(name), "{name}");
     }
-    let odd = Report { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
+    let odd = LogReport { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
     assert_eq!(conform_page(&[odd]), page);
-    let png = Report { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
+    let png = LogReport { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
     assert!(conform_page(&[png]).contains("src=\"data:image/png;base64,"));
 }
 
@@ -191,7 +191,7 @@ fn what_there_is_not_takes_no_room() {
 fn what_is_tolerated_leads_to_its_events() {
     let at = vec![2, 4, 6];
     let quirk = ("glare".to_owned(), "the sun stands low".to_owned(), at);
-    let page = conform_page(&[Report { tolerated: vec![quirk], ..conforming(5) }]);
+    let page = conform_page(&[LogReport { tolerated: vec![quirk], ..conforming(5) }]);
     assert!(page.contains("<b>glare</b>, 3 times: The sun stands low."));
     assert!(page.contains("<p>All 5 events fit, but for 3 that are tolerated.</p>"));
     for event in [2, 4] {

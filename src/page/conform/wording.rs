@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
-use crate::report::Report;
+use crate::report::LogReport;
 
 /// The worst verdict of all; where there is none, nothing is known.
-pub(super) fn worst(reports: &[Report]) -> ConformVerdict {
+pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
     let any = |verdict| reports.iter().any(|report| report.verdict == verdict);
     if any(ConformVerdict::Diverged) {
         ConformVerdict::Diverged
@@ -20,7 +20,7 @@ pub(super) fn worst(reports: &[Report]) -> ConformVerdict {
 }
 
 /// What a window is called.
-pub(super) fn title(reports: &[Report]) -> String {
+pub(super) fn title(reports: &[LogReport]) -> String {
     match reports {
         [report] => format!("{}: {}", report.log, report.verdict.name()),
         _ => tally(reports),
@@ -28,7 +28,7 @@ pub(super) fn title(reports: &[Report]) -> String {
 }
 
 /// How many logs have which verdict, the worst first.
-pub(super) fn tally(reports: &[Report]) -> String {
+pub(super) fn tally(reports: &[LogReport]) -> String {
     if reports.is_empty() {
         return "no log was judged".to_owned();
     }
@@ -61,7 +61,7 @@ pub(super) fn sentence(words: &str) -> String {
 }
 
 /// What is to be said of the events where none diverged.
-pub(super) fn fits(report: &Report) -> String {
+pub(super) fn fits(report: &LogReport) -> String {
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
         1 => "The only event fits".to_owned(),

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{WalkPage, side::Side};
+use super::{WalkPage, side::WalkSide};
 use crate::{
     model::{
         ambiguity::PlacedRobot,
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The data as JSON that can stand inside a `script` element.
-pub(super) fn json(page: &WalkPage, [one, other]: [&Side; 2]) -> String {
+pub(super) fn json(page: &WalkPage, [one, other]: [&WalkSide; 2]) -> String {
     let relation = page.comparison.relation(page.poses).map(|relation| {
         let places = |&(here, there): &_| [one.place(here), other.place(there)];
         relation.0.iter().map(places).collect::<Vec<_>>()
@@ -28,7 +28,7 @@ pub(super) fn json(page: &WalkPage, [one, other]: [&Side; 2]) -> String {
     in_script(&data)
 }
 
-fn side(side: &Side) -> Value {
+fn side(side: &WalkSide) -> Value {
     let states = side.robots.iter().zip(&side.actions);
     json!({
         "name": side.world.name,
@@ -37,7 +37,7 @@ fn side(side: &Side) -> Value {
     })
 }
 
-fn state(side: &Side, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
+fn state(side: &WalkSide, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
     let actions = actions.iter().map(|(action, to)| json!([action.to_string(), to]));
     // A marker that stays where it is stands in the picture.
     let marker = match robot.state().placed {

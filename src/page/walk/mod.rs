@@ -9,7 +9,7 @@ use crate::{
     page::{PAGE_SCRIPT, PAGE_STYLE, filled},
     picture::escaped,
 };
-use side::Side;
+use side::WalkSide;
 
 /// What the page shows.
 #[derive(Clone, Copy)]
@@ -41,7 +41,7 @@ const SCRIPT: [&str; 5] = [
 #[must_use]
 pub fn page(page: &WalkPage) -> String {
     let robots = page.comparison.starts(page.poses);
-    let [one, other] = [0, 1].map(|at| Side::new(page.worlds[at], &robots[at]));
+    let [one, other] = [0, 1].map(|at| WalkSide::new(page.worlds[at], &robots[at]));
     filled(PAGE, |place| match place {
         "title" => escaped(page.title),
         "about" => escaped(page.about),

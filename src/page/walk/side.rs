@@ -9,11 +9,11 @@ use crate::{
         format::named_world::NamedWorld,
         world::{Action, State},
     },
-    picture::{Picture, svg},
+    picture::{WorldPicture, svg},
 };
 
 /// A world and what can happen in it from a start.
-pub(super) struct Side<'a> {
+pub(super) struct WalkSide<'a> {
     pub(super) world: &'a NamedWorld,
     /// The robot in each state that it can reach, the start first.
     pub(super) robots: Vec<PlacedRobot<'a>>,
@@ -23,7 +23,7 @@ pub(super) struct Side<'a> {
     place: HashMap<State, usize>,
 }
 
-impl<'a> Side<'a> {
+impl<'a> WalkSide<'a> {
     pub(super) fn new(world: &'a NamedWorld, start: &PlacedRobot<'a>) -> Self {
         let robots = vec![start.clone()];
         let place = HashMap::from([(start.state(), 0)]);
@@ -54,13 +54,20 @@ impl<'a> Side<'a> {
     pub(super) fn picture(&self) -> String {
         let marker = *self.robots[0].marker();
         let start = self.placed().filter(|_| !marker.is_movable());
-        svg(&Picture { start, marker, title: "", caption: "", ..Picture::from(self.world) })
+        svg(&WorldPicture {
+            start,
+            marker,
+            title: "",
+            caption: "",
+            ..WorldPicture::from(self.world)
+        })
     }
 
     /// Where the marker is, in words.
     pub(super) fn where_the_marker_is(&self) -> String {
         let marker = *self.robots[0].marker();
-        let picture = Picture { start: self.placed(), marker, ..Picture::from(self.world) };
+        let picture =
+            WorldPicture { start: self.placed(), marker, ..WorldPicture::from(self.world) };
         let place = picture.where_the_marker_is().unwrap_or_default();
         if marker.is_movable() {
             format!("{place} at first; a red robot carries it")

@@ -8,10 +8,10 @@ use std::{f64::consts::TAU, path::Path, sync::LazyLock};
 use resvg::usvg::roxmltree::{Document, Node};
 
 use super::{
-    Picture, Place,
+    Placement, WorldPicture,
     drawing::Drawing,
     geometry::{Extent, Point},
-    labels::{Kind, labels},
+    labels::{LabelKind, labels},
     png,
     signs::signs,
     svg, text,
@@ -91,7 +91,7 @@ struct Drawn {
 /// The whole gallery, drawn once for all tests.
 static GALLERY: LazyLock<Vec<Drawn>> = LazyLock::new(|| {
     let draw = |world: NamedWorld| {
-        let picture = Picture::from(&world);
+        let picture = WorldPicture::from(&world);
         let drawing = Drawing::of(&picture);
         let svg = svg::document(&picture, &drawing, svg::Legend::Below);
         Drawn { world, drawing, svg }
@@ -116,7 +116,7 @@ fn doors_stand_in_clockwise_order_in_every_picture() {
 #[test]
 fn the_same_picture_gives_the_same_bytes() {
     for Drawn { world, svg: drawn, .. } in GALLERY.iter().take(12) {
-        assert_eq!(*drawn, svg(&Picture::from(world)), "{}", world.name);
+        assert_eq!(*drawn, svg(&WorldPicture::from(world)), "{}", world.name);
     }
 }
 
@@ -125,7 +125,7 @@ fn doors_stand_in_clockwise_order_whatever_the_world() {
     for seed in 0..100 {
         let vertices = 1 + (seed as usize * 7) % 9;
         let world = random(100 + seed, vertices, vertices + (seed as usize) % 5);
-        assert_doors_in_order(&world, &svg(&Picture::from(&world)));
+        assert_doors_in_order(&world, &svg(&WorldPicture::from(&world)));
     }
 }
 
@@ -144,7 +144,7 @@ fn crossings(drawing: &Drawing) -> usize {
 fn a_world_in_the_plane_is_drawn_without_crossings() {
     let mut planar = 0;
     for Drawn { world, drawing, .. } in GALLERY.iter() {
-        if world.graph.genus() == 0 && !matches!(Place::from(world), Place::At(_)) {
+        if world.graph.genus() == 0 && !matches!(Placement::from(world), Placement::At(_)) {
             planar += 1;
             assert_eq!(crossings(drawing), 0, "{}", world.name);
         }
@@ -154,7 +154,7 @@ fn a_world_in_the_plane_is_drawn_without_crossings() {
         let world = random(1000 + seed, vertices, vertices + (seed as usize) % 3);
         if world.graph.genus() == 0 {
             planar += 1;
-            assert_eq!(crossings(&Drawing::of(&Picture::from(&world))), 0, "{}", world.name);
+            assert_eq!(crossings(&Drawing::of(&WorldPicture::from(&world))), 0, "{}", world.name);
         }
     }
     assert!(planar > 100, "{planar}");
@@ -216,9 +216,9 @@ fn names_of_vertices_do_not_overlap_and_stand_on_the_canvas() {
 fn names_beside_discs_keep_clear_of_hallways_edges_and_discs() {
     let mut beside = 0;
     for Drawn { world, drawing, .. } in GALLERY.iter() {
-        let picture = Picture::from(world);
+        let picture = WorldPicture::from(world);
         let labels = labels(drawing, &picture, &signs(&picture, drawing));
-        for label in labels.iter().filter(|label| label.kind == Kind::Beside) {
+        for label in labels.iter().filter(|label| label.kind == LabelKind::Beside) {
             beside += 1;
             let extent = label.extent();
             let on_floor = drawing.hallways().any(|floor| extent.shared_area(&floor) > 0.0);
@@ -236,7 +236,7 @@ fn the_same_positions_give_the_same_places_whatever_the_edges() {
     let centres = |seed| {
         let mut world = random(seed, 6, 8);
         world.positions = Some(positions.clone());
-        let drawing = Drawing::of(&Picture::from(&world));
+        let drawing = Drawing::of(&WorldPicture::from(&world));
         assert!(drawing.floor.is_none());
         drawing.centres.iter().map(|&at| (at - drawing.centres[0]).angle()).collect::<Vec<_>>()
     };
@@ -250,7 +250,7 @@ fn the_same_positions_give_the_same_places_whatever_the_edges() {
 #[test]
 fn a_cycle_of_two_thousand_edges_is_a_circle() {
     let world = cycle(2000);
-    let drawing = Drawing::of(&Picture::from(&world));
+    let drawing = Drawing::of(&WorldPicture::from(&world));
     let middle = Extent::of(drawing.centres.iter().copied()).centre();
     let radii: Vec<_> = drawing.centres.iter().map(|at| at.distance(middle)).collect();
     assert!(radii.iter().all(|radius| (radius / radii[0] - 1.0).abs() < 1e-3));
@@ -262,6 +262,6 @@ fn a_cycle_of_two_thousand_edges_is_a_circle() {
 #[test]
 fn the_order_can_be_read_off_large_worlds_too() {
     for world in [random(1, 2000, 1999), random(2, 2000, 3000), cycle(2000)] {
-        assert_doors_in_order(&world, &svg(&Picture::from(&world)));
+        assert_doors_in_order(&world, &svg(&WorldPicture::from(&world)));
     }
 }

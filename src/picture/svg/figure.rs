@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use super::{
     super::{
-        Picture,
+        WorldPicture,
         curves::Curve,
         drawing::{Drawing, INKS},
         geometry::{Extent, Point},
-        labels::{Kind, LINE, Label},
+        labels::{LINE, Label, LabelKind},
         signs::Sign,
         text,
     },
@@ -27,7 +27,7 @@ impl Page {
     /// Everything that is drawn, moved by `shift`.
     pub(super) fn drawing(
         &mut self,
-        picture: &Picture,
+        picture: &WorldPicture,
         drawing: &Drawing,
         signs: &[Sign],
         shift: Point,
@@ -117,10 +117,10 @@ impl Page {
 
     pub(in super::super) fn label(&mut self, label: &Label, shift: Point) {
         let (fill, class) = match label.kind {
-            Kind::Inside | Kind::Beside => (INK, "name"),
-            Kind::Edge => (FAINT, "edge-name"),
+            LabelKind::Inside | LabelKind::Beside => (INK, "name"),
+            LabelKind::Edge => (FAINT, "edge-name"),
         };
-        if label.kind != Kind::Inside {
+        if label.kind != LabelKind::Inside {
             let veil = format!("rx=\"3\" fill=\"{PAPER}\" fill-opacity=\"0.88\"");
             self.rectangle(&veil, label.extent(), shift);
         }
@@ -141,7 +141,7 @@ impl Page {
     }
 
     /// The knobs of the doors, with their numbers.
-    fn doors(&mut self, picture: &Picture, drawing: &Drawing, shift: Point) {
+    fn doors(&mut self, picture: &WorldPicture, drawing: &Drawing, shift: Point) {
         let graph = picture.graph;
         let pointing = picture.parts();
         for dart in graph.darts() {

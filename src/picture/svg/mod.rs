@@ -10,7 +10,7 @@ mod page;
 mod sheet;
 
 use super::{
-    Picture,
+    WorldPicture,
     drawing::Drawing,
     labels::{Label, labels},
     signs::{Sign, signs},
@@ -30,7 +30,7 @@ pub(super) enum Legend {
 }
 
 /// The picture as an SVG document.
-pub(super) fn document(picture: &Picture, drawing: &Drawing, legend: Legend) -> String {
+pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend) -> String {
     let signs = signs(picture, drawing);
     let labels = labels(drawing, picture, &signs);
     let mut extent = drawing.extent();
@@ -54,7 +54,7 @@ pub(super) fn document(picture: &Picture, drawing: &Drawing, legend: Legend) -> 
 }
 
 /// What the signs mean.
-fn says(picture: &Picture, drawing: &Drawing) -> Vec<String> {
+fn says(picture: &WorldPicture, drawing: &Drawing) -> Vec<String> {
     let mut says = Vec::new();
     says.extend(picture.where_the_marker_is());
     if drawing.size.knob > 0.0 && picture.graph.vertices().any(|v| picture.graph.degree(v) > 1) {

@@ -3,7 +3,7 @@
 use toposlam_model::driving::algorithm2::{Lost, LostReason};
 
 use super::*;
-use crate::Odometer;
+use crate::ChoiceOdometer;
 
 /// Algorithm 2 with something broken.
 #[derive(Clone)]
@@ -77,8 +77,8 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
 
 /// What it is that does not hold.
 #[track_caller]
-fn fails(lemma: fn(&mut Odometer) -> Case) -> &'static str {
-    Odometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
+fn fails(lemma: fn(&mut ChoiceOdometer) -> CaseResult) -> &'static str {
+    ChoiceOdometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
 }
 
 #[test]
