@@ -8,7 +8,7 @@ use toposlam::{
     model::format::world_file,
     page::conform_page,
     picture::{WorldPicture, svg},
-    report::{CoveredCase, EventLine, LogReport, DivergenceReport},
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toposlam::{
     picture::{self, WorldPicture},
-    report::{CoveredCase, EventLine, LogReport, DivergenceReport},
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
 };
 use toposlam_model::{
     embedded_graph::Dart,

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
-use toposlam::report::{CoveredCase, LogReport, DivergenceReport};
+use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
 
 use super::Failure;
@@ -129,7 +129,11 @@ fn in_words(verdict: ConformVerdict) -> &'static str {
     }
 }
 
-fn diverged(out: &mut dyn Write, report: &LogReport, told: &DivergenceReport) -> Result<(), Failure> {
+fn diverged(
+    out: &mut dyn Write,
+    report: &LogReport,
+    told: &DivergenceReport,
+) -> Result<(), Failure> {
     let DivergenceReport { event, time, message, culprit, what, why, allowed, .. } = told;
     writeln!(
         out,

@@ -4,7 +4,7 @@ use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
     page::clock,
     picture::escaped,
-    report::{LogReport, DivergenceReport},
+    report::{DivergenceReport, LogReport},
 };
 
 /// So much of a list is shown at once.

@@ -3,7 +3,7 @@
 use super::{Level, coverage, each, panel, wording};
 use crate::{
     picture::escaped,
-    report::{LogReport, DivergenceReport},
+    report::{DivergenceReport, LogReport},
 };
 
 /// The verdicts, each with a link to its log, and what all logs cover.

@@ -5,7 +5,7 @@ use std::{cell::RefCell, collections::BTreeSet};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use super::*;
-use crate::report::{CoveredCase, EventLine, DivergenceReport};
+use crate::report::{CoveredCase, DivergenceReport, EventLine};
 
 fn line(number: usize) -> EventLine {
     EventLine {
