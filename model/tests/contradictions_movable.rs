@@ -7,12 +7,12 @@ use toposlam_model::{
     embedded_graph::{Dart, Vertex},
     mapping::{Contradiction, MappingError, MarkerSearch, Nearest, map_with_movable_marker},
     percept::{Door, Percept, Sighting},
-    world::{Handling, Refused, World},
+    world::{MovableMarkerWorld, Refused, World},
 };
 
 const BOUND: usize = 60;
 
-fn map(world: &mut impl Handling<Error = Refused>) -> Result<u64, MappingError<Refused>> {
+fn map(world: &mut impl MovableMarkerWorld<Error = Refused>) -> Result<u64, MappingError<Refused>> {
     let mut search = MarkerSearch::new(BOUND);
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
@@ -45,7 +45,7 @@ impl World for Script<'_> {
     }
 }
 
-impl Handling for Script<'_> {
+impl MovableMarkerWorld for Script<'_> {
     fn pick_up(&mut self) -> Result<(), Refused> {
         Ok(())
     }
@@ -203,7 +203,7 @@ fn the_worlds_own_error_is_passed_on() {
             Err(self.0)
         }
     }
-    impl Handling for Closed {
+    impl MovableMarkerWorld for Closed {
         fn pick_up(&mut self) -> Result<(), Refused> {
             if self.0 == Refused::NothingToPickUp { Err(self.0) } else { Ok(()) }
         }

@@ -17,8 +17,8 @@ use std::{
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::{
-    evaluation::{learned, views::Views},
-    simulator::{Building, Effects, Look, Pose, Rig, label_mask, labels, render},
+    evaluation::{learned, view_sampler::ViewSampler},
+    simulator::{Building, BuildingLook, Effects, Pose, Rig, label_mask, labels, render},
 };
 use toposlam_vision::{
     boundary::Bearings,
@@ -36,10 +36,10 @@ const THEIRS: [&str; 4] = ["HSV", "back-projection", "unwrapping", "connected co
 fn main() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("opencv");
     std::fs::create_dir_all(&folder).unwrap();
-    let look = Look::named("laboratory").unwrap();
+    let look = BuildingLook::named("laboratory").unwrap();
     let camera = Camera::superscout();
     let rig = Rig::new(&camera);
-    let views = Views::of([look], camera.image, 7).unwrap();
+    let views = ViewSampler::of([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);

@@ -7,7 +7,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_model::format::world_file;
-use toposlam_robot::simulator::{Building, Effects, Look, Pose, Rig, labels, render};
+use toposlam_robot::simulator::{Building, BuildingLook, Effects, Pose, Rig, labels, render};
 use toposlam_vision::camera::Camera;
 
 fn main() {
@@ -34,7 +34,7 @@ fn picture(bencher: Bencher, (width, look): (u32, &str)) {
     let mut effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     effects.blur = 1.1;
     let plan = plan("shape-8");
-    let building = Building::new(&plan, Look::named(look).unwrap(), None, &effects, 7);
+    let building = Building::new(&plan, BuildingLook::named(look).unwrap(), None, &effects, 7);
     let rig = rig(width);
     bencher.bench_local(|| render(&rig, &building, POSE, &effects, 7));
 }
@@ -44,7 +44,7 @@ fn picture(bencher: Bencher, (width, look): (u32, &str)) {
 fn classes(bencher: Bencher, width: u32) {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let plan = plan("shape-8");
-    let building = Building::new(&plan, Look::named("tiles").unwrap(), None, &effects, 7);
+    let building = Building::new(&plan, BuildingLook::named("tiles").unwrap(), None, &effects, 7);
     let rig = rig(width);
     bencher.bench_local(|| labels(&rig, &building, POSE, &effects));
 }
@@ -54,7 +54,9 @@ fn classes(bencher: Bencher, width: u32) {
 fn building(bencher: Bencher, name: &str) {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let plan = plan(name);
-    bencher.bench_local(|| Building::new(&plan, Look::named("tiles").unwrap(), None, &effects, 7));
+    bencher.bench_local(|| {
+        Building::new(&plan, BuildingLook::named("tiles").unwrap(), None, &effects, 7)
+    });
 }
 
 /// What each pixel looks along, once for a camera.

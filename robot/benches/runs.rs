@@ -7,11 +7,11 @@ use std::sync::Arc;
 use divan::Bencher;
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 use toposlam_robot::{
-    evaluation::{Eyes, plans, random_plan::random_plan_with, runs::starts_of},
+    evaluation::{LearnedSensors, plans, random_plan::random_plan_with, run_sampler::starts_of},
     explorer::Told,
     recording::Recording,
     run::{Ending, Run, offline, run},
-    simulator::{Effects, LOOKS, Look, Setting},
+    simulator::{BuildingLook, Effects, LOOKS, SimulationConfig},
 };
 use toposlam_vision::camera::Camera;
 
@@ -45,7 +45,7 @@ fn right(run: &Run) {
 fn by_scene(bencher: Bencher, junctions: usize) {
     let (plan, facing) = random(junctions);
     bencher.bench(|| {
-        let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
+        let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
         right(&run(&plan, facing, robot, Told, (), &mut (), DARTS).0);
     });
 }
@@ -56,7 +56,7 @@ fn shape_6_with_images(bencher: Bencher) {
     let (plan, facing) = shape_6();
     let (eyes, look) = eyes();
     bencher.bench(|| {
-        let robot = Setting::at_start(plan.clone(), facing, 1).with_images(
+        let robot = SimulationConfig::at_start(plan.clone(), facing, 1).with_images(
             eyes.rig(),
             look,
             &Effects::plain(),
@@ -71,7 +71,8 @@ fn shape_6_off_line(bencher: Bencher) {
     let (plan, facing) = shape_6();
     let (eyes, look) = eyes();
     let effects = Effects { jpeg_loss: 10.0, ..Effects::plain() };
-    let robot = Setting::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
+    let robot =
+        SimulationConfig::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
     let eye = eyes.sensor(look);
     let (done, _, recording) = run(&plan, facing, robot, eye, Recording::default(), &mut (), DARTS);
     right(&done);
@@ -80,7 +81,7 @@ fn shape_6_off_line(bencher: Bencher) {
         .bench_local_values(|eye| offline(&recording, eye, DARTS).unwrap());
 }
 
-fn eyes() -> (Eyes, &'static Look) {
+fn eyes() -> (LearnedSensors, &'static BuildingLook) {
     let look = &LOOKS[0];
-    (Eyes::new(&Camera::superscout().sized(LARGE), &[look], &()).unwrap(), look)
+    (LearnedSensors::new(&Camera::superscout().sized(LARGE), &[look], &()).unwrap(), look)
 }

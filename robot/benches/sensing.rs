@@ -8,8 +8,8 @@ use image::RgbImage;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::{
-    evaluation::{learned, views::Views},
-    simulator::{Building, Effects, Look, Pose, Rig, render},
+    evaluation::{learned, view_sampler::ViewSampler},
+    simulator::{Building, BuildingLook, Effects, Pose, Rig, render},
 };
 use toposlam_vision::{
     boundary::Bearings,
@@ -47,8 +47,8 @@ struct Case {
 fn case(width: u32) -> Case {
     let camera = Camera::superscout().sized([width, width * 3 / 4]);
     let rig = Rig::new(&camera);
-    let look = Look::named("laboratory").unwrap();
-    let views = Views::of([look], camera.image, 7).unwrap();
+    let look = BuildingLook::named("laboratory").unwrap();
+    let views = ViewSampler::of([look], camera.image, 7).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);

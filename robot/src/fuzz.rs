@@ -14,10 +14,10 @@ use crate::log::{
 };
 
 /// A body, and its name: that of the target in `fuzz/`, and of the folder of its seeds.
-pub type Target = (&'static str, fn(&[u8]));
+pub type RobotFuzzTarget = (&'static str, fn(&[u8]));
 
 /// All bodies.
-pub const TARGETS: &[Target] = &[
+pub const TARGETS: &[RobotFuzzTarget] = &[
     ("bag", bag),
     ("mcap", mcap),
     ("ros1_message", ros1_message),

@@ -410,17 +410,17 @@ impl Observer<Replayed<'_>> for Comparison {
 mod tests {
     use super::*;
     use crate::{
-        evaluation::{plans, runs::starts_of},
+        evaluation::{plans, run_sampler::starts_of},
         explorer::Told as Teller,
         log::{recorder::Recorder, shared_buffer::SharedBuffer},
         run::run,
-        simulator::Setting,
+        simulator::SimulationConfig,
     };
 
     fn recorded(seed: u64) -> (Log, Exploration) {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
-        let mut setting = Setting::at_start(plan.clone(), facing, seed);
+        let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
         setting.keeps_track = true;
         let file = SharedBuffer::default();
         let recorder = Recorder::new(file.clone(), &messages::Run::default(), None).unwrap();

@@ -18,7 +18,7 @@ use crate::{
     explorer::{Explorer, ExplorerError, Eye, Observer, Round},
     recording::Recording,
     robot::Robot,
-    simulator::{Camera, SimulatedRobot},
+    simulator::{SimulatedCamera, SimulatedRobot},
 };
 
 /// How a whole run ended, and what the specification says of it.
@@ -105,7 +105,7 @@ pub fn run<'p, C, E, O, S>(
     dart_bound: usize,
 ) -> (Run<'p>, SimulatedRobot<C>, O)
 where
-    C: Camera,
+    C: SimulatedCamera,
     E: Eye<C::View>,
     O: Observer<SimulatedRobot<C>>,
     S: mapping::Observer<Explorer<SimulatedRobot<C>, E, Judged<'p, O>>>,
@@ -156,7 +156,9 @@ pub struct Judged<'p, O> {
     pub(crate) observer: O,
 }
 
-impl<C: Camera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>> for Judged<'_, O> {
+impl<C: SimulatedCamera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>>
+    for Judged<'_, O>
+{
     fn round(&mut self, robot: &SimulatedRobot<C>, round: &Round<C::View>) {
         self.observer.round(robot, round);
     }
@@ -198,9 +200,9 @@ pub fn offline<V: Clone + PartialEq>(
 mod tests {
     use super::*;
     use crate::{
-        evaluation::{plans, runs::starts_of},
+        evaluation::{plans, run_sampler::starts_of},
         explorer::Told,
-        simulator::{Fault, FaultKind, Setting},
+        simulator::{FaultKind, RobotFault, SimulationConfig},
     };
 
     const DARTS: usize = 200;
@@ -213,7 +215,8 @@ mod tests {
     fn each_plan_is_mapped_with_the_moves_of_the_specification() {
         for (name, plan) in plans().unwrap() {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
-                let robot = Setting::at_start(plan.clone(), facing, seed as u64).by_scene();
+                let robot =
+                    SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
                 let (run, ..) = run(&plan, facing, robot, Told, (), &mut (), DARTS);
                 assert_eq!(run.ending(), Ending::Right, "{name} from {facing:?}");
                 assert!(run.isomorphic() && run.pose_true());
@@ -228,7 +231,7 @@ mod tests {
     fn what_was_recorded_gives_the_same_map_without_a_robot_that_moves() {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
-        let robot = Setting::at_start(plan.clone(), facing, 5).by_scene();
+        let robot = SimulationConfig::at_start(plan.clone(), facing, 5).by_scene();
         let (run, robot, recording) =
             run(&plan, facing, robot, Told, Recording::default(), &mut (), DARTS);
         assert_eq!(recording.len() as u64, robot.pictures());
@@ -241,8 +244,8 @@ mod tests {
     fn a_robot_that_loses_its_way_says_so() {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
-        let mut setting = Setting::at_start(plan.clone(), facing, 5);
-        let told = |setting: &Setting| {
+        let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
+        let told = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
             run(&plan, facing, robot, Told, (), &mut (), DARTS).0.ending().to_string()
         };
@@ -250,17 +253,18 @@ mod tests {
             (FaultKind::LightsOut, "7 pictures in a row do not tell where the robot is"),
             (FaultKind::Blocked, "3 commands in a row were not carried out"),
         ] {
-            setting.faults = vec![Fault::at(kind, 20)];
+            setting.faults = vec![RobotFault::at(kind, 20)];
             let told = told(&setting);
             assert!(
                 told.contains(why) && told.starts_with("the robot gave up: on move "),
                 "{told}"
             );
         }
-        setting.faults = vec![Fault { lasting: 100, ..Fault::at(FaultKind::Dropped, 20) }];
+        setting.faults =
+            vec![RobotFault { lasting: 100, ..RobotFault::at(FaultKind::Dropped, 20) }];
         assert!(told(&setting).contains("the camera gives no picture"));
         for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
-            setting.faults = vec![Fault::at(kind, 20)];
+            setting.faults = vec![RobotFault::at(kind, 20)];
             assert_eq!(told(&setting), Ending::Right.to_string(), "{}", kind.name());
         }
     }

@@ -236,7 +236,7 @@ mod tests {
     use toposlam_model::format::world_file;
 
     use super::*;
-    use crate::evaluation::class::Class;
+    use crate::evaluation::scene_class::SceneClass;
 
     /// Shape 6: end (4,8) - corner (0,8) - tee (0,4) - sw (0,0) - se (4,0) - ne (4,4) - tee.
     fn shape_6() -> FloorPlan {
@@ -316,7 +316,7 @@ mod tests {
             let found: Vec<_> = junction.doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             let expected: Vec<_> = doors.iter().map(|door| wrapped(door + 1e-12)).collect();
             close(&found, &expected);
-            assert_eq!(Class::Junction(junction.form.unwrap()).to_string(), name);
+            assert_eq!(SceneClass::Junction(junction.form.unwrap()).to_string(), name);
             close(&[junction.distance().unwrap()], &[0.4]);
             close(&junction.turning_point, &[0.4, 0.0]);
         }

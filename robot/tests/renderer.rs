@@ -15,7 +15,7 @@ use toposlam_model::{
     format::world_file,
 };
 use toposlam_robot::simulator::{
-    Building, Effects, KNOBS, LOOKS, Look, Pose, Rig, RigErrors, label_mask, labels, render,
+    Building, BuildingLook, Effects, KNOBS, LOOKS, Pose, Rig, RigErrors, label_mask, labels, render,
 };
 use toposlam_vision::{
     camera::Camera,
@@ -27,8 +27,8 @@ fn plan(name: &str) -> FloorPlan {
     world_file::read(&std::fs::read(path).unwrap()).unwrap().plan.unwrap()
 }
 
-fn look(name: &str) -> &'static Look {
-    Look::named(name).unwrap()
+fn look(name: &str) -> &'static BuildingLook {
+    BuildingLook::named(name).unwrap()
 }
 
 fn small_camera() -> Camera {
@@ -95,7 +95,12 @@ fn near_walls(floors: &[Rectangle], [x, y]: [f64; 2], distance: f64) -> bool {
 type Grounds<'a> = &'a dyn Fn([f64; 2]) -> Option<[[f64; 2]; 2]>;
 
 /// Holds labels against the plan, pixel by pixel; answers how many showed floor, stripe and marker.
-fn hold_against_plan(plan: &FloorPlan, look: &Look, rig: &Rig, grounds: Grounds) -> [usize; 3] {
+fn hold_against_plan(
+    plan: &FloorPlan,
+    look: &BuildingLook,
+    rig: &Rig,
+    grounds: Grounds,
+) -> [usize; 3] {
     let effects = Effects::plain();
     let floors: Vec<_> = plan.floor().collect();
     let marker = at_an_l(plan);

@@ -6,11 +6,11 @@
 use toposlam_robot::{
     evaluation::{
         calibration::Calibration,
-        judged::{Judged, Zone},
-        judging::Judge,
-        report::{Report, Standing},
-        verdict::{MarkerVerdict, Verdict},
-        views::Views,
+        judge::Judge,
+        judged_view::{JudgedView, Zone},
+        report::{TargetStatus, VisionReport},
+        verdict::{MarkerVerdict, PlaceVerdict},
+        view_sampler::ViewSampler,
     },
     simulator::LOOKS,
 };
@@ -20,14 +20,14 @@ use toposlam_vision::camera::Camera;
 const VIEWS: u64 = 240;
 const VISITS: u64 = 16;
 
-fn views() -> Views {
-    Views { random_plans: true, ..Views::of(&LOOKS, [640, 480], 2024).unwrap() }
+fn views() -> ViewSampler {
+    ViewSampler { random_plans: true, ..ViewSampler::of(&LOOKS, [640, 480], 2024).unwrap() }
 }
 
 /// How many views in a zone there are, and how many of them are right.
-fn right(judged: &[Judged], zone: Zone) -> (usize, usize) {
+fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
     let there = judged.iter().filter(|judged| judged.zone() == zone);
-    (there.clone().count(), there.filter(|judged| judged.verdict == Verdict::Right).count())
+    (there.clone().count(), there.filter(|judged| judged.verdict == PlaceVerdict::Right).count())
 }
 
 // paper: sense.place
@@ -54,8 +54,8 @@ fn sensing_is_never_wrong_and_seldom_at_a_loss() {
     for visit in decided {
         assert_eq!(visit.decided, Some((visit.form, visit.percept)), "{visit:#?}");
     }
-    let errors = Report::of(&judged, &visits, Calibration::Right).errors;
+    let errors = VisionReport::of(&judged, &visits, Calibration::Right).errors;
     for errors in errors {
-        assert_eq!(errors.standing(), Standing::Met, "{errors:?}");
+        assert_eq!(errors.standing(), TargetStatus::Met, "{errors:?}");
     }
 }

@@ -2,11 +2,11 @@
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_robot::simulator::{Effects, LOOKS, Look};
+use toposlam_robot::simulator::{BuildingLook, Effects, LOOKS};
 
 use super::{
     Failure,
-    render::{Which, looks, read_setting},
+    render::{EffectsChoice, looks, read_setting},
 };
 
 /// What a building looks like, and what makes pictures of it harder to read.
@@ -14,10 +14,10 @@ use super::{
 pub(super) struct Appearance {
     /// What the building looks like
     #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
-    pub(super) look: &'static Look,
+    pub(super) look: &'static BuildingLook,
     /// Which effects there are
     #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: Which,
+    effects: EffectsChoice,
     /// Set one effect; may be given more than once; `toposlam render --help` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<(String, f64)>,
@@ -27,7 +27,8 @@ impl Appearance {
     /// The arguments that say it, without those that are as usual.
     pub(super) fn told(&self) -> Vec<(&'static str, String)> {
         let look = (self.look.name != LOOKS[0].name).then(|| ("--look", self.look.name.to_owned()));
-        let none = matches!(self.effects, Which::None).then(|| ("--effects", "none".to_owned()));
+        let none =
+            matches!(self.effects, EffectsChoice::None).then(|| ("--effects", "none".to_owned()));
         let set = self.effect.iter().map(|(name, value)| ("--effect", format!("{name}={value}")));
         look.into_iter().chain(none).chain(set).collect()
     }
@@ -35,8 +36,8 @@ impl Appearance {
     /// The effects of a seed.
     pub(super) fn effects(&self, seed: u64) -> Result<Effects, Failure> {
         let mut effects = match self.effects {
-            Which::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
-            Which::None => Effects::plain(),
+            EffectsChoice::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
+            EffectsChoice::None => Effects::plain(),
         };
         for (name, value) in &self.effect {
             effects.set(name, *value).map_err(|error| Failure::at("--effect", error))?;

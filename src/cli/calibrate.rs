@@ -32,7 +32,7 @@ Example:
 
 What is not given is taken from --start, or else is the SuperScout's: radius 0.05, distance 0.15,
 height 0.90, ahead 90, seen from below.")]
-pub(super) struct Arguments {
+pub(super) struct CalibrateArguments {
     /// The images
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
@@ -94,7 +94,7 @@ struct Report {
     mask_seen: Option<f64>,
 }
 
-impl Arguments {
+impl CalibrateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         self.check_places()?;
         let known = self.known()?;

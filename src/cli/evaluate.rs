@@ -19,19 +19,19 @@ use super::{Failure, Outcome};
   toposlam evaluate vision --views 200 --out failing    sensing, on rendered views
   toposlam evaluate control                             each door of each junction
   toposlam evaluate runs                                whole buildings, mapped")]
-pub(super) struct Arguments {
+pub(super) struct EvaluateArguments {
     #[command(subcommand)]
     what: What,
 }
 
 #[derive(Subcommand)]
 enum What {
-    Vision(vision::Arguments),
-    Control(control::Arguments),
-    Runs(runs::Arguments),
+    Vision(vision::EvaluateVisionArguments),
+    Control(control::EvaluateControlArguments),
+    Runs(runs::EvaluateRunsArguments),
 }
 
-impl Arguments {
+impl EvaluateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         match self.what {
             What::Vision(vision) => vision.run(out),

@@ -11,7 +11,8 @@ use toposlam_model::{
     floor_plan::{FloorPlan, JunctionKind},
 };
 use toposlam_robot::simulator::{
-    Building, KNOBS, LOOKS, Look, Of, Pose, Rig, label_mask, labels, render, start_pose,
+    Building, BuildingLook, EffectScope, KNOBS, LOOKS, Pose, Rig, label_mask, labels, render,
+    start_pose,
 };
 use toposlam_vision::camera::Camera;
 
@@ -20,7 +21,7 @@ use super::{Failure, Outcome, appearance::Appearance, input, output, picture_fil
 /// Render what the robot's camera would see from a pose in a floor plan
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
-pub(super) struct Arguments {
+pub(super) struct RenderArguments {
     /// The floor plan
     plan: PathBuf,
     /// Where the robot is, in metres, x to the east, y to the north, and its heading in degrees
@@ -35,7 +36,7 @@ pub(super) struct Arguments {
     calibration: Option<PathBuf>,
     /// Width and height of the picture, in pixels [default: the camera's]
     #[arg(long, value_name = "SIZE")]
-    size: Option<Size>,
+    size: Option<ImageSize>,
     #[command(flatten)]
     appearance: Appearance,
     /// From which everything follows that is left to chance
@@ -52,7 +53,7 @@ pub(super) struct Arguments {
 
 /// Width and height of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Size {
+pub(super) enum ImageSize {
     /// Small
     #[value(name = "640x480")]
     Small,
@@ -61,7 +62,7 @@ pub(super) enum Size {
     Large,
 }
 
-impl Size {
+impl ImageSize {
     /// As it is written.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -80,14 +81,14 @@ impl Size {
 
 /// Which effects there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Which {
+pub(super) enum EffectsChoice {
     /// Each drawn from its default range
     Default,
     /// None
     None,
 }
 
-impl Arguments {
+impl RenderArguments {
     pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, Failure> {
         output::check_place(&self.out, &["png", "jpg", "jpeg"])?;
         if let Some(path) = &self.labels {
@@ -143,10 +144,11 @@ impl Arguments {
 }
 
 /// Reads the name of a look.
-pub(super) fn looks() -> impl TypedValueParser<Value = &'static Look> {
+pub(super) fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
     let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
-    PossibleValuesParser::new(looks)
-        .try_map(|name| Look::named(&name).ok_or_else(|| format!("there is no look `{name}`")))
+    PossibleValuesParser::new(looks).try_map(|name| {
+        BuildingLook::named(&name).ok_or_else(|| format!("there is no look `{name}`"))
+    })
 }
 
 fn read_pose(text: &str) -> Result<Pose, String> {
@@ -170,7 +172,9 @@ pub(super) fn read_setting(text: &str) -> Result<(String, f64), String> {
 /// The effects, and an example.
 fn after_help() -> String {
     let mut text = "Effects, the range that each is drawn from, and what it is:\n".to_owned();
-    for (of, title) in [(Of::Building, "Of the building:"), (Of::Picture, "Of the picture:")] {
+    for (of, title) in
+        [(EffectScope::Building, "Of the building:"), (EffectScope::Picture, "Of the picture:")]
+    {
         text.extend(["  ", title, "\n"]);
         for knob in KNOBS.iter().filter(|knob| knob.of == of) {
             let range = format!("{}..{}", knob.default.start(), knob.default.end());

@@ -28,7 +28,7 @@ Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps
 
 Angles are relative to the robot's heading, counter-clockwise; doors stand clockwise from the entry.")]
-pub(super) struct Arguments {
+pub(super) struct SenseArguments {
     /// The images
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
@@ -58,7 +58,7 @@ struct Line {
     scene: SceneLine,
 }
 
-impl Arguments {
+impl SenseArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;

@@ -22,11 +22,14 @@ use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
 use toposlam_robot::{
-    evaluation::Eyes,
+    evaluation::LearnedSensors,
     explorer::{Eye, Told},
     log::recorder::Photograph,
     run::{Run, offline, run},
-    simulator::{Camera, Effects, FAULTS, Fault, PICTURE_TIME, Setting, SimulatedRobot},
+    simulator::{
+        Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedCamera, SimulatedRobot,
+        SimulationConfig,
+    },
 };
 use toposlam_vision::camera::Camera as Calibrated;
 
@@ -36,7 +39,7 @@ use super::{
     explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::Progress,
-    render::Size,
+    render::ImageSize,
     text::capital,
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
@@ -67,7 +70,7 @@ pub(super) struct Arguments {
     calibration: Option<PathBuf>,
     /// Width and height of the pictures [default: 640x480, or those of the calibration]
     #[arg(long, value_name = "SIZE")]
-    size: Option<Size>,
+    size: Option<ImageSize>,
     /// The colours of the building [default: learned from rendered pictures of other views]
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
@@ -84,7 +87,7 @@ pub(super) struct Arguments {
     picture_time: f64,
     /// Something goes wrong; may be given more than once
     #[arg(long, value_name = "NAME@PICTURE[:HOW-MANY]")]
-    fault: Vec<Fault>,
+    fault: Vec<RobotFault>,
     /// Give up when more edge ends are known
     #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
     max_darts: usize,
@@ -122,7 +125,7 @@ struct Simulation {
     world: NamedWorld,
     plan: Arc<FloorPlan>,
     facing: Dart,
-    setting: Setting,
+    setting: SimulationConfig,
     /// Begun before colours were learned.
     begun: Instant,
 }
@@ -139,12 +142,12 @@ impl Arguments {
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
         let facing = input::start_of(&world, self.start.as_deref())?;
         feasible::check(&self.plan, &world, &plan, facing)?;
-        let setting = Setting {
+        let setting = SimulationConfig {
             noise: self.noise,
             picture_time: self.picture_time,
             keeps_track: self.log.is_some(),
             faults: self.fault.clone(),
-            ..Setting::at_start(plan.clone(), facing, self.seed)
+            ..SimulationConfig::at_start(plan.clone(), facing, self.seed)
         };
         let simulation = Simulation { world, plan, facing, setting, begun };
         if self.by_scene {
@@ -194,23 +197,25 @@ impl Arguments {
         Ok(match (&self.calibration, self.size) {
             (Some(path), None) => input::read_camera(path)?,
             (Some(path), Some(size)) => input::read_camera(path)?.sized(size.pixels()),
-            (None, size) => Calibrated::superscout().sized(size.unwrap_or(Size::Small).pixels()),
+            (None, size) => {
+                Calibrated::superscout().sized(size.unwrap_or(ImageSize::Small).pixels())
+            }
         })
     }
 
-    fn eyes(&self, camera: &Calibrated) -> Result<Eyes, Failure> {
+    fn eyes(&self, camera: &Calibrated) -> Result<LearnedSensors, Failure> {
         let look = self.appearance.look;
         if let Some(path) = &self.colours {
-            return Ok(Eyes::with_colours(camera, look, input::read_colours(path)?));
+            return Ok(LearnedSensors::with_colours(camera, look, input::read_colours(path)?));
         }
         let progress = Progress::new("learning colours", "looks")?;
-        let eyes = Eyes::new(camera, &[look], &progress);
+        let eyes = LearnedSensors::new(camera, &[look], &progress);
         progress.finish();
         eyes.map_err(|error| Failure::at("--look", error))
     }
 
     /// The run, what it leaves, and what is said of it.
-    fn simulate<C: Camera, E: Eye<C::View>>(
+    fn simulate<C: SimulatedCamera, E: Eye<C::View>>(
         &self,
         simulation: &Simulation,
         robot: SimulatedRobot<C>,
@@ -294,7 +299,7 @@ impl Arguments {
 impl Simulation {
     fn robot(
         &self,
-        eyes: &Eyes,
+        eyes: &LearnedSensors,
         appearance: &Appearance,
         effects: &Effects,
     ) -> SimulatedRobot<toposlam_robot::simulator::RenderingCamera> {

@@ -19,7 +19,7 @@ use toposlam_vision::{
 };
 
 use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
-use report::{LeftOut, Report, Validation};
+use report::{LeftOut, TrainingReport, Validation};
 
 /// Learn the colours of a building from labelled images of it: floor, stripe, marker
 ///
@@ -44,7 +44,7 @@ Example, without a camera: render images and their labels, learn from them, and 
   toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 --out view.png
   toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps"
 )]
-pub(super) struct Arguments {
+pub(super) struct TrainArguments {
     /// The folder of the images: .png, .jpg and .jpeg
     #[arg(long, value_name = "DIR")]
     images: PathBuf,
@@ -89,7 +89,7 @@ struct Pair {
     labels: PathBuf,
 }
 
-impl Arguments {
+impl TrainArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         output::check_place(&self.out, &["toml"])?;
         let stripe = self.stripe()?;
@@ -118,7 +118,7 @@ impl Arguments {
         let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
         let validation = self.validation(&training)?;
         output::write_whole(&self.out, model.to_toml().as_bytes())?;
-        let report = Report { training: &training, left_out, stripe, validation };
+        let report = TrainingReport { training: &training, left_out, stripe, validation };
         if self.json {
             report.print_json(out)?;
         } else {

@@ -5,8 +5,8 @@ use std::{fs, path::PathBuf, sync::LazyLock};
 use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::Value;
 use toposlam_robot::{
-    evaluation::{learned, views::Views},
-    simulator::{Look, Rig},
+    evaluation::{learned, view_sampler::ViewSampler},
+    simulator::{BuildingLook, Rig},
 };
 use toposlam_vision::camera::{Camera, calibration};
 
@@ -27,8 +27,8 @@ struct Files {
 static FILES: LazyLock<Files> = LazyLock::new(|| {
     let folder = folder("sense");
     let camera = Camera::superscout().sized(SIZE);
-    let look = Look::named("laboratory").unwrap();
-    let mut views = Views::of([look], SIZE, 3).unwrap();
+    let look = BuildingLook::named("laboratory").unwrap();
+    let mut views = ViewSampler::of([look], SIZE, 3).unwrap();
     views.plans.retain(|(name, _)| name == "shape-6");
     let colours = learned(&views, look, &camera, &Rig::new(&camera)).unwrap();
     let file = |name: &str, text: String| {

@@ -18,7 +18,7 @@ use toposlam_model::{
 use toposlam_robot::{
     explorer::{self, Observer, Told},
     run::run,
-    simulator::{Camera, Setting, SimulatedRobot},
+    simulator::{SimulatedCamera, SimulatedRobot, SimulationConfig},
 };
 
 /// Keeps what a robot does.
@@ -29,7 +29,7 @@ struct Keeper {
     pictures: Vec<Vec<u8>>,
 }
 
-impl<C: Camera> Observer<SimulatedRobot<C>> for Keeper {
+impl<C: SimulatedCamera> Observer<SimulatedRobot<C>> for Keeper {
     fn round(&mut self, robot: &SimulatedRobot<C>, round: &explorer::Round<C::View>) {
         let mut journal = self.journal.borrow_mut();
         let number = journal.rounds.len();
@@ -99,7 +99,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         maps: Vec::new(),
         ending: String::new(),
     }));
-    let robot = Setting::at_start(plan.clone(), facing, 1).by_scene();
+    let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
     let mut story = |_: &mut _, journey: &Journey, event: MappingEvent| {
         let mut journal = journal.borrow_mut();
         journal.story.push(format!("{event:?}"));

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     embedded_graph::{Dart, Vertex},
     percept::{Door, Percept, Sighting},
-    world::{Handling, World},
+    world::{MovableMarkerWorld, World},
 };
 
 /// The state of a run with a movable marker: the robot's journey, and where the marker may be.
@@ -82,7 +82,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where the marker is not seen as it must be; the bound.
-    pub fn begin<W: Handling>(
+    pub fn begin<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -107,7 +107,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where a known place is not as it was, or there is a second marker.
-    pub fn carry_over<W: Handling>(
+    pub fn carry_over<W: MovableMarkerWorld>(
         &mut self,
         edge: Dart,
         world: &mut W,
@@ -176,7 +176,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own.
-    pub fn drop_marker<W: Handling>(
+    pub fn drop_marker<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -190,7 +190,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own.
-    pub fn pick_up<W: Handling>(
+    pub fn pick_up<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -205,7 +205,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where the known end is not as it was.
-    pub fn go_back<W: Handling>(
+    pub fn go_back<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -221,7 +221,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where a known place is not as it was, or the marker lies where it cannot be.
-    pub fn look_for_marker<W: Handling>(
+    pub fn look_for_marker<W: MovableMarkerWorld>(
         &mut self,
         candidate: Vertex,
         world: &mut W,
@@ -253,7 +253,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where a place is not as it was.
-    pub fn return_to_marker<W: Handling>(
+    pub fn return_to_marker<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
@@ -273,7 +273,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where a known place is not as it was.
-    pub fn travel_to<W: Handling>(
+    pub fn travel_to<W: MovableMarkerWorld>(
         &mut self,
         vertex: Vertex,
         world: &mut W,
@@ -303,7 +303,7 @@ impl MarkerSearch {
     ///
     /// # Errors
     /// The world's own; where what is behind it cannot be, or the vertex is not as it was.
-    pub fn try_back_link<W: Handling>(
+    pub fn try_back_link<W: MovableMarkerWorld>(
         &mut self,
         dart: Dart,
         world: &mut W,

@@ -9,7 +9,7 @@
 use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, ValidationResult};
 use crate::{
     embedded_graph::{Dart, Vertex},
-    world::Handling,
+    world::MovableMarkerWorld,
 };
 
 /// What a place just reached is.
@@ -32,7 +32,7 @@ pub enum ReachedPlace {
 /// # Errors
 /// The world's own; a contradiction, where no such world could be so; or more known darts than the
 /// bound of the search. The search then tells how far it came.
-pub fn map_with_movable_marker<W: Handling>(
+pub fn map_with_movable_marker<W: MovableMarkerWorld>(
     world: &mut W,
     choices: &mut impl Choices,
     search: &mut MarkerSearch,
@@ -63,7 +63,7 @@ pub fn map_with_movable_marker<W: Handling>(
 /// # Errors
 /// The world's own, or a contradiction.
 // paper: movable.place, movable.new, movable.known
-pub fn validate_place<W: Handling>(
+pub fn validate_place<W: MovableMarkerWorld>(
     search: &mut MarkerSearch,
     world: &mut W,
     observer: &mut impl Observer<W>,
@@ -94,7 +94,7 @@ pub fn validate_place<W: Handling>(
 /// # Errors
 /// The world's own, or a contradiction.
 // paper: movable.back-link
-pub fn validate_back_link<W: Handling>(
+pub fn validate_back_link<W: MovableMarkerWorld>(
     edge: Dart,
     vertex: Vertex,
     search: &mut MarkerSearch,

@@ -4,7 +4,7 @@ use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Handling, World};
+use super::{MovableMarkerWorld, World};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     marker::{Directional, Marker},
@@ -142,7 +142,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         match action {
             Action::Take(door) => self.traverse(door),
             Action::PickUp => self.pick_up(),
-            Action::Drop => Handling::drop(self),
+            Action::Drop => MovableMarkerWorld::drop(self),
         }
     }
 
@@ -210,7 +210,7 @@ impl<M: Marker> World for GraphWorld<'_, M> {
     }
 }
 
-impl<M: Marker> Handling for GraphWorld<'_, M> {
+impl<M: Marker> MovableMarkerWorld for GraphWorld<'_, M> {
     fn pick_up(&mut self) -> Result<(), Refused> {
         if !self.can_pick_up() {
             return Err(Refused::NothingToPickUp);

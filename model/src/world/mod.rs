@@ -29,7 +29,7 @@ pub trait World {
 
 /// All that a robot can do with a movable marker, besides.
 // paper: world.interface
-pub trait Handling: World {
+pub trait MovableMarkerWorld: World {
     /// Picks the marker up where the robot is, to carry it.
     ///
     /// # Errors

@@ -17,12 +17,12 @@ use toposlam_model::{
 
 use super::*;
 use crate::{
-    evaluation::{plans, random_plan::random_plan_with, runs::starts_of},
+    evaluation::{plans, random_plan::random_plan_with, run_sampler::starts_of},
     explorer::{Observer, Round, Told},
     log::messages,
     robot::{Reckoned, Robot},
     run::run,
-    simulator::{Setting, SimulatedRobot, ToldScene},
+    simulator::{SimulatedRobot, SimulationConfig, ToldScene},
 };
 
 type Simulated = SimulatedRobot<crate::simulator::SceneCamera>;
@@ -116,7 +116,7 @@ impl Observer<Simulated> for Log {
 
 /// A good run.
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
-    let robot = Setting::at_start(plan.clone(), facing, seed).by_scene();
+    let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let (run, _, log) = run(plan, facing, robot, Told, Log::default(), &mut (), DARTS);
     assert_eq!(run.ending(), crate::run::Ending::Right);
     log

@@ -2,23 +2,23 @@
 
 pub mod bound;
 pub mod calibration;
-pub mod causes;
-pub mod class;
-pub mod control;
-mod eyes;
-mod in_turn;
-pub mod judged;
-pub mod judging;
-mod learning;
+mod colour_learning;
+pub mod failure_groups;
+pub mod judge;
+pub mod judged_view;
+mod learned_sensors;
+mod parallel;
 mod plans;
 pub mod quantile;
 pub mod random_plan;
+pub mod rendered_view;
 pub mod report;
-pub mod runs;
+pub mod run_sampler;
+pub mod scene_class;
+pub mod traversals;
 pub mod verdict;
-pub mod view;
-pub mod views;
+pub mod view_sampler;
 
-pub use eyes::Eyes;
-pub use learning::{LearningError, learned};
+pub use colour_learning::{LearningError, learned};
+pub use learned_sensors::LearnedSensors;
 pub use plans::plans;

@@ -31,12 +31,12 @@ impl Quantile {
 
 /// Measured values.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sample {
+pub struct ErrorSample {
     /// Ascending.
     values: Vec<f64>,
 }
 
-impl FromIterator<f64> for Sample {
+impl FromIterator<f64> for ErrorSample {
     fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
         let mut values: Vec<_> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
@@ -44,7 +44,7 @@ impl FromIterator<f64> for Sample {
     }
 }
 
-impl Sample {
+impl ErrorSample {
     /// How many values there are.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn quantiles_are_those_of_definition_7() {
         // quantile(c(15, 20, 35, 40, 50), c(0, 0.05, 0.4, 0.5, 0.95, 1)) in R.
-        let sample: Sample = [40.0, 15.0, 50.0, 35.0, 20.0].into_iter().collect();
+        let sample: ErrorSample = [40.0, 15.0, 50.0, 35.0, 20.0].into_iter().collect();
         let expected =
             [(0.0, 15.0), (0.05, 16.0), (0.4, 29.0), (0.5, 35.0), (0.95, 48.0), (1.0, 50.0)];
         for (part, value) in expected {
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn nothing_has_no_quantile() {
-        assert_eq!(Sample::default().quantile(0.5), None);
-        assert_eq!([7.0].into_iter().collect::<Sample>().quantile(0.99), Some(7.0));
+        assert_eq!(ErrorSample::default().quantile(0.5), None);
+        assert_eq!([7.0].into_iter().collect::<ErrorSample>().quantile(0.99), Some(7.0));
     }
 }

@@ -10,16 +10,16 @@ use toposlam_model::{
 use super::{
     bound::upper_bound,
     calibration::Calibration,
-    class::Class,
-    judged::{Judged, JudgedVisit, Zone},
-    quantile::{Quantile, Sample},
-    verdict::{MarkerVerdict, Verdict, hallway_errors, junction_errors},
+    judged_view::{JudgedView, JudgedVisit, Zone},
+    quantile::{ErrorSample, Quantile},
+    scene_class::SceneClass,
+    verdict::{MarkerVerdict, PlaceVerdict, hallway_errors, junction_errors},
 };
 use crate::truth::{HallwayTruth, JunctionTruth, Truth};
 
 /// What was measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct VisionReport {
     /// Whether the camera was as its calibration says.
     pub calibration: Calibration,
     /// How often something went wrong.
@@ -28,12 +28,12 @@ pub struct Report {
     pub errors: Vec<Errors>,
     /// For each class that was true, how often each class was said; of hallways, and of junctions up
     /// to their turning points.
-    pub confusion: BTreeMap<Class, BTreeMap<Class, usize>>,
+    pub confusion: BTreeMap<SceneClass, BTreeMap<SceneClass, usize>>,
 }
 
 /// What a figure is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Subject {
+pub enum ReportSubject {
     /// Views in hallways.
     Hallway,
     /// Views between hallways and junctions.
@@ -54,7 +54,7 @@ pub enum Subject {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
     /// What it is about.
-    pub subject: Subject,
+    pub subject: ReportSubject,
     /// What happened, in a few words.
     pub what: &'static str,
     /// How often it did.
@@ -69,20 +69,20 @@ pub struct Rate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
     /// What it is about.
-    pub subject: Subject,
+    pub subject: ReportSubject,
     /// Of what.
     pub what: &'static str,
     /// In which unit.
-    pub unit: Unit,
+    pub unit: ErrorUnit,
     /// The errors, in metres or radians.
-    pub sample: Sample,
+    pub sample: ErrorSample,
     /// Quantiles that may not be larger than so much of the unit.
     pub limits: Vec<(Quantile, f64)>,
 }
 
 /// A unit for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
+pub enum ErrorUnit {
     /// Of radians.
     Degrees,
     /// Of metres.
@@ -91,7 +91,7 @@ pub enum Unit {
 
 /// Whether what is asked is so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Standing {
+pub enum TargetStatus {
     /// It is, or nothing is asked.
     Met,
     /// There was nothing to measure.
@@ -103,20 +103,20 @@ pub enum Standing {
 /// With a wrong calibration, so many times as much may go wrong.
 const LENIENCE: f64 = 3.0;
 
-impl Report {
+impl VisionReport {
     /// What was measured on these views and visits.
     #[must_use]
-    pub fn of(views: &[Judged], visits: &[JudgedVisit], calibration: Calibration) -> Self {
+    pub fn of(views: &[JudgedView], visits: &[JudgedVisit], calibration: Calibration) -> Self {
         let mut rates = [places(views), markers(views), of_visits(visits)].concat();
         let mut errors = Vec::new();
         match calibration {
             Calibration::Right => errors = all_errors(views),
             Calibration::Wrong => {
                 // Kind and entry only.
-                rates.retain(|rate| rate.subject != Subject::Marker);
+                rates.retain(|rate| rate.subject != ReportSubject::Marker);
                 for rate in &mut rates {
                     let placed = rate.what == NOT_DECIDED || rate.what == DECIDED_WRONGLY;
-                    let asked = rate.subject != Subject::Visit || placed;
+                    let asked = rate.subject != ReportSubject::Visit || placed;
                     rate.limit = rate.limit.filter(|_| asked).map(|limit| LENIENCE * limit);
                 }
             }
@@ -125,7 +125,7 @@ impl Report {
         for judged in views {
             if let (Zone::Hallway | Zone::Before, Some(class)) = (judged.zone(), judged.class()) {
                 let said = confusion.entry(class).or_default();
-                *said.entry(Class::of(&judged.scene)).or_insert(0) += 1;
+                *said.entry(SceneClass::of(&judged.scene)).or_insert(0) += 1;
             }
         }
         Self { calibration, rates, errors, confusion }
@@ -133,26 +133,26 @@ impl Report {
 
     /// Whether all is as is asked.
     #[must_use]
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> TargetStatus {
         let rates = self.rates.iter().map(Rate::standing);
         let errors = self.errors.iter().map(Errors::standing);
-        rates.chain(errors).max().unwrap_or(Standing::Empty)
+        rates.chain(errors).max().unwrap_or(TargetStatus::Empty)
     }
 }
 
 /// What is counted of views in some zone: its name, what counts, and how often it may happen.
-type Counted = (&'static str, fn(&Judged) -> bool, Option<f64>);
+type Counted = (&'static str, fn(&JudgedView) -> bool, Option<f64>);
 
 const NOT_DECIDED: &str = "not decided";
 const DECIDED_WRONGLY: &str = "kind or entry wrong";
 
-fn places(views: &[Judged]) -> Vec<Rate> {
-    let not_right: fn(&Judged) -> bool = |judged| judged.verdict != Verdict::Right;
-    let wrong: fn(&Judged) -> bool = |judged| judged.verdict.is_wrong();
-    let zones: [(Zone, Subject, Vec<Counted>); 5] = [
+fn places(views: &[JudgedView]) -> Vec<Rate> {
+    let not_right: fn(&JudgedView) -> bool = |judged| judged.verdict != PlaceVerdict::Right;
+    let wrong: fn(&JudgedView) -> bool = |judged| judged.verdict.is_wrong();
+    let zones: [(Zone, ReportSubject, Vec<Counted>); 5] = [
         (
             Zone::Hallway,
-            Subject::Hallway,
+            ReportSubject::Hallway,
             vec![
                 ("not called hallway", not_right, Some(0.005)),
                 ("called junction", wrong, Some(0.0005)),
@@ -160,7 +160,7 @@ fn places(views: &[Judged]) -> Vec<Rate> {
         ),
         (
             Zone::Before,
-            Subject::Junction,
+            ReportSubject::Junction,
             vec![
                 ("kind and entry not right", not_right, Some(0.01)),
                 ("kind or entry wrong", wrong, Some(0.001)),
@@ -168,15 +168,15 @@ fn places(views: &[Judged]) -> Vec<Rate> {
         ),
         (
             Zone::Between,
-            Subject::Between,
+            ReportSubject::Between,
             vec![
-                ("unknown", |judged| judged.verdict == Verdict::Unknown, None),
+                ("unknown", |judged| judged.verdict == PlaceVerdict::Unknown, None),
                 ("kind or entry wrong", wrong, None),
             ],
         ),
         (
             Zone::Past,
-            Subject::Past,
+            ReportSubject::Past,
             vec![
                 ("kind and entry not right", not_right, None),
                 ("kind or entry wrong", wrong, None),
@@ -184,7 +184,7 @@ fn places(views: &[Judged]) -> Vec<Rate> {
         ),
         (
             Zone::Turned,
-            Subject::Turned,
+            ReportSubject::Turned,
             vec![("kind not right", not_right, None), ("kind wrong", wrong, None)],
         ),
     ];
@@ -202,11 +202,11 @@ fn places(views: &[Judged]) -> Vec<Rate> {
     rates.collect()
 }
 
-fn markers(views: &[Judged]) -> Vec<Rate> {
-    let rate = |what, limit, counted: &dyn Fn(&Judged) -> Option<bool>| {
+fn markers(views: &[JudgedView]) -> Vec<Rate> {
+    let rate = |what, limit, counted: &dyn Fn(&JudgedView) -> Option<bool>| {
         let cases: Vec<_> = views.iter().filter_map(counted).collect();
         let seen = cases.iter().filter(|&&seen| seen).count();
-        Rate { subject: Subject::Marker, what, seen, cases: cases.len(), limit }
+        Rate { subject: ReportSubject::Marker, what, seen, cases: cases.len(), limit }
     };
     vec![
         rate("missed, 0.2 to 0.8 m before it", None, &|judged| {
@@ -226,7 +226,7 @@ fn of_visits(visits: &[JudgedVisit]) -> Vec<Rate> {
     let rate = |what, limit, counted: &dyn Fn(&JudgedVisit) -> Option<bool>| {
         let cases: Vec<_> = visits.iter().filter_map(counted).collect();
         let seen = cases.iter().filter(|&&seen| seen).count();
-        Rate { subject: Subject::Visit, what, seen, cases: cases.len(), limit }
+        Rate { subject: ReportSubject::Visit, what, seen, cases: cases.len(), limit }
     };
     // Of the marker a visit tells once it is decided.
     let sightings = |visit: &JudgedVisit| {
@@ -252,7 +252,7 @@ fn of_visits(visits: &[JudgedVisit]) -> Vec<Rate> {
     ]
 }
 
-fn all_errors(views: &[Judged]) -> Vec<Errors> {
+fn all_errors(views: &[JudgedView]) -> Vec<Errors> {
     let hallways: Vec<_> =
         views.iter().filter_map(hallway).map(|(truth, view)| hallway_errors(truth, view)).collect();
     let junctions: Vec<_> = views
@@ -271,37 +271,37 @@ fn all_errors(views: &[Judged]) -> Vec<Errors> {
     };
     vec![
         of(
-            Subject::Hallway,
+            ReportSubject::Hallway,
             "direction",
-            Unit::Degrees,
+            ErrorUnit::Degrees,
             hallways.iter().map(|errors| errors.heading).collect(),
             &[(Quantile::Median, 0.5), (Quantile::P99, 4.0)],
         ),
         of(
-            Subject::Hallway,
+            ReportSubject::Hallway,
             "distance to a side",
-            Unit::Centimetres,
+            ErrorUnit::Centimetres,
             hallways.iter().flat_map(|errors| errors.sides).collect(),
             &[(Quantile::Median, 2.0)],
         ),
         of(
-            Subject::Junction,
+            ReportSubject::Junction,
             "place of a centre line",
-            Unit::Centimetres,
+            ErrorUnit::Centimetres,
             lines().map(|&(off, _)| off).collect(),
             &[(Quantile::P95, 5.0)],
         ),
         of(
-            Subject::Junction,
+            ReportSubject::Junction,
             "direction of a centre line",
-            Unit::Degrees,
+            ErrorUnit::Degrees,
             lines().map(|&(_, turned)| turned).collect(),
             &[(Quantile::P95, 3.0)],
         ),
         of(
-            Subject::Junction,
+            ReportSubject::Junction,
             "turning point",
-            Unit::Centimetres,
+            ErrorUnit::Centimetres,
             junctions.iter().map(|errors| errors.turning_point).collect(),
             &[],
         ),
@@ -309,7 +309,7 @@ fn all_errors(views: &[Judged]) -> Vec<Errors> {
 }
 
 /// The truth and the view of a hallway that was called one.
-fn hallway(judged: &Judged) -> Option<(&HallwayTruth, &HallwayView)> {
+fn hallway(judged: &JudgedView) -> Option<(&HallwayTruth, &HallwayView)> {
     match (&judged.truth, &judged.scene.place) {
         (Truth::Hallway(truth), Place::Hallway(view)) => Some((truth, view)),
         _ => None,
@@ -317,7 +317,7 @@ fn hallway(judged: &Judged) -> Option<(&HallwayTruth, &HallwayView)> {
 }
 
 /// The truth and the view of a junction that was called one.
-fn junction(judged: &Judged) -> Option<(&JunctionTruth, &JunctionView)> {
+fn junction(judged: &JudgedView) -> Option<(&JunctionTruth, &JunctionView)> {
     match (&judged.truth, &judged.scene.place) {
         (Truth::Junction(truth), Place::Junction(view)) => Some((truth, view)),
         _ => None,
@@ -339,12 +339,12 @@ impl Rate {
 
     /// Whether it happened as seldom as is asked.
     #[must_use]
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> TargetStatus {
         match (self.limit, self.rate()) {
-            (None, _) => Standing::Met,
-            (Some(_), None) => Standing::Empty,
-            (Some(limit), Some(rate)) if rate <= limit => Standing::Met,
-            (Some(_), Some(_)) => Standing::Missed,
+            (None, _) => TargetStatus::Met,
+            (Some(_), None) => TargetStatus::Empty,
+            (Some(limit), Some(rate)) if rate <= limit => TargetStatus::Met,
+            (Some(_), Some(_)) => TargetStatus::Missed,
         }
     }
 }
@@ -354,25 +354,25 @@ impl Errors {
     #[must_use]
     pub fn quantile(&self, quantile: Quantile) -> Option<f64> {
         let factor = match self.unit {
-            Unit::Degrees => 1.0_f64.to_degrees(),
-            Unit::Centimetres => 100.0,
+            ErrorUnit::Degrees => 1.0_f64.to_degrees(),
+            ErrorUnit::Centimetres => 100.0,
         };
         self.sample.quantile(quantile.part()).map(|value| value * factor)
     }
 
     /// Whether the errors are as small as is asked.
     #[must_use]
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> TargetStatus {
         let standing = self.limits.iter().map(|&(quantile, limit)| match self.quantile(quantile) {
-            None => Standing::Empty,
-            Some(error) if error <= limit => Standing::Met,
-            Some(_) => Standing::Missed,
+            None => TargetStatus::Empty,
+            Some(error) if error <= limit => TargetStatus::Met,
+            Some(_) => TargetStatus::Missed,
         });
-        standing.max().unwrap_or(Standing::Met)
+        standing.max().unwrap_or(TargetStatus::Met)
     }
 }
 
-impl Subject {
+impl ReportSubject {
     /// In a word.
     #[must_use]
     pub fn name(self) -> &'static str {

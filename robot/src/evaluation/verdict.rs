@@ -14,7 +14,7 @@ use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
 /// How a scene's place compares with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Verdict {
+pub enum PlaceVerdict {
     /// It is right.
     Right,
     /// The scene does not tell.
@@ -29,7 +29,7 @@ pub enum Verdict {
     WrongEntry,
 }
 
-impl Verdict {
+impl PlaceVerdict {
     /// Whether what the scene says is false: neither right nor unknown.
     #[must_use]
     pub fn is_wrong(self) -> bool {
@@ -72,30 +72,30 @@ const MARKER_OFF: f64 = 0.15;
 
 /// How a scene's place compares with the truth.
 #[must_use]
-pub fn judge(truth: &Truth, scene: &Scene) -> Verdict {
+pub fn judge(truth: &Truth, scene: &Scene) -> PlaceVerdict {
     match (truth, &scene.place) {
-        (_, Place::Unknown(_)) => Verdict::Unknown,
-        (Truth::Hallway(_) | Truth::Between(..), Place::Hallway(_)) => Verdict::Right,
-        (Truth::Junction(_), Place::Hallway(_)) => Verdict::HallwayForJunction,
-        (Truth::Hallway(_), Place::Junction(_)) => Verdict::JunctionForHallway,
+        (_, Place::Unknown(_)) => PlaceVerdict::Unknown,
+        (Truth::Hallway(_) | Truth::Between(..), Place::Hallway(_)) => PlaceVerdict::Right,
+        (Truth::Junction(_), Place::Hallway(_)) => PlaceVerdict::HallwayForJunction,
+        (Truth::Hallway(_), Place::Junction(_)) => PlaceVerdict::JunctionForHallway,
         (Truth::Junction(truth), Place::Junction(view)) => judge_junction(truth, view),
         (Truth::Between(_, truths), Place::Junction(view)) => {
             let verdicts = truths.iter().map(|truth| judge_junction(truth, view));
             // The best of them: the junction that was meant.
-            let worse = [Verdict::Right, Verdict::WrongEntry, Verdict::WrongKind];
-            let rank = |verdict: &Verdict| worse.iter().position(|other| other == verdict);
-            verdicts.min_by_key(rank).unwrap_or(Verdict::JunctionForHallway)
+            let worse = [PlaceVerdict::Right, PlaceVerdict::WrongEntry, PlaceVerdict::WrongKind];
+            let rank = |verdict: &PlaceVerdict| worse.iter().position(|other| other == verdict);
+            verdicts.min_by_key(rank).unwrap_or(PlaceVerdict::JunctionForHallway)
         }
     }
 }
 
-fn judge_junction(truth: &JunctionTruth, view: &JunctionView) -> Verdict {
+fn judge_junction(truth: &JunctionTruth, view: &JunctionView) -> PlaceVerdict {
     if kind(view) != Some(truth.kind) {
-        Verdict::WrongKind
+        PlaceVerdict::WrongKind
     } else if same_doors(truth, view).is_some() {
-        Verdict::Right
+        PlaceVerdict::Right
     } else {
-        Verdict::WrongEntry
+        PlaceVerdict::WrongEntry
     }
 }
 
@@ -171,7 +171,7 @@ fn is_on(marker: &MarkerTruth, [x, y]: [f64; 2]) -> bool {
     along <= LENGTH / 2.0 + MARKER_OFF && across <= WIDTH / 2.0 + MARKER_OFF
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for PlaceVerdict {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.pad(match self {
             Self::Right => "right",
@@ -228,32 +228,32 @@ mod tests {
         JunctionView { doors: doors.iter().map(line).collect(), turning_point, confidence: 1.0 }
     }
 
-    fn says(truth: &Truth, doors: &[f64]) -> Verdict {
+    fn says(truth: &Truth, doors: &[f64]) -> PlaceVerdict {
         judge(truth, &scene(Place::Junction(view(doors))))
     }
 
     #[test]
     fn at_a_junction_kind_and_entry_decide() {
         let truth = Truth::Junction(junction(&[PI, FRAC_PI_2], ENTERED));
-        assert_eq!(says(&truth, &[PI - 0.3, FRAC_PI_2 + 0.2]), Verdict::Right);
-        assert_eq!(says(&truth, &[-PI + 0.3, FRAC_PI_2]), Verdict::Right);
-        assert_eq!(says(&truth, &[FRAC_PI_2, PI]), Verdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), Verdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI]), Verdict::WrongKind);
-        assert_eq!(says(&truth, &[PI, FRAC_PI_2, 0.0]), Verdict::WrongKind);
+        assert_eq!(says(&truth, &[PI - 0.3, FRAC_PI_2 + 0.2]), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[-PI + 0.3, FRAC_PI_2]), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[FRAC_PI_2, PI]), PlaceVerdict::WrongEntry);
+        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
+        assert_eq!(says(&truth, &[PI]), PlaceVerdict::WrongKind);
+        assert_eq!(says(&truth, &[PI, FRAC_PI_2, 0.0]), PlaceVerdict::WrongKind);
         let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
-        assert_eq!(judge(&truth, &scene(place)), Verdict::HallwayForJunction);
+        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::HallwayForJunction);
         let place = Place::Unknown(Reason::FewWalls);
-        assert_eq!(judge(&truth, &scene(place)), Verdict::Unknown);
+        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::Unknown);
     }
 
     #[test]
     fn where_the_robot_has_turned_any_door_is_the_entry() {
         let truth = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
-        assert_eq!(says(&truth, &[FRAC_PI_2, 0.0]), Verdict::Right);
-        assert_eq!(says(&truth, &[0.0, FRAC_PI_2]), Verdict::Right);
-        assert_eq!(says(&truth, &[0.0, -FRAC_PI_2]), Verdict::WrongEntry);
-        assert_eq!(says(&truth, &[0.0]), Verdict::WrongKind);
+        assert_eq!(says(&truth, &[FRAC_PI_2, 0.0]), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[0.0, FRAC_PI_2]), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[0.0, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
+        assert_eq!(says(&truth, &[0.0]), PlaceVerdict::WrongKind);
     }
 
     #[test]
@@ -261,19 +261,19 @@ mod tests {
         let near = junction(&[PI, FRAC_PI_2], ENTERED);
         let truth = Truth::Between(HALLWAY, vec![near.clone()]);
         let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
-        assert_eq!(judge(&truth, &scene(place)), Verdict::Right);
-        assert_eq!(says(&truth, &[PI, FRAC_PI_2]), Verdict::Right);
-        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), Verdict::WrongEntry);
-        assert_eq!(says(&truth, &[PI]), Verdict::WrongKind);
+        assert_eq!(judge(&truth, &scene(place)), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[PI, FRAC_PI_2]), PlaceVerdict::Right);
+        assert_eq!(says(&truth, &[PI, -FRAC_PI_2]), PlaceVerdict::WrongEntry);
+        assert_eq!(says(&truth, &[PI]), PlaceVerdict::WrongKind);
         let other = junction(&[PI], ENTERED);
-        assert_eq!(says(&Truth::Between(HALLWAY, vec![near, other]), &[PI]), Verdict::Right);
+        assert_eq!(says(&Truth::Between(HALLWAY, vec![near, other]), &[PI]), PlaceVerdict::Right);
     }
 
     #[test]
     fn far_from_any_junction_none_is_right() {
-        assert_eq!(says(&Truth::Hallway(HALLWAY), &[PI]), Verdict::JunctionForHallway);
+        assert_eq!(says(&Truth::Hallway(HALLWAY), &[PI]), PlaceVerdict::JunctionForHallway);
         let place = Place::Hallway(hallway(0.5, 0.1, 0.1));
-        assert_eq!(judge(&Truth::Hallway(HALLWAY), &scene(place)), Verdict::Right);
+        assert_eq!(judge(&Truth::Hallway(HALLWAY), &scene(place)), PlaceVerdict::Right);
     }
 
     #[test]

@@ -273,18 +273,18 @@ mod tests {
 
     use super::*;
     use crate::{
-        evaluation::{plans, runs::starts_of},
+        evaluation::{plans, run_sampler::starts_of},
         explorer::Told,
         log::shared_buffer::SharedBuffer,
         run::{Run, run},
-        simulator::{Fault, FaultKind, Setting},
+        simulator::{FaultKind, RobotFault, SimulationConfig},
     };
 
     /// A run on shape 6, where something may go wrong, and its log.
-    fn logged(fault: Option<Fault>, judge: impl Fn(&Run)) -> Vec<u8> {
+    fn logged(fault: Option<RobotFault>, judge: impl Fn(&Run)) -> Vec<u8> {
         let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
         let facing = starts_of(&plan)[0];
-        let mut setting = Setting::at_start(plan.clone(), facing, 5);
+        let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         (setting.keeps_track, setting.faults) = (true, fault.into_iter().collect());
         let file = SharedBuffer::default();
         let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
@@ -356,7 +356,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_given_up_says_so_at_its_end() {
-        let blocked = Fault::at(FaultKind::Blocked, 20);
+        let blocked = RobotFault::at(FaultKind::Blocked, 20);
         let told = messages(&logged(Some(blocked), |run| assert!(run.error.is_some())));
         let (topic, _, body) = &told[told.len() - 1];
         let text = String::from_utf8_lossy(body);
@@ -383,7 +383,7 @@ mod tests {
         }
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
-        let mut setting = Setting::at_start(plan.clone(), facing, 5);
+        let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         setting.keeps_track = true;
         let recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
         let (run, robot, _) =

@@ -6,7 +6,7 @@ use toposlam_model::driving::odometry::Odometry;
 
 use super::{
     messages::{Nanoseconds, Reckoning, SECOND},
-    node::Heard,
+    node::Subscription,
     wheels::{Wheels, stands},
 };
 use crate::{
@@ -21,7 +21,7 @@ const LAG: f64 = 0.15;
 /// A base behind topics. Wherever it fails it has been told to stand.
 pub(super) struct LiveBase {
     wheels: Wheels,
-    odometry: Heard<Reckoning>,
+    odometry: Subscription<Reckoning>,
     /// So long nothing may come.
     patience: Duration,
     /// Whether somebody ends the run.
@@ -36,7 +36,7 @@ impl LiveBase {
     /// A base that stands, as soon as it tells where it is.
     pub(super) fn new(
         wheels: Wheels,
-        odometry: Heard<Reckoning>,
+        odometry: Subscription<Reckoning>,
         patience: Duration,
         stop: Box<dyn Fn() -> bool>,
     ) -> Result<Self, RobotError> {

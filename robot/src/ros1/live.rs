@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::{
-    Topics,
+    RobotTopics,
     base::LiveBase,
     messages::{Photograph, TWIST, read_odometry, read_picture},
-    node::{Heard, Node},
+    node::{Node, Subscription},
     wheels::Wheels,
 };
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
 pub struct LiveRobot {
     // Dropped in this order: the node last, for the wheels are told through it to stand.
     base: LiveBase,
-    pictures: Heard<Photograph>,
+    pictures: Subscription<Photograph>,
     asked: u64,
     _node: Node,
 }
@@ -39,7 +39,7 @@ impl LiveRobot {
     /// # Errors
     /// Where there is no master, or no robot.
     pub fn connect(
-        topics: &Topics,
+        topics: &RobotTopics,
         patience: Duration,
         stop: impl Fn() -> bool + 'static,
     ) -> Result<Self, RobotError> {

@@ -12,13 +12,13 @@ mod simulated;
 mod wheels;
 
 pub use live::LiveRobot;
-pub use simulated::{MOST_SPEED, Served, serve};
+pub use simulated::{MOST_SPEED, ServeSummary, serve};
 
 use crate::log::recorder;
 
 /// Where a robot is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Topics {
+pub struct RobotTopics {
     /// The master's address, as in `http://127.0.0.1:11311`.
     pub master: String,
     /// The topic of its pictures, `sensor_msgs/CompressedImage`.
@@ -29,7 +29,7 @@ pub struct Topics {
     pub wheels: String,
 }
 
-impl Topics {
+impl RobotTopics {
     /// The topics that drivers use unless somebody says otherwise, as in a log, at a master.
     #[must_use]
     pub fn usual(master: &str) -> Self {

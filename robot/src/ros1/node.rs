@@ -54,7 +54,7 @@ impl Node {
     }
 
     /// Says that it will speak on a topic.
-    pub(super) fn speak(&self, topic: &str, kind: MessageKind) -> Result<Speaker, RobotError> {
+    pub(super) fn speak(&self, topic: &str, kind: MessageKind) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let advertised = async {
             let MessageKind { name, definition } = kind;
@@ -65,7 +65,7 @@ impl Node {
             Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
             Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
         };
-        Ok(Speaker { publisher, runner: self.runner.clone(), topic: topic.to_owned() })
+        Ok(Publisher { publisher, runner: self.runner.clone(), topic: topic.to_owned() })
     }
 
     /// Listens to a topic. What cannot be read is counted, and left.
@@ -73,7 +73,7 @@ impl Node {
         &self,
         topic: &str,
         read: fn(&[u8]) -> Option<T>,
-    ) -> Result<Heard<T>, RobotError> {
+    ) -> Result<Subscription<T>, RobotError> {
         let handle = self.handle(topic)?;
         let subscribed = async { timeout(ANSWER, handle.subscribe_any(topic, UNDER_WAY)).await };
         let mut subscriber = match self.runner.block_on(subscribed) {
@@ -83,7 +83,7 @@ impl Node {
         };
         let last = Last { message: None, unread: 0, closed: false };
         let shared = Arc::new(Shared { last: Mutex::new(last), news: Condvar::new() });
-        let heard = Heard { shared: shared.clone(), topic: topic.to_owned() };
+        let heard = Subscription { shared: shared.clone(), topic: topic.to_owned() };
         self.runner.spawn(async move {
             while let Some(message) = subscriber.next().await {
                 // That some were dropped is no error: the newer ones follow.
@@ -124,13 +124,13 @@ impl Drop for Node {
 }
 
 /// A topic on which a node speaks.
-pub(super) struct Speaker {
+pub(super) struct Publisher {
     publisher: PublisherAny,
     runner: tokio::runtime::Handle,
     topic: String,
 }
 
-impl Speaker {
+impl Publisher {
     /// Says the body of a message to all who listen.
     pub(super) fn say(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
@@ -142,12 +142,12 @@ impl Speaker {
 
 /// A topic to which a node listens.
 #[derive(Debug)]
-pub(super) struct Heard<T> {
+pub(super) struct Subscription<T> {
     shared: Arc<Shared<T>>,
     topic: String,
 }
 
-impl<T> Clone for Heard<T> {
+impl<T> Clone for Subscription<T> {
     fn clone(&self) -> Self {
         Self { shared: self.shared.clone(), topic: self.topic.clone() }
     }
@@ -182,7 +182,7 @@ impl<T> Shared<T> {
 /// Whoever waits looks up so often whether somebody ends the run.
 const LOOK_UP: Duration = Duration::from_millis(20);
 
-impl<T> Heard<T> {
+impl<T> Subscription<T> {
     /// Takes the last message, if there is one that nobody took.
     pub(super) fn take(&self) -> Option<T> {
         self.shared.last().message.take()

@@ -6,17 +6,17 @@ use std::{
 };
 
 use super::{
-    Topics,
+    RobotTopics,
     messages::{
         FRAMES, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SECOND, frames, odometry, picture,
         read_twist,
     },
-    node::{Heard, Node, Speaker},
+    node::{Node, Publisher, Subscription},
 };
 use crate::{
     log::recorder,
     robot::{Picture, RobotError},
-    simulator::{Camera, SimulatedRobot},
+    simulator::{SimulatedCamera, SimulatedRobot},
     superscout::{Base, WheelSpeeds},
 };
 
@@ -32,7 +32,7 @@ pub const MOST_SPEED: f64 = 20.0;
 
 /// What a simulated robot did as a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Served {
+pub struct ServeSummary {
     /// Seconds of the simulated time.
     pub seconds: f64,
     /// Seconds of the real time.
@@ -49,12 +49,12 @@ pub struct Served {
 ///
 /// # Errors
 /// Where there is no master, or the connection is closed.
-pub fn serve<C: Camera<View = Vec<u8>>>(
+pub fn serve<C: SimulatedCamera<View = Vec<u8>>>(
     robot: SimulatedRobot<C>,
-    topics: &Topics,
+    topics: &RobotTopics,
     speed: f64,
     stop: impl Fn() -> bool,
-) -> Result<Served, RobotError> {
+) -> Result<ServeSummary, RobotError> {
     let node = Node::new(&topics.master, "/toposlam_simulator")?;
     let mut scout = Scout {
         told: node.listen(&topics.wheels, read_twist)?,
@@ -79,7 +79,7 @@ pub fn serve<C: Camera<View = Vec<u8>>>(
         thread::sleep(due.saturating_duration_since(Instant::now()));
     }
     let (seconds, pictures) = (scout.robot.time(), scout.robot.pictures());
-    Ok(Served { seconds, real_seconds: begun.elapsed().as_secs_f64(), pictures })
+    Ok(ServeSummary { seconds, real_seconds: begun.elapsed().as_secs_f64(), pictures })
 }
 
 fn now() -> Nanoseconds {
@@ -88,11 +88,11 @@ fn now() -> Nanoseconds {
 }
 
 /// A simulated robot and its topics.
-struct Scout<C: Camera> {
-    told: Heard<WheelSpeeds>,
-    odometry: Speaker,
-    frames: Speaker,
-    pictures: Speaker,
+struct Scout<C: SimulatedCamera> {
+    told: Subscription<WheelSpeeds>,
+    odometry: Publisher,
+    frames: Publisher,
+    pictures: Publisher,
     /// The stamp of its time 0.
     epoch: Nanoseconds,
     /// It does not carry out the present motion.
@@ -103,7 +103,7 @@ struct Scout<C: Camera> {
     robot: SimulatedRobot<C>,
 }
 
-impl<C: Camera<View = Vec<u8>>> Scout<C> {
+impl<C: SimulatedCamera<View = Vec<u8>>> Scout<C> {
     /// What happens in one tick, of this number.
     fn tick(&mut self, number: u64) -> Result<(), RobotError> {
         if let Some(wheels) = self.told.take() {

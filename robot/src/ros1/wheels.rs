@@ -4,15 +4,15 @@ use std::time::{Duration, Instant};
 
 use super::{
     messages::{Reckoning, twist},
-    node::{Heard, Speaker},
+    node::{Publisher, Subscription},
 };
 use crate::{robot::RobotError, superscout::WheelSpeeds};
 
 /// The wheels of a robot. Dropped, whatever happened, they are told to stand, until odometry tells that
 /// they do, or for a second.
 pub(super) struct Wheels {
-    topic: Speaker,
-    odometry: Heard<Reckoning>,
+    topic: Publisher,
+    odometry: Subscription<Reckoning>,
 }
 
 /// They are told so long to stand, where odometry does not tell that they do;
@@ -31,7 +31,7 @@ pub(super) fn stands(before: &Reckoning, after: &Reckoning) -> bool {
 }
 
 impl Wheels {
-    pub(super) fn new(topic: Speaker, odometry: Heard<Reckoning>) -> Self {
+    pub(super) fn new(topic: Publisher, odometry: Subscription<Reckoning>) -> Self {
         Self { topic, odometry }
     }
 

@@ -2,7 +2,7 @@
 //! and the camera itself in the middle of the mirror. Section 2.5.
 
 use super::effects::Effects;
-use super::optics::By;
+use super::optics::RayPath;
 use super::rig::PixelRay;
 
 /// Radius of the robot's body, and how high its top is, in metres.
@@ -19,7 +19,7 @@ const STRUT_FOOT: f32 = 0.03;
 
 /// A part of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum RobotPart {
     Lens,
     Housing,
     Strut,
@@ -55,25 +55,25 @@ impl Body {
 
     /// The part of the robot that a ray meets.
     #[inline]
-    pub(super) fn met(&self, ray: &PixelRay) -> Option<Part> {
+    pub(super) fn met(&self, ray: &PixelRay) -> Option<RobotPart> {
         if self.strut_half > 0 {
             // Opposite struts: half a turn more or less is the same.
             let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1).cast_signed()) / 2;
             if away.abs() <= self.strut_half && self.strut_reaches(ray) {
-                return Some(Part::Strut);
+                return Some(RobotPart::Strut);
             }
         }
         // No part of the body is to be seen but steeply downwards.
-        if ray.by == By::Itself || ray.direction[2] > -0.7 {
+        if ray.by == RayPath::Direct || ray.direction[2] > -0.7 {
             return None;
         }
         if self.lens > 0.0 {
             let [x, y] = at_height(ray, self.height);
             if x * x + y * y < 0.3 * self.lens * self.lens {
-                return Some(Part::Lens);
+                return Some(RobotPart::Lens);
             }
             if x.abs().max(y.abs()) < self.lens {
-                return Some(Part::Housing);
+                return Some(RobotPart::Housing);
             }
         }
         if !self.seen {
@@ -82,14 +82,14 @@ impl Body {
         let [x, y] = at_height(ray, LAPTOP_TOP).map(f32::abs);
         let inside = (LAPTOP[0] - x).min(LAPTOP[1] - y);
         if inside > 0.0 {
-            return Some(if inside < 0.012 { Part::LaptopEdge } else { Part::Laptop });
+            return Some(if inside < 0.012 { RobotPart::LaptopEdge } else { RobotPart::Laptop });
         }
         let [x, y] = at_height(ray, TOP);
         let from_middle = (x * x + y * y).sqrt();
         (from_middle < RADIUS).then_some(if from_middle > RADIUS - 0.012 {
-            Part::BodyEdge
+            RobotPart::BodyEdge
         } else {
-            Part::Body
+            RobotPart::Body
         })
     }
 
@@ -108,7 +108,7 @@ fn at_height(ray: &PixelRay, height: f32) -> [f32; 2] {
     [0, 1].map(|axis| ray.origin[axis] + length * ray.direction[axis])
 }
 
-impl Part {
+impl RobotPart {
     /// How much light it throws back.
     pub(super) fn colour(self) -> [f32; 3] {
         match self {

@@ -5,13 +5,13 @@ use toposlam_model::embedded_graph::Dart;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 use toposlam_vision::colour::StripeKind;
 
-use super::chance::{For, about, clouds, stream};
 use super::effects::Effects;
 use super::light_map::LightMap;
 use super::lights::{CEILING, Lamp, Lights};
-use super::looks::{Look, linear};
+use super::looks::{BuildingLook, linear};
+use super::random_stream::{StreamPurpose, about, clouds, stream};
 use super::squares::Squares;
-use super::walls::{Wall, walls};
+use super::walls::{BuildingWall, walls};
 
 /// The marker, along its hallway and across it, in metres.
 const MARKER: [f64; 2] = [0.60, 0.18];
@@ -27,10 +27,10 @@ const LONGEST: f32 = 1.01;
 /// A building that can be looked at.
 #[derive(Clone, Debug)]
 pub struct Building {
-    pub(super) look: Look,
+    pub(super) look: BuildingLook,
     pub(super) colours: Colours,
     floors: Vec<Rectangle>,
-    walls: Vec<Wall>,
+    walls: Vec<BuildingWall>,
     pub(super) faces: Vec<Face>,
     things: Vec<Thing>,
     /// Along which walls there may be tape.
@@ -109,7 +109,7 @@ impl Building {
     #[must_use]
     pub fn new(
         plan: &FloorPlan,
-        look: &Look,
+        look: &BuildingLook,
         marker: Option<Dart>,
         effects: &Effects,
         seed: u64,
@@ -170,13 +170,13 @@ impl Building {
 
     /// Its look.
     #[must_use]
-    pub fn look(&self) -> &Look {
+    pub fn look(&self) -> &BuildingLook {
         &self.look
     }
 
     /// Its walls.
     #[must_use]
-    pub fn walls(&self) -> &[Wall] {
+    pub fn walls(&self) -> &[BuildingWall] {
         &self.walls
     }
 
@@ -296,15 +296,15 @@ impl Face {
 }
 
 /// Doors, posters and gaps of one wall, in the order in which they begin.
-fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
+fn things_of(wall: &BuildingWall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
     let length = wall.length();
     let mut things: Vec<Thing> = Vec::new();
-    let mut rng = stream(seed, For::Doors, number);
+    let mut rng = stream(seed, StreamPurpose::Doors, number);
     for _ in 0..about(effects.doors * length / 10.0, &mut rng) {
         let (share, taped) = (rng.random::<f64>(), rng.random::<f64>() >= effects.untaped_doors);
         place(wall, &mut things, share, DOOR_WIDTH, 0.25, Kind::Door { taped });
     }
-    let mut rng = stream(seed, For::Posters, number);
+    let mut rng = stream(seed, StreamPurpose::Posters, number);
     for _ in 0..about(effects.posters * length / 10.0, &mut rng) {
         let (share, width) = (rng.random::<f64>(), rng.random_range(0.4..=1.0));
         let low = rng.random_range(0.9..=1.4);
@@ -312,7 +312,7 @@ fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Th
         let colour = [(); 3].map(|()| rng.random_range(0.02..=0.75));
         place(wall, &mut things, share, width, 0.1, Kind::Poster { low, high, colour });
     }
-    let mut rng = stream(seed, For::Gaps, number);
+    let mut rng = stream(seed, StreamPurpose::Gaps, number);
     for _ in 0..about(effects.gaps * length / 10.0, &mut rng) {
         let missing = effects.gap_length * rng.random_range(0.2..=1.0);
         let from = wall.span[0] + rng.random::<f64>() * (length - missing).max(0.0);
@@ -324,7 +324,14 @@ fn things_of(wall: &Wall, number: usize, effects: &Effects, seed: u64) -> Vec<Th
 }
 
 /// Puts a thing on a wall, that share of the way along it, if it has room there between the others.
-fn place(wall: &Wall, things: &mut Vec<Thing>, share: f64, width: f64, apart: f64, kind: Kind) {
+fn place(
+    wall: &BuildingWall,
+    things: &mut Vec<Thing>,
+    share: f64,
+    width: f64,
+    apart: f64,
+    kind: Kind,
+) {
     let room = wall.length() - width - 2.0 * apart;
     if room < 0.0 {
         return;

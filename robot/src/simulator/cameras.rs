@@ -21,9 +21,9 @@ use toposlam_model::{
 
 use super::{
     building::Building,
-    chance::{For, stream},
     effects::Effects,
     exposure::file,
+    random_stream::{StreamPurpose, stream},
     renderer::exposed,
     rig::Rig,
 };
@@ -31,7 +31,7 @@ use crate::pose::Pose;
 use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
 /// A camera on a simulated robot.
-pub trait Camera {
+pub trait SimulatedCamera {
     /// What it gives.
     type View: Clone + PartialEq;
 
@@ -103,7 +103,7 @@ impl RenderingCamera {
     }
 }
 
-impl Camera for RenderingCamera {
+impl SimulatedCamera for RenderingCamera {
     type View = Vec<u8>;
 
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Vec<u8> {
@@ -116,7 +116,7 @@ impl Camera for RenderingCamera {
     }
 
     fn corrupt(mut view: Vec<u8>, number: u64) -> Vec<u8> {
-        let mut chance = stream(number, For::Faults, view.len());
+        let mut chance = stream(number, StreamPurpose::Faults, view.len());
         for _ in 0..=view.len() / DAMAGED {
             let at = chance.random_range(0..view.len().max(1));
             if let Some(byte) = view.get_mut(at) {
@@ -298,11 +298,11 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
     doors.sort_by_key(|&door| clockwise(door));
 }
 
-impl Camera for SceneCamera {
+impl SimulatedCamera for SceneCamera {
     type View = ToldScene;
 
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> ToldScene {
-        let numbers = stream(self.seed, For::Scenes, number as usize);
+        let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
         let mut chance = Chance { numbers, noise: self.noise };
         // Sensing does not know the light of a picture that is burnt out.
         let truth = Truth::at(&self.plan, pose).filter(|_| stops < 1.0);
@@ -333,7 +333,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        evaluation::{class::Class, plans, runs::starts_of},
+        evaluation::{plans, run_sampler::starts_of, scene_class::SceneClass},
         simulator::{LOOKS, start_pose},
     };
 
@@ -348,13 +348,14 @@ mod tests {
         // At the start, of an L whose other door is to the left.
         let pose = start_pose(&plan, facing);
         let junction = JunctionTruth::of(&plan, plan.graph().vertex(facing), pose);
-        let right = Class::Junction(junction.form.unwrap());
+        let right = SceneClass::Junction(junction.form.unwrap());
         let count = |noise: f64| {
             let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
             let told: Vec<_> =
-                (0..20_000).map(|n| Class::of(&camera.picture(pose, n, 0.0).scene)).collect();
-            let unknown = told.iter().filter(|&&class| class == Class::Unknown).count();
-            let wrong = told.iter().filter(|&&class| class != Class::Unknown && class != right);
+                (0..20_000).map(|n| SceneClass::of(&camera.picture(pose, n, 0.0).scene)).collect();
+            let unknown = told.iter().filter(|&&class| class == SceneClass::Unknown).count();
+            let wrong =
+                told.iter().filter(|&&class| class != SceneClass::Unknown && class != right);
             (unknown, wrong.count())
         };
         assert_eq!(count(0.0), (0, 0));
@@ -367,7 +368,7 @@ mod tests {
 
     #[test]
     fn a_mistaken_junction_is_another_one_from_the_same_entry() {
-        let mut numbers = stream(1, For::Scenes, 0);
+        let mut numbers = stream(1, StreamPurpose::Scenes, 0);
         for doors in [vec![PI], vec![PI, FRAC_PI_2], vec![PI, 0.0, -FRAC_PI_2]] {
             for _ in 0..20 {
                 let mut other = doors.clone();

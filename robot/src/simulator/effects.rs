@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// What a knob changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
+pub enum EffectScope {
     /// The building: the same in every picture of it.
     Building,
     /// The robot and its camera, and the one picture.
@@ -20,7 +20,7 @@ pub struct Knob {
     /// The name on the command line.
     pub name: &'static str,
     /// What it changes.
-    pub of: Of,
+    pub of: EffectScope,
     /// What it is, and in which unit.
     pub about: &'static str,
     /// The value at which there is no effect.
@@ -69,7 +69,7 @@ macro_rules! knobs {
         /// All knobs.
         pub const KNOBS: &[Knob] = &[$(Knob {
             name: $name,
-            of: Of::$of,
+            of: EffectScope::$of,
             about: $about,
             plain: $plain,
             allowed: $allowed,
@@ -157,7 +157,7 @@ impl Effects {
     #[must_use]
     pub fn of_another_picture(&self, rng: &mut impl Rng) -> Self {
         let mut effects = self.clone();
-        effects.draw(rng, |knob| knob.of == Of::Picture);
+        effects.draw(rng, |knob| knob.of == EffectScope::Picture);
         effects
     }
 
@@ -235,7 +235,12 @@ mod tests {
         for (knob, (value, other)) in KNOBS.iter().zip(values) {
             let same = value.total_cmp(other).is_eq();
             // Whether the robot sees itself is not left to chance.
-            assert_eq!(same, knob.of == Of::Building || knob.name == "body", "{}", knob.name);
+            assert_eq!(
+                same,
+                knob.of == EffectScope::Building || knob.name == "body",
+                "{}",
+                knob.name
+            );
         }
     }
 

@@ -7,12 +7,12 @@ use image::{ImageFormat, RgbImage};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::chance::{For, stream};
 use super::effects::Effects;
+use super::random_stream::{StreamPurpose, stream};
 use super::rig::Rig;
 
 /// The light that comes to every pixel, as red, green and blue; at 1 the sensor is full.
-pub(super) trait Scan {
+pub(super) trait RowRenderer {
     /// A row of it; rows are asked for in order.
     fn row(&mut self, v: usize, out: &mut [f32]);
 
@@ -21,13 +21,18 @@ pub(super) trait Scan {
 }
 
 /// The photograph of this light.
-pub(super) fn expose(light: &mut impl Scan, rig: &Rig, effects: &Effects, seed: u64) -> RgbImage {
+pub(super) fn expose(
+    light: &mut impl RowRenderer,
+    rig: &Rig,
+    effects: &Effects,
+    seed: u64,
+) -> RgbImage {
     let [width, height] = rig.image().map(|length| length as usize);
     let gain = gain(effects);
     let glare = effects.glare as f32;
     let veil = if glare > 0.0 { light.mean().map(|mean| glare * mean) } else { [0.0; 3] };
     let mut blur = Blur::new([width, height], effects.blur * width as f64 / 1280.0);
-    let mut noise = Noise::new(effects.noise as f32, stream(seed, For::Sensor, 0));
+    let mut noise = Noise::new(effects.noise as f32, stream(seed, StreamPurpose::Sensor, 0));
     let [middle_u, middle_v] = rig.optics.centre.map(|at| at as f32);
     let rim = rig.optics.rim() as f32;
     let darker = effects.vignetting as f32 / (rim * rim);
@@ -110,7 +115,7 @@ impl Blur {
     }
 
     /// A row of this light; rows are asked for in order.
-    fn row(&mut self, light: &mut impl Scan, v: usize, out: &mut [f32]) {
+    fn row(&mut self, light: &mut impl RowRenderer, v: usize, out: &mut [f32]) {
         let reach = self.weights.len() - 1;
         if reach == 0 {
             light.row(v, out);
@@ -133,7 +138,7 @@ impl Blur {
     }
 
     /// Takes the next row, and blurs it along itself.
-    fn along(&mut self, light: &mut impl Scan) {
+    fn along(&mut self, light: &mut impl RowRenderer) {
         let (reach, width) = (3 * (self.weights.len() - 1), 3 * self.width);
         light.row(self.next, &mut self.source[reach..reach + width]);
         for at in (0..reach).rev() {
@@ -235,7 +240,7 @@ mod tests {
     /// Light from a table.
     struct Table(Vec<[f32; 3]>);
 
-    impl Scan for Table {
+    impl RowRenderer for Table {
         fn row(&mut self, v: usize, out: &mut [f32]) {
             out.copy_from_slice(self.0[v * WIDTH..][..WIDTH].as_flattened());
         }
@@ -335,7 +340,7 @@ mod tests {
 
     #[test]
     fn noise_has_the_deviation_that_its_knob_says() {
-        let mut noise = Noise::new(0.02, stream(1, For::Sensor, 0));
+        let mut noise = Noise::new(0.02, stream(1, StreamPurpose::Sensor, 0));
         for light in [0.1_f32, 0.5, 1.0] {
             let mut row = vec![light; 60_000];
             noise.add(&mut row);

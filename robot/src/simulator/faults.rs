@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// Something that goes wrong when the robot takes a picture of some number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct RobotFault {
     /// What.
     pub kind: FaultKind,
     /// From which picture on, counted from 1.
@@ -45,7 +45,7 @@ kinds! {
 /// A fault that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("write NAME@PICTURE or NAME@PICTURE:HOW-MANY, as in dropped@12:3; there are {}", names())]
-pub struct NoFault;
+pub struct FaultError;
 
 fn names() -> String {
     FAULTS.iter().map(|(_, name, ..)| *name).collect::<Vec<_>>().join(", ")
@@ -59,7 +59,7 @@ impl FaultKind {
     }
 }
 
-impl Fault {
+impl RobotFault {
     /// A fault from a picture on that lasts as long as is usual for its kind.
     #[must_use]
     pub fn at(kind: FaultKind, picture: u64) -> Self {
@@ -80,26 +80,26 @@ impl Fault {
 }
 
 /// As it is read.
-impl fmt::Display for Fault {
+impl fmt::Display for RobotFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}@{}:{}", self.kind.name(), self.picture, self.lasting)
     }
 }
 
-impl FromStr for Fault {
-    type Err = NoFault;
+impl FromStr for RobotFault {
+    type Err = FaultError;
 
-    fn from_str(text: &str) -> Result<Self, NoFault> {
-        let (name, when) = text.trim().split_once('@').ok_or(NoFault)?;
-        let &(kind, ..) = FAULTS.iter().find(|(_, known, ..)| *known == name).ok_or(NoFault)?;
+    fn from_str(text: &str) -> Result<Self, FaultError> {
+        let (name, when) = text.trim().split_once('@').ok_or(FaultError)?;
+        let &(kind, ..) = FAULTS.iter().find(|(_, known, ..)| *known == name).ok_or(FaultError)?;
         let (picture, lasting) = match when.split_once(':') {
             Some((picture, lasting)) => (picture, Some(lasting)),
             None => (when, None),
         };
-        let fault = Self::at(kind, picture.parse().map_err(|_| NoFault)?);
-        let lasting = lasting.map_or(Ok(fault.lasting), str::parse).map_err(|_| NoFault)?;
+        let fault = Self::at(kind, picture.parse().map_err(|_| FaultError)?);
+        let lasting = lasting.map_or(Ok(fault.lasting), str::parse).map_err(|_| FaultError)?;
         if fault.picture == 0 || lasting == 0 {
-            Err(NoFault)
+            Err(FaultError)
         } else {
             Ok(Self { lasting, ..fault })
         }
@@ -112,19 +112,19 @@ mod tests {
 
     #[test]
     fn a_fault_is_read_with_its_picture_and_how_long_it_lasts() {
-        let fault = Fault { kind: FaultKind::Dropped, picture: 12, lasting: 3 };
+        let fault = RobotFault { kind: FaultKind::Dropped, picture: 12, lasting: 3 };
         assert_eq!("dropped@12".parse(), Ok(fault));
-        assert_eq!("dropped@12:9".parse(), Ok(Fault { lasting: 9, ..fault }));
+        assert_eq!("dropped@12:9".parse(), Ok(RobotFault { lasting: 9, ..fault }));
         for text in
             ["dropped", "dropped@", "dropped@0", "dropped@1:0", "fog@1", "late@x", "late@1:"]
         {
-            assert_eq!(text.parse::<Fault>(), Err(NoFault), "{text}");
+            assert_eq!(text.parse::<RobotFault>(), Err(FaultError), "{text}");
         }
     }
 
     #[test]
     fn a_fault_spoils_as_many_pictures_as_it_lasts() {
-        let fault: Fault = "frozen@5:2".parse().unwrap();
+        let fault: RobotFault = "frozen@5:2".parse().unwrap();
         let spoilt: Vec<_> = (1..10).filter(|&picture| fault.spoils(picture)).collect();
         assert_eq!(spoilt, [5, 6]);
     }

@@ -4,7 +4,7 @@ use toposlam_model::floor_plan::Rectangle;
 
 use super::lights::{CEILING, Lights};
 use super::squares::{extent, side};
-use super::walls::Wall;
+use super::walls::BuildingWall;
 
 /// From corner to corner of the mesh, in metres.
 const MESH: f64 = 0.2;
@@ -48,7 +48,7 @@ impl Mesh {
 }
 
 impl LightMap {
-    pub(super) fn new(floors: &[Rectangle], walls: &[Wall], lights: &Lights) -> Self {
+    pub(super) fn new(floors: &[Rectangle], walls: &[BuildingWall], lights: &Lights) -> Self {
         let none = || Mesh {
             least: [0.0; 2],
             per_metre: [0.0; 2],
@@ -118,7 +118,7 @@ impl LightMap {
     }
 }
 
-fn wall_mesh(wall: &Wall, lights: &Lights, average: f64) -> Mesh {
+fn wall_mesh(wall: &BuildingWall, lights: &Lights, average: f64) -> Mesh {
     let columns = (wall.length() / (2.0 * MESH)).ceil().clamp(1.0, 4096.0) as usize + 1;
     let width = wall.length() / (columns - 1) as f64;
     let height = CEILING / (ROWS - 1) as f64;

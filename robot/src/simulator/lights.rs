@@ -3,10 +3,10 @@
 use rand::RngExt;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
-use super::chance::{For, about, stream};
 use super::effects::Effects;
+use super::random_stream::{StreamPurpose, about, stream};
 use super::squares::Squares;
-use super::walls::Wall;
+use super::walls::BuildingWall;
 
 /// From floor to ceiling, in metres.
 pub(super) const CEILING: f64 = 2.5;
@@ -54,7 +54,7 @@ pub(super) struct Lights {
     spotted: Squares,
     falloff: f64,
     /// For each lamp, the walls that its light may meet.
-    walls_near: Vec<Vec<Wall>>,
+    walls_near: Vec<Vec<BuildingWall>>,
     /// How far each lamp reaches.
     reaches: Squares,
 }
@@ -67,14 +67,19 @@ fn middle_line(floor: &Rectangle, width: f64) -> ([f64; 2], f64, usize) {
 }
 
 impl Lights {
-    pub(super) fn new(plan: &FloorPlan, walls: &[Wall], effects: &Effects, seed: u64) -> Self {
+    pub(super) fn new(
+        plan: &FloorPlan,
+        walls: &[BuildingWall],
+        effects: &Effects,
+        seed: u64,
+    ) -> Self {
         let width = plan.hallway_width();
         let mut lamps = Vec::new();
         let mut spots = Vec::new();
         for (number, floor) in plan.floor().enumerate() {
             let (start, length, along) = middle_line(&floor, width);
             let count = (length / 2.4).round().clamp(1.0, 1e4);
-            let mut rng = stream(seed, For::Lamps, number);
+            let mut rng = stream(seed, StreamPurpose::Lamps, number);
             for lamp in 0..count as usize {
                 let mut middle = start;
                 middle[along] += length * (lamp as f64 + 0.5) / count;
@@ -89,8 +94,8 @@ impl Lights {
                 });
             }
             let strewn = [
-                (For::Spots, effects.hot_spots, 0.2..=0.6, 1.0),
-                (For::Shadows, -effects.shadows, 0.3..=1.2, 3.0),
+                (StreamPurpose::Spots, effects.hot_spots, 0.2..=0.6, 1.0),
+                (StreamPurpose::Shadows, -effects.shadows, 0.3..=1.2, 3.0),
             ];
             for (purpose, change, sizes, apart) in strewn {
                 let mut rng = stream(seed, purpose, number);
@@ -109,7 +114,7 @@ impl Lights {
         let walls_near = reaches
             .iter()
             .map(|reach| {
-                let near = |wall: &&Wall| {
+                let near = |wall: &&BuildingWall| {
                     let [one, other] = wall.span.map(|at| wall.foot(at));
                     reach.meets(&Rectangle { least: one, greatest: other })
                 };
@@ -177,7 +182,7 @@ impl Lamp {
     }
 }
 
-impl Wall {
+impl BuildingWall {
     /// Whether the wall stands between two places.
     fn between(&self, one: [f64; 2], other: [f64; 2]) -> bool {
         let across = 1 - self.along;

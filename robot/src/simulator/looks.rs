@@ -10,7 +10,7 @@ pub type Colour = [u8; 3];
 
 /// What a floor is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Floor {
+pub enum FloorCovering {
     /// One colour throughout.
     Plain,
     /// Tiles or boards with joints between them.
@@ -33,13 +33,13 @@ pub enum Floor {
 
 /// What a building looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct BuildingLook {
     /// Its name.
     pub name: &'static str,
     /// What is to be seen, in a few words.
     pub about: &'static str,
     /// What the floor is made of.
-    pub floor: Floor,
+    pub floor: FloorCovering,
     /// The floor's colour.
     pub floor_colour: Colour,
     /// How much the floor shines, from 0 (not at all) to 1 (polished).
@@ -74,11 +74,11 @@ const CYAN: Colour = [15, 150, 190];
 
 /// All looks; the first is the default.
 // paper: env.boundary
-pub const LOOKS: [Look; 9] = [
-    Look {
+pub const LOOKS: [BuildingLook; 9] = [
+    BuildingLook {
         name: "laboratory",
         about: "white tape on grey carpet, beige walls",
-        floor: Floor::Carpet { tuft: 0.012, spread: 0.22 },
+        floor: FloorCovering::Carpet { tuft: 0.012, spread: 0.22 },
         floor_colour: [104, 106, 110],
         gloss: 0.0,
         wall_colour: [206, 190, 158],
@@ -89,10 +89,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [214, 212, 206],
         marker_colour: MAGENTA,
     },
-    Look {
+    BuildingLook {
         name: "tiles",
         about: "black tape on light tiles, white walls",
-        floor: Floor::Tiled { sides: [0.30, 0.30], joint: 0.005, joint_shade: 0.62 },
+        floor: FloorCovering::Tiled { sides: [0.30, 0.30], joint: 0.005, joint_shade: 0.62 },
         floor_colour: [186, 180, 166],
         gloss: 0.25,
         wall_colour: [212, 212, 206],
@@ -103,10 +103,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [220, 220, 216],
         marker_colour: MAGENTA,
     },
-    Look {
+    BuildingLook {
         name: "vinyl",
         about: "black baseboard on polished vinyl, white walls",
-        floor: Floor::Plain,
+        floor: FloorCovering::Plain,
         floor_colour: [158, 154, 140],
         gloss: 0.8,
         wall_colour: [216, 214, 206],
@@ -117,10 +117,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [214, 214, 210],
         marker_colour: ORANGE,
     },
-    Look {
+    BuildingLook {
         name: "office",
         about: "white baseboard on brown carpet, cream walls",
-        floor: Floor::Carpet { tuft: 0.010, spread: 0.25 },
+        floor: FloorCovering::Carpet { tuft: 0.010, spread: 0.25 },
         floor_colour: [112, 80, 58],
         gloss: 0.0,
         wall_colour: [206, 196, 164],
@@ -131,10 +131,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [216, 214, 206],
         marker_colour: CYAN,
     },
-    Look {
+    BuildingLook {
         name: "hospital",
         about: "black baseboard on polished green linoleum, pale green walls",
-        floor: Floor::Plain,
+        floor: FloorCovering::Plain,
         floor_colour: [124, 146, 118],
         gloss: 0.6,
         wall_colour: [188, 204, 182],
@@ -145,10 +145,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [222, 222, 218],
         marker_colour: MAGENTA,
     },
-    Look {
+    BuildingLook {
         name: "basement",
         about: "white tape on painted concrete, grey walls as bright as the floor",
-        floor: Floor::Carpet { tuft: 0.060, spread: 0.07 },
+        floor: FloorCovering::Carpet { tuft: 0.060, spread: 0.07 },
         floor_colour: [122, 118, 110],
         gloss: 0.15,
         wall_colour: [128, 130, 134],
@@ -159,10 +159,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [150, 148, 144],
         marker_colour: ORANGE,
     },
-    Look {
+    BuildingLook {
         name: "school",
         about: "black tape on red tiles, yellow walls",
-        floor: Floor::Tiled { sides: [0.20, 0.20], joint: 0.006, joint_shade: 1.35 },
+        floor: FloorCovering::Tiled { sides: [0.20, 0.20], joint: 0.006, joint_shade: 1.35 },
         floor_colour: [158, 98, 76],
         gloss: 0.3,
         wall_colour: [210, 186, 118],
@@ -173,10 +173,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [212, 210, 202],
         marker_colour: CYAN,
     },
-    Look {
+    BuildingLook {
         name: "theatre",
         about: "white tape on dark blue carpet, dark panelled walls",
-        floor: Floor::Carpet { tuft: 0.012, spread: 0.25 },
+        floor: FloorCovering::Carpet { tuft: 0.012, spread: 0.25 },
         floor_colour: [54, 62, 88],
         gloss: 0.0,
         wall_colour: [104, 74, 52],
@@ -187,10 +187,10 @@ pub const LOOKS: [Look; 9] = [
         ceiling_colour: [120, 116, 110],
         marker_colour: ORANGE,
     },
-    Look {
+    BuildingLook {
         name: "gallery",
         about: "black baseboard on pale wooden boards, grey walls",
-        floor: Floor::Tiled { sides: [1.20, 0.12], joint: 0.003, joint_shade: 0.7 },
+        floor: FloorCovering::Tiled { sides: [1.20, 0.12], joint: 0.003, joint_shade: 0.7 },
         floor_colour: [196, 166, 122],
         gloss: 0.4,
         wall_colour: [162, 162, 160],
@@ -203,7 +203,7 @@ pub const LOOKS: [Look; 9] = [
     },
 ];
 
-impl Look {
+impl BuildingLook {
     /// The look of this name.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {

@@ -3,14 +3,14 @@
 //! A [`Building`] is made of a floor plan, one of the [`LOOKS`] and a seed; a [`Rig`] of a calibrated
 //! camera. [`render`] is the picture that the rig takes from a [`Pose`], and [`labels`] what each pixel
 //! of it shows. [`Effects`] make pictures harder to read. A [`SimulatedRobot`] drives in it, with
-//! [`MotionNoise`] and [`Fault`]s.
+//! [`MotionNoise`] and [`RobotFault`]s.
 
 #![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
 
 mod body;
 mod building;
 mod cameras;
-mod chance;
+mod config;
 mod effects;
 mod exposure;
 mod faults;
@@ -20,11 +20,11 @@ mod lights;
 mod looks;
 mod motion;
 mod optics;
+mod random_stream;
 mod renderer;
 mod rig;
-mod setting;
 mod sight_lines;
-mod simulated;
+mod simulated_robot;
 mod squares;
 mod surfaces;
 mod surroundings;
@@ -32,15 +32,15 @@ mod walls;
 
 pub use crate::pose::Pose;
 pub use building::Building;
-pub use cameras::{Camera, RenderingCamera, SceneCamera, ToldScene};
-pub use effects::{Effects, KNOBS, Knob, KnobError, Of};
-pub use faults::{FAULTS, Fault, FaultKind, NoFault};
+pub use cameras::{RenderingCamera, SceneCamera, SimulatedCamera, ToldScene};
+pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
+pub use effects::{EffectScope, Effects, KNOBS, Knob, KnobError};
+pub use faults::{FAULTS, FaultError, FaultKind, RobotFault};
 pub use labels::{label_mask, labels};
-pub use looks::{Colour, Floor, LOOKS, Look};
+pub use looks::{BuildingLook, Colour, FloorCovering, LOOKS};
 pub use motion::{MotionNoise, SimulatedBase};
-pub use optics::{By, Ray, RigErrors};
+pub use optics::{CameraRay, RayPath, RigErrors};
 pub use renderer::render;
 pub use rig::Rig;
-pub use setting::{PICTURE_TIME, Setting, start_pose};
-pub use simulated::SimulatedRobot;
-pub use walls::{Wall, walls};
+pub use simulated_robot::SimulatedRobot;
+pub use walls::{BuildingWall, walls};

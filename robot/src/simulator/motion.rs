@@ -9,7 +9,7 @@ use toposlam_model::{
 };
 
 use super::{
-    chance::{For, clouds, stream},
+    random_stream::{StreamPurpose, clouds, stream},
     surroundings::Surroundings,
 };
 use crate::{
@@ -81,7 +81,7 @@ impl SimulatedBase {
     /// A base at a pose in a building; the same seed makes the same base.
     #[must_use]
     pub fn new(plan: &FloorPlan, pose: Pose, noise: &MotionNoise, seed: u64) -> Self {
-        let mut chance = stream(seed, For::Wheels, 0);
+        let mut chance = stream(seed, StreamPurpose::Wheels, 0);
         let mut share = |deviation: f64| deviation * standard(&mut chance);
         let bias = share(noise.bias) / 2.0;
         let odometry = [share(noise.odometry), share(noise.odometry)];

@@ -23,27 +23,27 @@ pub struct RigErrors {
 
 /// What a pixel looks along.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct CameraRay {
     /// Where it comes from: the mirror, or the pinhole.
     pub origin: Vector,
     /// Whither; of length one.
     pub direction: Vector,
     /// Whether it has met the mirror.
-    pub by: By,
+    pub by: RayPath,
 }
 
 /// How a ray comes to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
+pub enum RayPath {
     /// By way of the mirror.
     Mirror,
     /// Past the mirror.
-    Itself,
+    Direct,
 }
 
 /// A camera, and how it leans.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Optics {
+pub(super) struct RigOptics {
     pub(super) image: [u32; 2],
     /// The pixel that looks straight down.
     pub(super) centre: [f64; 2],
@@ -73,7 +73,7 @@ struct UnderSphere {
     up: [f64; 2],
 }
 
-impl Optics {
+impl RigOptics {
     pub(super) fn new(camera: &Camera, errors: &RigErrors) -> Self {
         let centre = camera.middle();
         Self {
@@ -91,7 +91,7 @@ impl Optics {
     }
 
     /// The ray that a pixel looks along.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Ray {
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         let mut ray = match &self.kind {
             Kind::UnderSphere(rig) => {
                 rig.ray([pixel[0] - self.centre[0], self.centre[1] - pixel[1]])
@@ -99,8 +99,16 @@ impl Optics {
             Kind::Single(camera) => {
                 let intended = [0, 1].map(|axis| pixel[axis] - self.errors.centre[axis]);
                 match camera.ray(intended) {
-                    Some(ray) => Ray { origin: [0.0; 3], direction: ray.direction, by: By::Mirror },
-                    None => Ray { origin: [0.0; 3], direction: [0.0, 0.0, 1.0], by: By::Itself },
+                    Some(ray) => CameraRay {
+                        origin: [0.0; 3],
+                        direction: ray.direction,
+                        by: RayPath::Mirror,
+                    },
+                    None => CameraRay {
+                        origin: [0.0; 3],
+                        direction: [0.0, 0.0, 1.0],
+                        by: RayPath::Direct,
+                    },
                 }
             }
         };
@@ -157,7 +165,7 @@ impl UnderSphere {
     }
 
     /// The ray of a pixel, given from the middle to the right and to the top, in the upright rig.
-    fn ray(&self, [right, top]: [f64; 2]) -> Ray {
+    fn ray(&self, [right, top]: [f64; 2]) -> CameraRay {
         let (across, upwards) = (right / self.focal, top / self.focal);
         let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
         let out = unit([x, y, 1.0]);
@@ -169,14 +177,14 @@ impl UnderSphere {
             let met = scaled(out, along - beyond.sqrt());
             let normal = scaled(minus(met, middle), 1.0 / self.radius);
             let back = minus(out, scaled(normal, 2.0 * dot(out, normal)));
-            Ray { origin: met, direction: unit(back), by: By::Mirror }
+            CameraRay { origin: met, direction: unit(back), by: RayPath::Mirror }
         } else {
-            Ray { origin: [0.0; 3], direction: out, by: By::Itself }
+            CameraRay { origin: [0.0; 3], direction: out, by: RayPath::Direct }
         }
     }
 }
 
-impl Ray {
+impl CameraRay {
     /// Where it meets the floor, in the robot's coordinates, if nothing is in its way.
     #[must_use]
     pub fn floor(&self) -> Option<[f64; 2]> {
@@ -240,12 +248,12 @@ mod tests {
     #[test]
     fn the_mirror_ray_by_ray_agrees_with_its_closed_form() {
         for camera in cameras() {
-            let optics = Optics::new(&camera, &RigErrors::default());
+            let optics = RigOptics::new(&camera, &RigErrors::default());
             let mut seen = 0;
             for (u, v) in (0..64).flat_map(|u| (0..48).map(move |v| (u, v))) {
                 let pixel = [f64::from(u) * 20.3, f64::from(v) * 20.1];
                 let ray = optics.ray(pixel);
-                let ground = ray.floor().filter(|_| ray.by == By::Mirror);
+                let ground = ray.floor().filter(|_| ray.by == RayPath::Mirror);
                 let expected = camera.pixel_to_ground(pixel);
                 assert_eq!(ground.is_some(), expected.is_some(), "{pixel:?}");
                 if let (Some([x, y]), Some(expected)) = (ground, expected) {
@@ -262,12 +270,12 @@ mod tests {
     #[test]
     fn rays_come_from_the_sphere_and_have_length_one() {
         let camera = Camera::superscout();
-        let optics = Optics::new(&camera, &RigErrors { tilt: 0.02, ..RigErrors::default() });
+        let optics = RigOptics::new(&camera, &RigErrors { tilt: 0.02, ..RigErrors::default() });
         let middle = optics.leaning([0.0, 0.0, 0.15]);
         for at in 0..200 {
             let ray = optics.ray([640.0 + f64::from(at) * 2.2, 480.0 - f64::from(at)]);
             assert!((dot(ray.direction, ray.direction) - 1.0).abs() < 1e-12);
-            if ray.by == By::Mirror {
+            if ray.by == RayPath::Mirror {
                 let [x, y, z] = ray.origin;
                 let out = minus([x, y, z - 0.90], middle);
                 assert!((dot(out, out).sqrt() - 0.05).abs() < 1e-12);
@@ -281,7 +289,7 @@ mod tests {
         let tilt = 0.05_f64;
         for towards in [0.0, FRAC_PI_2, 2.5] {
             let errors = RigErrors { tilt, towards, ..RigErrors::default() };
-            let ray = Optics::new(&camera, &errors).ray([640.0, 480.0]);
+            let ray = RigOptics::new(&camera, &errors).ray([640.0, 480.0]);
             // The axis goes through the pinhole, 0.9 m up: below it, the floor is this far back.
             let back = 0.90 * tilt.tan();
             let [x, y] = ray.floor().unwrap();
@@ -294,7 +302,7 @@ mod tests {
     fn errors_of_centre_and_height_move_what_a_pixel_shows() {
         let camera = Camera::superscout();
         let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
-        let optics = Optics::new(&camera, &errors);
+        let optics = RigOptics::new(&camera, &errors);
         let mirror =
             SphericalMirror { centre: [644.0, 477.0], camera_height: 0.92, ..mirror(&camera) };
         let as_it_is = Camera { optics: camera::Optics::SphericalMirror(mirror), ..camera.clone() };

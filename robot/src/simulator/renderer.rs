@@ -5,11 +5,11 @@ use image::RgbImage;
 use super::body::Body;
 use super::building::Building;
 use super::effects::Effects;
-use super::exposure::{Scan, compressed, expose};
-use super::optics::By;
+use super::exposure::{RowRenderer, compressed, expose};
+use super::optics::RayPath;
 use super::rig::{PixelRay, Rig};
 use super::sight_lines::SightLines;
-use super::surfaces::{Surface, View, WorldRay};
+use super::surfaces::{BuildingView, Surface, WorldRay};
 use crate::pose::Pose;
 
 /// How many rays along and across a pixel there are where different things meet in it.
@@ -52,7 +52,7 @@ pub(super) fn exposed(
 /// A rig in a building, at a pose.
 pub(super) struct Shot<'a> {
     rig: &'a Rig,
-    view: View<'a>,
+    view: BuildingView<'a>,
     body: Body,
     /// Where the robot is, and its heading as cosine and sine and in 65,536 to a full turn.
     position: [f32; 2],
@@ -76,7 +76,7 @@ impl<'a> Shot<'a> {
         let turns = (pose.heading / std::f64::consts::TAU).rem_euclid(1.0);
         Self {
             rig,
-            view: View { building, lines },
+            view: BuildingView { building, lines },
             body: Body::new(rig.optics.height, effects),
             position,
             heading: [cosine as f32, sine as f32],
@@ -91,7 +91,7 @@ impl<'a> Shot<'a> {
         let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
         if let Some(part) = self.body.met(ray) {
             Surface::Robot(part)
-        } else if ray.by == By::Itself {
+        } else if ray.by == RayPath::Direct {
             Surface::Holder
         } else {
             self.view.surface(&self.world(ray))
@@ -106,7 +106,7 @@ impl<'a> Shot<'a> {
             let light = self.light;
             return (Surface::Robot(part), part.colour().map(|channel| channel * light));
         }
-        if ray.by == By::Itself {
+        if ray.by == RayPath::Direct {
             if self.off_middle(place) < self.holder {
                 return (Surface::Holder, [0.01; 3]);
             }
@@ -258,7 +258,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-impl Scan for Rows<'_> {
+impl RowRenderer for Rows<'_> {
     /// Rows are asked for in order. Looks more closely where neighbouring pixels show different things.
     fn row(&mut self, v: usize, out: &mut [f32]) {
         self.look(v + 1);

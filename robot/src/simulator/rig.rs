@@ -2,12 +2,12 @@
 
 use toposlam_vision::camera::Camera;
 
-use super::optics::{By, Optics, Ray, RigErrors};
+use super::optics::{CameraRay, RayPath, RigErrors, RigOptics};
 
 /// A camera under its mirror, on a robot; made once and used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    pub(super) optics: Optics,
+    pub(super) optics: RigOptics,
     pub(super) rays: Vec<PixelRay>,
     /// How much farther out on the floor each pixel looks than the one before it, by pixels from the
     /// middle; in metres, with the rig upright.
@@ -23,11 +23,11 @@ pub(super) struct PixelRay {
     pub(super) direction: [f32; 3],
     /// From ahead to the left, of 65,536 to a full turn.
     pub(super) turn: u16,
-    pub(super) by: By,
+    pub(super) by: RayPath,
 }
 
-impl From<Ray> for PixelRay {
-    fn from(ray: Ray) -> Self {
+impl From<CameraRay> for PixelRay {
+    fn from(ray: CameraRay) -> Self {
         Self {
             origin: ray.origin.map(|coordinate| coordinate as f32),
             direction: ray.direction.map(|coordinate| coordinate as f32),
@@ -47,7 +47,7 @@ impl Rig {
     /// A camera that is not quite as its calibration says.
     #[must_use]
     pub fn with_errors(camera: &Camera, errors: &RigErrors) -> Self {
-        let optics = Optics::new(camera, errors);
+        let optics = RigOptics::new(camera, errors);
         let [width, height] = optics.image;
         let mut off_axis: f64 = 0.0;
         let mut rays = Vec::with_capacity(width as usize * height as usize);
@@ -58,7 +58,7 @@ impl Rig {
                 rays.push(ray.into());
             }
         }
-        let upright = Optics::new(camera, &RigErrors::default());
+        let upright = RigOptics::new(camera, &RigErrors::default());
         let range = |pixels: f64| {
             let [u, v] = upright.centre;
             let [x, y] = upright.ray([u + pixels, v]).floor()?;
@@ -81,7 +81,7 @@ impl Rig {
 
     /// What a pixel looks along.
     #[must_use]
-    pub fn ray(&self, pixel: [f64; 2]) -> Ray {
+    pub fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         self.optics.ray(pixel)
     }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::walls::Wall;
+use super::walls::BuildingWall;
 
 /// Directions that are told apart, of 65,536 to a full turn each so many.
 const SECTORS: u16 = 512;
@@ -29,7 +29,7 @@ struct Seen {
 
 impl SightLines {
     /// The walls around a place, for rays that pass from it by no more than so far.
-    pub(super) fn from(place: [f64; 2], off_axis: f64, walls: &[Wall]) -> Self {
+    pub(super) fn from(place: [f64; 2], off_axis: f64, walls: &[BuildingWall]) -> Self {
         let mut sectors: Vec<Vec<Seen>> = (0..SECTORS).map(|_| Vec::new()).collect();
         for (number, wall) in walls.iter().enumerate() {
             let out = (place[1 - wall.along] - wall.plane) * wall.floor_side;
@@ -59,7 +59,13 @@ impl SightLines {
 }
 
 /// Enters a wall in all sectors in which it may be seen.
-fn enter(number: usize, wall: &Wall, place: [f64; 2], off_axis: f64, sectors: &mut [Vec<Seen>]) {
+fn enter(
+    number: usize,
+    wall: &BuildingWall,
+    place: [f64; 2],
+    off_axis: f64,
+    sectors: &mut [Vec<Seen>],
+) {
     let ends = wall.span.map(|along| {
         let foot = wall.foot(along);
         [foot[0] - place[0], foot[1] - place[1]]
@@ -106,7 +112,7 @@ fn enter(number: usize, wall: &Wall, place: [f64; 2], off_axis: f64, sectors: &m
 }
 
 /// How near a wall's plane is at least within a sector.
-fn near_in(low: f64, high: f64, wall: &Wall, place: [f64; 2], near: f64) -> f64 {
+fn near_in(low: f64, high: f64, wall: &BuildingWall, place: [f64; 2], near: f64) -> f64 {
     let across = (place[1 - wall.along] - wall.plane).abs();
     let share = |angle: f64| if wall.along == 0 { angle.sin() } else { angle.cos() }.abs();
     // Within a sector as narrow as this the greatest share is at most this much more than at an edge.
@@ -130,7 +136,7 @@ mod tests {
 
     /// The first wall that a ray meets, among these.
     fn first<'a>(
-        walls: impl Iterator<Item = (usize, &'a Wall)>,
+        walls: impl Iterator<Item = (usize, &'a BuildingWall)>,
         origin: [f64; 2],
         angle: f64,
     ) -> Option<usize> {

@@ -1,8 +1,8 @@
 //! What a ray meets in a building, and how it looks there.
 
 use super::building::{Building, HEIGHT, WallPart};
-use super::chance::{clouds, floor, speckle};
-use super::looks::Floor;
+use super::looks::FloorCovering;
+use super::random_stream::{clouds, floor, speckle};
 use super::sight_lines::SightLines;
 
 /// How a ceiling is lit, as a share of the floor.
@@ -20,7 +20,7 @@ pub(super) enum Surface {
     Wall(u32, WallPart),
     Ceiling,
     Lamp,
-    Robot(super::body::Part),
+    Robot(super::body::RobotPart),
     /// The holder around the mirror.
     Holder,
     /// Nothing: there is no building in this direction.
@@ -66,7 +66,7 @@ pub(super) struct WorldRay {
 
 /// Where a ray ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum End {
+pub(super) enum RayEnd {
     Floor { place: [f32; 2] },
     Wall { wall: u32, along: f32, height: f32 },
     Ceiling { place: [f32; 2] },
@@ -78,12 +78,12 @@ pub(super) type Footprint = [f32; 2];
 
 /// A building from one place.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(super) struct BuildingView<'a> {
     pub(super) building: &'a Building,
     pub(super) lines: &'a SightLines,
 }
 
-impl View<'_> {
+impl BuildingView<'_> {
     /// How far a ray goes as far as the first wall, and which wall that is.
     #[inline]
     fn wall(&self, ray: &WorldRay) -> Option<(f32, u32, f32)> {
@@ -105,18 +105,18 @@ impl View<'_> {
 
     /// Where a ray ends, given the first wall on its way.
     #[inline]
-    fn end(ray: &WorldRay, wall: Option<(f32, u32, f32)>) -> End {
+    fn end(ray: &WorldRay, wall: Option<(f32, u32, f32)>) -> RayEnd {
         let (origin, direction) = (ray.origin, ray.direction);
         let level = if direction[2] < 0.0 { 0.0 } else { HEIGHT };
         let length = (level - origin[2]) / direction[2];
         match wall {
             Some((before, wall, along)) if before <= length || direction[2] == 0.0 => {
-                End::Wall { wall, along, height: origin[2] + before * direction[2] }
+                RayEnd::Wall { wall, along, height: origin[2] + before * direction[2] }
             }
-            _ if direction[2] == 0.0 => End::Nothing,
+            _ if direction[2] == 0.0 => RayEnd::Nothing,
             _ => {
                 let place = [0, 1].map(|axis| origin[axis] + length * direction[axis]);
-                if direction[2] < 0.0 { End::Floor { place } } else { End::Ceiling { place } }
+                if direction[2] < 0.0 { RayEnd::Floor { place } } else { RayEnd::Ceiling { place } }
             }
         }
     }
@@ -125,13 +125,13 @@ impl View<'_> {
     #[inline]
     pub(super) fn surface(&self, ray: &WorldRay) -> Surface {
         match Self::end(ray, self.wall(ray)) {
-            End::Floor { place } => self.on_floor(place),
-            End::Wall { wall, along, height } => {
+            RayEnd::Floor { place } => self.on_floor(place),
+            RayEnd::Wall { wall, along, height } => {
                 let face = &self.building.faces[wall as usize];
                 Surface::Wall(wall, self.building.wall_part(face, along, height))
             }
-            End::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE).0,
-            End::Nothing => Surface::Nothing,
+            RayEnd::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE).0,
+            RayEnd::Nothing => Surface::Nothing,
         }
     }
 
@@ -144,7 +144,7 @@ impl View<'_> {
     ) -> (Surface, [f32; 3]) {
         let wall = self.wall(ray);
         match Self::end(ray, wall) {
-            End::Floor { place } => {
+            RayEnd::Floor { place } => {
                 let surface = self.on_floor(place);
                 let mut colour = match surface {
                     Surface::Marker => self.building.colours.marker,
@@ -158,9 +158,9 @@ impl View<'_> {
                 }
                 (surface, colour)
             }
-            End::Wall { wall, along, height } => self.on_wall(wall, along, height),
-            End::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE),
-            End::Nothing => (Surface::Nothing, [0.2; 3]),
+            RayEnd::Wall { wall, along, height } => self.on_wall(wall, along, height),
+            RayEnd::Ceiling { place } => self.on_ceiling(place, LAMP_EDGE),
+            RayEnd::Nothing => (Surface::Nothing, [0.2; 3]),
         }
     }
 
@@ -184,8 +184,8 @@ impl View<'_> {
             return building.colours.floor;
         }
         let shade = match building.look.floor {
-            Floor::Plain => 1.0,
-            Floor::Tiled { sides, joint, joint_shade } => {
+            FloorCovering::Plain => 1.0,
+            FloorCovering::Tiled { sides, joint, joint_shade } => {
                 let [radial, across] = footprint();
                 let [x, y] = [ray.direction[0].abs(), ray.direction[1].abs()];
                 let level = (x * x + y * y).sqrt().max(1e-6);
@@ -201,7 +201,7 @@ impl View<'_> {
                 (1.0 + 0.03 * strength * tile * faint)
                     * (1.0 + joints * strength * (joint_shade as f32 - 1.0))
             }
-            Floor::Carpet { tuft, spread } => {
+            FloorCovering::Carpet { tuft, spread } => {
                 let [radial, across] = footprint();
                 let (tuft, spread) = (tuft as f32, spread as f32 * strength);
                 // Where a pixel holds many tufts, it shows what they are on average.

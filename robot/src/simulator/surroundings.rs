@@ -4,7 +4,7 @@ use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
 use super::{
     squares::Squares,
-    walls::{Wall, walls},
+    walls::{BuildingWall, walls},
 };
 use crate::{
     pose::Pose,
@@ -68,7 +68,7 @@ impl Surroundings {
     }
 }
 
-fn rectangle(wall: &Wall) -> Rectangle {
+fn rectangle(wall: &BuildingWall) -> Rectangle {
     let [least, greatest] = wall.span.map(|at| wall.foot(at));
     Rectangle { least, greatest }
 }

@@ -7,7 +7,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// A straight wall along an axis, with floor on one side of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct BuildingWall {
     /// Along which axis it runs: 0 for x, 1 for y.
     pub along: usize,
     /// Where it stands on the other axis, in metres.
@@ -20,7 +20,7 @@ pub struct Wall {
     pub juts: [bool; 2],
 }
 
-impl Wall {
+impl BuildingWall {
     /// How long it is, in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
@@ -36,9 +36,10 @@ impl Wall {
 
 /// The walls around a union of rectangles, those along x first, in order of plane and beginning.
 #[must_use]
-pub fn walls(plan: &FloorPlan) -> Vec<Wall> {
+pub fn walls(plan: &FloorPlan) -> Vec<BuildingWall> {
     let floors: Vec<Rectangle> = plan.floor().collect();
-    let mut walls: Vec<Wall> = (0..2).flat_map(|along| walls_along(&floors, along)).collect();
+    let mut walls: Vec<BuildingWall> =
+        (0..2).flat_map(|along| walls_along(&floors, along)).collect();
     for wall in &mut walls {
         wall.juts = [0, 1].map(|end| juts(wall, end, &floors));
     }
@@ -47,11 +48,11 @@ pub fn walls(plan: &FloorPlan) -> Vec<Wall> {
 
 /// The walls along one axis. On every line on which a rectangle ends, each stretch between two
 /// rectangles' corners has floor on both sides, on neither, or on one: then it is wall.
-fn walls_along(floors: &[Rectangle], along: usize) -> Vec<Wall> {
+fn walls_along(floors: &[Rectangle], along: usize) -> Vec<BuildingWall> {
     let across = 1 - along;
     let ends = |axis: usize, floor: &Rectangle| [floor.least[axis], floor.greatest[axis]];
     let planes = distinct(floors.iter().flat_map(|floor| ends(across, floor)).collect());
-    let mut walls: Vec<Wall> = Vec::new();
+    let mut walls: Vec<BuildingWall> = Vec::new();
     for plane in planes {
         let touching: Vec<&Rectangle> = floors
             .iter()
@@ -83,7 +84,7 @@ fn walls_along(floors: &[Rectangle], along: usize) -> Vec<Wall> {
                 {
                     wall.span[1] = cut[1];
                 }
-                _ => walls.push(Wall {
+                _ => walls.push(BuildingWall {
                     along,
                     plane,
                     floor_side,
@@ -97,7 +98,7 @@ fn walls_along(floors: &[Rectangle], along: usize) -> Vec<Wall> {
 }
 
 /// Whether there is floor just beyond an end of a wall and just behind its plane.
-fn juts(wall: &Wall, end: usize, floors: &[Rectangle]) -> bool {
+fn juts(wall: &BuildingWall, end: usize, floors: &[Rectangle]) -> bool {
     let outwards = if end == 0 { -1.0 } else { 1.0 };
     let mut beyond = wall.foot(wall.span[end] + outwards * 2.0 * TOLERANCE);
     beyond[1 - wall.along] -= wall.floor_side * 2.0 * TOLERANCE;

@@ -8,8 +8,8 @@ use image::RgbImage;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::{
-    evaluation::{learned, views::Views},
-    simulator::{Building, Effects, Look, Pose, Rig, render},
+    evaluation::{learned, view_sampler::ViewSampler},
+    simulator::{Building, BuildingLook, Effects, Pose, Rig, render},
 };
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 
@@ -36,8 +36,8 @@ fn taken(sensor: &mut Sensor, pictures: &[RgbImage], rounds: u32) -> (usize, usi
 pub(crate) fn no_frame_takes_more_memory_than_the_frames_before_it() {
     let camera = Camera::superscout().sized([640, 480]);
     let rig = Rig::new(&camera);
-    let look = Look::named("laboratory").unwrap();
-    let views = Views::of([look], camera.image, 1).unwrap();
+    let look = BuildingLook::named("laboratory").unwrap();
+    let views = ViewSampler::of([look], camera.image, 1).unwrap();
     let colours = learned(&views, look, &camera, &rig).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(1));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 1);

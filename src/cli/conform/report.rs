@@ -17,7 +17,7 @@ use toposlam_robot::{
     conform::{
         ConformVerdict, Divergence, DivergenceCause, Event, Evidence, Kind, Perceived, Quirks,
     },
-    evaluation::class::FORMS,
+    evaluation::scene_class::FORMS,
 };
 
 use super::{Judged, minimise::Minimised};

@@ -19,7 +19,7 @@ use toposlam_robot::{
     explorer::{Explorer, Observer, Round},
     log::{messages, recorder, world_hash, writer::LogWriteError},
     robot::{Robot, RobotError},
-    ros1::{LiveRobot, Topics},
+    ros1::{LiveRobot, RobotTopics},
 };
 use toposlam_vision::{
     camera::{Camera, calibration},
@@ -61,7 +61,7 @@ impl Arguments {
         let told = !self.json && io::stdout().is_terminal();
         let progress = Rc::new(if told { progress.hidden() } else { progress });
         let stop = progress.clone();
-        let topics = Topics {
+        let topics = RobotTopics {
             master: self.ros.clone(),
             pictures: self.image_topic.clone(),
             odometry: self.odom_topic.clone(),

@@ -4,9 +4,11 @@
 use std::{io::Write, time::Instant};
 
 use serde_json::json;
-use toposlam_robot::evaluation::control::{JudgedTraversal, Outcome as Made, Traversals};
+use toposlam_robot::evaluation::traversals::{
+    JudgedTraversal, TraversalOutcome as Made, TraversalSampler,
+};
 
-use super::robots::{Random, Robots, failed, share, share_json};
+use super::robots::{RandomPlans, RobotArguments, failed, share, share_json};
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
@@ -28,7 +30,7 @@ Examples:
   toposlam evaluate control --plan worlds/shape-6.toml --noise 2 --json
 
 Exit codes: 0 each traversal is right, 1 one is not, 2 bad usage or input, 3 not all were made.")]
-pub(super) struct Arguments {
+pub(super) struct EvaluateControlArguments {
     /// How many traversals: all doors of all junctions, again and again
     #[arg(long, default_value_t = 20_000, value_name = "N")]
     traversals: u64,
@@ -36,14 +38,14 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 40, value_name = "N")]
     plans: u64,
     #[command(flatten)]
-    robots: Robots,
+    robots: RobotArguments,
 }
 
-impl Arguments {
+impl EvaluateControlArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.robots.threads)?;
-        let plans = self.robots.plans(Random::Any(self.plans), usize::MAX)?;
-        let traversals = Traversals::new(plans, self.robots.seed, self.robots.noise);
+        let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
+        let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
         let eyes = self.robots.eyes()?;
         let begun = Instant::now();
         let progress = Progress::new("traversals", "traversals")?;
@@ -67,7 +69,7 @@ impl Arguments {
     fn tell(
         &self,
         judged: &[JudgedTraversal],
-        traversals: &Traversals,
+        traversals: &TraversalSampler,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         let doors = grouped(traversals.cases() as u128);
@@ -95,7 +97,7 @@ impl Arguments {
     fn tell_json(
         &self,
         judged: &[JudgedTraversal],
-        traversals: &Traversals,
+        traversals: &TraversalSampler,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
@@ -125,7 +127,7 @@ fn tally(judged: &[JudgedTraversal]) -> (usize, usize) {
 
 fn named(judged: &JudgedTraversal) -> String {
     let traversal = &judged.traversal;
-    let plan = &traversal.setting.plan;
+    let plan = &traversal.config.plan;
     let graph = plan.graph();
     let junction = |dart| &plan.junction(graph.vertex(dart)).name;
     format!(

@@ -9,11 +9,11 @@ use toposlam_model::{
 };
 use toposlam_robot::evaluation::{
     calibration::Calibration,
-    class::Class,
-    judged::{Judged, JudgedVisit, Zone},
-    judging::Judge,
-    verdict::{MarkerVerdict, Verdict},
-    view::View,
+    judge::Judge,
+    judged_view::{JudgedView, JudgedVisit, Zone},
+    rendered_view::RenderedView,
+    scene_class::SceneClass,
+    verdict::{MarkerVerdict, PlaceVerdict},
 };
 use toposlam_robot::truth::{JunctionTruth, Truth};
 
@@ -29,7 +29,7 @@ const MOST: usize = 40;
 pub(super) fn write(
     folder: &Path,
     judge: &Judge,
-    views: &[Judged],
+    views: &[JudgedView],
     visits: &[JudgedVisit],
     calibration: Calibration,
 ) -> Result<String, Failure> {
@@ -63,10 +63,10 @@ pub(super) fn write(
 }
 
 /// Whether a view is one that should be looked at: not right where it should be, or wrong anywhere.
-fn fails(judged: &Judged) -> bool {
+fn fails(judged: &JudgedView) -> bool {
     let asked = matches!(judged.zone(), Zone::Hallway | Zone::Before);
     judged.verdict.is_wrong()
-        || asked && judged.verdict == Verdict::Unknown
+        || asked && judged.verdict == PlaceVerdict::Unknown
         || judged.marker == MarkerVerdict::Phantom
 }
 
@@ -74,7 +74,7 @@ fn fails(judged: &Judged) -> bool {
 pub(super) fn write_view(
     folder: &Path,
     judge: &Judge,
-    judged: &Judged,
+    judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), Failure> {
     let name = format!("view-{:05}{}", judged.view.number, mark(calibration));
@@ -84,7 +84,7 @@ pub(super) fn write_view(
 fn write_steps(
     folder: &Path,
     judge: &Judge,
-    judged: &Judged,
+    judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), Failure> {
     output::make_folder(folder)?;
@@ -102,7 +102,7 @@ fn write_steps(
 }
 
 /// The floor plan of a view, as a world that starts at the marker.
-fn plan_of(view: &View) -> NamedWorld {
+fn plan_of(view: &RenderedView) -> NamedWorld {
     let plan = FloorPlan::clone(&view.plan);
     let about = format!("The floor plan of view {}", view.number);
     let names = plan.junctions().iter().map(|junction| junction.name.clone()).collect();
@@ -120,7 +120,7 @@ fn mark(calibration: Calibration) -> &'static str {
 /// Prints one view for people: what it is, what was answered, and how that compares.
 pub(super) fn print(
     out: &mut dyn Write,
-    judged: &Judged,
+    judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), Failure> {
     print_line(out, judged, calibration, None)
@@ -128,7 +128,7 @@ pub(super) fn print(
 
 fn print_line(
     out: &mut dyn Write,
-    judged: &Judged,
+    judged: &JudgedView,
     calibration: Calibration,
     visit: Option<u64>,
 ) -> Result<(), Failure> {
@@ -168,7 +168,7 @@ struct MarkerLine {
 }
 
 impl<'a> Line<'a> {
-    fn new(judged: &'a Judged, calibration: Calibration, visit: Option<u64>) -> Self {
+    fn new(judged: &'a JudgedView, calibration: Calibration, visit: Option<u64>) -> Self {
         let view = &judged.view;
         let settings = view.effects.settings().into_iter();
         let junction = match &judged.truth {
@@ -203,7 +203,7 @@ impl<'a> Line<'a> {
             effects: settings.map(|(knob, value)| (knob.name, value)).collect(),
             truth,
             distance: junction.and_then(JunctionTruth::distance),
-            said: Class::of(&judged.scene).to_string(),
+            said: SceneClass::of(&judged.scene).to_string(),
             verdict: judged.verdict.to_string(),
             answer: SceneLine::from(&judged.scene),
         }

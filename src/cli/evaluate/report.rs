@@ -6,12 +6,12 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use toposlam_robot::evaluation::{
     calibration::Calibration,
-    causes::Group,
-    class::Class,
+    failure_groups::FailureGroup,
     quantile::Quantile,
-    report::{Errors, Rate, Report, Standing, Unit},
-    view::WhichEffects,
-    views::Views,
+    rendered_view::WhichEffects,
+    report::{ErrorUnit, Errors, Rate, TargetStatus, VisionReport},
+    scene_class::SceneClass,
+    view_sampler::ViewSampler,
 };
 
 use crate::cli::{
@@ -22,10 +22,10 @@ use crate::cli::{
 };
 
 /// What is measured.
-pub(super) struct Header<'a> {
+pub(super) struct EvaluationHeader<'a> {
     pub(super) views: u64,
     pub(super) visits: u64,
-    pub(super) source: &'a Views,
+    pub(super) source: &'a ViewSampler,
 }
 
 /// Prints as it goes.
@@ -44,8 +44,8 @@ impl<'o> Printer<'o> {
         Self { out, json, missed: 0, empty: 0 }
     }
 
-    pub(super) fn header(&mut self, header: &Header) -> Result<(), Failure> {
-        let Header { views, visits, source } = header;
+    pub(super) fn header(&mut self, header: &EvaluationHeader) -> Result<(), Failure> {
+        let EvaluationHeader { views, visits, source } = header;
         let sizes: Vec<_> =
             source.sizes.iter().map(|[width, height]| format!("{width}x{height}")).collect();
         let mut plans: Vec<_> = source.plans.iter().map(|(name, _)| name.as_str()).collect();
@@ -76,11 +76,11 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    pub(super) fn report(&mut self, report: &Report) -> Result<(), Failure> {
+    pub(super) fn report(&mut self, report: &VisionReport) -> Result<(), Failure> {
         let standings = report.rates.iter().map(Rate::standing);
         for standing in standings.chain(report.errors.iter().map(Errors::standing)) {
-            self.missed += usize::from(standing == Standing::Missed);
-            self.empty += usize::from(standing == Standing::Empty);
+            self.missed += usize::from(standing == TargetStatus::Missed);
+            self.empty += usize::from(standing == TargetStatus::Empty);
         }
         if self.json {
             return self.report_lines(report);
@@ -110,7 +110,7 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    fn report_lines(&mut self, report: &Report) -> Result<(), Failure> {
+    fn report_lines(&mut self, report: &VisionReport) -> Result<(), Failure> {
         let calibration = name(report.calibration);
         for rate in &report.rates {
             let line = RateLine {
@@ -124,7 +124,7 @@ impl<'o> Printer<'o> {
                 rate: rate.rate(),
                 upper_bound: rate.upper_bound(),
                 limit: rate.limit,
-                met: rate.limit.map(|_| rate.standing() == Standing::Met),
+                met: rate.limit.map(|_| rate.standing() == TargetStatus::Met),
             };
             print_object(self.out, &line)?;
         }
@@ -133,7 +133,7 @@ impl<'o> Printer<'o> {
             let [median, p95, p99, most] = Quantile::ALL.map(|quantile| errors.quantile(quantile));
             let limits =
                 errors.limits.iter().map(|&(quantile, limit)| json!([quantile.part(), limit]));
-            let met = (!errors.limits.is_empty()).then(|| errors.standing() == Standing::Met);
+            let met = (!errors.limits.is_empty()).then(|| errors.standing() == TargetStatus::Met);
             let line = ErrorsLine {
                 schema: 1,
                 kind: "errors",
@@ -163,9 +163,9 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    pub(super) fn groups(&mut self, groups: &[Group]) -> Result<(), Failure> {
+    pub(super) fn groups(&mut self, groups: &[FailureGroup]) -> Result<(), Failure> {
         if self.json {
-            for Group { by, what, failed, of, .. } in groups {
+            for FailureGroup { by, what, failed, of, .. } in groups {
                 let line = json!({
                     "schema": 1, "kind": "failures", "by": by, "what": what, "failed": failed, "of": of,
                 });
@@ -247,18 +247,18 @@ struct ErrorsLine<'a> {
     met: Option<bool>,
 }
 
-fn group_row(group: &Group) -> [String; 5] {
-    let Group { by, what, failed, of, .. } = group;
+fn group_row(group: &FailureGroup) -> [String; 5] {
+    let FailureGroup { by, what, failed, of, .. } = group;
     let name = (*by).to_owned();
     [name, what.clone(), format!("{failed:>6}"), format!("{of:>7}"), percent(group.rate())]
 }
 
 /// By how much the rates of two groups differ.
-fn difference([below, above]: &[&Group; 2]) -> f64 {
+fn difference([below, above]: &[&FailureGroup; 2]) -> f64 {
     (above.rate() - below.rate()).abs()
 }
 
-fn pair_row([below, above]: [&Group; 2]) -> [String; 4] {
+fn pair_row([below, above]: [&FailureGroup; 2]) -> [String; 4] {
     let rates = [below, above].map(|group| percent(group.rate()));
     let [below_rate, above_rate] = rates;
     [below.by.to_owned(), below.what.clone(), below_rate, above_rate]
@@ -293,8 +293,8 @@ fn errors_row(errors: &Errors) -> [String; 9] {
     [subject, what, cases, median, p95, p99, most, target, standing(asked)]
 }
 
-fn confusion(out: &mut dyn Write, report: &Report) -> io::Result<()> {
-    let classes: Vec<_> = Class::all().collect();
+fn confusion(out: &mut dyn Write, report: &VisionReport) -> io::Result<()> {
+    let classes: Vec<_> = SceneClass::all().collect();
     write!(out, "  {:<14}", "")?;
     for class in &classes {
         write!(out, "  {class:>8}", class = short(*class))?;
@@ -313,17 +313,17 @@ fn confusion(out: &mut dyn Write, report: &Report) -> io::Result<()> {
 }
 
 /// The name of a class, in eight letters.
-fn short(class: Class) -> String {
+fn short(class: SceneClass) -> String {
     let name = class.to_string().replace("t-stem-", "t-st-").replace("t-by-stem", "t-stem");
     name.chars().take(8).collect()
 }
 
-fn standing(standing: Option<Standing>) -> String {
+fn standing(standing: Option<TargetStatus>) -> String {
     match standing {
         None => String::new(),
-        Some(Standing::Met) => "met".to_owned(),
-        Some(Standing::Empty) => "no case".to_owned(),
-        Some(Standing::Missed) => "missed".to_owned(),
+        Some(TargetStatus::Met) => "met".to_owned(),
+        Some(TargetStatus::Empty) => "no case".to_owned(),
+        Some(TargetStatus::Missed) => "missed".to_owned(),
     }
 }
 
@@ -343,10 +343,10 @@ fn called(quantile: Quantile) -> &'static str {
 }
 
 /// A unit's name, and its sign.
-fn unit(unit: Unit) -> (&'static str, &'static str) {
+fn unit(unit: ErrorUnit) -> (&'static str, &'static str) {
     match unit {
-        Unit::Degrees => ("degrees", "deg"),
-        Unit::Centimetres => ("centimetres", "cm"),
+        ErrorUnit::Degrees => ("degrees", "deg"),
+        ErrorUnit::Centimetres => ("centimetres", "cm"),
     }
 }
 

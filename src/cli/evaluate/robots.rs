@@ -6,12 +6,12 @@ use serde_json::json;
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_robot::{
     evaluation::{
-        Eyes,
+        LearnedSensors,
         bound::upper_bound,
         plans,
         random_plan::{random_plan, random_plan_with},
     },
-    simulator::{LOOKS, Look},
+    simulator::{BuildingLook, LOOKS},
 };
 use toposlam_vision::camera::Camera;
 
@@ -19,13 +19,13 @@ use super::vision::{read_plan, unmeasured};
 use crate::cli::{
     Failure, noise,
     progress::Progress,
-    render::{Size, looks},
+    render::{ImageSize, looks},
     text::grouped,
 };
 
 /// Which robots, and where.
 #[derive(clap::Args)]
-pub(super) struct Robots {
+pub(super) struct RobotArguments {
     /// From which everything follows that is left to chance
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) seed: u64,
@@ -38,10 +38,10 @@ pub(super) struct Robots {
     images: bool,
     /// With --images: width and height of the pictures
     #[arg(long, value_name = "SIZE", default_value = "640x480")]
-    size: Size,
+    size: ImageSize,
     /// With --images: what the buildings look like; may be given more than once [default: every look]
     #[arg(long, value_name = "NAME", value_parser = looks())]
-    look: Vec<&'static Look>,
+    look: Vec<&'static BuildingLook>,
     /// How inexact wheels and odometry are, and without images sensing: 0 not at all, 1 as by default
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
     pub(super) noise: f64,
@@ -54,28 +54,32 @@ pub(super) struct Robots {
 }
 
 /// A plan with its name.
-pub(super) type Named = (String, Arc<FloorPlan>);
+pub(super) type NamedPlan = (String, Arc<FloorPlan>);
 
 /// Which plans nobody drew.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Random {
+pub(super) enum RandomPlans {
     /// Any, so many.
     Any(u64),
     /// So many, with from 5 to 25 junctions in turn.
     Large(u64),
 }
 
-impl Robots {
+impl RobotArguments {
     /// The plans: those given, or those of `worlds/` with at most so many junctions, and random ones.
-    pub(super) fn plans(&self, random: Random, most: usize) -> Result<Vec<Named>, Failure> {
+    pub(super) fn plans(
+        &self,
+        random: RandomPlans,
+        most: usize,
+    ) -> Result<Vec<NamedPlan>, Failure> {
         if !self.plan.is_empty() {
             return self.plan.iter().map(|path| read_plan(path)).collect();
         }
         let mut named = plans().map_err(unmeasured)?;
         named.retain(|(_, plan)| plan.junctions().len() <= most);
         let (count, size): (u64, fn(u64) -> Option<usize>) = match random {
-            Random::Any(count) => (count, |_| None),
-            Random::Large(count) => (count, |number| Some(5 + (number % 21) as usize)),
+            RandomPlans::Any(count) => (count, |_| None),
+            RandomPlans::Large(count) => (count, |number| Some(5 + (number % 21) as usize)),
         };
         for number in 0..count {
             let seed = self.seed.wrapping_mul(1_000_003).wrapping_add(number);
@@ -89,14 +93,14 @@ impl Robots {
     }
 
     /// Cameras and sensing, where there are pictures.
-    pub(super) fn eyes(&self) -> Result<Option<Eyes>, Failure> {
+    pub(super) fn eyes(&self) -> Result<Option<LearnedSensors>, Failure> {
         if !self.images {
             return Ok(None);
         }
         let looks = if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() };
         let progress = Progress::new("learning colours", "looks")?;
         let camera = Camera::superscout().sized(self.size.pixels());
-        let eyes = Eyes::new(&camera, &looks, &progress);
+        let eyes = LearnedSensors::new(&camera, &looks, &progress);
         progress.finish();
         eyes.map(Some).map_err(unmeasured)
     }

@@ -5,12 +5,12 @@ use std::{io::Write, time::Instant};
 
 use serde_json::json;
 use toposlam_robot::{
-    evaluation::runs::{Faults, JudgedRun, Runs},
+    evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
     run::Ending,
     simulator::{FAULTS, FaultKind},
 };
 
-use super::robots::{Random, Robots, failed, share, share_json};
+use super::robots::{RandomPlans, RobotArguments, failed, share, share_json};
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
@@ -36,7 +36,7 @@ With --faults a run may also be given up, if the robot says what was contradicto
 if a robot that was carried, unseen, to a place that looks and goes on alike has a wrong map.
 
 Exit codes: 0 each run is right, 1 one is not, 2 bad usage or input, 3 not all were made.")]
-pub(super) struct Arguments {
+pub(super) struct EvaluateRunsArguments {
     /// How many random plans, with 5 to 25 junctions, where no plan is given; with --images any
     #[arg(long, default_value_t = 200, value_name = "N")]
     plans: u64,
@@ -50,25 +50,25 @@ pub(super) struct Arguments {
     #[arg(long)]
     faults: bool,
     #[command(flatten)]
-    robots: Robots,
+    robots: RobotArguments,
 }
 
 /// With pictures, plans have no more junctions: else a run takes minutes.
 const MOST_WITH_IMAGES: usize = 12;
 
-impl Arguments {
+impl EvaluateRunsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.robots.threads)?;
         let eyes = self.robots.eyes()?;
         let (random, most) = match eyes {
-            None => (Random::Large(self.plans), usize::MAX),
-            Some(_) => (Random::Any(self.plans), MOST_WITH_IMAGES),
+            None => (RandomPlans::Large(self.plans), usize::MAX),
+            Some(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
         };
         let plans = self.robots.plans(random, most)?;
         let count = plans.len();
         let faults = if self.faults { Faults::Each } else { Faults::None };
-        let Robots { seed, noise, json, .. } = self.robots;
-        let runs = Runs::new(plans, self.starts, faults, seed, noise);
+        let RobotArguments { seed, noise, json, .. } = self.robots;
+        let runs = RunSampler::new(plans, self.starts, faults, seed, noise);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
@@ -143,7 +143,7 @@ impl Arguments {
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for run in judged {
-            let fault = run.case.setting.faults.first();
+            let fault = run.case.config.faults.first();
             let line = json!({
                 "schema": 1, "kind": "run", "run": run.case.number, "plan": run.case.plan_name,
                 "fault": fault.map(|fault| fault.kind.name()),
@@ -194,7 +194,7 @@ fn row(judged: &[JudgedRun], kind: FaultKind) -> [String; 5] {
 }
 
 fn named(run: &JudgedRun) -> String {
-    let fault = run.case.setting.faults.first();
+    let fault = run.case.config.faults.first();
     let fault = fault
         .map_or_else(String::new, |fault| format!(", {}@{}", fault.kind.name(), fault.picture));
     format!("run {}, {}{fault}", run.case.number, run.case.plan_name)

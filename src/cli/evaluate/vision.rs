@@ -11,26 +11,26 @@ use toposlam_model::floor_plan::FloorPlan;
 use toposlam_robot::{
     evaluation::{
         calibration::Calibration,
-        causes::groups,
-        judged::{Judged, JudgedVisit},
-        judging::Judge,
+        failure_groups::groups,
+        judge::Judge,
+        judged_view::{JudgedView, JudgedVisit},
         plans,
-        report::{Report, Standing},
-        view::WhichEffects,
-        views::Views,
+        rendered_view::WhichEffects,
+        report::{TargetStatus, VisionReport},
+        view_sampler::ViewSampler,
     },
-    simulator::{LOOKS, Look},
+    simulator::{BuildingLook, LOOKS},
 };
 use toposlam_vision::camera::Camera;
 
 use super::{
     failing,
-    report::{Header, Printer},
+    report::{EvaluationHeader, Printer},
 };
 use crate::cli::{
     Failure, Outcome, input, output,
     progress::Progress,
-    render::{Size, Which, looks},
+    render::{EffectsChoice, ImageSize, looks},
     use_threads,
 };
 
@@ -50,7 +50,7 @@ Examples:
   toposlam evaluate vision --view 17 --out seventeen         one view, step by step
 
 Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 not all was measured.")]
-pub(super) struct Arguments {
+pub(super) struct EvaluateVisionArguments {
     /// How many views
     #[arg(long, default_value_t = 1000, value_name = "N")]
     views: u64,
@@ -62,16 +62,16 @@ pub(super) struct Arguments {
     seed: u64,
     /// Width and height of the pictures [default: 1280x960 and 640x480 in turn]
     #[arg(long, value_name = "SIZE")]
-    size: Option<Size>,
+    size: Option<ImageSize>,
     /// What the buildings look like; may be given more than once [default: every look]
     #[arg(long, value_name = "NAME", value_parser = looks())]
-    look: Vec<&'static Look>,
+    look: Vec<&'static BuildingLook>,
     /// Floor plans; may be given more than once [default: those of worlds/, and random ones]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     plan: Vec<PathBuf>,
     /// Which effects there are
     #[arg(long, default_value = "default", value_name = "WHICH")]
-    effects: Which,
+    effects: EffectsChoice,
     /// Measure all views and visits again with a camera that is not as its calibration says: 5 pixels,
     /// 2 cm and 1 degree off
     #[arg(long)]
@@ -90,7 +90,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-impl Arguments {
+impl EvaluateVisionArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
         if let Some(folder) = &self.out {
@@ -103,13 +103,13 @@ impl Arguments {
         }
     }
 
-    fn all(&self, views: &Views, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let begun = Instant::now();
         let calibrations = self.calibrations();
         let judge = judge(views, calibrations)?;
         let visits = self.visits.unwrap_or(self.views / 20);
         let mut printer = Printer::new(out, self.json);
-        printer.header(&Header { views: self.views, visits, source: views })?;
+        printer.header(&EvaluationHeader { views: self.views, visits, source: views })?;
         let mut standings = Vec::new();
         let mut interrupted = false;
         for &calibration in calibrations {
@@ -117,7 +117,7 @@ impl Arguments {
             let missing =
                 (judged.len() as u64) < self.views || (judged_visits.len() as u64) < visits;
             interrupted |= missing;
-            let report = Report::of(&judged, &judged_visits, calibration);
+            let report = VisionReport::of(&judged, &judged_visits, calibration);
             printer.report(&report)?;
             if calibration == Calibration::Right {
                 printer.groups(&groups(&judged))?;
@@ -128,11 +128,11 @@ impl Arguments {
                 eprintln!("{written} in {}", folder.display());
             }
         }
-        let standing = standings.into_iter().max().unwrap_or(Standing::Empty);
+        let standing = standings.into_iter().max().unwrap_or(TargetStatus::Empty);
         let outcome = match standing {
-            Standing::Missed => Outcome::Violated,
-            Standing::Met if !interrupted => Outcome::Holds,
-            Standing::Met | Standing::Empty => Outcome::Incomplete,
+            TargetStatus::Missed => Outcome::Violated,
+            TargetStatus::Met if !interrupted => Outcome::Holds,
+            TargetStatus::Met | TargetStatus::Empty => Outcome::Incomplete,
         };
         printer.verdict(outcome, interrupted)?;
         let threads = rayon::current_num_threads();
@@ -143,10 +143,10 @@ impl Arguments {
     fn measure(
         &self,
         judge: &Judge,
-        views: &Views,
+        views: &ViewSampler,
         visits: u64,
         calibration: Calibration,
-    ) -> Result<(Vec<Judged>, Vec<JudgedVisit>), Failure> {
+    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), Failure> {
         let calibrated = match calibration {
             Calibration::Right => "",
             Calibration::Wrong => ", badly calibrated",
@@ -162,10 +162,16 @@ impl Arguments {
     }
 
     /// Just one view.
-    fn one(&self, views: &Views, number: u64, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn one(
+        &self,
+        views: &ViewSampler,
+        number: u64,
+        out: &mut dyn Write,
+    ) -> Result<Outcome, Failure> {
         let view = views.view(number).map_err(unmeasured)?;
         // Only what this view needs.
-        let views = Views { sizes: vec![view.image], looks: vec![view.look], ..views.clone() };
+        let views =
+            ViewSampler { sizes: vec![view.image], looks: vec![view.look], ..views.clone() };
         let calibrations = self.calibrations();
         let judge = judge(&views, calibrations)?;
         let mut outcome = Outcome::Holds;
@@ -191,26 +197,26 @@ impl Arguments {
     }
 
     /// Where the views come from.
-    fn source(&self) -> Result<Views, Failure> {
+    fn source(&self) -> Result<ViewSampler, Failure> {
         let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Views {
+        Ok(ViewSampler {
             seed: self.seed,
             random_plans: given.is_empty(),
             plans: if given.is_empty() { plans().map_err(unmeasured)? } else { given },
             looks: if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() },
             sizes: match self.size {
                 Some(size) => vec![size.pixels()],
-                None => vec![Size::Large.pixels(), Size::Small.pixels()],
+                None => vec![ImageSize::Large.pixels(), ImageSize::Small.pixels()],
             },
             effects: match self.effects {
-                Which::Default => WhichEffects::Default,
-                Which::None => WhichEffects::None,
+                EffectsChoice::Default => WhichEffects::Default,
+                EffectsChoice::None => WhichEffects::None,
             },
         })
     }
 }
 
-fn judge(views: &Views, calibrations: &[Calibration]) -> Result<Judge, Failure> {
+fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Failure> {
     let progress = Progress::new("learning colours", "looks")?;
     let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
     progress.finish();

@@ -28,7 +28,7 @@ use toposlam_robot::{
     pose::Pose,
     recording::Recording,
     run::Run,
-    simulator::{Camera, SimulatedRobot, ToldScene},
+    simulator::{SimulatedCamera, SimulatedRobot, ToldScene},
 };
 use toposlam_vision::{annotate, camera, image_file::ImageFile};
 
@@ -159,7 +159,7 @@ impl<V: Shown> Watching<V> {
     }
 }
 
-impl<C: Camera> Observer<SimulatedRobot<C>> for Watching<C::View>
+impl<C: SimulatedCamera> Observer<SimulatedRobot<C>> for Watching<C::View>
 where
     C::View: Shown + Photograph,
 {

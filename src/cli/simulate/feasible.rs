@@ -10,8 +10,8 @@ use toposlam_model::{
     percept::Door,
 };
 use toposlam_robot::{
-    evaluation::{Eyes, runs::starts_of},
-    simulator::{Building, Effects, Look, Pose, render},
+    evaluation::{LearnedSensors, run_sampler::starts_of},
+    simulator::{Building, BuildingLook, Effects, Pose, render},
     superscout::{CLEARANCE, RADIUS},
     truth::angle,
 };
@@ -69,8 +69,8 @@ pub(super) fn check(
 pub(super) fn check_marker(
     plan: &FloorPlan,
     facing: Dart,
-    eyes: &Eyes,
-    look: &'static Look,
+    eyes: &LearnedSensors,
+    look: &'static BuildingLook,
 ) -> Result<(), Failure> {
     let effects = Effects { body: 1.0, ..Effects::plain() };
     let building = Building::new(plan, look, Some(facing), &effects, 0);

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use toposlam_model::enumerate::Watch;
 use toposlam_robot::{
-    ros1::{Served, Topics, serve},
+    ros1::{RobotTopics, ServeSummary, serve},
     simulator::{RenderingCamera, SimulatedRobot},
 };
 
@@ -20,14 +20,14 @@ pub(super) fn run(
     out: &mut dyn Write,
 ) -> Result<Outcome, Failure> {
     let progress = Progress::endless("serving", "pictures")?.hidden();
-    let topics = Topics::usual(master);
-    let Topics { wheels, odometry, pictures, .. } = &topics;
+    let topics = RobotTopics::usual(master);
+    let RobotTopics { wheels, odometry, pictures, .. } = &topics;
     writeln!(out, "A robot at {master}: {wheels} in, {odometry}, /tf and {pictures} out.")?;
     writeln!(out, "Ctrl-C ends it.")?;
     out.flush()?;
     let served = serve(robot, &topics, speed, || progress.stop());
     progress.finish();
-    let Served { seconds, real_seconds, pictures } =
+    let ServeSummary { seconds, real_seconds, pictures } =
         served.map_err(|error| Failure::at("--ros", error))?;
     writeln!(
         out,

@@ -9,7 +9,7 @@ use toposlam_vision::colour::{Class, Confusion, ExampleError, Stripe, StripeKind
 use crate::cli::{Failure, json::print_object, text::grouped, text::print_rows};
 
 /// What was learned from, and how well.
-pub(super) struct Report<'t> {
+pub(super) struct TrainingReport<'t> {
     pub(super) training: &'t Training,
     pub(super) left_out: Vec<LeftOut>,
     pub(super) stripe: Stripe,
@@ -30,7 +30,7 @@ pub(super) enum Validation {
     None { why: String },
 }
 
-impl Report<'_> {
+impl TrainingReport<'_> {
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let kind = match self.stripe.kind {
             StripeKind::OnFloor => "a tape on the floor",

@@ -13,9 +13,9 @@ use toposlam_model::{
 use super::*;
 use crate::{
     evaluation::{
+        rendered_view::{RenderedView, WhichEffects},
         verdict,
-        view::{View, WhichEffects},
-        views::Views,
+        view_sampler::ViewSampler,
     },
     simulator::LOOKS,
 };
@@ -23,17 +23,17 @@ use crate::{
 const L: JunctionShape = JunctionShape([true, true, false, false]);
 const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.0, left: 0.8, right: 0.8 };
 
-fn any_view() -> View {
-    let views = Views::of(&LOOKS, [640, 480], 0).unwrap();
-    let views = Views { effects: WhichEffects::None, ..views };
-    View { marker: None, ..views.view(0).unwrap() }
+fn any_view() -> RenderedView {
+    let views = ViewSampler::of(&LOOKS, [640, 480], 0).unwrap();
+    let views = ViewSampler { effects: WhichEffects::None, ..views };
+    RenderedView { marker: None, ..views.view(0).unwrap() }
 }
 
-fn judged(truth: &Truth, place: Place) -> Judged {
+fn judged(truth: &Truth, place: Place) -> JudgedView {
     let scene = Scene { place, marker: None };
     let verdict = verdict::judge(truth, &scene);
     let marker = MarkerVerdict::NotSeen;
-    Judged { view: any_view(), truth: truth.clone(), scene, verdict, marker }
+    JudgedView { view: any_view(), truth: truth.clone(), scene, verdict, marker }
 }
 
 fn corner(before: f64) -> Truth {
@@ -58,7 +58,7 @@ fn at_junction(doors: &[f64]) -> Place {
     Place::Junction(JunctionView { doors, turning_point, confidence: 1.0 })
 }
 
-fn rate(report: &Report, subject: Subject, what: &str) -> Rate {
+fn rate(report: &VisionReport, subject: ReportSubject, what: &str) -> Rate {
     let is_it = |rate: &&Rate| rate.subject == subject && rate.what == what;
     *report.rates.iter().find(is_it).unwrap()
 }
@@ -77,19 +77,19 @@ fn views_are_counted_where_they_are() {
         judged(&corner(-0.2), unknown),
         judged(&Truth::Between(HALLWAY, Vec::new()), in_hallway(0.0)),
     ];
-    let report = Report::of(&views, &[], Calibration::Right);
+    let report = VisionReport::of(&views, &[], Calibration::Right);
     let found = |subject, what| {
         let rate = rate(&report, subject, what);
         (rate.seen, rate.cases)
     };
-    assert_eq!(found(Subject::Hallway, "not called hallway"), (2, 4));
-    assert_eq!(found(Subject::Hallway, "called junction"), (1, 4));
-    assert_eq!(found(Subject::Junction, "kind and entry not right"), (1, 2));
-    assert_eq!(found(Subject::Junction, "kind or entry wrong"), (1, 2));
-    assert_eq!(found(Subject::Past, "kind and entry not right"), (1, 1));
-    assert_eq!(found(Subject::Between, "unknown"), (0, 1));
-    assert_eq!(found(Subject::Turned, "kind wrong"), (0, 0));
-    assert_eq!(report.standing(), Standing::Missed);
+    assert_eq!(found(ReportSubject::Hallway, "not called hallway"), (2, 4));
+    assert_eq!(found(ReportSubject::Hallway, "called junction"), (1, 4));
+    assert_eq!(found(ReportSubject::Junction, "kind and entry not right"), (1, 2));
+    assert_eq!(found(ReportSubject::Junction, "kind or entry wrong"), (1, 2));
+    assert_eq!(found(ReportSubject::Past, "kind and entry not right"), (1, 1));
+    assert_eq!(found(ReportSubject::Between, "unknown"), (0, 1));
+    assert_eq!(found(ReportSubject::Turned, "kind wrong"), (0, 0));
+    assert_eq!(report.standing(), TargetStatus::Missed);
     let error = |what| {
         let errors = report.errors.iter().find(|errors| errors.what == what).unwrap();
         (errors.sample.count(), errors.quantile(Quantile::Most).unwrap())
@@ -100,8 +100,8 @@ fn views_are_counted_where_they_are() {
     assert!(count == 4 && (most - 1.0).abs() < 1e-9, "{count} {most}");
     let (count, most) = error("place of a centre line");
     assert!(count == 2 && (most - 1.0).abs() < 1e-9, "{count} {most}");
-    let said = &report.confusion[&Class::Hallway];
-    assert_eq!((said[&Class::Hallway], said[&Class::Unknown]), (2, 1));
+    let said = &report.confusion[&SceneClass::Hallway];
+    assert_eq!((said[&SceneClass::Hallway], said[&SceneClass::Unknown]), (2, 1));
     // What lies beyond the turning point or between is not in the confusion.
     assert_eq!(report.confusion.values().flat_map(BTreeMap::values).sum::<usize>(), 6);
 }
@@ -126,9 +126,9 @@ fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
         visit(pointing(1), Some((dead_end, Sighting::Nothing))),
         visit(pointing(1), None),
     ];
-    let report = Report::of(&[], &visits, Calibration::Right);
+    let report = VisionReport::of(&[], &visits, Calibration::Right);
     let found = |what| {
-        let rate = rate(&report, Subject::Visit, what);
+        let rate = rate(&report, ReportSubject::Visit, what);
         (rate.seen, rate.cases)
     };
     assert_eq!(found("not decided"), (1, 7));
@@ -140,27 +140,29 @@ fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
 
 #[test]
 fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
-    let empty = Report::of(&[], &[], Calibration::Right);
-    assert_eq!(empty.standing(), Standing::Empty);
+    let empty = VisionReport::of(&[], &[], Calibration::Right);
+    assert_eq!(empty.standing(), TargetStatus::Empty);
     let views = [
         judged(&Truth::Hallway(HALLWAY), in_hallway(0.0)),
         judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2])),
     ];
-    let report = Report::of(&views, &[], Calibration::Right);
+    let report = VisionReport::of(&views, &[], Calibration::Right);
     let asked = report.rates.iter().filter(|rate| rate.cases > 0).map(Rate::standing);
     let errors = report.errors.iter().map(Errors::standing);
-    assert!(asked.chain(errors).all(|standing| standing == Standing::Met), "{report:?}");
+    assert!(asked.chain(errors).all(|standing| standing == TargetStatus::Met), "{report:?}");
 }
 
 #[test]
 fn with_a_wrong_calibration_three_times_as_much_may_go_wrong() {
-    let reports = [Calibration::Right, Calibration::Wrong].map(|which| Report::of(&[], &[], which));
+    let reports =
+        [Calibration::Right, Calibration::Wrong].map(|which| VisionReport::of(&[], &[], which));
     for what in ["kind and entry not right", "kind or entry wrong"] {
-        let [right, wrong] = reports.each_ref().map(|report| rate(report, Subject::Junction, what));
+        let [right, wrong] =
+            reports.each_ref().map(|report| rate(report, ReportSubject::Junction, what));
         assert!((wrong.limit.unwrap() / right.limit.unwrap() - 3.0).abs() < 1e-12);
     }
     let wrong = &reports[1];
     assert!(wrong.errors.is_empty());
-    assert!(wrong.rates.iter().all(|rate| rate.subject != Subject::Marker));
-    assert_eq!(rate(wrong, Subject::Visit, "marker missed").limit, None);
+    assert!(wrong.rates.iter().all(|rate| rate.subject != ReportSubject::Marker));
+    assert_eq!(rate(wrong, ReportSubject::Visit, "marker missed").limit, None);
 }

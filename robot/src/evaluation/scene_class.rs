@@ -9,7 +9,7 @@ use toposlam_model::driving::{
 
 /// What an image shows, or what a scene says that it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Class {
+pub enum SceneClass {
     /// A hallway.
     Hallway,
     /// A junction, as seen from its entry.
@@ -30,7 +30,7 @@ pub const FORMS: [(JunctionShape, &str); 6] = [
     (JunctionShape([true, false, true, true]), "t-stem-right"),
 ];
 
-impl Class {
+impl SceneClass {
     /// The classes that a truth can be, and then those that only a scene can say.
     pub fn all() -> impl Iterator<Item = Self> {
         let junctions = FORMS.into_iter().map(|(form, _)| Self::Junction(form));
@@ -50,7 +50,7 @@ impl Class {
     }
 }
 
-impl fmt::Display for Class {
+impl fmt::Display for SceneClass {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let form = |form| FORMS.iter().find(|(known, _)| *known == form).map(|(_, name)| *name);
         out.pad(match *self {

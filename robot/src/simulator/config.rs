@@ -4,16 +4,7 @@ use std::sync::Arc;
 
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 
-use super::{
-    building::Building,
-    cameras::{RenderingCamera, SceneCamera},
-    effects::Effects,
-    faults::Fault,
-    looks::Look,
-    motion::MotionNoise,
-    rig::Rig,
-    simulated::SimulatedRobot,
-};
+use super::{faults::RobotFault, motion::MotionNoise};
 use crate::{pose::Pose, truth::angle};
 
 /// How long a picture takes unless something else is said, in seconds.
@@ -21,7 +12,7 @@ pub const PICTURE_TIME: f64 = 0.3;
 
 /// A simulated robot to be.
 #[derive(Clone, Debug)]
-pub struct Setting {
+pub struct SimulationConfig {
     /// The plan of its building.
     pub plan: Arc<FloorPlan>,
     /// The dart along which the marker lies.
@@ -34,14 +25,14 @@ pub struct Setting {
     /// How long a picture takes, in seconds.
     pub picture_time: f64,
     /// What goes wrong.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<RobotFault>,
     /// Whether it keeps what its wheels were told, for [`Robot::track`](crate::robot::Robot::track).
     pub keeps_track: bool,
     /// From which everything follows that is left to chance.
     pub seed: u64,
 }
 
-impl Setting {
+impl SimulationConfig {
     /// A robot that begins to explore: at the turning point of the facing dart's junction, its back to
     /// the dart's hallway, the marker along it.
     #[must_use]
@@ -57,27 +48,6 @@ impl Setting {
             keeps_track: false,
             seed,
         }
-    }
-
-    /// The robot with a camera that renders pictures of a building.
-    #[must_use]
-    pub fn with_images(
-        &self,
-        rig: &Arc<Rig>,
-        look: &Look,
-        effects: &Effects,
-    ) -> SimulatedRobot<RenderingCamera> {
-        let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
-        let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
-        SimulatedRobot::new(self, camera)
-    }
-
-    /// The robot with a camera that tells scenes itself.
-    #[must_use]
-    pub fn by_scene(&self) -> SimulatedRobot<SceneCamera> {
-        let marker = Some(self.marker);
-        let camera = SceneCamera::new(self.plan.clone(), marker, self.noise, self.seed);
-        SimulatedRobot::new(self, camera)
     }
 
     pub(super) fn motion_noise(&self) -> MotionNoise {

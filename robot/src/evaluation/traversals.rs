@@ -13,14 +13,14 @@ use toposlam_model::{
     world::World,
 };
 
-use super::{Eyes, in_turn::made_in_turn, runs::starts_of};
+use super::{LearnedSensors, parallel::made_in_turn, run_sampler::starts_of};
 use crate::{
     conformance::{Divergence, Specification},
     explorer::{Explorer, ExplorerError, Eye, Told},
     pose::Pose,
     robot::Robot,
     run::Judged,
-    simulator::{Camera, Effects, Setting, SimulatedRobot, start_pose},
+    simulator::{Effects, SimulatedCamera, SimulatedRobot, SimulationConfig, start_pose},
 };
 
 /// Before it takes the door the robot stands up to so far from the turning point, along its entry and
@@ -32,7 +32,7 @@ const TURNED: f64 = 15.0;
 /// All traversals of a seed: each door of each junction, entered by each of its doors, of some plans;
 /// again and again, each time from another pose.
 #[derive(Clone, Debug)]
-pub struct Traversals {
+pub struct TraversalSampler {
     plans: Vec<(String, Arc<FloorPlan>)>,
     /// The number of the plan, the entry dart, the door.
     cases: Vec<(usize, Dart, Door)>,
@@ -52,7 +52,7 @@ pub struct Traversal {
     /// The door that it is to take.
     pub door: Door,
     /// Where it stands and what is around it.
-    pub setting: Setting,
+    pub config: SimulationConfig,
 }
 
 /// A traversal that was made.
@@ -61,7 +61,7 @@ pub struct JudgedTraversal {
     /// Which.
     pub traversal: Traversal,
     /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: TraversalOutcome,
     /// Seconds of simulated time.
     pub seconds: f64,
     /// How many pictures the robot asked for.
@@ -70,7 +70,7 @@ pub struct JudgedTraversal {
 
 /// How a traversal ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum TraversalOutcome {
     /// The robot is where it should be, and perceives what it should.
     Right,
     /// It is not, or does not.
@@ -79,7 +79,7 @@ pub enum Outcome {
     GaveUp(ExplorerError),
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for TraversalOutcome {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Right => out.write_str("as specified"),
@@ -89,7 +89,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-impl Traversals {
+impl TraversalSampler {
     /// The traversals of a seed in these plans, those without an L left out: there is no place for a
     /// marker in them. The robot is so many times as inexact as by default.
     #[must_use]
@@ -126,12 +126,12 @@ impl Traversals {
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
         let pose = about(start_pose(&plan, entry), &mut chance);
         let marker = marker(&plan, entry, door, &mut chance)?;
-        let setting = Setting {
+        let config = SimulationConfig {
             pose,
             noise: self.noise,
-            ..Setting::at_start(plan, marker, chance.next_u64())
+            ..SimulationConfig::at_start(plan, marker, chance.next_u64())
         };
-        Some(Traversal { number, plan_name, entry, door, setting })
+        Some(Traversal { number, plan_name, entry, door, config })
     }
 
     /// Makes traversals by their numbers, on all threads; with pictures where there are eyes for them.
@@ -140,7 +140,7 @@ impl Traversals {
     pub fn judged(
         &self,
         numbers: std::ops::Range<u64>,
-        eyes: Option<&Eyes>,
+        eyes: Option<&LearnedSensors>,
         watch: &impl Watch,
     ) -> Vec<JudgedTraversal> {
         made_in_turn(numbers, watch, |number| self.traversal(number), |case| judged(case, eyes))
@@ -148,29 +148,29 @@ impl Traversals {
 }
 
 /// A traversal, made.
-fn judged(case: Traversal, eyes: Option<&Eyes>) -> JudgedTraversal {
+fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
     match eyes {
         None => {
-            let robot = case.setting.by_scene();
+            let robot = case.config.by_scene();
             made(case, robot, Told)
         }
         Some(eyes) => {
             let look = eyes.look(case.number);
-            let mut chance = Xoshiro256PlusPlus::seed_from_u64(case.setting.seed);
-            let robot = case.setting.with_images(eyes.rig(), look, &Effects::drawn(&mut chance));
+            let mut chance = Xoshiro256PlusPlus::seed_from_u64(case.config.seed);
+            let robot = case.config.with_images(eyes.rig(), look, &Effects::drawn(&mut chance));
             made(case, robot, eyes.sensor(look))
         }
     }
 }
 
-fn made<C: Camera>(
+fn made<C: SimulatedCamera>(
     case: Traversal,
     robot: SimulatedRobot<C>,
     eye: impl Eye<C::View>,
 ) -> JudgedTraversal {
-    let plan = case.setting.plan.clone();
-    let specification = Specification::at(&plan, case.setting.marker, case.entry);
-    let standing = specification.standing(case.setting.pose);
+    let plan = case.config.plan.clone();
+    let specification = Specification::at(&plan, case.config.marker, case.entry);
+    let standing = specification.standing(case.config.pose);
     let mut explorer = Explorer::new(robot, eye, Judged { specification, observer: () });
     if let Some(standing) = standing {
         explorer = explorer.standing_at(standing);
@@ -178,9 +178,9 @@ fn made<C: Camera>(
     let error = explorer.traverse(case.door).err();
     let (robot, judged) = explorer.into_parts();
     let outcome = match (error, judged.specification.divergence()) {
-        (Some(error), _) => Outcome::GaveUp(error),
-        (None, Some(divergence)) => Outcome::Wrong(divergence),
-        (None, None) => Outcome::Right,
+        (Some(error), _) => TraversalOutcome::GaveUp(error),
+        (None, Some(divergence)) => TraversalOutcome::Wrong(divergence),
+        (None, None) => TraversalOutcome::Right,
     };
     JudgedTraversal {
         traversal: case,

@@ -11,16 +11,16 @@ use toposlam_model::{
     mapping::DEFAULT_DART_BOUND,
 };
 
-use super::{Eyes, in_turn::made_in_turn};
+use super::{LearnedSensors, parallel::made_in_turn};
 use crate::{
     explorer::Told,
     run::{Ending, explored, run},
-    simulator::{Effects, FAULTS, Fault, FaultKind, Setting},
+    simulator::{Effects, FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
 
 /// All runs of a seed: in each plan from as many starts.
 #[derive(Clone, Debug)]
-pub struct Runs {
+pub struct RunSampler {
     plans: Vec<(String, Arc<FloorPlan>)>,
     /// The number of the plan, and the facing dart.
     starts: Vec<(usize, Dart)>,
@@ -40,20 +40,20 @@ pub enum Faults {
 
 /// A run to be.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub struct RunCase {
     /// Its number among those of its seed.
     pub number: u64,
     /// The plan's name.
     pub plan_name: String,
     /// Where the robot starts and what is around it.
-    pub setting: Setting,
+    pub config: SimulationConfig,
 }
 
 /// A run that was made.
 #[derive(Clone, Debug)]
 pub struct JudgedRun {
     /// Which.
-    pub case: Case,
+    pub case: RunCase,
     /// How it ended.
     pub ending: Ending,
     /// Moves that the robot made, those that Algorithm 1 makes in the plan's embedded graph.
@@ -68,7 +68,7 @@ impl JudgedRun {
     /// What went wrong, on purpose.
     #[must_use]
     pub fn fault(&self) -> Option<FaultKind> {
-        self.case.setting.faults.first().map(|fault| fault.kind)
+        self.case.config.faults.first().map(|fault| fault.kind)
     }
 
     /// Whether the robot has a wrong map, or a wrong pose, and does not know; but a robot that was
@@ -84,7 +84,7 @@ const SPARE_DARTS: usize = 20;
 /// So many pictures a robot takes on one move, about: a fault comes up somewhere in a run.
 const PICTURES_A_MOVE: u64 = 16;
 
-impl Runs {
+impl RunSampler {
     /// The runs of a seed in these plans, from so many starts each; those without an L are left out,
     /// where a robot cannot put its marker down. Where it has fewer starts than that, from all of them.
     #[must_use]
@@ -114,20 +114,20 @@ impl Runs {
 
     /// The run of a number; `None` where there is no start.
     #[must_use]
-    pub fn case(&self, number: u64) -> Option<Case> {
+    pub fn case(&self, number: u64) -> Option<RunCase> {
         let start = number.checked_rem(self.starts.len() as u64)?;
         let (plan, facing) = self.starts[start as usize];
         let (plan_name, plan) = self.plans[plan].clone();
         let mut chance = Xoshiro256PlusPlus::seed_from_u64(self.seed.wrapping_add(number));
-        let mut setting = Setting::at_start(plan, facing, chance.next_u64());
-        setting.noise = self.noise;
+        let mut config = SimulationConfig::at_start(plan, facing, chance.next_u64());
+        config.noise = self.noise;
         if self.faults == Faults::Each {
             let (kind, ..) = FAULTS[(number % FAULTS.len() as u64) as usize];
-            let moves = explored(&setting.plan, facing, DEFAULT_DART_BOUND);
+            let moves = explored(&config.plan, facing, DEFAULT_DART_BOUND);
             let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
-            setting.faults.push(Fault::at(kind, picture));
+            config.faults.push(RobotFault::at(kind, picture));
         }
-        Some(Case { number, plan_name, setting })
+        Some(RunCase { number, plan_name, config })
     }
 
     /// Makes runs by their numbers, on all threads; with pictures where there are eyes for them. Where
@@ -136,7 +136,7 @@ impl Runs {
     pub fn judged(
         &self,
         numbers: std::ops::Range<u64>,
-        eyes: Option<&Eyes>,
+        eyes: Option<&LearnedSensors>,
         watch: &impl Watch,
     ) -> Vec<JudgedRun> {
         made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes))
@@ -144,16 +144,16 @@ impl Runs {
 }
 
 /// A run, made.
-fn judged(case: Case, eyes: Option<&Eyes>) -> JudgedRun {
-    let Setting { plan, marker, seed, .. } = case.setting.clone();
+fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
+    let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
     // A robot that has gone astray would go on mapping what is not there.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let run = match eyes {
-        None => run(&plan, marker, case.setting.by_scene(), Told, (), &mut (), bound).0,
+        None => run(&plan, marker, case.config.by_scene(), Told, (), &mut (), bound).0,
         Some(eyes) => {
             let look = eyes.look(case.number);
             let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
-            let robot = case.setting.with_images(eyes.rig(), look, &effects);
+            let robot = case.config.with_images(eyes.rig(), look, &effects);
             run(&plan, marker, robot, eyes.sensor(look), (), &mut (), bound).0
         }
     };

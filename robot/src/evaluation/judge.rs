@@ -20,14 +20,14 @@ use toposlam_vision::{
 
 use super::{
     calibration::{Calibration, wrong_rigs},
-    in_turn::in_turn,
-    judged::{Judged, JudgedVisit},
-    learning::{LearningError, learned},
+    colour_learning::{LearningError, learned},
+    judged_view::{JudgedView, JudgedVisit},
+    parallel::in_turn,
+    rendered_view::RenderedView,
     verdict::{judge, judge_marker},
-    view::View,
-    views::{NoView, Views},
+    view_sampler::{ViewError, ViewSampler},
 };
-use crate::simulator::{Look, Rig};
+use crate::simulator::{BuildingLook, Rig};
 use crate::truth::{JunctionTruth, Truth};
 
 /// Why views cannot be judged.
@@ -38,7 +38,7 @@ pub enum JudgingError {
     Learning(#[from] LearningError),
     /// There is nothing to look at.
     #[error(transparent)]
-    View(#[from] NoView),
+    View(#[from] ViewError),
     /// The camera is another.
     #[error(transparent)]
     Size(#[from] WrongSize),
@@ -80,7 +80,7 @@ impl Judge {
     /// Where the colours cannot be learned.
     pub fn new(
         camera: &Camera,
-        views: &Views,
+        views: &ViewSampler,
         calibrations: &[Calibration],
         watch: &impl Watch,
     ) -> Result<Self, JudgingError> {
@@ -111,11 +111,11 @@ impl Judge {
     /// Where there is nothing to look at.
     pub fn views(
         &self,
-        views: &Views,
+        views: &ViewSampler,
         numbers: std::ops::Range<u64>,
         calibration: Calibration,
         watch: &impl Watch,
-    ) -> Result<Vec<Judged>, JudgingError> {
+    ) -> Result<Vec<JudgedView>, JudgingError> {
         in_turn(numbers, watch, |number| self.view(views.view(number)?, calibration))
     }
 
@@ -125,7 +125,7 @@ impl Judge {
     /// Where there is nothing to look at.
     pub fn visits(
         &self,
-        views: &Views,
+        views: &ViewSampler,
         numbers: std::ops::Range<u64>,
         calibration: Calibration,
         watch: &impl Watch,
@@ -139,7 +139,11 @@ impl Judge {
     ///
     /// # Errors
     /// Where it is not on the floor.
-    pub fn view(&self, view: View, calibration: Calibration) -> Result<Judged, JudgingError> {
+    pub fn view(
+        &self,
+        view: RenderedView,
+        calibration: Calibration,
+    ) -> Result<JudgedView, JudgingError> {
         let image = view.picture(self.rig(&view, calibration), &view.building());
         self.judged(view, &image)
     }
@@ -150,7 +154,7 @@ impl Judge {
     /// As [`Self::view`].
     pub fn visit(
         &self,
-        pictures: Vec<View>,
+        pictures: Vec<RenderedView>,
         calibration: Calibration,
     ) -> Result<Option<JudgedVisit>, JudgingError> {
         let Some(last) = pictures.last() else { return Ok(None) };
@@ -183,7 +187,7 @@ impl Judge {
     /// Where the view's size is none of the sizes.
     pub fn stages(
         &self,
-        view: &View,
+        view: &RenderedView,
         calibration: Calibration,
     ) -> Result<(RgbImage, Scene, Stages), JudgingError> {
         let image = view.picture(self.rig(view, calibration), &view.building());
@@ -191,19 +195,19 @@ impl Judge {
         Ok((image, scene, stages))
     }
 
-    fn judged(&self, view: View, image: &RgbImage) -> Result<Judged, JudgingError> {
+    fn judged(&self, view: RenderedView, image: &RgbImage) -> Result<JudgedView, JudgingError> {
         let truth = view.truth().ok_or_else(|| off_the_floor(&view))?;
         let scene = self.with_sensor(&view, |sensor| sensor.sense(image))?;
         let verdict = judge(&truth, &scene);
         let marker = judge_marker(view.marker().as_ref(), scene.marker.as_ref());
-        Ok(Judged { view, truth, scene, verdict, marker })
+        Ok(JudgedView { view, truth, scene, verdict, marker })
     }
 
-    fn station(&self, view: &View) -> &Station {
+    fn station(&self, view: &RenderedView) -> &Station {
         &self.stations[&view.image]
     }
 
-    fn rig(&self, view: &View, calibration: Calibration) -> &Rig {
+    fn rig(&self, view: &RenderedView, calibration: Calibration) -> &Rig {
         let station = self.station(view);
         match calibration {
             Calibration::Wrong if !station.wrong.is_empty() => {
@@ -213,7 +217,7 @@ impl Judge {
         }
     }
 
-    fn with_sensor<R>(&self, view: &View, work: impl FnOnce(&mut Sensor) -> R) -> R {
+    fn with_sensor<R>(&self, view: &RenderedView, work: impl FnOnce(&mut Sensor) -> R) -> R {
         let sensors = &self.station(view).sensors;
         let mine = sensors.iter().find(|sensors| sensors.look == view.look.name);
         mine.unwrap_or(&sensors[0]).with(work)
@@ -222,8 +226,8 @@ impl Judge {
 
 impl Sensors {
     fn new(
-        views: &Views,
-        look: &'static Look,
+        views: &ViewSampler,
+        look: &'static BuildingLook,
         camera: &Camera,
         rig: &Rig,
     ) -> Result<Self, LearningError> {
@@ -243,6 +247,6 @@ impl Sensors {
     }
 }
 
-fn off_the_floor(view: &View) -> JudgingError {
+fn off_the_floor(view: &RenderedView) -> JudgingError {
     JudgingError::OffTheFloor { number: view.number, plan: view.plan_name.clone() }
 }

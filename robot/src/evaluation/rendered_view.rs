@@ -5,12 +5,12 @@ use std::sync::Arc;
 use image::RgbImage;
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 
-use crate::simulator::{Building, Effects, Look, Pose, Rig, render};
+use crate::simulator::{Building, BuildingLook, Effects, Pose, Rig, render};
 use crate::truth::{MarkerTruth, Truth};
 
 /// A place for a robot, and what there is to see.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View {
+pub struct RenderedView {
     /// Its number among the views of its seed.
     pub number: u64,
     /// The name of the plan.
@@ -18,7 +18,7 @@ pub struct View {
     /// The floor plan.
     pub plan: Arc<FloorPlan>,
     /// What the building looks like.
-    pub look: &'static Look,
+    pub look: &'static BuildingLook,
     /// What makes the picture harder to read.
     pub effects: Effects,
     /// The dart along which the marker lies, if there is one.
@@ -31,7 +31,7 @@ pub struct View {
     pub seeds: [u64; 2],
 }
 
-impl View {
+impl RenderedView {
     /// What is true there.
     #[must_use]
     pub fn truth(&self) -> Option<Truth> {

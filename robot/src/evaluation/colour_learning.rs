@@ -6,8 +6,8 @@ use toposlam_vision::{
     colour::{ColourModel, ExampleError, Training, TrainingError},
 };
 
-use super::views::{NoView, Views};
-use crate::simulator::{Look, Rig, label_mask, labels};
+use super::view_sampler::{ViewError, ViewSampler};
+use crate::simulator::{BuildingLook, Rig, label_mask, labels};
 
 /// From so many images the colours of a look are learned.
 const IMAGES: u64 = 16;
@@ -17,7 +17,7 @@ const IMAGES: u64 = 16;
 pub enum LearningError {
     /// There is nothing to look at.
     #[error(transparent)]
-    View(#[from] NoView),
+    View(#[from] ViewError),
     /// Of no image the light is known.
     #[error("look {look}: {cause}")]
     Training {
@@ -41,8 +41,8 @@ pub enum LearningError {
 /// # Errors
 /// Where too little is to be seen.
 pub fn learned(
-    views: &Views,
-    look: &'static Look,
+    views: &ViewSampler,
+    look: &'static BuildingLook,
     camera: &Camera,
     rig: &Rig,
 ) -> Result<ColourModel, LearningError> {

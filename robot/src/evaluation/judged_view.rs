@@ -6,9 +6,9 @@ use toposlam_model::{
 };
 
 use super::{
-    class::Class,
-    verdict::{MarkerVerdict, Verdict},
-    view::View,
+    rendered_view::RenderedView,
+    scene_class::SceneClass,
+    verdict::{MarkerVerdict, PlaceVerdict},
 };
 use crate::truth::{MarkerTruth, Truth};
 
@@ -32,15 +32,15 @@ const PAST: f64 = 0.1;
 
 /// A view, and what sensing made of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct JudgedView {
     /// What was to be seen.
-    pub view: View,
+    pub view: RenderedView,
     /// What is true there.
     pub truth: Truth,
     /// What sensing says.
     pub scene: Scene,
     /// Whether it is right about the place,
-    pub verdict: Verdict,
+    pub verdict: PlaceVerdict,
     /// and about the marker.
     pub marker: MarkerVerdict,
 }
@@ -49,7 +49,7 @@ pub struct Judged {
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedVisit {
     /// Its pictures.
-    pub pictures: Vec<Judged>,
+    pub pictures: Vec<JudgedView>,
     /// What the junction looks like from its entry.
     pub form: JunctionShape,
     /// What the robot should perceive.
@@ -74,7 +74,7 @@ impl Zone {
     }
 }
 
-impl Judged {
+impl JudgedView {
     /// Where it is.
     #[must_use]
     pub fn zone(&self) -> Zone {
@@ -83,11 +83,11 @@ impl Judged {
 
     /// What the image shows; `None` where different answers are right.
     #[must_use]
-    pub fn class(&self) -> Option<Class> {
+    pub fn class(&self) -> Option<SceneClass> {
         match &self.truth {
-            Truth::Hallway(_) => Some(Class::Hallway),
+            Truth::Hallway(_) => Some(SceneClass::Hallway),
             Truth::Between(..) => None,
-            Truth::Junction(junction) => junction.form.map(Class::Junction),
+            Truth::Junction(junction) => junction.form.map(SceneClass::Junction),
         }
     }
 

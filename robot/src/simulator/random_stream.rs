@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// What a stream of random numbers is for; each has a stream of its own.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum For {
+pub(super) enum StreamPurpose {
     Lamps,
     Spots,
     Shadows,
@@ -20,7 +20,7 @@ pub(super) enum For {
 }
 
 /// The stream of a seed for this purpose and, say, this wall.
-pub(super) fn stream(seed: u64, purpose: For, number: usize) -> Xoshiro256PlusPlus {
+pub(super) fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
     let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
     Xoshiro256PlusPlus::seed_from_u64(mixed)
 }

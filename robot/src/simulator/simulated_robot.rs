@@ -6,11 +6,15 @@ use rand::{RngExt, seq::IndexedRandom};
 use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
 
 use super::{
-    cameras::Camera,
-    chance::{For, stream},
-    faults::{Fault, FaultKind},
+    building::Building,
+    cameras::{RenderingCamera, SceneCamera, SimulatedCamera},
+    config::SimulationConfig,
+    effects::Effects,
+    faults::{FaultKind, RobotFault},
+    looks::BuildingLook,
     motion::SimulatedBase,
-    setting::Setting,
+    random_stream::{StreamPurpose, stream},
+    rig::Rig,
 };
 use crate::{
     pose::Pose,
@@ -20,13 +24,13 @@ use crate::{
 
 /// A SuperScout in a simulated building.
 #[derive(Clone, Debug)]
-pub struct SimulatedRobot<C: Camera> {
+pub struct SimulatedRobot<C: SimulatedCamera> {
     plan: Arc<FloorPlan>,
     base: SimulatedBase,
     camera: C,
     /// How long a picture takes, in seconds.
     picture_time: f64,
-    faults: Vec<Fault>,
+    faults: Vec<RobotFault>,
     seed: u64,
     pictures: u64,
     last: Option<Picture<C::View>>,
@@ -39,11 +43,34 @@ const BURNT_OUT: f64 = 4.0;
 const AHEAD: f64 = 1.2;
 const DEEP: f64 = 0.3;
 
-impl<C: Camera> SimulatedRobot<C> {
-    pub(super) fn new(setting: &Setting, camera: C) -> Self {
-        let Setting { plan, pose, picture_time, faults, seed, .. } = setting.clone();
-        let mut base = SimulatedBase::new(&plan, pose, &setting.motion_noise(), seed);
-        if setting.keeps_track {
+impl SimulationConfig {
+    /// The robot with a camera that renders pictures of a building.
+    #[must_use]
+    pub fn with_images(
+        &self,
+        rig: &Arc<Rig>,
+        look: &BuildingLook,
+        effects: &Effects,
+    ) -> SimulatedRobot<RenderingCamera> {
+        let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
+        let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
+        SimulatedRobot::new(self, camera)
+    }
+
+    /// The robot with a camera that tells scenes itself.
+    #[must_use]
+    pub fn by_scene(&self) -> SimulatedRobot<SceneCamera> {
+        let marker = Some(self.marker);
+        let camera = SceneCamera::new(self.plan.clone(), marker, self.noise, self.seed);
+        SimulatedRobot::new(self, camera)
+    }
+}
+
+impl<C: SimulatedCamera> SimulatedRobot<C> {
+    fn new(config: &SimulationConfig, camera: C) -> Self {
+        let SimulationConfig { plan, pose, picture_time, faults, seed, .. } = config.clone();
+        let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
+        if config.keeps_track {
             base.keep_track();
         }
         Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
@@ -71,7 +98,7 @@ impl<C: Camera> SimulatedRobot<C> {
     pub(crate) fn expose(&mut self) -> Option<Picture<C::View>> {
         self.pictures += 1;
         let number = self.pictures;
-        let begin: Vec<Fault> =
+        let begin: Vec<RobotFault> =
             self.faults.iter().filter(|fault| fault.begins(number)).copied().collect();
         for fault in &begin {
             self.begin(fault);
@@ -108,7 +135,7 @@ impl<C: Camera> SimulatedRobot<C> {
         &mut self.base
     }
 
-    fn begin(&mut self, fault: &Fault) {
+    fn begin(&mut self, fault: &RobotFault) {
         match fault.kind {
             FaultKind::Ignored => self.base.ignore(fault.lasting),
             FaultKind::LightsOut => self.camera.lights_out(),
@@ -122,7 +149,7 @@ impl<C: Camera> SimulatedRobot<C> {
     }
 }
 
-impl<C: Camera> Robot for SimulatedRobot<C> {
+impl<C: SimulatedCamera> Robot for SimulatedRobot<C> {
     type View = C::View;
 
     fn capture(&mut self) -> Result<Picture<C::View>, RobotError> {
@@ -169,7 +196,7 @@ fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
 
 /// A pose somewhere in a hallway, along it.
 fn elsewhere(plan: &FloorPlan, seed: u64, picture: u64) -> Pose {
-    let mut chance = stream(seed, For::Faults, picture as usize);
+    let mut chance = stream(seed, StreamPurpose::Faults, picture as usize);
     let ends = plan
         .hallways()
         .choose(&mut chance)

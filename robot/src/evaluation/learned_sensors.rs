@@ -8,52 +8,56 @@ use toposlam_model::enumerate::Watch;
 use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
 
 use super::{
-    learning::{LearningError, learned},
-    views::{NoView, Views},
+    colour_learning::{LearningError, learned},
+    view_sampler::{ViewError, ViewSampler},
 };
-use crate::simulator::{Look, Rig};
+use crate::simulator::{BuildingLook, Rig};
 
 /// All that simulated robots with one camera need to see in buildings of these looks.
 #[derive(Debug)]
-pub struct Eyes {
+pub struct LearnedSensors {
     camera: Camera,
     rig: Arc<Rig>,
-    looks: Vec<(&'static Look, ColourModel)>,
+    looks: Vec<(&'static BuildingLook, ColourModel)>,
 }
 
 /// Colours are learned from the views of this seed, which are judged nowhere.
 const LEARNING: u64 = 1;
 
-impl Eyes {
+impl LearnedSensors {
     /// Learns the colours of looks with a calibrated camera, as `toposlam evaluate vision` does.
     ///
     /// # Errors
     /// Where the colours cannot be learned.
     pub fn new(
         camera: &Camera,
-        looks: &[&'static Look],
+        looks: &[&'static BuildingLook],
         watch: &impl Watch,
     ) -> Result<Self, LearningError> {
         let rig = Rig::new(camera);
-        let views =
-            Views::of(looks.iter().copied(), camera.image, LEARNING).map_err(|_| NoView::NoPlan)?;
-        let views = Views { random_plans: true, ..views };
+        let views = ViewSampler::of(looks.iter().copied(), camera.image, LEARNING)
+            .map_err(|_| ViewError::NoPlan)?;
+        let views = ViewSampler { random_plans: true, ..views };
         watch.parts(looks.len());
-        let learn = |&look: &&'static Look| {
+        let learn = |&look: &&'static BuildingLook| {
             let colours = learned(&views, look, camera, &rig)?;
             watch.part_done(1);
             Ok((look, colours))
         };
         let looks = looks.par_iter().map(learn).collect::<Result<Vec<_>, LearningError>>()?;
         if looks.is_empty() {
-            return Err(NoView::NoLook.into());
+            return Err(ViewError::NoLook.into());
         }
         Ok(Self { camera: camera.clone(), rig: Arc::new(rig), looks })
     }
 
     /// The same with colours that were learned elsewhere, for one look.
     #[must_use]
-    pub fn with_colours(camera: &Camera, look: &'static Look, colours: ColourModel) -> Self {
+    pub fn with_colours(
+        camera: &Camera,
+        look: &'static BuildingLook,
+        colours: ColourModel,
+    ) -> Self {
         let rig = Arc::new(Rig::new(camera));
         Self { camera: camera.clone(), rig, looks: vec![(look, colours)] }
     }
@@ -66,20 +70,20 @@ impl Eyes {
 
     /// The look of a number, which counts round.
     #[must_use]
-    pub fn look(&self, number: u64) -> &'static Look {
+    pub fn look(&self, number: u64) -> &'static BuildingLook {
         self.looks[(number % self.looks.len() as u64) as usize].0
     }
 
     /// The colours of buildings of a look; of the first, where it is none of them.
     #[must_use]
-    pub fn colours(&self, look: &'static Look) -> &ColourModel {
+    pub fn colours(&self, look: &'static BuildingLook) -> &ColourModel {
         let known = self.looks.iter().find(|(known, _)| known.name == look.name);
         &known.unwrap_or(&self.looks[0]).1
     }
 
     /// Sensing in buildings of a look; of the first, where it is none of them.
     #[must_use]
-    pub fn sensor(&self, look: &'static Look) -> Sensor {
+    pub fn sensor(&self, look: &'static BuildingLook) -> Sensor {
         Sensor::new(&self.camera, self.colours(look))
     }
 }

@@ -1,16 +1,16 @@
 //! What the views have in common in which sensing fails.
 
 use super::{
-    class::Class,
-    judged::{Judged, Zone},
-    quantile::Sample,
-    verdict::Verdict,
+    judged_view::{JudgedView, Zone},
+    quantile::ErrorSample,
+    scene_class::SceneClass,
+    verdict::PlaceVerdict,
 };
 use crate::truth::Truth;
 
 /// A group of views with something in common, and how many of them failed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Group {
+pub struct FailureGroup {
     /// By what the views are grouped.
     pub by: &'static str,
     /// What those of this group have in common.
@@ -24,7 +24,7 @@ pub struct Group {
     pub is_half: bool,
 }
 
-impl Group {
+impl FailureGroup {
     /// How many failed, as a share; 0 of none.
     #[must_use]
     pub fn rate(&self) -> f64 {
@@ -35,8 +35,8 @@ impl Group {
 /// Groups of the views in hallways and at junctions (up to their turning points): by look, size, what
 /// is to be seen, distance, heading, offset, and by each effect that is above its median or below.
 #[must_use]
-pub fn groups(views: &[Judged]) -> Vec<Group> {
-    let asked = |judged: &&Judged| matches!(judged.zone(), Zone::Hallway | Zone::Before);
+pub fn groups(views: &[JudgedView]) -> Vec<FailureGroup> {
+    let asked = |judged: &&JudgedView| matches!(judged.zone(), Zone::Hallway | Zone::Before);
     let views: Vec<_> = views.iter().filter(asked).collect();
     let mut groups = Vec::new();
     groups.extend(labelled(&views, "look", |judged| judged.view.look.name.to_owned()));
@@ -44,10 +44,10 @@ pub fn groups(views: &[Judged]) -> Vec<Group> {
         let [width, height] = judged.view.image;
         format!("{width}x{height}")
     }));
-    let class = |judged: &Judged| judged.class().unwrap_or(Class::Other).to_string();
+    let class = |judged: &JudgedView| judged.class().unwrap_or(SceneClass::Other).to_string();
     groups.extend(labelled(&views, "place", class));
     groups.extend(labelled(&views, "distance", |judged| distance(&judged.truth).to_owned()));
-    let place = |judged: &Judged| -> Vec<(&'static str, f64)> {
+    let place = |judged: &JudgedView| -> Vec<(&'static str, f64)> {
         let mut numbers = vec![("width of the hallway", judged.view.plan.hallway_width())];
         if let Some((heading, aside)) = lie(&judged.truth) {
             numbers.extend([("turned by", heading), ("aside by", aside)]);
@@ -55,7 +55,7 @@ pub fn groups(views: &[Judged]) -> Vec<Group> {
         numbers
     };
     groups.extend(halved(&views, place));
-    let effects = |judged: &Judged| -> Vec<(&'static str, f64)> {
+    let effects = |judged: &JudgedView| -> Vec<(&'static str, f64)> {
         let settings = judged.view.effects.settings();
         settings.into_iter().map(|(knob, value)| (knob.name, value)).collect()
     };
@@ -92,19 +92,26 @@ fn distance(truth: &Truth) -> &'static str {
 }
 
 /// A group for each label, in the order of the labels.
-fn labelled(views: &[&Judged], by: &'static str, label: impl Fn(&Judged) -> String) -> Vec<Group> {
+fn labelled(
+    views: &[&JudgedView],
+    by: &'static str,
+    label: impl Fn(&JudgedView) -> String,
+) -> Vec<FailureGroup> {
     let mut groups = std::collections::BTreeMap::new();
     for judged in views {
         let (failed, of) = groups.entry(label(judged)).or_insert((0, 0));
         *failed += usize::from(failed_at(judged));
         *of += 1;
     }
-    let group = |(what, (failed, of))| Group { by, what, failed, of, is_half: false };
+    let group = |(what, (failed, of))| FailureGroup { by, what, failed, of, is_half: false };
     groups.into_iter().map(group).collect()
 }
 
 /// Two groups for each number that differs between views: those above its median, and the others.
-fn halved(views: &[&Judged], numbers: impl Fn(&Judged) -> Vec<(&'static str, f64)>) -> Vec<Group> {
+fn halved(
+    views: &[&JudgedView],
+    numbers: impl Fn(&JudgedView) -> Vec<(&'static str, f64)>,
+) -> Vec<FailureGroup> {
     let numbers: Vec<Vec<_>> = views.iter().map(|judged| numbers(judged)).collect();
     let names = numbers.iter().max_by_key(|numbers| numbers.len());
     let names: Vec<_> = names.into_iter().flatten().map(|&(name, _)| name).collect();
@@ -115,7 +122,8 @@ fn halved(views: &[&Judged], numbers: impl Fn(&Judged) -> Vec<(&'static str, f64
             Some((failed_at(judged), value))
         });
         let with: Vec<_> = with.collect();
-        let Some(median) = with.iter().map(|&(_, value)| value).collect::<Sample>().quantile(0.5)
+        let Some(median) =
+            with.iter().map(|&(_, value)| value).collect::<ErrorSample>().quantile(0.5)
         else {
             continue;
         };
@@ -126,7 +134,7 @@ fn halved(views: &[&Judged], numbers: impl Fn(&Judged) -> Vec<(&'static str, f64
         };
         let (above, below) = (half(true), half(false));
         if above.1 > 0 {
-            let group = |side, (failed, of)| Group {
+            let group = |side, (failed, of)| FailureGroup {
                 by: name,
                 what: format!("{side} {}", rounded(median)),
                 failed,
@@ -145,8 +153,8 @@ fn rounded(value: f64) -> String {
     format!("{value:.places$}")
 }
 
-fn failed_at(judged: &Judged) -> bool {
-    judged.verdict != Verdict::Right
+fn failed_at(judged: &JudgedView) -> bool {
+    judged.verdict != PlaceVerdict::Right
 }
 
 #[cfg(test)]
@@ -155,27 +163,27 @@ mod tests {
 
     use super::*;
     use crate::{
-        evaluation::{verdict::MarkerVerdict, views::Views},
+        evaluation::{verdict::MarkerVerdict, view_sampler::ViewSampler},
         simulator::LOOKS,
     };
 
     #[test]
     fn failures_show_in_the_groups_in_which_they_are_more_often() {
-        let views = Views::of(&LOOKS, [640, 480], 0).unwrap();
+        let views = ViewSampler::of(&LOOKS, [640, 480], 0).unwrap();
         // Sensing that fails where it is blurred, in the theatre only.
         let judged: Vec<_> = (0..600)
             .map(|number| {
                 let view = views.view(number).unwrap();
                 let fails = view.look.name == "theatre" && view.effects.blur > 0.7;
-                let verdict = if fails { Verdict::Unknown } else { Verdict::Right };
+                let verdict = if fails { PlaceVerdict::Unknown } else { PlaceVerdict::Right };
                 let scene = Scene { place: Place::Unknown(Reason::FewWalls), marker: None };
                 let truth = view.truth().unwrap();
-                Judged { view, truth, scene, verdict, marker: MarkerVerdict::NotSeen }
+                JudgedView { view, truth, scene, verdict, marker: MarkerVerdict::NotSeen }
             })
             .collect();
         let groups = groups(&judged);
         let rate = |by: &str, what: &str| {
-            let is_it = |group: &&Group| group.by == by && group.what.starts_with(what);
+            let is_it = |group: &&FailureGroup| group.by == by && group.what.starts_with(what);
             groups.iter().find(is_it).unwrap().rate()
         };
         assert!(rate("look", "theatre") > 0.2);

@@ -12,12 +12,12 @@ use toposlam_model::{
 };
 
 use super::{
-    class::FORMS,
     plans::plans,
     random_plan::random_plan,
-    view::{View, WhichEffects},
+    rendered_view::{RenderedView, WhichEffects},
+    scene_class::FORMS,
 };
-use crate::simulator::{Effects, Look, Pose};
+use crate::simulator::{BuildingLook, Effects, Pose};
 use crate::truth::{JunctionTruth, angle};
 
 /// From so far before a turning point, to so far beyond it junctions are looked at, in metres.
@@ -44,7 +44,7 @@ const DRIFT: f64 = 0.04;
 
 /// What views are for: each purpose has views of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum ViewPurpose {
     /// To be judged one by one.
     Single,
     /// To be judged together, visit by visit.
@@ -55,7 +55,7 @@ pub enum Purpose {
 
 /// All views of a seed.
 #[derive(Clone, Debug)]
-pub struct Views {
+pub struct ViewSampler {
     /// From which everything follows.
     pub seed: u64,
     /// The floor plans, by their names.
@@ -63,7 +63,7 @@ pub struct Views {
     /// Whether there are random plans, too.
     pub random_plans: bool,
     /// What the buildings look like.
-    pub looks: Vec<&'static Look>,
+    pub looks: Vec<&'static BuildingLook>,
     /// The sizes of pictures, which views have in turn.
     pub sizes: Vec<[u32; 2]>,
     /// Which effects there are.
@@ -72,7 +72,7 @@ pub struct Views {
 
 /// Why a view cannot be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoView {
+pub enum ViewError {
     /// There is nothing to look at.
     #[error("there is neither a floor plan nor are there random ones")]
     NoPlan,
@@ -90,14 +90,14 @@ pub enum NoView {
     },
 }
 
-impl Views {
+impl ViewSampler {
     /// Views of these looks in the floor plans of `worlds/` and no others, with all effects, as pictures
     /// of one size.
     ///
     /// # Errors
     /// Never, as [`plans`].
     pub fn of(
-        looks: impl IntoIterator<Item = &'static Look>,
+        looks: impl IntoIterator<Item = &'static BuildingLook>,
         size: [u32; 2],
         seed: u64,
     ) -> Result<Self, WorldFileError> {
@@ -121,8 +121,8 @@ impl Views {
     ///
     /// # Errors
     /// Where there are no plans, or no sizes.
-    pub fn view(&self, number: u64) -> Result<View, NoView> {
-        let (mut view, mut chance) = self.setting(Purpose::Single, number)?;
+    pub fn view(&self, number: u64) -> Result<RenderedView, ViewError> {
+        let (mut view, mut chance) = self.setting(ViewPurpose::Single, number)?;
         place(&mut view, &mut chance, AT_JUNCTIONS);
         Ok(view)
     }
@@ -131,8 +131,8 @@ impl Views {
     ///
     /// # Errors
     /// As [`Self::view`].
-    pub fn visit(&self, number: u64) -> Result<Vec<View>, NoView> {
-        let (mut view, mut chance) = self.setting(Purpose::Visit, number)?;
+    pub fn visit(&self, number: u64) -> Result<Vec<RenderedView>, ViewError> {
+        let (mut view, mut chance) = self.setting(ViewPurpose::Visit, number)?;
         let Some(entry) = an_entry(&view.plan, &mut chance) else { return Ok(Vec::new()) };
         put_marker(&mut view, Some(entry), &mut chance);
         let reach = reach(&view.plan);
@@ -143,7 +143,7 @@ impl Views {
             let turned = chance.random_range(-SWAY..=SWAY);
             let pose = before_junction(&view.plan, entry, before, aside, turned);
             let seeds = [view.seeds[0], chance.next_u64()];
-            pictures.push(View { pose, seeds, ..view.clone() });
+            pictures.push(RenderedView { pose, seeds, ..view.clone() });
             before -= chance.random_range(STEP[0]..STEP[1]);
             aside = (aside + chance.random_range(-DRIFT..=DRIFT)).clamp(-reach, reach);
         }
@@ -156,11 +156,11 @@ impl Views {
     /// As [`Self::view`].
     pub fn to_learn_from(
         &self,
-        look: &'static Look,
+        look: &'static BuildingLook,
         image: [u32; 2],
         number: u64,
-    ) -> Result<View, NoView> {
-        let (mut view, mut chance) = self.setting(Purpose::Learning, number)?;
+    ) -> Result<RenderedView, ViewError> {
+        let (mut view, mut chance) = self.setting(ViewPurpose::Learning, number)?;
         view.look = look;
         view.image = image;
         place(&mut view, &mut chance, 1.0);
@@ -168,7 +168,11 @@ impl Views {
     }
 
     /// A building and a camera, and what else follows from a number.
-    fn setting(&self, purpose: Purpose, number: u64) -> Result<(View, Xoshiro256PlusPlus), NoView> {
+    fn setting(
+        &self,
+        purpose: ViewPurpose,
+        number: u64,
+    ) -> Result<(RenderedView, Xoshiro256PlusPlus), ViewError> {
         let mut chance = stream(self.seed, purpose, number);
         let drawn = self.plans.choose(&mut chance).cloned();
         let of_seed = chance.next_u64() >> 32;
@@ -176,15 +180,15 @@ impl Views {
             Some(plan) => plan,
             None if self.random_plans => {
                 let plan =
-                    random_plan(of_seed).map_err(|_| NoView::RandomPlan { seed: of_seed })?;
+                    random_plan(of_seed).map_err(|_| ViewError::RandomPlan { seed: of_seed })?;
                 (format!("random-{of_seed}"), Arc::new(plan))
             }
-            None => return Err(NoView::NoPlan),
+            None => return Err(ViewError::NoPlan),
         };
-        let size = number.checked_rem(self.sizes.len() as u64).ok_or(NoView::NoSize)?;
-        let look = self.looks.choose(&mut chance).copied().ok_or(NoView::NoLook)?;
+        let size = number.checked_rem(self.sizes.len() as u64).ok_or(ViewError::NoSize)?;
+        let look = self.looks.choose(&mut chance).copied().ok_or(ViewError::NoLook)?;
         let drawn = Effects::drawn(&mut chance);
-        let view = View {
+        let view = RenderedView {
             number,
             plan_name,
             plan,
@@ -203,7 +207,7 @@ impl Views {
 }
 
 /// Puts the robot somewhere, and the marker perhaps.
-fn place(view: &mut View, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
+fn place(view: &mut RenderedView, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
     let entry = an_entry(&view.plan, chance).filter(|_| chance.random_bool(at_junctions));
     let reach = reach(&view.plan);
     let aside = chance.random_range(-reach..=reach);
@@ -222,7 +226,7 @@ fn place(view: &mut View, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
 }
 
 /// Puts the marker on an L: on that of the door, if there is one, or on any other, or nowhere.
-fn put_marker(view: &mut View, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
+fn put_marker(view: &mut RenderedView, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
     let graph = view.plan.graph();
     let is_l = |vertex: Vertex| view.plan.junction(vertex).kind == JunctionKind::L;
     let here = entry.map(|dart| graph.vertex(dart)).filter(|&vertex| is_l(vertex));
@@ -240,7 +244,7 @@ fn put_marker(view: &mut View, entry: Option<Dart>, chance: &mut Xoshiro256PlusP
 }
 
 /// The stream of random numbers of a number.
-fn stream(seed: u64, purpose: Purpose, number: u64) -> Xoshiro256PlusPlus {
+fn stream(seed: u64, purpose: ViewPurpose, number: u64) -> Xoshiro256PlusPlus {
     let mut of_seed = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut salt = 0;
     for _ in 0..=purpose as u8 {
@@ -334,17 +338,17 @@ mod tests {
 
     use super::*;
     use crate::{
-        simulator::{LOOKS, Wall, walls},
+        simulator::{BuildingWall, LOOKS, walls},
         truth::Truth,
     };
 
-    fn views() -> Views {
-        let mut views = Views::of(&LOOKS, [1280, 960], 1).unwrap();
+    fn views() -> ViewSampler {
+        let mut views = ViewSampler::of(&LOOKS, [1280, 960], 1).unwrap();
         views.plans.retain(|(name, _)| name == "shape-8");
-        Views { random_plans: true, sizes: vec![[1280, 960], [640, 480]], ..views }
+        ViewSampler { random_plans: true, sizes: vec![[1280, 960], [640, 480]], ..views }
     }
 
-    fn distance(wall: &Wall, position: [f64; 2]) -> f64 {
+    fn distance(wall: &BuildingWall, position: [f64; 2]) -> f64 {
         let across = 1 - wall.along;
         let beyond =
             (wall.span[0] - position[wall.along]).max(position[wall.along] - wall.span[1]).max(0.0);
@@ -370,7 +374,7 @@ mod tests {
         assert_eq!(views.view(17), views.view(17));
         assert_eq!(views.visit(17), views.visit(17));
         assert_ne!(views.view(17), views.view(18));
-        assert_ne!(views.view(17), Views { seed: 2, ..views.clone() }.view(17));
+        assert_ne!(views.view(17), ViewSampler { seed: 2, ..views.clone() }.view(17));
         assert_ne!(views.view(17).unwrap().seeds, views.visit(17).unwrap()[0].seeds);
     }
 
@@ -411,9 +415,9 @@ mod tests {
 
     #[test]
     fn without_plans_there_is_no_view() {
-        let none = Views { plans: Vec::new(), random_plans: false, ..views() };
-        assert_eq!(none.view(0), Err(NoView::NoPlan));
-        assert_eq!(Views { sizes: Vec::new(), ..views() }.view(0), Err(NoView::NoSize));
-        assert_eq!(Views { looks: Vec::new(), ..views() }.view(0), Err(NoView::NoLook));
+        let none = ViewSampler { plans: Vec::new(), random_plans: false, ..views() };
+        assert_eq!(none.view(0), Err(ViewError::NoPlan));
+        assert_eq!(ViewSampler { sizes: Vec::new(), ..views() }.view(0), Err(ViewError::NoSize));
+        assert_eq!(ViewSampler { looks: Vec::new(), ..views() }.view(0), Err(ViewError::NoLook));
     }
 }
