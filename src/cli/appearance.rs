@@ -1,13 +1,51 @@
 //! What buildings look like, on the command line: a look, and effects.
 
+use clap::{
+    ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::simulator::{BuildingLook, Effects, LOOKS};
 
-use super::{
-    Failure,
-    render::{EffectsChoice, looks, read_setting},
-};
+use super::Failure;
+
+/// Width and height of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ImageSize {
+    /// Small
+    #[value(name = "640x480")]
+    Small,
+    /// Large
+    #[value(name = "1280x960")]
+    Large,
+}
+
+impl ImageSize {
+    /// As it is written.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Small => "640x480",
+            Self::Large => "1280x960",
+        }
+    }
+
+    pub(super) fn pixels(self) -> [u32; 2] {
+        match self {
+            Self::Small => [640, 480],
+            Self::Large => [1280, 960],
+        }
+    }
+}
+
+/// Which effects there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum EffectsChoice {
+    /// Each drawn from its default range
+    Default,
+    /// None
+    None,
+}
 
 /// What a building looks like, and what makes pictures of it harder to read.
 #[derive(clap::Args)]
@@ -44,4 +82,19 @@ impl Appearance {
         }
         Ok(effects)
     }
+}
+
+/// Reads the name of a look.
+pub(super) fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
+    let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
+    PossibleValuesParser::new(looks).try_map(|name| {
+        BuildingLook::named(&name).ok_or_else(|| format!("there is no look `{name}`"))
+    })
+}
+
+fn read_setting(text: &str) -> Result<(String, f64), String> {
+    let setting = text
+        .split_once('=')
+        .and_then(|(name, value)| Some((name.trim().to_owned(), value.trim().parse().ok()?)));
+    setting.ok_or_else(|| "write NAME=VALUE, as in blur=1.5".to_owned())
 }

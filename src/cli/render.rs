@@ -2,21 +2,21 @@
 
 use std::{io::Write, path::PathBuf};
 
-use clap::{
-    ValueEnum,
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
-};
 use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::{FloorPlan, JunctionKind},
 };
 use toposlam_robot::simulator::{
-    Building, BuildingLook, EffectScope, KNOBS, LOOKS, Pose, Rig, label_mask, labels, render,
-    start_pose,
+    Building, EffectScope, KNOBS, Pose, Rig, label_mask, labels, render, start_pose,
 };
 use toposlam_vision::camera::Camera;
 
-use super::{Failure, Outcome, appearance::Appearance, input, output, picture_file::encoded};
+use super::{
+    Failure, Outcome,
+    appearance::{Appearance, ImageSize},
+    input, output,
+    picture_file::encoded,
+};
 
 /// Render what the robot's camera would see from a pose in a floor plan
 #[derive(clap::Args)]
@@ -49,43 +49,6 @@ pub(super) struct RenderArguments {
     /// else black, the robot and what lies beyond the mirror white
     #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
-}
-
-/// Width and height of pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ImageSize {
-    /// Small
-    #[value(name = "640x480")]
-    Small,
-    /// Large
-    #[value(name = "1280x960")]
-    Large,
-}
-
-impl ImageSize {
-    /// As it is written.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Small => "640x480",
-            Self::Large => "1280x960",
-        }
-    }
-
-    pub(super) fn pixels(self) -> [u32; 2] {
-        match self {
-            Self::Small => [640, 480],
-            Self::Large => [1280, 960],
-        }
-    }
-}
-
-/// Which effects there are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum EffectsChoice {
-    /// Each drawn from its default range
-    Default,
-    /// None
-    None,
 }
 
 impl RenderArguments {
@@ -143,14 +106,6 @@ impl RenderArguments {
     }
 }
 
-/// Reads the name of a look.
-pub(super) fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
-    let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
-    PossibleValuesParser::new(looks).try_map(|name| {
-        BuildingLook::named(&name).ok_or_else(|| format!("there is no look `{name}`"))
-    })
-}
-
 fn read_pose(text: &str) -> Result<Pose, String> {
     let numbers: Option<Vec<f64>> = text
         .split(',')
@@ -160,13 +115,6 @@ fn read_pose(text: &str) -> Result<Pose, String> {
         Some(&[x, y, degrees]) => Ok(Pose { position: [x, y], heading: degrees.to_radians() }),
         _ => Err("write three numbers: x,y,heading, as in 2,4,90".to_owned()),
     }
-}
-
-pub(super) fn read_setting(text: &str) -> Result<(String, f64), String> {
-    let setting = text
-        .split_once('=')
-        .and_then(|(name, value)| Some((name.trim().to_owned(), value.trim().parse().ok()?)));
-    setting.ok_or_else(|| "write NAME=VALUE, as in blur=1.5".to_owned())
 }
 
 /// The effects, and an example.

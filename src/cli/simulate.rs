@@ -35,11 +35,10 @@ use toposlam_vision::camera::Camera as Calibrated;
 
 use super::{
     Failure, Outcome,
-    appearance::Appearance,
+    appearance::{Appearance, ImageSize},
     explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::Progress,
-    render::ImageSize,
     text::capital,
 };
 use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};

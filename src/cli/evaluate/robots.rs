@@ -17,9 +17,10 @@ use toposlam_vision::camera::Camera;
 
 use super::vision::{read_plan, unmeasured};
 use crate::cli::{
-    Failure, noise,
+    Failure,
+    appearance::{ImageSize, looks},
+    noise,
     progress::Progress,
-    render::{ImageSize, looks},
     text::grouped,
 };
 

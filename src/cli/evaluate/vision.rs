@@ -28,9 +28,10 @@ use super::{
     report::{EvaluationHeader, Printer},
 };
 use crate::cli::{
-    Failure, Outcome, input, output,
+    Failure, Outcome,
+    appearance::{EffectsChoice, ImageSize, looks},
+    input, output,
     progress::Progress,
-    render::{EffectsChoice, ImageSize, looks},
     use_threads,
 };
 
