@@ -11,7 +11,7 @@ use toposlam_model::{
     floor_plan::JunctionKind,
     format::{
         named_world::NamedWorld,
-        plantri::{self, Code},
+        plantri::{self, PlantriCode},
         world_file,
     },
     isomorphism::{Difference, isomorphism, mirror_isomorphism},
@@ -68,14 +68,14 @@ fn every_world_is_written_as_it_was_read() {
 fn every_world_survives_plantri_s_codes() {
     for name in names() {
         let graph = read(&name).graph;
-        for code in [Code::Planar, Code::Edge] {
+        for code in [PlantriCode::Planar, PlantriCode::Edge] {
             match plantri::write(std::slice::from_ref(&graph), code) {
                 Ok(bytes) => {
                     let back: Result<Vec<_>, _> = plantri::read(&bytes).collect();
                     assert_eq!(back.unwrap(), std::slice::from_ref(&graph), "{name}");
                 }
                 Err(error) => {
-                    assert_eq!(code, Code::Planar, "{name}: {error}");
+                    assert_eq!(code, PlantriCode::Planar, "{name}: {error}");
                     assert!(!graph.is_simple(), "{name}: {error}");
                 }
             }

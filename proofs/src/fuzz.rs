@@ -10,7 +10,7 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
     format::{
         named_world::NamedWorld,
-        plantri::{self, Code},
+        plantri::{self, PlantriCode},
         world_file,
     },
     isomorphism::Candidate,
@@ -69,11 +69,11 @@ pub fn world_file(bytes: &[u8]) {
 /// # Panics
 /// Where that does not hold.
 pub fn planar_code(bytes: &[u8]) {
-    let worlds = read(bytes, Code::Planar);
+    let worlds = read(bytes, PlantriCode::Planar);
     // This code tells a world in one way, if its numbers have one byte.
     let is_header = bytes.starts_with(b">>");
     if let (Some(first), Some(1..), false) = (worlds.first(), bytes.first(), is_header) {
-        let written = plantri::write(std::slice::from_ref(first), Code::Planar);
+        let written = plantri::write(std::slice::from_ref(first), PlantriCode::Planar);
         let told = written.as_deref().ok().and_then(|file| file.strip_prefix(b">>planar_code<<"));
         assert!(told.is_some_and(|told| bytes.starts_with(told)), "{first:?} is not what is told");
     }
@@ -84,7 +84,7 @@ pub fn planar_code(bytes: &[u8]) {
 /// # Panics
 /// Where that does not hold.
 pub fn edge_code(bytes: &[u8]) {
-    read(bytes, Code::Edge);
+    read(bytes, PlantriCode::Edge);
 }
 
 /// Algorithm 1 maps every world of up to 24 edges rightly, whatever it chooses at lines 5 and 9.
@@ -115,7 +115,7 @@ pub fn mapping(bytes: &[u8]) {
 
 /// The worlds of a file of plantri's, up to the first error: each is one, and they are written in
 /// each code that can tell them so that they read as the same worlds.
-fn read(bytes: &[u8], code: Code) -> Vec<EmbeddedGraph> {
+fn read(bytes: &[u8], code: PlantriCode) -> Vec<EmbeddedGraph> {
     let mut worlds = Vec::new();
     let mut results = plantri::read_headerless(bytes, code);
     while let Some(result) = results.next() {
@@ -132,7 +132,7 @@ fn read(bytes: &[u8], code: Code) -> Vec<EmbeddedGraph> {
             }
         }
     }
-    for code in [Code::Planar, Code::Edge] {
+    for code in [PlantriCode::Planar, PlantriCode::Edge] {
         match plantri::write(&worlds, code) {
             Ok(file) if worlds.is_empty() => {
                 assert!(plantri::read(&file).all(|result| result.is_err()), "nothing is a world");
@@ -143,7 +143,7 @@ fn read(bytes: &[u8], code: Code) -> Vec<EmbeddedGraph> {
             }
             Err(error) => {
                 assert_is_a_message(&error);
-                assert!(code == Code::Planar, "edge_code tells every world: {error}");
+                assert!(code == PlantriCode::Planar, "edge_code tells every world: {error}");
                 let is_told = |graph: &EmbeddedGraph| is_simple(graph) && is_small(graph);
                 assert!(!worlds.iter().all(is_told), "planar_code tells these: {error}");
             }

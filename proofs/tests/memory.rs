@@ -13,7 +13,7 @@ use proptest::{
     test_runner::{RngAlgorithm, TestCaseError, TestRng, TestRunner},
 };
 use toposlam_model::format::{
-    plantri::{self, Code},
+    plantri::{self, PlantriCode},
     world_file,
 };
 
@@ -41,11 +41,11 @@ fn read_world_file(bytes: &[u8]) {
 }
 
 fn read_planar_code(bytes: &[u8]) {
-    plantri::read_headerless(bytes, Code::Planar).for_each(keep);
+    plantri::read_headerless(bytes, PlantriCode::Planar).for_each(keep);
 }
 
 fn read_edge_code(bytes: &[u8]) {
-    plantri::read_headerless(bytes, Code::Edge).for_each(keep);
+    plantri::read_headerless(bytes, PlantriCode::Edge).for_each(keep);
 }
 
 /// Lets the compiler leave nothing out.

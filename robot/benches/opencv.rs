@@ -26,6 +26,7 @@ use toposlam_vision::{
     cluster::clusters,
     colour::FloorRing,
     ground_view::{GroundView, Unwrapping},
+    params::SensingParams,
 };
 
 /// Frames of each.
@@ -56,7 +57,8 @@ fn main() {
     };
     let (ring, table) = (FloorRing::new(&camera), colours.table());
     let unwrapping = Unwrapping::new(&camera);
-    let bearings = Bearings::new(colours.stripe, camera.eye_height());
+    let params = SensingParams::default();
+    let bearings = Bearings::new(colours.stripe, camera.eye_height(), &params.boundary);
     let mut view = GroundView::unseen();
     let mut ours = || {
         let begun = Instant::now();
@@ -65,7 +67,7 @@ fn main() {
         let lighted = Instant::now();
         unwrapping.view(&picture, &lit, &mut view);
         let classified = Instant::now();
-        black_box(clusters(&bearings.look(&view)));
+        black_box(clusters(&bearings.look(&view), &params.cluster));
         let done = Instant::now();
         [lighted - begun, classified - lighted, done - classified]
             .map(|time| time.as_secs_f64() * 1e6)

@@ -12,7 +12,7 @@ use toposlam_robot::{
     simulator::{Building, BuildingLook, Effects, Pose, Rig, render},
 };
 use toposlam_vision::{
-    boundary::Bearings,
+    boundary::{Bearings, Boundary},
     camera::Camera,
     cluster::clusters,
     colour::{ColourModel, FloorRing},
@@ -22,8 +22,9 @@ use toposlam_vision::{
     junction::junction,
     line::lines,
     marker::marker,
+    params::{BoundaryParams, MarkerParams, SensingParams},
     sensing::Sensor,
-    wall::Frame,
+    wall::{WallFrame, WallSegment},
 };
 
 fn main() {
@@ -97,7 +98,7 @@ fn view(case: &Case, place: usize) -> GroundView {
 }
 
 fn bearings(case: &Case) -> Bearings {
-    Bearings::new(case.colours.stripe, case.camera.eye_height())
+    Bearings::new(case.colours.stripe, case.camera.eye_height(), &BoundaryParams::default())
 }
 
 /// The boundary points.
@@ -108,15 +109,20 @@ fn step_3_boundary(bencher: Bencher) {
     bencher.bench_local(|| bearings.look(&view));
 }
 
+fn walls(boundary: &Boundary, params: &SensingParams) -> Option<(WallFrame, Vec<WallSegment>)> {
+    let lines = lines(&clusters(boundary, &params.cluster), &params.line);
+    let frame = WallFrame::of(&lines, &params.wall)?;
+    let walls = frame.walls(&lines, &params.wall);
+    Some((frame, walls))
+}
+
 /// Clusters, their lines and the walls.
 #[divan::bench(sample_count = 200, sample_size = 1)]
 fn step_4_walls(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, 2));
-    bencher.bench_local(|| {
-        let lines = lines(&clusters(&boundary));
-        Frame::of(&lines).map(|frame| frame.walls(&lines))
-    });
+    let params = SensingParams::default();
+    bencher.bench_local(|| walls(&boundary, &params));
 }
 
 /// Whether it is a hallway.
@@ -124,10 +130,9 @@ fn step_4_walls(bencher: Bencher) {
 fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, PLACE));
-    let lines = lines(&clusters(&boundary));
-    let frame = Frame::of(&lines).unwrap();
-    let walls = frame.walls(&lines);
-    bencher.bench_local(|| hallway(&walls, &boundary, &frame));
+    let params = SensingParams::default();
+    let (frame, walls) = walls(&boundary, &params).unwrap();
+    bencher.bench_local(|| hallway(&walls, &boundary, &frame, &params));
 }
 
 /// Corners, and which junction it is.
@@ -135,10 +140,11 @@ fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
 fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);
     let boundary = bearings(&case).look(&view(&case, PLACE));
-    let lines = lines(&clusters(&boundary));
-    let frame = Frame::of(&lines).unwrap();
-    let walls = frame.walls(&lines);
-    bencher.bench_local(|| junction(&corners(&walls), &walls, &boundary, &frame));
+    let params = SensingParams::default();
+    let (frame, walls) = walls(&boundary, &params).unwrap();
+    bencher.bench_local(|| {
+        junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
+    });
 }
 
 /// The marker.
@@ -147,5 +153,6 @@ fn step_7_marker(bencher: Bencher) {
     let case = case(1280);
     let view = view(&case, 1);
     let boundary = bearings(&case).look(&view);
-    bencher.bench_local(|| marker(&view, &boundary, None));
+    let params = MarkerParams::default();
+    bencher.bench_local(|| marker(&view, &boundary, None, &params));
 }

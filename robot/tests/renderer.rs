@@ -19,7 +19,7 @@ use toposlam_robot::simulator::{
 };
 use toposlam_vision::{
     camera::Camera,
-    colour::{Class, StripeKind},
+    colour::{PixelClass, StripeKind},
 };
 
 fn plan(name: &str) -> FloorPlan {
@@ -120,27 +120,27 @@ fn hold_against_plan(
             let [origin, place] = [origin, ground].map(|place| in_building(pose, place));
             let expected = |slack: f64| {
                 if !sees(&floors, origin, place) {
-                    Class::Other
+                    PixelClass::Other
                 } else if marked.widened(slack).holds(place) {
-                    Class::Marker
+                    PixelClass::Marker
                 } else if near_walls(&floors, place, look.stripe.width + slack) {
-                    Class::Stripe
+                    PixelClass::Stripe
                 } else {
-                    Class::Floor
+                    PixelClass::Floor
                 }
             };
             // Borders, to a millimetre; and ways that graze a corner.
             if expected(1e-3) != expected(-1e-3)
                 || near_walls(&floors, place, 2e-3)
-                || class == Class::Other && grazes(&floors, origin, place)
+                || class == PixelClass::Other && grazes(&floors, origin, place)
             {
                 continue;
             }
             assert_eq!(class, expected(0.0), "{pose:?} {pixel:?} {place:?}");
             match class {
-                Class::Floor => counts[0] += 1,
-                Class::Stripe => counts[1] += 1,
-                Class::Marker => counts[2] += 1,
+                PixelClass::Floor => counts[0] += 1,
+                PixelClass::Stripe => counts[1] += 1,
+                PixelClass::Marker => counts[2] += 1,
                 _ => {}
             }
         }
@@ -206,7 +206,7 @@ fn the_pixel_of_a_place_shows_it() {
                 continue;
             }
             let [u, v] = camera.ground_to_pixel(ground).unwrap().map(|at| at.round() as usize);
-            assert_eq!(classes[v * 1280 + u], Class::Floor, "{pose:?} {place:?}");
+            assert_eq!(classes[v * 1280 + u], PixelClass::Floor, "{pose:?} {place:?}");
             shown += 1;
         }
     }
@@ -229,20 +229,20 @@ fn a_baseboard_is_as_high_as_its_look_says() {
             let ray = rig.ray([at % 1280, at / 1280].map(|at| at as f64));
             let [_, left, up] = ray.direction;
             // To the left, and not far ahead or behind.
-            if left < ray.direction[0].abs() || class == Class::Unseen {
+            if left < ray.direction[0].abs() || class == PixelClass::Unseen {
                 continue;
             }
             let height = ray.origin[2] + (0.7 - ray.origin[1]) / left * up;
             let expected = match height {
-                height if height < 0.0 => Class::Floor,
-                height if height < look.stripe.width => Class::Stripe,
-                _ => Class::Other,
+                height if height < 0.0 => PixelClass::Floor,
+                height if height < look.stripe.width => PixelClass::Stripe,
+                _ => PixelClass::Other,
             };
             if height.abs() > 1e-5 && (height - look.stripe.width).abs() > 1e-5 {
                 assert_eq!(class, expected, "{}: {height}", look.name);
                 counts[match expected {
-                    Class::Floor => 0,
-                    Class::Stripe => 1,
+                    PixelClass::Floor => 0,
+                    PixelClass::Stripe => 1,
                     _ => 2,
                 }] += 1;
             }
@@ -262,9 +262,9 @@ fn without_effects_colours_are_those_of_the_look() {
         let picture = render(&rig, &building, pose, &effects, 4);
         let classes = labels(&rig, &building, pose, &effects);
         let colours = [
-            (Class::Floor, look.floor_colour),
-            (Class::Stripe, look.stripe_colour),
-            (Class::Marker, look.marker_colour),
+            (PixelClass::Floor, look.floor_colour),
+            (PixelClass::Stripe, look.stripe_colour),
+            (PixelClass::Marker, look.marker_colour),
         ];
         for (class, colour) in colours {
             let mut count = 0;
@@ -374,8 +374,8 @@ fn the_robot_hides_the_floor_around_it_and_none_beyond() {
         let pixel = [at % 1280, at / 1280].map(|at| at as f64);
         if let Some([x, y]) = camera.pixel_to_ground(pixel) {
             let range = x.hypot(y);
-            assert!(class == Class::Unseen || range > 0.30, "{pixel:?} {range}");
-            assert!(class != Class::Unseen || range < 0.32, "{pixel:?} {range}");
+            assert!(class == PixelClass::Unseen || range > 0.30, "{pixel:?} {range}");
+            assert!(class != PixelClass::Unseen || range < 0.32, "{pixel:?} {range}");
         }
     }
 }
@@ -397,9 +397,9 @@ fn struts_hide_two_opposite_directions() {
         if x.hypot(y) > 0.6 {
             let bearing = y.atan2(x).to_degrees().rem_euclid(180.0);
             let away = (bearing - 30.0).abs();
-            assert!(class == Class::Unseen || away > 1.99, "{bearing}");
-            assert!(class != Class::Unseen || away < 2.01, "{bearing}");
-            hidden += usize::from(class == Class::Unseen);
+            assert!(class == PixelClass::Unseen || away > 1.99, "{bearing}");
+            assert!(class != PixelClass::Unseen || away < 2.01, "{bearing}");
+            hidden += usize::from(class == PixelClass::Unseen);
         }
     }
     assert!(hidden > 1000, "{hidden}");
@@ -438,11 +438,11 @@ fn a_small_picture_shows_what_a_large_one_shows() {
 #[test]
 fn the_label_mask_has_the_colours_that_training_reads() {
     let rig = Rig::new(&Camera::superscout().sized([4, 3]));
-    let mut classes = vec![Class::Floor; 12];
-    classes[1] = Class::Stripe;
-    classes[4] = Class::Marker;
-    classes[5] = Class::Other;
-    classes[11] = Class::Unseen;
+    let mut classes = vec![PixelClass::Floor; 12];
+    classes[1] = PixelClass::Stripe;
+    classes[4] = PixelClass::Marker;
+    classes[5] = PixelClass::Other;
+    classes[11] = PixelClass::Unseen;
     let mask = label_mask(&rig, &classes);
     let found = [(0, 0), (1, 0), (0, 1), (1, 1), (3, 2)].map(|(u, v)| mask.get_pixel(u, v).0);
     assert_eq!(found, [[0, 255, 0], [255, 0, 0], [0, 0, 255], [0, 0, 0], [255, 255, 255]]);

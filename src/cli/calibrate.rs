@@ -9,9 +9,8 @@ use std::{
 use clap::ValueEnum;
 use image::{GrayImage, RgbImage, imageops::grayscale};
 use serde::Serialize;
-use toposlam_model::format::place::Place;
 use toposlam_vision::camera::{
-    Camera, Mask, Optics, SeenFrom, SphericalMirror,
+    Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
     calibration::{self, CalibrationError},
     fit_picture,
     rim::{self, Rim, RimError},
@@ -150,7 +149,7 @@ impl CalibrateArguments {
             Some(path) => input::read_camera(path)?,
             None => Camera::superscout(),
         };
-        let Optics::SphericalMirror(mirror) = start.optics else {
+        let OpticsModel::SphericalMirror(mirror) = start.optics else {
             let path = self.start.as_deref().unwrap_or(Path::new("--start"));
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
             return Err(Failure::in_file(path, cause));
@@ -168,14 +167,14 @@ impl CalibrateArguments {
             None => start.seen_from,
         };
         let known = Camera {
-            optics: Optics::SphericalMirror(mirror),
+            optics: OpticsModel::SphericalMirror(mirror),
             ahead,
             seen_from,
             ..Camera::superscout()
         };
         // What is out of range is told before long work begins, with some focal length.
         let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2], ..mirror };
-        let probe = Optics::SphericalMirror(some);
+        let probe = OpticsModel::SphericalMirror(some);
         checked(&Camera { optics: probe, ..known.clone() })?;
         Ok((known, mirror))
     }
@@ -226,7 +225,7 @@ impl CalibrateArguments {
     }
 
     fn report(&self, out: &mut dyn Write, camera: &Camera, rim: &Rim) -> Result<(), Failure> {
-        let Optics::SphericalMirror(mirror) = &camera.optics else { return Ok(()) };
+        let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return Ok(()) };
         let mask_seen = camera.mask.as_ref().map(|mask| share_seen(mask, rim));
         if self.json {
             return print_object(
@@ -277,7 +276,7 @@ fn with_rim(
     let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
     let focal = hundredth(SphericalMirror::focal_of_rim(rim.radius, radius, distance));
     let centre = rim.centre.map(hundredth);
-    let optics = Optics::SphericalMirror(SphericalMirror { centre, focal, ..mirror });
+    let optics = OpticsModel::SphericalMirror(SphericalMirror { centre, focal, ..mirror });
     let camera = Camera { image, optics, mask: None, ..known };
     checked(&camera)?;
     Ok(camera)
@@ -295,9 +294,9 @@ fn checked(camera: &Camera) -> Result<(), Failure> {
     match calibration::read(text.as_bytes(), nothing) {
         Ok(_) => Ok(()),
         // The arguments are named as the keys are.
-        Err(CalibrationError { place: Place::Key(key), cause }) => {
-            let name = key.trim_start_matches("camera.").replace('_', "-");
-            Err(Failure::at(format!("--{name}"), cause))
+        Err(CalibrationError { position, kind }) if !position.key.is_empty() => {
+            let name = position.key.trim_start_matches("camera.").replace('_', "-");
+            Err(Failure::at(format!("--{name}"), kind))
         }
         Err(error) => Err(Failure::at("the calibration that was found", error)),
     }

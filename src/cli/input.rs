@@ -79,7 +79,7 @@ pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, Failure> {
 fn read_plantri(
     path: &Path,
     bytes: &[u8],
-    code: plantri::Code,
+    code: plantri::PlantriCode,
 ) -> Result<Vec<EmbeddedGraph>, Failure> {
     let graphs: Result<Vec<_>, _> = plantri::read_headerless(bytes, code).collect();
     match graphs {
@@ -91,16 +91,16 @@ fn read_plantri(
 
 /// Which of plantri's codes a file holds, by its header or else by its extension; `None` for a
 /// world file.
-fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::Code> {
+fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
     if bytes.starts_with(b">>edge_code") {
-        return Some(plantri::Code::Edge);
+        return Some(plantri::PlantriCode::Edge);
     }
     if bytes.starts_with(b">>planar_code") {
-        return Some(plantri::Code::Planar);
+        return Some(plantri::PlantriCode::Planar);
     }
     match path.extension()?.to_str()? {
-        "ec" | "edge_code" => Some(plantri::Code::Edge),
-        "pc" | "plc" | "planar_code" => Some(plantri::Code::Planar),
+        "ec" | "edge_code" => Some(plantri::PlantriCode::Edge),
+        "pc" | "plc" | "planar_code" => Some(plantri::PlantriCode::Planar),
         _ => None,
     }
 }

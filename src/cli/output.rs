@@ -85,8 +85,8 @@ pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure
     let bytes = match path.extension().and_then(OsStr::to_str) {
         Some("json") => world_file::to_json_text(world).into_bytes(),
         Some("dot") => dot::write(world).into_bytes(),
-        Some("ec" | "edge_code") => coded(plantri::Code::Edge)?,
-        Some(ending) if PLANAR_CODE.contains(&ending) => coded(plantri::Code::Planar)?,
+        Some("ec" | "edge_code") => coded(plantri::PlantriCode::Edge)?,
+        Some(ending) if PLANAR_CODE.contains(&ending) => coded(plantri::PlantriCode::Planar)?,
         _ => world_file::to_toml(world).into_bytes(),
     };
     write_whole(path, &bytes)

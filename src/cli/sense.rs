@@ -8,7 +8,7 @@ use std::{
 };
 
 use serde::Serialize;
-use toposlam_vision::{camera::Camera, sensing::Sensor};
+use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
     Failure, Outcome, input,
@@ -94,7 +94,7 @@ impl SenseArguments {
             let scene = match &self.stages {
                 None => sensor.sense(&image).map_err(wrong)?,
                 Some(folder) => {
-                    let (scene, stages) = sensor.stages(&image).map_err(wrong)?;
+                    let (scene, stages) = annotate::stages(sensor, &image).map_err(wrong)?;
                     for (stage, picture) in &stages {
                         let mut name = name.clone();
                         name.push(format!("-{stage}.png"));

@@ -15,7 +15,7 @@ use image::RgbImage;
 use toposlam_model::enumerate::Watch;
 use toposlam_vision::{
     camera::Camera,
-    colour::{Class, ExampleError, Stripe, StripeKind, Training, TrainingError},
+    colour::{ExampleError, PixelClass, Stripe, StripeKind, Training, TrainingError},
 };
 
 use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
@@ -189,7 +189,7 @@ impl TrainArguments {
         if training.images() == 0 {
             return Err(Failure::in_file(&self.images, "every image was left out"));
         }
-        let needed = [Class::Floor, Class::Stripe, Class::Marker];
+        let needed = [PixelClass::Floor, PixelClass::Stripe, PixelClass::Marker];
         match needed.into_iter().find(|&class| training.seen(class).images == 0) {
             None => Ok(()),
             Some(class) => {

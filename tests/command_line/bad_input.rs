@@ -35,7 +35,7 @@ fn a_file_that_is_no_world_is_refused_with_its_place() {
         (
             "key.toml",
             b"colour = 1\n[clockwise]\na = [\"b\"]\nb = [\"a\"]\n",
-            ": colour: unknown key; here can stand: name, about, clockwise, doors",
+            ": colour: unknown key; expected one of: name, about, clockwise, doors",
         ),
         (
             "one-sided.toml",

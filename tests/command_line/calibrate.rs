@@ -4,7 +4,7 @@ use std::{fs, path::Path, sync::LazyLock};
 
 use image::{ImageFormat, Rgb, RgbImage, imageops::crop_imm};
 use serde_json::Value;
-use toposlam_vision::camera::{Camera, Optics, SphericalMirror, calibration};
+use toposlam_vision::camera::{Camera, OpticsModel, SphericalMirror, calibration};
 
 use super::{folder, names_in, objects, run, said, stderr, stdout};
 
@@ -48,7 +48,7 @@ fn truth() -> SphericalMirror {
 
 fn mirror(camera: &Camera) -> SphericalMirror {
     match camera.optics {
-        Optics::SphericalMirror(mirror) => mirror,
+        OpticsModel::SphericalMirror(mirror) => mirror,
         _ => unreachable!("this camera has a mirror"),
     }
 }
@@ -225,7 +225,7 @@ fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
         (&[&white], format!("{white}: no mirror is seen in the images")),
         (&[image, "--start", &absurd], format!("{absurd}: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10")),
         (&["gone.png"], "gone.png: cannot be read: ".to_owned()),
-        (&[image, "--start", &bad], format!("{bad}: camera.kind: here should be \"spherical-mirror\"")),
+        (&[image, "--start", &bad], format!("{bad}: camera.kind: expected \"spherical-mirror\"")),
         (&[image, "--start", other], format!("{other}: camera.kind: only a spherical mirror is calibrated by its rim")),
         (&[image, "--mirror-radius", "7"], "--mirror-radius: 7 is out of range; the radius of a mirror in metres lies between 0.001 and 1".to_owned()),
         (&[image, "--mirror-distance", "0.05"], "--mirror-distance: 0.05 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10".to_owned()),

@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
-use toposlam_model::format::plantri::{self, Code};
+use toposlam_model::format::plantri::{self, PlantriCode};
 
 use super::{folder, objects, read_world, run, said, stderr, stdout, world_files};
 
@@ -62,7 +62,7 @@ fn the_world_that_is_not_simple_is_named() {
     };
     let worlds = ["k4-plane.toml", "two-loops-torus.toml", "theta-plane.toml"].map(graph_of);
     let file = folder.join("three.ec");
-    fs::write(&file, plantri::write(&worlds, Code::Edge).unwrap()).unwrap();
+    fs::write(&file, plantri::write(&worlds, PlantriCode::Edge).unwrap()).unwrap();
     let file = file.to_str().unwrap();
     let refused = run(["check", "--marker", "movable", "--from", file]);
     assert_eq!(refused.status.code(), Some(2));
@@ -150,7 +150,7 @@ fn worlds_in_plantris_codes_are_checked_by_size() {
         read_world(&file).graph
     };
     let worlds = ["k4-plane.toml", "cycle-3.toml", "k4-torus.toml"].map(graph_of);
-    for (code, name) in [(Code::Planar, "three.pc"), (Code::Edge, "three.ec")] {
+    for (code, name) in [(PlantriCode::Planar, "three.pc"), (PlantriCode::Edge, "three.ec")] {
         let file = folder.join(name);
         fs::write(&file, plantri::write(&worlds, code).unwrap()).unwrap();
         let lines = objects(&said(["check", "--json", "--from", file.to_str().unwrap()]));

@@ -7,7 +7,7 @@ use toposlam_model::{
     embedded_graph::{Dart, Vertex},
     format::{
         named_world::NamedWorld,
-        plantri::{self, Code},
+        plantri::{self, PlantriCode},
         world_file,
     },
     isomorphism::Bijection,
@@ -125,7 +125,7 @@ fn the_map_is_written_in_the_format_that_its_name_says() {
     assert!(fs::read(file("map.json")).unwrap().starts_with(b"{"));
     let code = fs::read(file("map.ec")).unwrap();
     let graphs: Vec<_> =
-        plantri::read_headerless(&code, Code::Edge).collect::<Result<_, _>>().unwrap();
+        plantri::read_headerless(&code, PlantriCode::Edge).collect::<Result<_, _>>().unwrap();
     assert_eq!(graphs, [map.graph]);
     let drawn = fs::read_to_string(svg).unwrap();
     assert!(drawn.starts_with("<svg") && drawn.contains("</svg>"));

@@ -254,7 +254,7 @@ fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
         (
             "seen_from = \"below\"",
             "seen_from = \"aside\"",
-            "camera.seen_from: here should be \"below\" or \"above\", not another text",
+            "camera.seen_from: expected \"below\" or \"above\", found another text",
         ),
     ];
     for (from, to, message) in cases {
@@ -276,7 +276,7 @@ fn colours_that_were_never_learned_are_refused_with_what_can_be() {
             "width = 5.0",
             "stripe.width: the width in metres is 5; it can be from 0.005 to 0.5",
         ),
-        ("[priors]", "[prior]", "prior: unknown key; here can stand: "),
+        ("[priors]", "[prior]", "prior: unknown key; expected one of: "),
         ("floor = [\n", "floor = [\n  [40, 0, 0, 1],\n", "histograms.floor[0]: the value is 40; "),
         ("[histograms]", "[histograms", "line "),
     ];

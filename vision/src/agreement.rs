@@ -6,13 +6,14 @@
 
 use crate::{
     boundary::{BEARINGS, Boundary, Edge, Sight, direction},
-    outline::{Outline, Side, near},
-    wall::Frame,
+    outline::{Outline, OutlineSide, near},
+    params::OutlineParams,
+    wall::WallFrame,
 };
 
 /// How an outline agrees with what is seen: a count of bearings for each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Agreement {
+pub struct OutlineAgreement {
     /// A wall is seen where the outline has one.
     pub support: u32,
     /// The floor ends where the outline has a wall, though at no stripe: at a door, or a gap.
@@ -45,59 +46,38 @@ enum Held {
     Unseen,
 }
 
-/// How many bearings in support one weighs on which the floor ends without a stripe;
-const ENDED: f64 = 0.5;
-/// how many one weighs on which floor is seen through a wall;
-const THROUGH: f64 = 1.5;
-/// and one on which a wall is seen before it.
-const AGAINST: f64 = 3.0;
-/// Walls are seen where there are none on this part of the bearings in support, at most.
-const STRAY: f64 = 0.12;
-/// There are no more bearings with doors than so many times those in support.
-const DOORS: f64 = 2.0;
-/// Walls that are farther away are not looked for, in metres: a pixel covers as much as a stripe.
-const FAR: f64 = 2.1;
-/// A direction to which so few bearings lead need not be seen, as a part of all;
-const NARROW: f64 = 0.02;
-/// of others, at least this part is.
-const BLANK: f64 = 0.25;
-/// Where it should be open, floor is seen for this part of the way.
-const OPEN: f64 = 0.8;
-/// A gap in a wall is a door, and no hallway, if it is narrower than this part of a hallway.
-pub(crate) const DOOR: f64 = 0.75;
-/// Beside a door the wall is this part of as near as elsewhere: around a corner, too, there is wall.
-const CLOSE: f64 = 0.5;
-/// It is seen over such a length, in metres,
-const BESIDE: f64 = 0.30;
-/// on this part of the bearings.
-const UNBROKEN: f64 = 0.75;
-
 impl Outline {
     /// How the outline agrees with what is seen, on every so many bearings.
     #[must_use]
-    pub fn agreement(&self, boundary: &Boundary, frame: &Frame, every: usize) -> Agreement {
-        let mut agreement = Agreement::default();
+    pub fn agreement(
+        &self,
+        boundary: &Boundary,
+        frame: &WallFrame,
+        every: usize,
+        params: &OutlineParams,
+    ) -> OutlineAgreement {
+        let mut agreement = OutlineAgreement::default();
         let mut towards = [Seen::default(); 4];
         let mut gap: Option<Gap> = None;
         for bearing in (0..BEARINGS).step_by(every) {
             let ray = frame.framed(direction(bearing));
             let sight = &boundary.sights[bearing];
-            let Some((range, number)) = self
-                .first_on(ray)
-                .filter(|&(range, _)| range <= FAR || sight.sure().is_some_and(|wall| wall <= FAR))
-            else {
+            let Some((range, number)) = self.first_on(ray).filter(|&(range, _)| {
+                range <= params.max_range
+                    || sight.sure().is_some_and(|wall| wall <= params.max_range)
+            }) else {
                 continue;
             };
             let side = &self.sides[number];
-            let mut held = self.held(side, range, ray, sight);
+            let mut held = self.held(side, range, ray, sight, params);
             if held == Held::Through {
                 let (along, _) = side.along.split();
                 let at = range * ray[along];
                 let in_gap = |gap: &Gap| gap.side == number && gap.from <= at && at <= gap.to;
                 let around = gap
                     .filter(in_gap)
-                    .unwrap_or_else(|| self.gap(number, bearing, at, boundary, frame));
-                if around.to - around.from < DOOR * self.width {
+                    .unwrap_or_else(|| self.gap(number, bearing, at, boundary, frame, params));
+                if around.to - around.from < params.door_width * self.width {
                     held = Held::Door;
                 }
                 gap = Some(around);
@@ -115,18 +95,25 @@ impl Outline {
             }
             seen.seen += u32::from(matches!(held, Held::Support | Held::Ended | Held::Open));
         }
-        agreement.blank = towards.iter().filter(|seen| seen.is_blank(every)).count() as u32;
+        agreement.blank = towards.iter().filter(|seen| seen.is_blank(every, params)).count() as u32;
         agreement
     }
 
     /// What is seen on a bearing that meets a side first, so far away.
-    fn held(&self, side: &Side, at: f64, ray: [f64; 2], sight: &Sight) -> Held {
+    fn held(
+        &self,
+        side: &OutlineSide,
+        at: f64,
+        ray: [f64; 2],
+        sight: &Sight,
+        params: &OutlineParams,
+    ) -> Held {
         // How far in front of the side something is, perpendicular to it.
         let (_, across) = side.along.split();
         let before = |range: f64| (at - range) * ray[across].abs();
         let is_wall = side.is_wall();
         let fits = |edge: &Edge| {
-            let near = near(edge.range);
+            let near = near(edge.range, params);
             is_wall && before(edge.range).abs() < near
                 || self.distance(ray.map(|part| edge.range * part)) < near
         };
@@ -135,10 +122,10 @@ impl Outline {
             // What is so wide is no stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
-            None if is_wall && before(sight.floor).abs() < near(at) => Held::Ended,
-            None if is_wall && before(sight.floor) < -near(at) => Held::Through,
+            None if is_wall && before(sight.floor).abs() < near(at, params) => Held::Ended,
+            None if is_wall && before(sight.floor) < -near(at, params) => Held::Through,
             None if is_wall => Held::Silent,
-            None if sight.floor >= OPEN * at => Held::Open,
+            None if sight.floor >= params.open * at => Held::Open,
             None => Held::Unseen,
         }
     }
@@ -151,7 +138,8 @@ impl Outline {
         bearing: usize,
         at: f64,
         boundary: &Boundary,
-        frame: &Frame,
+        frame: &WallFrame,
+        params: &OutlineParams,
     ) -> Gap {
         let side = &self.sides[number];
         let (along, across) = side.along.split();
@@ -160,15 +148,17 @@ impl Outline {
             let ray = frame.framed(direction(bearing));
             let range = side.offset / ray[across];
             let off = |edge: Edge| ((edge.range - range) * ray[across]).abs();
-            let seen = |edge: Edge| edge.sure && off(edge) < CLOSE * near(range);
-            (range > 0.0 && range <= FAR)
+            let seen = |edge: Edge| edge.sure && off(edge) < params.door_near * near(range, params);
+            (range > 0.0 && range <= params.max_range)
                 .then(|| (range * ray[along], boundary.sights[bearing].edges().any(seen)))
         };
         let edge = |step: usize| {
             let nth = |steps: usize| on_wall((bearing + steps * step) % BEARINGS);
             (1..BEARINGS)
                 .map_while(|steps| Some((steps, nth(steps)?)))
-                .find(|&(steps, (_, seen))| seen && goes_on((steps..BEARINGS).map_while(nth)))
+                .find(|&(steps, (_, seen))| {
+                    seen && goes_on((steps..BEARINGS).map_while(nth), params)
+                })
                 .map(|(_, (on, _))| on)
         };
         let edges = [edge(1), edge(BEARINGS - 1)];
@@ -184,14 +174,14 @@ impl Outline {
 }
 
 /// Whether a wall goes on from the first of these places, where it is met and may be seen.
-fn goes_on(wall: impl Iterator<Item = (f64, bool)>) -> bool {
+fn goes_on(wall: impl Iterator<Item = (f64, bool)>, params: &OutlineParams) -> bool {
     let mut wall = wall.peekable();
     let Some(&(first, _)) = wall.peek() else { return false };
     let (mut all, mut seen, mut length) = (0, 0, 0.0);
-    for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= BESIDE) {
+    for (on, is_seen) in wall.take_while(|(on, _)| (on - first).abs() <= params.door_wall) {
         (all, seen, length) = (all + 1, seen + u32::from(is_seen), (on - first).abs());
     }
-    length >= 0.8 * BESIDE && f64::from(seen) >= UNBROKEN * f64::from(all)
+    length >= 0.8 * params.door_wall && f64::from(seen) >= params.door_wall_seen * f64::from(all)
 }
 
 /// A gap in a side of an outline: from where to where along it, in metres.
@@ -211,45 +201,56 @@ struct Seen {
 
 impl Seen {
     /// Whether it is not seen at all, though many bearings lead there.
-    fn is_blank(self, every: usize) -> bool {
+    fn is_blank(self, every: usize, params: &OutlineParams) -> bool {
         let Self { due, seen } = self;
-        f64::from(due) > bearings(NARROW, every) && f64::from(seen) < BLANK * f64::from(due)
+        f64::from(due) > bearings(params.narrow, every)
+            && f64::from(seen) < params.min_direction_seen * f64::from(due)
     }
 }
 
-impl Agreement {
+impl OutlineAgreement {
     /// What supports the outline, less what does not, which weighs more.
     #[must_use]
-    pub fn balance(&self) -> f64 {
-        self.good() - THROUGH * f64::from(self.through) - AGAINST * f64::from(self.against)
+    pub fn balance(&self, params: &OutlineParams) -> f64 {
+        self.good(params)
+            - params.through_weight * f64::from(self.through)
+            - params.against_weight * f64::from(self.against)
     }
 
     /// The part of what is seen that supports the outline, from 0 to 1.
     #[must_use]
-    pub fn trust(&self) -> f64 {
-        self.good() / (self.good() + f64::from(self.through + self.against)).max(1.0)
+    pub fn trust(&self, params: &OutlineParams) -> f64 {
+        let good = self.good(params);
+        good / (good + f64::from(self.through + self.against)).max(1.0)
     }
 
     /// The part of the outline's walls that is seen, from 0 to 1.
     #[must_use]
-    pub fn cover(&self) -> f64 {
+    pub fn cover(&self, params: &OutlineParams) -> f64 {
         let all = self.support + self.ended + self.silent + self.door + self.through + self.against;
-        self.good() / f64::from(all.max(1))
+        self.good(params) / f64::from(all.max(1))
+    }
+
+    /// How certain the place is, from 0 to 1.
+    #[must_use]
+    pub fn confidence(&self, params: &OutlineParams) -> f64 {
+        self.trust(params) * self.cover(params).sqrt()
     }
 
     /// What supports the outline, in bearings on which a stripe is seen where it should be.
     #[must_use]
-    pub fn good(&self) -> f64 {
-        f64::from(self.support) + ENDED * f64::from(self.ended)
+    pub fn good(&self, params: &OutlineParams) -> f64 {
+        f64::from(self.support) + params.ended_weight * f64::from(self.ended)
     }
 
     /// Whether so much of what is seen supports the outline, little of it stands against it, and
     /// there is more wall than door.
     #[must_use]
-    pub fn holds(&self, trust: f64) -> bool {
-        self.trust() >= trust
-            && f64::from(self.against) <= STRAY * self.good()
-            && f64::from(self.door) <= DOORS * self.good()
+    pub fn holds(&self, trust: f64, params: &OutlineParams) -> bool {
+        let good = self.good(params);
+        self.trust(params) >= trust
+            && f64::from(self.against) <= params.max_against * good
+            && f64::from(self.door) <= params.max_doors * good
     }
 }
 
@@ -263,8 +264,8 @@ pub fn bearings(part: f64, every: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::{
-        colour::Class,
-        drawn::{self, Place},
+        colour::PixelClass,
+        drawn::{self, DrawnPlace},
         ground_view::GroundView,
         outline::Square,
         wall::Axis,
@@ -273,12 +274,21 @@ mod tests {
     const HALF: f64 = 0.8;
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: HALF - drawn::TAPE };
 
-    fn seen(place: &Place) -> Boundary {
+    fn params() -> OutlineParams {
+        OutlineParams::default()
+    }
+
+    fn seen(place: &DrawnPlace) -> Boundary {
         drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0))
     }
 
-    fn held(doors: [bool; 4], boundary: &Boundary) -> Agreement {
-        Outline::junction(doors, SQUARE).agreement(boundary, &Frame::along(0.0), 1)
+    fn held(doors: [bool; 4], boundary: &Boundary) -> OutlineAgreement {
+        Outline::junction(doors, SQUARE, &params()).agreement(
+            boundary,
+            &WallFrame::along(0.0),
+            1,
+            &params(),
+        )
     }
 
     #[test]
@@ -289,14 +299,20 @@ mod tests {
             .filter(|doors| *doors != [false, true, false, true])
             .collect();
         for &doors in &forms {
-            let boundary = seen(&Place::junction(doors, HALF));
+            let boundary = seen(&DrawnPlace::junction(doors, HALF));
             let own = held(doors, &boundary);
-            assert!(own.trust() > 0.99 && own.cover() > 0.9, "{doors:?}: {own:?}");
+            assert!(
+                own.trust(&params()) > 0.99 && own.cover(&params()) > 0.9,
+                "{doors:?}: {own:?}"
+            );
             assert_eq!((own.against, own.blank), (0, 0), "{doors:?}");
             for other in forms.iter().filter(|&&other| other != doors) {
                 let agreement = held(*other, &boundary);
-                assert!(!agreement.holds(0.85), "{other:?} at {doors:?}: {agreement:?}");
-                assert!(agreement.balance() < own.balance() - 100.0, "{other:?} at {doors:?}");
+                assert!(!agreement.holds(0.85, &params()), "{other:?} at {doors:?}: {agreement:?}");
+                assert!(
+                    agreement.balance(&params()) < own.balance(&params()) - 100.0,
+                    "{other:?} at {doors:?}"
+                );
             }
         }
     }
@@ -305,9 +321,9 @@ mod tests {
     fn floor_seen_through_a_door_is_no_opening_and_through_a_gap_as_wide_as_a_hallway_it_is() {
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
         let beside = |gap: [f64; 2]| {
-            let mut hallway = Place::junction([true, false, true, false], HALF);
+            let mut hallway = DrawnPlace::junction([true, false, true, false], HALF);
             hallway.floor.push([gap[0], 0.0, gap[1], 9.0]);
-            outline.agreement(&seen(&hallway), &Frame::along(0.0), 1)
+            outline.agreement(&seen(&hallway), &WallFrame::along(0.0), 1, &params())
         };
         for from in [-0.45, -0.2, 0.1] {
             let door = beside([from, from + 0.9]);
@@ -315,81 +331,88 @@ mod tests {
             assert!(door.door > 50, "a door from {from}: {door:?}");
         }
         let opening = beside([-HALF, HALF]);
-        assert!(opening.through > 150 && !opening.holds(0.7), "{opening:?}");
+        assert!(opening.through > 150 && !opening.holds(0.7, &params()), "{opening:?}");
     }
 
     #[test]
     fn a_wall_far_off_in_what_should_be_open_stands_against_it() {
-        let dead_end = Place::junction([false, false, true, false], HALF);
+        let dead_end = DrawnPlace::junction([false, false, true, false], HALF);
         let view = dead_end.seen_from([-0.8, 0.0], 0.0);
         let boundary = drawn::bearings().look(&view);
         let square = Square { middle: [0.8, 0.0], half: HALF - drawn::TAPE };
-        let l = Outline::junction([false, true, true, false], square);
-        let agreement = l.agreement(&boundary, &Frame::along(0.0), 1);
+        let l = Outline::junction([false, true, true, false], square, &params());
+        let agreement = l.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert!(agreement.against > 60, "{agreement:?}");
-        assert!(!agreement.holds(0.75), "{agreement:?}");
+        assert!(!agreement.holds(0.75, &params()), "{agreement:?}");
     }
 
     #[test]
     fn beside_the_opening_of_a_t_its_corners_do_not_make_a_door_of_it() {
-        let t = Place::junction([false, true, true, true], 0.7);
+        let t = DrawnPlace::junction([false, true, true, true], 0.7);
         for before in [0.4, 0.5, 0.55] {
             let boundary = drawn::bearings().look(&t.seen_from([-before, 0.0], 0.0));
             // A little too wide and too near: a camera that is not as calibrated errs so.
             let square = Square { middle: [before - 0.05, 0.0], half: 0.75 };
             let bar = Outline::hallway(Axis::Y, square, -0.65, 0.65);
-            let agreement = bar.agreement(&boundary, &Frame::along(0.0), 1);
+            let agreement = bar.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
             assert_eq!(agreement.door, 0, "{before} before: {agreement:?}");
         }
     }
 
     #[test]
     fn lines_on_the_floor_of_an_opening_do_not_make_a_door_of_it() {
-        let mut hallway = Place::junction([true, false, true, false], HALF);
+        let mut hallway = DrawnPlace::junction([true, false, true, false], HALF);
         hallway.floor.push([-HALF, 0.0, HALF, 9.0]);
         let mut view = hallway.seen_from([0.0, 0.0], 0.0);
         // Where the wall would be, on both sides of what would be a door.
         for (index, class) in view.classes.iter_mut().enumerate() {
             let [x, y] = GroundView::ground(index);
             let on_line = x.abs() > 0.3 && (HALF - drawn::TAPE..HALF).contains(&y);
-            if on_line && *class == Class::Floor {
-                *class = Class::Stripe;
+            if on_line && *class == PixelClass::Floor {
+                *class = PixelClass::Stripe;
             }
         }
         let boundary = drawn::bearings().look(&view);
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
-        let agreement = outline.agreement(&boundary, &Frame::along(0.0), 1);
+        let agreement = outline.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert!(agreement.door == 0 && agreement.through > 60, "{agreement:?}");
     }
 
     #[test]
     fn an_outline_with_more_than_twice_as_much_door_as_wall_does_not_hold() {
-        let with_doors = |door| Agreement { support: 100, ended: 20, door, ..Agreement::default() };
-        assert!(with_doors(220).holds(1.0));
-        assert!(!with_doors(221).holds(0.0));
+        let with_doors = |door| OutlineAgreement {
+            support: 100,
+            ended: 20,
+            door,
+            ..OutlineAgreement::default()
+        };
+        assert!(with_doors(220).holds(1.0, &params()));
+        assert!(!with_doors(221).holds(0.0, &params()));
     }
 
     #[test]
     fn a_direction_in_which_nothing_is_seen_is_blank() {
         let doors = [false, true, true, true];
-        let mut boundary = seen(&Place::junction(doors, HALF));
+        let mut boundary = seen(&DrawnPlace::junction(doors, HALF));
         for bearing in 0..BEARINGS / 8 {
             boundary.sights[bearing] = Sight::default();
             boundary.sights[BEARINGS - 1 - bearing] = Sight::default();
         }
-        let outline = Outline::junction(doors, SQUARE);
-        let agreement = outline.agreement(&boundary, &Frame::along(0.0), 1);
+        let outline = Outline::junction(doors, SQUARE, &params());
+        let agreement = outline.agreement(&boundary, &WallFrame::along(0.0), 1, &params());
         assert_eq!(agreement.blank, 1, "{agreement:?}");
-        assert!(agreement.trust() > 0.99, "what is not seen does not speak against it");
+        assert!(agreement.trust(&params()) > 0.99, "what is not seen does not speak against it");
     }
 
     #[test]
     fn an_open_direction_is_blank_where_the_floor_is_not_seen_to_go_on() {
         let doors = [false, true, true, true];
         let square = Square { middle: [0.0, 0.0], half: 0.55 };
-        let mut boundary = seen(&Place::junction(doors, square.half + drawn::TAPE));
+        let mut boundary = seen(&DrawnPlace::junction(doors, square.half + drawn::TAPE));
         let blank = |boundary: &Boundary| {
-            Outline::junction(doors, square).agreement(boundary, &Frame::along(0.0), 1).blank
+            Outline::junction(doors, square, &params())
+                .agreement(boundary, &WallFrame::along(0.0), 1, &params())
+                .blank
         };
         assert_eq!(blank(&boundary), 0);
         for bearing in 3 * BEARINGS / 8..5 * BEARINGS / 8 {

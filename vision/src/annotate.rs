@@ -9,12 +9,12 @@ use toposlam_model::driving::scene::{CentreLine, MarkerView, Place, Scene};
 
 use crate::{
     camera::Camera,
-    colour::Class,
-    corner::{Bend, Formed},
+    colour::PixelClass,
+    corner::{Bend, CornerSource},
     ground_view::GroundView,
-    marker::{LENGTH, WIDTH},
-    sensing::Trace,
-    wall::Wall,
+    params::{MARKER_LENGTH, MARKER_WIDTH},
+    sensing::{SensingTrace, Sensor, WrongSize},
+    wall::WallSegment,
 };
 
 /// The robot's body.
@@ -49,16 +49,36 @@ const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.
 /// The colour of what was not made out.
 const DARK: Rgb<u8> = Rgb([24, 24, 28]);
 
+/// The name of each step, and its picture.
+pub type Stages = [(&'static str, RgbImage); 6];
+
+/// The scene in an image, and a picture of each step that leads to it.
+///
+/// # Errors
+/// Returns an error if the image is not of the calibrated camera's size.
+pub fn stages(sensor: &mut Sensor, image: &RgbImage) -> Result<(Scene, Stages), WrongSize> {
+    let (found, trace) = sensor.trace(image)?;
+    let stages = [
+        ("1-classes", classes(sensor.ground_view())),
+        ("2-boundary", boundary(&trace)),
+        ("3-clusters", clusters(&trace)),
+        ("4-lines", lines(&trace)),
+        ("5-scene", scene(&found, &trace)),
+        ("6-image", over(image, sensor.camera(), &found)),
+    ];
+    Ok((found, stages))
+}
+
 /// The colour in which a class is shown.
 #[must_use]
-pub fn shade(class: Class) -> Rgb<u8> {
+pub fn shade(class: PixelClass) -> Rgb<u8> {
     match class {
-        Class::Unseen => Rgb([0, 0, 0]),
-        Class::Unknown => Rgb([110, 40, 110]),
-        Class::Floor => Rgb([70, 110, 70]),
-        Class::Stripe => Rgb([250, 240, 200]),
-        Class::Marker => BLUE,
-        Class::Other => Rgb([60, 50, 50]),
+        PixelClass::Unseen => Rgb([0, 0, 0]),
+        PixelClass::Unknown => Rgb([110, 40, 110]),
+        PixelClass::Floor => Rgb([70, 110, 70]),
+        PixelClass::Stripe => Rgb([250, 240, 200]),
+        PixelClass::Marker => BLUE,
+        PixelClass::Other => Rgb([60, 50, 50]),
     }
 }
 
@@ -76,7 +96,7 @@ pub fn classes(view: &GroundView) -> RgbImage {
 
 /// The boundary points alone, and how far the floor is seen.
 #[must_use]
-pub fn boundary(trace: &Trace) -> RgbImage {
+pub fn boundary(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for (bearing, sight) in
         trace.boundary.iter().flat_map(|boundary| boundary.sights.iter().enumerate())
@@ -96,7 +116,7 @@ pub fn boundary(trace: &Trace) -> RgbImage {
 
 /// The clusters, each in a colour of its own.
 #[must_use]
-pub fn clusters(trace: &Trace) -> RgbImage {
+pub fn clusters(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for (cluster, colour) in trace.clusters.iter().zip(CLUSTERS.into_iter().cycle()) {
         for &point in &cluster.points {
@@ -110,7 +130,7 @@ pub fn clusters(trace: &Trace) -> RgbImage {
 /// Straight lines, in the colours of their clusters; those that are walls are bright, with a point at
 /// either end.
 #[must_use]
-pub fn lines(trace: &Trace) -> RgbImage {
+pub fn lines(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for piece in &trace.lines {
         line(&mut picture, piece.from, piece.to, CLUSTERS[piece.cluster % CLUSTERS.len()]);
@@ -127,13 +147,13 @@ pub fn lines(trace: &Trace) -> RgbImage {
 
 /// What it all comes to: walls, corners, centre lines, the marker.
 #[must_use]
-pub fn scene(scene: &Scene, trace: &Trace) -> RgbImage {
+pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for wall in &trace.walls {
         let Some([from, to]) = ends(trace, wall) else { continue };
         thick(&mut picture, from, to, Rgb([150, 150, 150]));
     }
-    for corner in trace.corners.iter().filter(|corner| corner.formed != Formed::End) {
+    for corner in trace.corners.iter().filter(|corner| corner.formed != CornerSource::End) {
         let Some(frame) = trace.frame else { continue };
         let colour = match corner.bend {
             Bend::Inwards => CYAN,
@@ -215,7 +235,7 @@ fn centre_lines(scene: &Scene) -> Vec<([f64; 2], [f64; 2], Rgb<u8>)> {
 fn rectangle(marker: &MarkerView) -> [[f64; 2]; 4] {
     let (sine, cosine) = marker.axis.sin_cos();
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(ahead, left)| {
-        let [along, across] = [ahead * LENGTH / 2.0, left * WIDTH / 2.0];
+        let [along, across] = [ahead * MARKER_LENGTH / 2.0, left * MARKER_WIDTH / 2.0];
         [
             marker.position[0] + along * cosine - across * sine,
             marker.position[1] + along * sine + across * cosine,
@@ -224,7 +244,7 @@ fn rectangle(marker: &MarkerView) -> [[f64; 2]; 4] {
 }
 
 /// The two ends of a wall.
-fn ends(trace: &Trace, wall: &Wall) -> Option<[[f64; 2]; 2]> {
+fn ends(trace: &SensingTrace, wall: &WallSegment) -> Option<[[f64; 2]; 2]> {
     let frame = trace.frame?;
     Some([wall.from, wall.to].map(|end| frame.unframed(wall.along.point(end, wall.offset))))
 }
@@ -295,7 +315,7 @@ mod tests {
 
     #[test]
     fn the_entered_edge_is_green_the_other_red_and_the_marker_blue() {
-        let scene_picture = scene(&l_with_marker(), &Trace::default());
+        let scene_picture = scene(&l_with_marker(), &SensingTrace::default());
         let camera = Camera::superscout();
         let image = RgbImage::new(camera.image[0], camera.image[1]);
         let over = over(&image, &camera, &l_with_marker());
@@ -330,7 +350,13 @@ mod tests {
     #[test]
     fn every_class_has_a_shade_of_its_own() {
         let mut view = GroundView::unseen();
-        let classes = [Class::Floor, Class::Stripe, Class::Marker, Class::Other, Class::Unknown];
+        let classes = [
+            PixelClass::Floor,
+            PixelClass::Stripe,
+            PixelClass::Marker,
+            PixelClass::Other,
+            PixelClass::Unknown,
+        ];
         for (pixel, class) in classes.into_iter().enumerate() {
             view.classes[pixel] = class;
         }

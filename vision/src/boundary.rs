@@ -9,9 +9,9 @@
 use std::{f64::consts::TAU, sync::LazyLock};
 
 use crate::{
-    colour::{Class, Stripe, StripeKind},
+    colour::{PixelClass, Stripe, StripeKind},
     ground_view::GroundView,
-    wall::{Frame, Wall},
+    params::BoundaryParams,
 };
 
 /// What is seen on each bearing.
@@ -41,36 +41,16 @@ pub struct Edge {
     pub width: f64,
 }
 
-/// A wall so long is none of the floor's patterns, in metres.
-const LONG: f64 = 0.60;
-/// No more edges than these are told of on a bearing.
+/// The most edges on one bearing.
 const EDGES: usize = 3;
-/// How many bearings are looked at.
+/// The number of bearings: one each half degree.
 pub const BEARINGS: usize = 720;
-/// From where on floor is looked at, in metres.
+/// Where the search for floor begins, in metres: the robot's body hides what is nearer.
 const NEAREST: f64 = 0.30;
-/// Up to where, in metres. Farther away a pixel covers more than a stripe.
+/// Where it ends, in metres. Farther away a pixel covers more than a stripe.
 pub const REACH: f64 = 2.6;
-/// Steps along a bearing, a pixel of the ground view each.
+/// Steps along a bearing, one pixel of the ground view each.
 const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
-/// A stripe is seen at least at this part of its width: a pixel may cover as much.
-const SEEN_WIDTH: f64 = 0.40;
-/// and at most at so many times its width;
-const WIDEST: f64 = 2.0;
-/// and so many steps more, for pixels and blur.
-const BLURRED: f64 = 10.0;
-/// What is so many times wider still is an area: lit floor may have the colour of a stripe in the shade.
-const AREA: f64 = 3.0;
-/// Between floor and stripe colours mix, over so many steps.
-const MIXED: usize = 10;
-/// Fewer steps of something else do not end a stripe.
-const SPECK: usize = 3;
-/// Behind a stripe so many steps are looked at;
-const BEHIND: usize = 30;
-/// if so many of them are floor, the edge is not sure.
-const FLOOR_BEHIND: usize = 10;
-/// Where something else was seen for so many steps, what comes behind is not believed.
-const LOST: usize = 60;
 
 /// The pixels of the ground view on each bearing, from the robot outwards.
 #[derive(Clone, Debug)]
@@ -79,13 +59,14 @@ pub struct Bearings {
     pixels: Vec<u32>,
     /// How wide a stripe is that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
+    params: BoundaryParams,
 }
 
 impl Bearings {
     /// The bearings of a camera that is so high above the floor, in metres, where walls have such a
     /// stripe.
     #[must_use]
-    pub fn new(stripe: Stripe, height: f64) -> Self {
+    pub fn new(stripe: Stripe, height: f64, params: &BoundaryParams) -> Self {
         let pixels = (0..BEARINGS)
             .flat_map(|bearing| {
                 let [x, y] = direction(bearing);
@@ -105,7 +86,7 @@ impl Bearings {
             };
             width / GroundView::SCALE
         });
-        Self { pixels, width: width.collect() }
+        Self { pixels, width: width.collect(), params: *params }
     }
 
     /// What is seen on each bearing of a ground view.
@@ -114,7 +95,7 @@ impl Bearings {
     #[must_use]
     pub fn look(&self, view: &GroundView) -> Boundary {
         let sights = self.pixels.chunks_exact(STEPS).map(|pixels| {
-            let mut classes = [Class::Unseen; STEPS];
+            let mut classes = [PixelClass::Unseen; STEPS];
             for (class, &pixel) in classes.iter_mut().zip(pixels) {
                 *class = view.classes[pixel as usize];
             }
@@ -124,36 +105,44 @@ impl Bearings {
     }
 
     /// What is seen on one bearing, by the classes on it from the robot outwards.
-    fn sight(&self, classes: &[Class]) -> Sight {
+    fn sight(&self, classes: &[PixelClass]) -> Sight {
+        let params = &self.params;
         let mut sight = Sight::default();
         let mut edges = sight.edges.iter_mut();
         let mut floor: Option<usize> = None;
         let (mut step, mut lost) = (0, 0);
         while let Some(&class) = classes.get(step) {
             match class {
-                Class::Floor | Class::Marker => {
+                PixelClass::Floor | PixelClass::Marker => {
                     floor = Some(step);
                     lost = 0;
                 }
-                Class::Stripe => {
+                PixelClass::Stripe => {
                     let from = step;
                     while classes[step + 1..]
                         .iter()
-                        .take(SPECK)
-                        .any(|&class| class == Class::Stripe)
+                        .take(params.speck_steps)
+                        .any(|&class| class == PixelClass::Stripe)
                     {
                         step += 1;
                     }
                     let width = (step + 1 - from) as f64;
                     if let Some(floor) = floor
-                        && width >= SEEN_WIDTH * self.width[from]
+                        && width >= params.min_stripe_width * self.width[from]
                     {
                         // The edge is where the floor's last pixel ends; floor that was taken for
                         // something else has none.
-                        let (last, seen) =
-                            if from - floor <= MIXED { (floor, true) } else { (from - 1, false) };
-                        let width = width / (WIDEST * self.width[from] + BLURRED);
-                        let sure = seen && width < AREA && !floor_follows(&classes[step + 1..]);
+                        let (last, seen) = if from - floor <= params.mixed_steps {
+                            (floor, true)
+                        } else {
+                            (from - 1, false)
+                        };
+                        let widest =
+                            params.max_stripe_width * self.width[from] + params.stripe_blur;
+                        let width = width / widest;
+                        let sure = seen
+                            && width < params.area_width
+                            && !floor_follows(&classes[step + 1..], params);
                         let edge = Edge { range: range(last as f64 + 0.5), sure, width };
                         let Some(next) = edges.next() else { break };
                         *next = Some(edge);
@@ -162,9 +151,9 @@ impl Bearings {
                         }
                     }
                 }
-                Class::Unseen | Class::Unknown | Class::Other => lost += 1,
+                PixelClass::Unseen | PixelClass::Unknown | PixelClass::Other => lost += 1,
             }
-            if floor.is_some() && lost > LOST {
+            if floor.is_some() && lost > params.lost_steps {
                 break;
             }
             step += 1;
@@ -195,9 +184,10 @@ impl Sight {
 }
 
 /// Whether floor goes on behind a stripe; more stripe tells nothing.
-fn floor_follows(behind: &[Class]) -> bool {
-    let behind = behind.iter().filter(|&&class| class != Class::Stripe).take(BEHIND);
-    behind.filter(|&&class| class == Class::Floor).count() >= FLOOR_BEHIND
+fn floor_follows(behind: &[PixelClass], params: &BoundaryParams) -> bool {
+    let behind =
+        behind.iter().filter(|&&class| class != PixelClass::Stripe).take(params.behind_steps);
+    behind.filter(|&&class| class == PixelClass::Floor).count() >= params.floor_behind_steps
 }
 
 /// How far away a step is.
@@ -232,15 +222,15 @@ impl Boundary {
         })
     }
 
-    /// Makes sure of the edges that lie on a long straight wall: a wall may have the floor's colour.
-    pub fn make_sure(&mut self, walls: &[Wall], frame: &Frame) {
+    /// The same boundary, with these edges sure, too; they are given with their bearing.
+    #[must_use]
+    pub fn with_sure(mut self, is_sure: impl Fn(usize, &Edge) -> bool) -> Self {
         for (bearing, sight) in self.sights.iter_mut().enumerate() {
-            let ray = frame.framed(direction(bearing));
-            for edge in sight.edges.iter_mut().flatten().filter(|edge| !edge.sure) {
-                let point = ray.map(|part| edge.range * part);
-                edge.sure = walls.iter().any(|wall| wall.length() >= LONG && wall.holds(point));
+            for edge in sight.edges.iter_mut().flatten() {
+                edge.sure = edge.sure || is_sure(bearing, edge);
             }
         }
+        self
     }
 }
 
@@ -249,21 +239,21 @@ mod tests {
     use super::*;
 
     /// Classes on a bearing, a letter each, eight steps a letter.
-    fn on(letters: &str) -> Vec<Class> {
+    fn on(letters: &str) -> Vec<PixelClass> {
         let class = |letter| match letter {
-            'f' => Class::Floor,
-            's' => Class::Stripe,
-            'm' => Class::Marker,
-            'o' => Class::Other,
-            '?' => Class::Unknown,
-            _ => Class::Unseen,
+            'f' => PixelClass::Floor,
+            's' => PixelClass::Stripe,
+            'm' => PixelClass::Marker,
+            'o' => PixelClass::Other,
+            '?' => PixelClass::Unknown,
+            _ => PixelClass::Unseen,
         };
         letters.chars().flat_map(|letter| [class(letter); 8]).collect()
     }
 
     fn sight(letters: &str) -> Sight {
         let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        Bearings::new(stripe, 1.05).sight(&on(letters))
+        Bearings::new(stripe, 1.05, &BoundaryParams::default()).sight(&on(letters))
     }
 
     // paper: sense.boundary
@@ -305,9 +295,12 @@ mod tests {
     #[test]
     fn a_joint_between_tiles_is_narrower_than_the_stripe() {
         let mut classes = on("ffffffffffff");
-        classes[40..42].fill(Class::Stripe);
+        classes[40..42].fill(PixelClass::Stripe);
         let stripe = Stripe { kind: StripeKind::OnFloor, width: 0.05 };
-        assert_eq!(Bearings::new(stripe, 1.05).sight(&classes).edges().count(), 0);
+        assert_eq!(
+            Bearings::new(stripe, 1.05, &BoundaryParams::default()).sight(&classes).edges().count(),
+            0
+        );
     }
 
     #[test]

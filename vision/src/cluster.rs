@@ -2,7 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::boundary::{BEARINGS, Boundary};
+use crate::{
+    boundary::{BEARINGS, Boundary},
+    params::ClusterParams,
+};
 
 /// Boundary points that follow each other, counter-clockwise as seen from the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,34 +14,22 @@ pub struct Cluster {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Two points that follow each other are so near, in metres, at least,
-const GAP: f64 = 0.10;
-/// and so much farther for each metre from the robot to the farther one.
-const GAP_BY_RANGE: f64 = 0.08;
-/// A strut hides no more bearings than these.
-const HIDDEN: usize = 16;
-/// Smaller clusters are noise: fewer points,
-const LEAST: usize = 6;
-/// or shorter, in metres.
-const SHORTEST: f64 = 0.12;
-
 /// The pieces of wall, without those that are noise.
 // paper: sense.cluster
 // paper: sense.small-clusters
 #[must_use]
-pub fn clusters(boundary: &Boundary) -> Vec<Cluster> {
+pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
     let mut chains: Vec<Chain> = Vec::new();
     // Those that may go on, by their index.
     let mut open: Vec<usize> = Vec::new();
     for point in boundary.points() {
-        open.retain(|&chain| point.0 <= chains[chain].last.0 + HIDDEN);
-        let nearest =
-            open.iter().copied().filter(|&chain| follows(chains[chain].last, point)).min_by(
-                |&one, &other| {
-                    let away = |chain: usize| distance(chains[chain].last.1, point.1);
-                    away(one).total_cmp(&away(other))
-                },
-            );
+        open.retain(|&chain| point.0 <= chains[chain].last.0 + params.hidden_bearings);
+        let away = |chain: usize| distance(chains[chain].last.1, point.1);
+        let nearest = open
+            .iter()
+            .copied()
+            .filter(|&chain| follows(chains[chain].last, point, params))
+            .min_by(|&one, &other| away(one).total_cmp(&away(other)));
         if let Some(chain) = nearest {
             chains[chain].last = point;
             chains[chain].cluster.points.push(point.1);
@@ -47,8 +38,10 @@ pub fn clusters(boundary: &Boundary) -> Vec<Cluster> {
             chains.push(Chain::new(point));
         }
     }
-    let mut clusters = joined_around(chains);
-    clusters.retain(|cluster| cluster.points.len() >= LEAST && cluster.extent() >= SHORTEST);
+    let mut clusters = joined_around(chains, params);
+    clusters.retain(|cluster| {
+        cluster.points.len() >= params.min_points && cluster.extent() >= params.min_extent
+    });
     clusters
 }
 
@@ -66,11 +59,12 @@ impl Chain {
 }
 
 /// The clusters, those that go on across straight ahead put together.
-fn joined_around(mut chains: Vec<Chain>) -> Vec<Cluster> {
+fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster> {
     let mut at = 0;
     while at < chains.len() {
         let goes_on = |other: &Chain| {
-            other.last.0 + HIDDEN >= BEARINGS && follows(other.last, chains[at].first)
+            other.last.0 + params.hidden_bearings >= BEARINGS
+                && follows(other.last, chains[at].first, params)
         };
         let before = (at + 1..chains.len()).find(|&other| goes_on(&chains[other]));
         if let Some(before) = before {
@@ -84,12 +78,17 @@ fn joined_around(mut chains: Vec<Chain>) -> Vec<Cluster> {
 }
 
 /// Whether the second point goes on where the first was.
-fn follows((bearing, one): (usize, [f64; 2]), (next, other): (usize, [f64; 2])) -> bool {
+fn follows(
+    (bearing, one): (usize, [f64; 2]),
+    (next, other): (usize, [f64; 2]),
+    params: &ClusterParams,
+) -> bool {
     let hidden = (next + BEARINGS - bearing) % BEARINGS;
     let farther = range(one).max(range(other));
     // Behind a strut the wall may go on for as far as the strut hides it.
     let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
-    (1..=HIDDEN).contains(&hidden) && distance(one, other) <= GAP + GAP_BY_RANGE * farther + bridged
+    (1..=params.hidden_bearings).contains(&hidden)
+        && distance(one, other) <= params.gap + params.gap_per_metre * farther + bridged
 }
 
 impl Cluster {
@@ -120,6 +119,10 @@ pub(crate) fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::boundary::Sight;
+
+    fn clusters(boundary: &Boundary) -> Vec<Cluster> {
+        super::clusters(boundary, &ClusterParams::default())
+    }
 
     /// A boundary from the range on each bearing.
     fn boundary(range: impl Fn(f64) -> Option<f64>) -> Boundary {

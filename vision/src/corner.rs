@@ -1,6 +1,9 @@
 //! Corners: where two walls meet at a right angle, or where one ends. Section 3, Figures 8 and 9.
 
-use crate::wall::{Axis, Wall};
+use crate::{
+    params::CornerParams,
+    wall::{Axis, WallSegment},
+};
 
 /// Where a wall along x and a wall along y of a frame meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +16,7 @@ pub struct Corner {
     /// Whether it is a corner of the room or an edge.
     pub bend: Bend,
     /// From what it was made out.
-    pub formed: Formed,
+    pub formed: CornerSource,
 }
 
 /// Which way a corner bends.
@@ -27,7 +30,7 @@ pub enum Bend {
 
 /// From what a corner was made out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Formed {
+pub enum CornerSource {
     /// The ends of two clusters.
     Clusters,
     /// Two pieces of one cluster.
@@ -36,18 +39,15 @@ pub enum Formed {
     End,
 }
 
-/// Two ends touch where they are so near to where their walls would meet, in metres.
-const TOUCH: f64 = 0.22;
-
 /// All corners of some walls.
 // paper: sense.corner.pair
 // paper: sense.corner.direction
 #[must_use]
-pub fn corners(walls: &[Wall]) -> Vec<Corner> {
+pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
     let along = |axis: Axis| walls.iter().filter(move |wall| wall.along == axis);
     let mut corners: Vec<Corner> = Vec::new();
     for x_wall in along(Axis::X) {
-        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall)));
+        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall, params)));
     }
     for wall in walls {
         let ends = [(wall.to, -1.0), (wall.from, 1.0)];
@@ -57,13 +57,15 @@ pub fn corners(walls: &[Wall]) -> Vec<Corner> {
 }
 
 /// The corner of two walls, if their ends touch.
-fn meeting(x_wall: &Wall, y_wall: &Wall) -> Option<Corner> {
+fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, params: &CornerParams) -> Option<Corner> {
     let position = [y_wall.offset, x_wall.offset];
-    let touches = |wall: &Wall, at: f64| (wall.from - at).abs().min((wall.to - at).abs()) <= TOUCH;
+    let touches = |wall: &WallSegment, at: f64| {
+        (wall.from - at).abs().min((wall.to - at).abs()) <= params.touch
+    };
     if !touches(x_wall, position[0]) || !touches(y_wall, position[1]) {
         return None;
     }
-    let towards = |wall: &Wall, at: f64| f64::midpoint(wall.from, wall.to) - at;
+    let towards = |wall: &WallSegment, at: f64| f64::midpoint(wall.from, wall.to) - at;
     let arms = [towards(x_wall, position[0]).signum(), towards(y_wall, position[1]).signum()];
     // The robot sees the two walls from between them or from over the edge.
     let between = [0, 1].map(|axis| -position[axis] * arms[axis] > 0.0);
@@ -72,27 +74,34 @@ fn meeting(x_wall: &Wall, y_wall: &Wall) -> Option<Corner> {
         [false, false] => Bend::Outwards,
         _ => return None,
     };
-    let formed = if x_wall.cluster == y_wall.cluster { Formed::Cluster } else { Formed::Clusters };
+    let formed = if x_wall.cluster == y_wall.cluster {
+        CornerSource::Cluster
+    } else {
+        CornerSource::Clusters
+    };
     Some(Corner { position, arms, bend, formed })
 }
 
 /// The edge that a wall's end may be: the wall turns away from the robot there.
-fn edge(wall: &Wall, end: f64, back: f64) -> Corner {
+fn edge(wall: &WallSegment, end: f64, back: f64) -> Corner {
     let position = wall.along.point(end, wall.offset);
     let arms = wall.along.point(back, wall.offset.signum());
-    Corner { position, arms, bend: Bend::Outwards, formed: Formed::End }
+    Corner { position, arms, bend: Bend::Outwards, formed: CornerSource::End }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn wall(along: Axis, offset: f64, from: f64, to: f64, cluster: usize) -> Wall {
-        Wall { along, offset, from, to, cluster }
+    fn wall(along: Axis, offset: f64, from: f64, to: f64, cluster: usize) -> WallSegment {
+        WallSegment { along, offset, from, to, cluster }
     }
 
-    fn met(walls: &[Wall]) -> Vec<Corner> {
-        corners(walls).into_iter().filter(|corner| corner.formed != Formed::End).collect()
+    fn met(walls: &[WallSegment]) -> Vec<Corner> {
+        corners(walls, &CornerParams::default())
+            .into_iter()
+            .filter(|corner| corner.formed != CornerSource::End)
+            .collect()
     }
 
     /// Figure 8: an L to the left, half a metre before its turning point.
@@ -107,8 +116,8 @@ mod tests {
             wall(Axis::Y, -0.3, 0.85, 2.0, 2),
         ]);
         let [outer, inner] = corners[..] else { panic!("{corners:?}") };
-        assert_eq!((outer.bend, outer.formed), (Bend::Inwards, Formed::Cluster));
-        assert_eq!((inner.bend, inner.formed), (Bend::Outwards, Formed::Clusters));
+        assert_eq!((outer.bend, outer.formed), (Bend::Inwards, CornerSource::Cluster));
+        assert_eq!((inner.bend, inner.formed), (Bend::Outwards, CornerSource::Clusters));
         assert_eq!(outer.arms, inner.arms);
         assert_eq!(outer.position, [1.3, -0.8]);
     }
@@ -137,7 +146,9 @@ mod tests {
 
     #[test]
     fn the_end_of_a_wall_may_be_an_edge() {
-        let [ahead, behind] = corners(&[wall(Axis::X, 0.8, -1.0, 0.4, 0)])[..] else {
+        let [ahead, behind] =
+            corners(&[wall(Axis::X, 0.8, -1.0, 0.4, 0)], &CornerParams::default())[..]
+        else {
             panic!("two ends")
         };
         assert_eq!((ahead.position, ahead.arms), ([0.4, 0.8], [-1.0, 1.0]));

@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 
 use crate::{
     boundary::Bearings,
-    colour::{Class, Stripe, StripeKind},
+    colour::{PixelClass, Stripe, StripeKind},
     ground_view::GroundView,
+    params::BoundaryParams,
 };
 
 /// The floor of a place: rectangles along the axes, in metres.
-pub(crate) struct Place {
+pub(crate) struct DrawnPlace {
     pub(crate) floor: Vec<[f64; 4]>,
 }
 
@@ -20,10 +21,10 @@ pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAP
 
 /// The bearings of a camera above such floors.
 pub(crate) fn bearings() -> Bearings {
-    Bearings::new(STRIPE, 1.05)
+    Bearings::new(STRIPE, 1.05, &BoundaryParams::default())
 }
 
-impl Place {
+impl DrawnPlace {
     /// A junction at the origin with arms in some of the four directions, counter-clockwise from x.
     pub(crate) fn junction(doors: [bool; 4], half: f64) -> Self {
         let mut floor = vec![[-half, -half, half, half]];
@@ -76,11 +77,11 @@ impl Place {
             let ray = (angle.rem_euclid(TAU) / TAU * RAYS as f64) as usize % RAYS;
             let point = [position[0] + range * angle.cos(), position[1] + range * angle.sin()];
             *class = if range > exits[ray] || !self.holds(point, 0.0) {
-                Class::Other
+                PixelClass::Other
             } else if self.taped(point) {
-                Class::Stripe
+                PixelClass::Stripe
             } else {
-                Class::Floor
+                PixelClass::Floor
             };
         }
         view

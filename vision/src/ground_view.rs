@@ -7,7 +7,7 @@ use image::RgbImage;
 
 use crate::{
     camera::Camera,
-    colour::{Class, LitTable},
+    colour::{LitTable, PixelClass},
 };
 
 /// What the floor around the robot shows, seen from straight above: the robot in the middle, ahead up,
@@ -16,7 +16,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroundView {
     /// Rows from ahead to behind, in each from left to right.
-    pub classes: Vec<Class>,
+    pub classes: Vec<PixelClass>,
     /// Where the marker is, as indices in `classes`, ascending.
     pub marker: Vec<u32>,
 }
@@ -34,7 +34,7 @@ impl GroundView {
     /// A view of nothing.
     #[must_use]
     pub fn unseen() -> Self {
-        Self { classes: vec![Class::Unseen; Self::SIDE * Self::SIDE], marker: Vec::new() }
+        Self { classes: vec![PixelClass::Unseen; Self::SIDE * Self::SIDE], marker: Vec::new() }
     }
 
     /// The point of the floor that is in the middle of a pixel.
@@ -80,11 +80,11 @@ impl Unwrapping {
         view.marker.clear();
         for (index, (class, &pixel)) in view.classes.iter_mut().zip(&self.pixels).enumerate() {
             *class = if pixel == Self::UNSEEN {
-                Class::Unseen
+                PixelClass::Unseen
             } else {
                 colours.class(colour(raw, pixel as usize))
             };
-            if *class == Class::Marker {
+            if *class == PixelClass::Marker {
                 view.marker.push(index as u32);
             }
         }

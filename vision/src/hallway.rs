@@ -4,17 +4,18 @@
 use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undirected};
 
 use crate::{
-    agreement::{Agreement, DOOR},
+    agreement::OutlineAgreement,
     boundary::{BEARINGS, Boundary, bearing, direction},
     outline::{Outline, Square},
-    wall::{Axis, Frame, Wall},
+    params::{HallwayParams, OutlineParams, SensingParams},
+    wall::{Axis, WallFrame, WallSegment},
 };
 
 /// A hallway that was found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hallway {
+pub struct FittedHallway {
     /// Turned so that the walls lie best on what is seen.
-    pub frame: Frame,
+    pub frame: WallFrame,
     /// Along which axis of the frame it runs.
     pub axis: Axis,
     /// Its centre line and half its width, between the edges that were seen.
@@ -22,98 +23,73 @@ pub struct Hallway {
     /// Whether it is clear.
     pub status: HallwayStatus,
     /// How its walls agree with what is seen.
-    pub agreement: Agreement,
+    pub agreement: OutlineAgreement,
 }
-
-/// Half the width of a hallway, in metres.
-pub const HALF_WIDTH: std::ops::RangeInclusive<f64> = 0.45..=1.2;
-/// A turning point that is farther ahead than this is not yet there: the robot is in the hallway
-/// before it. In metres.
-pub const AHEAD: f64 = 1.0;
-/// A turning point that is farther behind than this has been left, in metres.
-pub const BEHIND: f64 = 0.75;
-/// Nearer than this to a turning point, the walls are open at a side; in metres. So much wall is
-/// looked at, to either end, less half the width,
-const CLOSED: f64 = 1.4;
-/// but at least so much.
-const BESIDE_ROBOT: f64 = 0.5;
-/// Pieces of wall with offsets that differ by less are of the same wall, in metres.
-const SAME: f64 = 0.10;
-/// So many walls on each side are considered.
-const NEAREST: usize = 3;
-/// The floor must be seen to go on as if the turning point were so far ahead, at least; in metres.
-const SEEN_AHEAD: f64 = 0.75;
-/// Or a wall at a side must be seen to go on as if it were so far ahead.
-const SIDES_AHEAD: f64 = 0.65;
-/// A major cluster is at least so long, in metres,
-const MAJOR: f64 = 0.25;
-/// and begins no farther from the robot, along the hallway.
-const BESIDE: f64 = 0.9;
-/// What is seen must support the walls at least so much for a hallway to be likely,
-const LIKELY: f64 = 0.68;
-/// and so much for it to be sure: a door of the floor's colour looks like an opening.
-const SURE: f64 = 0.85;
-/// and this part of them must be seen.
-const COVER: f64 = 0.20;
-/// The floor is looked at so far to either side of the hallway's direction, in bearings.
-const SECTOR: usize = BEARINGS / 30;
-/// Further clusters nearer than this beside the robot count neither as ahead nor as behind, in metres.
-const ABREAST: f64 = 0.3;
-/// A further cluster is off the walls by more than this, in metres.
-const OFF: f64 = 0.15;
-/// The major clusters are of very different sizes where one is less than this part of the other.
-const SIZES: f64 = 0.5;
 
 /// The hallway in which the robot is, if it is in one.
 // paper: sense.hallway.two-clusters
 // paper: sense.hallway.major
 #[must_use]
-pub fn hallway(walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hallway> {
+pub fn hallway(
+    walls: &[WallSegment],
+    boundary: &Boundary,
+    frame: &WallFrame,
+    params: &SensingParams,
+) -> Option<FittedHallway> {
     [Axis::X, Axis::Y]
         .into_iter()
-        .filter_map(|axis| along(axis, walls, boundary, frame))
-        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
+        .filter_map(|axis| along(axis, walls, boundary, frame, params))
+        .max_by(|one, other| one.balance(params).total_cmp(&other.balance(params)))
 }
 
 /// The best hallway along an axis, of the pieces of wall nearest to the robot on either side.
-fn along(axis: Axis, walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Option<Hallway> {
-    let lefts = majors(axis, 1.0, walls);
-    let rights = majors(axis, -1.0, walls);
+fn along(
+    axis: Axis,
+    walls: &[WallSegment],
+    boundary: &Boundary,
+    frame: &WallFrame,
+    params: &SensingParams,
+) -> Option<FittedHallway> {
+    let lefts = majors(axis, 1.0, walls, &params.hallway);
+    let rights = majors(axis, -1.0, walls, &params.hallway);
     let pairs = lefts.iter().flat_map(|&left| rights.iter().map(move |&right| (left, right)));
     pairs
-        .filter_map(|(left, right)| between(axis, left, right, walls, boundary, frame))
-        .max_by(|one, other| one.agreement.balance().total_cmp(&other.agreement.balance()))
+        .filter_map(|(left, right)| between(axis, [left, right], walls, boundary, frame, params))
+        .max_by(|one, other| one.balance(params).total_cmp(&other.balance(params)))
 }
 
 /// The hallway along an axis between walls with these offsets.
 fn between(
     axis: Axis,
-    left: f64,
-    right: f64,
-    walls: &[Wall],
+    [left, right]: [f64; 2],
+    walls: &[WallSegment],
     boundary: &Boundary,
-    frame: &Frame,
-) -> Option<Hallway> {
+    frame: &WallFrame,
+    params: &SensingParams,
+) -> Option<FittedHallway> {
     let mut square =
         Square { middle: axis.point(0.0, f64::midpoint(left, right)), half: (left - right) / 2.0 };
-    if !HALF_WIDTH.contains(&square.half) {
+    if !params.hallway.has_width(square.half) {
         return None;
     }
-    let reach = (CLOSED - square.half).max(BESIDE_ROBOT);
+    let reach = (params.hallway.closed - square.half).max(params.hallway.min_closed);
     let mut frame = *frame;
     for _ in 0..2 {
         let outline = Outline::hallway(axis, square, -reach - 0.3, reach + 0.3);
-        (square, frame) = outline.fitted(square, boundary, &frame);
+        (square, frame) = outline.fitted(square, boundary, &frame, &params.outline);
         square.middle[axis.split().0] = 0.0;
     }
-    let agreement = Outline::hallway(axis, square, -reach, reach).agreement(boundary, &frame, 1);
-    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame)
-        && goes_on(axis, -1.0, square, walls, boundary, &frame);
-    (agreement.holds(LIKELY) && agreement.cover() >= COVER && goes_on).then(|| Hallway {
+    let outline = Outline::hallway(axis, square, -reach, reach);
+    let agreement = outline.agreement(boundary, &frame, 1, &params.outline);
+    let goes_on = goes_on(axis, 1.0, square, walls, boundary, &frame, params)
+        && goes_on(axis, -1.0, square, walls, boundary, &frame, params);
+    let likely = agreement.holds(params.hallway.min_trust, &params.outline)
+        && agreement.cover(&params.outline) >= params.hallway.min_cover;
+    (likely && goes_on).then(|| FittedHallway {
         frame,
         axis,
         square,
-        status: status(axis, frame.ahead(axis), square, walls),
+        status: status(axis, frame.ahead(axis), square, walls, &params.hallway),
         agreement,
     })
 }
@@ -122,18 +98,18 @@ fn between(
 /// cluster is the first, unless what looks like it is a lamp's reflection on the floor.
 // paper: sense.opposite
 // paper: sense.parallel
-fn majors(axis: Axis, side: f64, walls: &[Wall]) -> Vec<f64> {
+fn majors(axis: Axis, side: f64, walls: &[WallSegment], params: &HallwayParams) -> Vec<f64> {
     let beside = walls.iter().filter(|wall| {
         wall.along == axis
             && side * wall.offset > 0.0
-            && wall.length() >= MAJOR
-            && wall.from < BESIDE
-            && wall.to > -BESIDE
+            && wall.length() >= params.major_length
+            && wall.from < params.major_distance
+            && wall.to > -params.major_distance
     });
     let mut offsets: Vec<f64> = beside.map(|wall| wall.offset).collect();
     offsets.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
-    offsets.dedup_by(|next, kept| (*next - *kept).abs() < SAME);
-    offsets.truncate(NEAREST);
+    offsets.dedup_by(|next, kept| (*next - *kept).abs() < params.same_wall);
+    offsets.truncate(params.max_walls);
     offsets
 }
 
@@ -142,17 +118,19 @@ fn goes_on(
     axis: Axis,
     sign: f64,
     square: Square,
-    walls: &[Wall],
+    walls: &[WallSegment],
     boundary: &Boundary,
-    frame: &Frame,
+    frame: &WallFrame,
+    params: &SensingParams,
 ) -> bool {
+    let HallwayParams { sector, floor_ahead, wall_ahead, .. } = params.hallway;
     let (along, _) = axis.split();
     let whither = frame.unframed(axis.point(sign, 0.0));
-    let least = square.half + SEEN_AHEAD;
-    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - SECTOR;
+    let least = square.half + floor_ahead;
+    let first = bearing(whither[1].atan2(whither[0])) + BEARINGS - sector;
     let ahead = sign * frame.ahead(axis) > 0.0;
     let (mut far, mut near) = (0, 0);
-    for bearing in (first..=first + 2 * SECTOR).map(|bearing| bearing % BEARINGS) {
+    for bearing in (first..=first + 2 * sector).map(|bearing| bearing % BEARINGS) {
         let sight = boundary.sights[bearing];
         let forwards = sign * frame.framed(direction(bearing))[along];
         match sight.sure() {
@@ -163,24 +141,36 @@ fn goes_on(
     }
     // What is behind the robot may be in the dark; it has come from there.
     let enough = !ahead
-        || far > SECTOR / 3
-        || reaches(axis, sign * (square.half + SIDES_AHEAD), square, walls);
-    let closed = near > SECTOR / 2 && near > far;
-    enough && !closed && !is_closed(axis, sign * least, square, walls)
+        || far > sector / 3
+        || reaches(axis, sign * (square.half + wall_ahead), square, walls, &params.hallway);
+    let closed = near > sector / 2 && near > far;
+    enough && !closed && !is_closed(axis, sign * least, square, walls, params.outline.door_width)
 }
 
 /// Whether a wall at a side goes on as far as this.
-fn reaches(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+fn reaches(
+    axis: Axis,
+    least: f64,
+    square: Square,
+    walls: &[WallSegment],
+    params: &HallwayParams,
+) -> bool {
     let centre = square.middle[axis.split().1];
     walls.iter().any(|wall| {
         let off = ((wall.offset - centre).abs() - square.half).abs();
         let far = if least > 0.0 { wall.to > least } else { wall.from < least };
-        wall.along == axis && off < OFF && far
+        wall.along == axis && off < params.off_wall && far
     })
 }
 
 /// Whether walls stand across half of the hallway or more, nearer than this; doors in them included.
-fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
+fn is_closed(
+    axis: Axis,
+    least: f64,
+    square: Square,
+    walls: &[WallSegment],
+    door_width: f64,
+) -> bool {
     let centre = square.middle[axis.split().1];
     let across = walls.iter().filter(|wall| {
         wall.along != axis && wall.offset * least > 0.0 && wall.offset.abs() < least.abs()
@@ -194,7 +184,7 @@ fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
     let mut last: Option<f64> = None;
     for [from, to] in pieces {
         let from = match last {
-            Some(last) if from - last < DOOR * 2.0 * square.half => last,
+            Some(last) if from - last < door_width * 2.0 * square.half => last,
             _ => from,
         };
         closed += (to - from).max(0.0);
@@ -209,46 +199,60 @@ fn is_closed(axis: Axis, least: f64, square: Square, walls: &[Wall]) -> bool {
 // paper: sense.unclear.ahead
 // paper: sense.unclear.sizes
 // paper: sense.unclear.behind
-pub(crate) fn status(axis: Axis, ahead: f64, square: Square, walls: &[Wall]) -> HallwayStatus {
+pub(crate) fn status(
+    axis: Axis,
+    ahead: f64,
+    square: Square,
+    walls: &[WallSegment],
+    params: &HallwayParams,
+) -> HallwayStatus {
     let (_, across) = axis.split();
-    let off = |wall: &Wall, side: f64| wall.offset - square.middle[across] - side * square.half;
+    let off =
+        |wall: &WallSegment, side: f64| wall.offset - square.middle[across] - side * square.half;
     let side = |side: f64| {
-        walls.iter().filter(move |wall| wall.along == axis && off(wall, side).abs() < OFF)
+        walls
+            .iter()
+            .filter(move |wall| wall.along == axis && off(wall, side).abs() < params.off_wall)
     };
     let (left, right) = (side(1.0), side(-1.0));
-    let forwards = |wall: &Wall| {
+    let forwards = |wall: &WallSegment| {
         let parts = if wall.along == axis { [wall.from, wall.to] } else { [wall.offset; 2] };
         ahead * f64::midpoint(parts[0], parts[1])
     };
-    let is_major =
-        |wall: &Wall| wall.along == axis && off(wall, 1.0).abs().min(off(wall, -1.0).abs()) < OFF;
-    if walls.iter().any(|wall| !is_major(wall) && forwards(wall) > ABREAST) {
+    let is_major = |wall: &WallSegment| {
+        wall.along == axis && off(wall, 1.0).abs().min(off(wall, -1.0).abs()) < params.off_wall
+    };
+    if walls.iter().any(|wall| !is_major(wall) && forwards(wall) > params.abreast) {
         return HallwayStatus::Unclear(Unclear::ClustersAhead);
     }
-    let foremost = |wall: &Wall| (ahead * wall.from).max(ahead * wall.to);
+    let foremost = |wall: &WallSegment| (ahead * wall.from).max(ahead * wall.to);
     let ends = [left.clone(), right.clone()]
         .map(|side| side.map(foremost).fold(f64::NEG_INFINITY, f64::max));
     if ends.iter().any(|&end| end < 0.0) {
         return HallwayStatus::Unclear(Unclear::ClusterBehind);
     }
-    let sizes = [left, right].map(|side| side.map(Wall::length).sum::<f64>());
-    if sizes[0].min(sizes[1]) < SIZES * sizes[0].max(sizes[1]) {
+    let sizes = [left, right].map(|side| side.map(WallSegment::length).sum::<f64>());
+    if sizes[0].min(sizes[1]) < params.size_ratio * sizes[0].max(sizes[1]) {
         return HallwayStatus::Unclear(Unclear::SizesDiffer);
     }
     HallwayStatus::Clear
 }
 
-impl Hallway {
-    /// Whether nothing of its walls looks open, so that no junction need be looked for.
+impl FittedHallway {
+    /// Whether no part of its walls looks open, so that there is no need to search for a junction.
     #[must_use]
-    pub fn is_sure(&self) -> bool {
-        self.agreement.holds(SURE)
+    pub fn is_sure(&self, params: &SensingParams) -> bool {
+        self.agreement.holds(params.hallway.sure_trust, &params.outline)
+    }
+
+    fn balance(&self, params: &SensingParams) -> f64 {
+        self.agreement.balance(&params.outline)
     }
 
     /// What the robot is told of it; `margin` is from the edges that were seen to the wall planes.
     // paper: sense.distances
     #[must_use]
-    pub fn view(&self, margin: f64) -> HallwayView {
+    pub fn view(&self, margin: f64, params: &OutlineParams) -> HallwayView {
         let heading = undirected(self.frame.angle() + self.axis.direction());
         let (_, across) = self.axis.split();
         // Left of x is y, and left of y is the opposite of x.
@@ -263,7 +267,7 @@ impl Hallway {
             left: half + centre,
             right: half - centre,
             status: self.status,
-            confidence: self.agreement.trust() * self.agreement.cover().sqrt(),
+            confidence: self.agreement.confidence(params),
         }
     }
 }
@@ -275,33 +279,35 @@ mod tests {
     use super::*;
     use crate::{
         cluster::clusters,
-        drawn::{self, Place},
+        drawn::{self, DrawnPlace},
         line::lines,
     };
 
+    const DOOR_WIDTH: f64 = 0.75;
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
 
     /// The hallway in which a robot is that stands at the origin of a place and looks along x.
-    fn seen(place: &Place) -> Option<Hallway> {
+    fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
         let boundary = drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
-        let lines = lines(&clusters(&boundary));
-        let frame = Frame::of(&lines)?;
-        hallway(&frame.walls(&lines), &boundary, &frame)
+        let params = SensingParams::default();
+        let lines = lines(&clusters(&boundary, &params.cluster), &params.line);
+        let frame = WallFrame::of(&lines, &params.wall)?;
+        hallway(&frame.walls(&lines, &params.wall), &boundary, &frame, &params)
     }
 
     /// A hallway along x, so wide between its tapes.
-    fn straight(width: f64) -> Place {
-        Place::junction([true, false, true, false], width / 2.0 + drawn::TAPE)
+    fn straight(width: f64) -> DrawnPlace {
+        DrawnPlace::junction([true, false, true, false], width / 2.0 + drawn::TAPE)
     }
 
-    fn wall(along: Axis, offset: f64, from: f64, to: f64) -> Wall {
-        Wall { along, offset, from, to, cluster: 0 }
+    fn wall(along: Axis, offset: f64, from: f64, to: f64) -> WallSegment {
+        WallSegment { along, offset, from, to, cluster: 0 }
     }
 
-    fn clear_or_not(more: &[Wall], left: [f64; 2], right: [f64; 2]) -> HallwayStatus {
+    fn clear_or_not(more: &[WallSegment], left: [f64; 2], right: [f64; 2]) -> HallwayStatus {
         let major = |offset, [from, to]: [f64; 2]| wall(Axis::X, offset, from, to);
         let walls = [&[major(0.8, left), major(-0.8, right)], more].concat();
-        status(Axis::X, 1.0, SQUARE, &walls)
+        status(Axis::X, 1.0, SQUARE, &walls, &HallwayParams::default())
     }
 
     // paper: sense.clear.two
@@ -336,12 +342,15 @@ mod tests {
     fn a_wall_across_with_a_door_in_it_closes_a_hallway_and_half_of_it_does_not() {
         let left = wall(Axis::Y, 1.2, 0.5, 0.8);
         let right = wall(Axis::Y, 1.2, -0.8, -0.5);
-        assert!(is_closed(Axis::X, 1.5, SQUARE, &[left, right]));
-        assert!(!is_closed(Axis::X, 1.5, SQUARE, &[left]), "0.3 m of 1.6");
-        assert!(!is_closed(Axis::X, 1.0, SQUARE, &[left, right]), "it is farther away");
-        assert!(!is_closed(Axis::X, -1.5, SQUARE, &[left, right]), "it is ahead");
+        assert!(is_closed(Axis::X, 1.5, SQUARE, &[left, right], DOOR_WIDTH));
+        assert!(!is_closed(Axis::X, 1.5, SQUARE, &[left], DOOR_WIDTH), "0.3 m of 1.6");
+        assert!(!is_closed(Axis::X, 1.0, SQUARE, &[left, right], DOOR_WIDTH), "it is farther away");
+        assert!(!is_closed(Axis::X, -1.5, SQUARE, &[left, right], DOOR_WIDTH), "it is ahead");
         let edges = [wall(Axis::Y, 1.2, 0.7, 0.8), wall(Axis::Y, 1.2, -0.8, -0.7)];
-        assert!(!is_closed(Axis::X, 1.5, SQUARE, &edges), "no door is 1.4 of 1.6 m wide");
+        assert!(
+            !is_closed(Axis::X, 1.5, SQUARE, &edges, DOOR_WIDTH),
+            "no door is 1.4 of 1.6 m wide"
+        );
     }
 
     #[test]
@@ -369,14 +378,14 @@ mod tests {
     #[test]
     fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
         for (turned, heading, left) in [(0.1, 0.1 - FRAC_PI_2, 1.0), (-0.1, FRAC_PI_2 - 0.1, 0.6)] {
-            let hallway = Hallway {
-                frame: Frame::along(turned),
+            let hallway = FittedHallway {
+                frame: WallFrame::along(turned),
                 axis: Axis::Y,
                 square: Square { middle: [0.2, 0.0], half: 0.8 },
                 status: HallwayStatus::Clear,
-                agreement: Agreement { support: 1, ..Agreement::default() },
+                agreement: OutlineAgreement { support: 1, ..OutlineAgreement::default() },
             };
-            let view = hallway.view(0.0);
+            let view = hallway.view(0.0, &OutlineParams::default());
             assert!((view.heading - heading).abs() < 1e-5, "{view:?}");
             assert!((view.left - left).abs() < 1e-9, "{view:?}");
         }

@@ -12,110 +12,110 @@ use std::f64::consts::FRAC_PI_2;
 use toposlam_model::driving::scene::{CentreLine, JunctionView, wrapped};
 
 use crate::{
-    agreement::{Agreement, bearings},
+    agreement::{OutlineAgreement, bearings},
     boundary::Boundary,
     corner::{Bend, Corner},
-    hallway::{AHEAD, BEHIND, HALF_WIDTH, Hallway, status},
+    hallway::{FittedHallway, status},
     outline::{DIRECTIONS, Outline, Square},
-    wall::{Axis, Frame, Wall},
+    params::{HallwayParams, JunctionParams, OutlineParams, SensingParams},
+    wall::{Axis, WallFrame, WallSegment},
 };
 
 /// A junction that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Junction {
+pub struct FittedJunction {
     /// Turned so that the walls lie best on what is seen.
-    pub frame: Frame,
+    pub frame: WallFrame,
     /// In which of the four [`DIRECTIONS`] of the frame there are doors.
     pub doors: [bool; 4],
     /// The turning point, and half the width between the edges that were seen.
     pub square: Square,
     /// How its walls agree with what is seen.
-    pub agreement: Agreement,
+    pub agreement: OutlineAgreement,
 }
 
 /// What the corners and walls make.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
+pub enum JunctionSearch {
     /// This junction.
-    Junction(Junction),
+    Junction(FittedJunction),
     /// Two different junctions, equally well.
     Ambiguous,
     /// None.
     Nothing,
 }
 
-/// Guesses are first held against every so many bearings,
-const COARSE: usize = 5;
-/// and so many of the best are looked at closely.
-const SHORT_LIST: usize = 6;
-/// What is seen must support a junction at least so much,
-const TRUST: f64 = 0.75;
-/// this part of its walls must be seen,
-const COVER: f64 = 0.40;
-/// on this part of all bearings.
-const SEEN: f64 = 0.17;
-/// A different junction must be supported by less, by this part of all bearings.
-const MARGIN: f64 = 0.04;
-/// Junctions whose turning points are nearer to each other are the same, in metres.
-const SAME: f64 = 0.25;
-/// Widths that differ by less are the same, in metres.
-const SAME_WIDTH: f64 = 0.05;
-/// A turning point is looked for so far away on each axis, in metres.
-const REACH: f64 = 1.9;
-
 /// The junction that the corners and walls make.
 // paper: sense.junction.type
 // paper: sense.junction.two
 // paper: sense.junction.three
 #[must_use]
-pub fn junction(corners: &[Corner], walls: &[Wall], boundary: &Boundary, frame: &Frame) -> Finding {
-    let mut guesses: Vec<Junction> = Vec::new();
-    for half in half_widths(walls) {
+pub fn junction(
+    corners: &[Corner],
+    walls: &[WallSegment],
+    boundary: &Boundary,
+    frame: &WallFrame,
+    params: &SensingParams,
+) -> JunctionSearch {
+    let JunctionParams { max_distance, same_candidate, .. } = params.junction;
+    let mut guesses: Vec<FittedJunction> = Vec::new();
+    for half in half_widths(walls, params) {
         for corner in corners {
             let (square, kinds) = around(corner, half);
-            if square.middle.iter().any(|part| part.abs() > REACH) {
+            if square.middle.iter().any(|part| part.abs() > max_distance) {
                 continue;
             }
             for doors in kinds {
                 let known = guesses.iter().any(|guess| {
                     guess.doors == doors
-                        && apart(guess.square, square) < SAME_WIDTH
-                        && (guess.square.half - half).abs() < SAME_WIDTH
+                        && apart(guess.square, square) < same_candidate
+                        && (guess.square.half - half).abs() < same_candidate
                 });
                 if !known {
-                    let outline = Outline::junction(doors, square);
-                    let agreement = outline.agreement(boundary, frame, COARSE);
-                    guesses.push(Junction { frame: *frame, doors, square, agreement });
+                    let outline = Outline::junction(doors, square, &params.outline);
+                    let every = params.junction.coarse_step;
+                    let agreement = outline.agreement(boundary, frame, every, &params.outline);
+                    guesses.push(FittedJunction { frame: *frame, doors, square, agreement });
                 }
             }
         }
     }
-    best_first(&mut guesses);
-    guesses.truncate(SHORT_LIST);
-    let mut found: Vec<_> = guesses.into_iter().map(|guess| guess.fitted(boundary)).collect();
-    best_first(&mut found);
-    let Some(&best) = found.first() else { return Finding::Nothing };
-    let wide = HALF_WIDTH.contains(&best.square.half);
-    let seen = best.agreement.cover() >= COVER
-        && best.agreement.good() >= bearings(SEEN, 1)
-        && best.agreement.blank == 0;
-    if !wide || !seen || !best.agreement.holds(TRUST) {
-        return Finding::Nothing;
-    }
-    // In a hallway it does not matter which junction is far ahead or behind.
-    let differs = |other: &Junction| {
-        (best.is_here() || other.is_here())
-            && (other.doors != best.doors || apart(other.square, best.square) > SAME)
-    };
-    let behind = |other: &Junction| best.agreement.balance() - other.agreement.balance();
-    if found.iter().any(|other| differs(other) && behind(other) < bearings(MARGIN, 1)) {
-        return Finding::Ambiguous;
-    }
-    Finding::Junction(best)
+    best_first(&mut guesses, &params.outline);
+    guesses.truncate(params.junction.short_list);
+    let fitted = |guess: FittedJunction| guess.fitted(boundary, &params.outline);
+    let mut found: Vec<_> = guesses.into_iter().map(fitted).collect();
+    best_first(&mut found, &params.outline);
+    decided(&found, params)
 }
 
-fn best_first(guesses: &mut [Junction]) {
-    guesses.sort_by(|one, other| other.agreement.balance().total_cmp(&one.agreement.balance()));
+/// The best of these junctions, which are given best first, if it is seen well and no different one is as good.
+fn decided(found: &[FittedJunction], params: &SensingParams) -> JunctionSearch {
+    let Some(&best) = found.first() else { return JunctionSearch::Nothing };
+    let JunctionParams { min_trust, min_cover, min_support, min_lead, same_place, .. } =
+        params.junction;
+    let wide = params.hallway.has_width(best.square.half);
+    let seen = best.agreement.cover(&params.outline) >= min_cover
+        && best.agreement.good(&params.outline) >= bearings(min_support, 1)
+        && best.agreement.blank == 0;
+    if !wide || !seen || !best.agreement.holds(min_trust, &params.outline) {
+        return JunctionSearch::Nothing;
+    }
+    // In a hallway it does not matter which junction is far ahead or behind.
+    let differs = |other: &FittedJunction| {
+        (best.is_here(&params.junction) || other.is_here(&params.junction))
+            && (other.doors != best.doors || apart(other.square, best.square) > same_place)
+    };
+    let balance = |junction: &FittedJunction| junction.agreement.balance(&params.outline);
+    let lead = |other: &FittedJunction| balance(&best) - balance(other);
+    if found.iter().any(|other| differs(other) && lead(other) < bearings(min_lead, 1)) {
+        return JunctionSearch::Ambiguous;
+    }
+    JunctionSearch::Junction(best)
+}
+
+fn best_first(guesses: &mut [FittedJunction], params: &OutlineParams) {
+    let balance = |guess: &FittedJunction| guess.agreement.balance(params);
+    guesses.sort_by(|one, other| balance(other).total_cmp(&balance(one)));
 }
 
 /// How far two turning points are from each other.
@@ -124,14 +124,15 @@ fn apart(one: Square, other: Square) -> f64 {
 }
 
 /// Half the distances between walls on opposite sides of the robot.
-fn half_widths(walls: &[Wall]) -> Vec<f64> {
+fn half_widths(walls: &[WallSegment], params: &SensingParams) -> Vec<f64> {
+    let same = params.junction.same_candidate / 2.0;
     let mut halves: Vec<f64> = Vec::new();
     for (number, one) in walls.iter().enumerate() {
         for other in &walls[..number] {
             let half = (one.offset - other.offset).abs() / 2.0;
             let opposite = one.along == other.along && one.offset * other.offset < 0.0;
-            let known = halves.iter().any(|&known: &f64| (known - half).abs() < SAME_WIDTH / 2.0);
-            if opposite && HALF_WIDTH.contains(&half) && !known {
+            let known = halves.iter().any(|&known: &f64| (known - half).abs() < same);
+            if opposite && params.hallway.has_width(half) && !known {
                 halves.push(half);
             }
         }
@@ -162,34 +163,35 @@ fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
     (Square { middle, half }, kinds)
 }
 
-impl Junction {
+impl FittedJunction {
     /// The same junction, moved to where its walls lie best on what is seen.
-    fn fitted(self, boundary: &Boundary) -> Self {
+    fn fitted(self, boundary: &Boundary, params: &OutlineParams) -> Self {
         let (mut square, mut frame) = (self.square, self.frame);
         for _ in 0..3 {
-            (square, frame) =
-                Outline::junction(self.doors, square).fitted(square, boundary, &frame);
+            let outline = Outline::junction(self.doors, square, params);
+            (square, frame) = outline.fitted(square, boundary, &frame, params);
         }
-        let agreement = Outline::junction(self.doors, square).agreement(boundary, &frame, 1);
+        let outline = Outline::junction(self.doors, square, params);
+        let agreement = outline.agreement(boundary, &frame, 1, params);
         Self { frame, square, agreement, ..self }
     }
 
     /// Whether the robot is there: the turning point is neither far ahead nor left behind.
     #[must_use]
-    pub fn is_here(&self) -> bool {
+    pub fn is_here(&self, params: &JunctionParams) -> bool {
         let away = -self.square.middle[0];
         let aside = self.square.middle[1].abs();
-        (-AHEAD..=BEHIND).contains(&away) && aside <= AHEAD
+        (-params.ahead..=params.behind).contains(&away) && aside <= params.ahead
     }
 
     /// The hallway before or behind it, in which the robot is.
     #[must_use]
-    pub fn hallway(&self, walls: &[Wall]) -> Option<Hallway> {
+    pub fn hallway(&self, walls: &[WallSegment], params: &HallwayParams) -> Option<FittedHallway> {
         let axis = self.arm()?;
         let mut square = self.square;
         square.middle[axis.split().0] = 0.0;
-        let status = status(axis, self.frame.ahead(axis), square, walls);
-        Some(Hallway { frame: self.frame, axis, square, status, agreement: self.agreement })
+        let status = status(axis, self.frame.ahead(axis), square, walls, params);
+        Some(FittedHallway { frame: self.frame, axis, square, status, agreement: self.agreement })
     }
 
     /// Along which axis the hallway runs in which the robot is.
@@ -209,13 +211,13 @@ impl Junction {
     // paper: sense.junction.entry
     // paper: sense.centre-lines
     #[must_use]
-    pub fn view(&self) -> JunctionView {
+    pub fn view(&self, params: &OutlineParams) -> JunctionView {
         let turning_point = self.frame.unframed(self.square.middle);
         let doors = (0..4).rev().filter(|&number| self.doors[number]).map(|number| CentreLine {
             through: turning_point,
             direction: wrapped(self.frame.angle() + number as f64 * FRAC_PI_2),
         });
-        let confidence = self.agreement.trust() * self.agreement.cover().sqrt();
+        let confidence = self.agreement.confidence(params);
         JunctionView { doors: doors.collect(), turning_point, confidence }
             .entered_from(std::f64::consts::PI)
     }
@@ -227,30 +229,31 @@ mod tests {
     use crate::{
         boundary::{BEARINGS, Sight, bearing},
         cluster::clusters,
-        corner::{Formed, corners},
-        drawn::{self, Place},
+        corner::{CornerSource, corners},
+        drawn::{self, DrawnPlace},
         line::lines,
     };
 
     const HALF: f64 = 0.8;
 
-    fn bearings_of(place: &Place, position: [f64; 2]) -> Boundary {
+    fn bearings_of(place: &DrawnPlace, position: [f64; 2]) -> Boundary {
         drawn::bearings().look(&place.seen_from(position, 0.2))
     }
 
-    fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> Finding {
-        let mut boundary = bearings_of(&Place::junction(doors, HALF), [-0.3, 0.1]);
+    fn seen(doors: [bool; 4], hidden: std::ops::Range<usize>) -> JunctionSearch {
+        let mut boundary = bearings_of(&DrawnPlace::junction(doors, HALF), [-0.3, 0.1]);
         for bearing in hidden {
             boundary.sights[bearing % BEARINGS] = Sight::default();
         }
         finding(&boundary)
     }
 
-    fn finding(boundary: &Boundary) -> Finding {
-        let lines = lines(&clusters(boundary));
-        let frame = Frame::of(&lines).unwrap();
-        let walls = frame.walls(&lines);
-        junction(&corners(&walls), &walls, boundary, &frame)
+    fn finding(boundary: &Boundary) -> JunctionSearch {
+        let params = SensingParams::default();
+        let lines = lines(&clusters(boundary, &params.cluster), &params.line);
+        let frame = WallFrame::of(&lines, &params.wall).unwrap();
+        let walls = frame.walls(&lines, &params.wall);
+        junction(&corners(&walls, &params.corner), &walls, boundary, &frame, &params)
     }
 
     // paper: sense.junction.two
@@ -265,7 +268,7 @@ mod tests {
             [true, false, true, true],
         ];
         for doors in kinds {
-            let Finding::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
+            let JunctionSearch::Junction(found) = seen(doors, 0..0) else { panic!("{doors:?}") };
             assert_eq!(found.doors, doors);
             let [x, y] = found.frame.unframed(found.square.middle);
             // 0.3 m ahead and 0.1 m to the right in a hallway to which the robot is turned by 0.2.
@@ -279,26 +282,30 @@ mod tests {
         // What is dark would tell the L from the T.
         for doors in [[false, true, true, false], [false, true, true, true]] {
             let found = seen(doors, BEARINGS / 2..BEARINGS);
-            assert!(!matches!(found, Finding::Junction(_)), "{doors:?}: {found:?}");
+            assert!(!matches!(found, JunctionSearch::Junction(_)), "{doors:?}: {found:?}");
         }
     }
 
     #[test]
     fn what_is_dark_in_one_direction_is_no_junction() {
         let doors = [false, true, true, true];
-        assert!(matches!(seen(doors, 0..0), Finding::Junction(_)));
+        assert!(matches!(seen(doors, 0..0), JunctionSearch::Junction(_)));
         // The wall ahead, of a robot that is turned by 0.2.
         let ahead = BEARINGS - bearing(0.2);
-        assert_eq!(seen(doors, ahead - BEARINGS / 9..ahead + BEARINGS / 9), Finding::Nothing);
+        assert_eq!(
+            seen(doors, ahead - BEARINGS / 9..ahead + BEARINGS / 9),
+            JunctionSearch::Nothing
+        );
     }
 
     #[test]
     fn what_is_seen_on_few_bearings_is_no_junction() {
-        let far_off = Place::junction([false, true, true, true], 0.55);
+        let far_off = DrawnPlace::junction([false, true, true, true], 0.55);
         let boundary = bearings_of(&far_off, [-1.9, 0.0]);
-        let lines = lines(&clusters(&boundary));
-        let frame = Frame::of(&lines).unwrap();
-        let walls = frame.walls(&lines);
+        let params = SensingParams::default();
+        let lines = lines(&clusters(&boundary, &params.cluster), &params.line);
+        let frame = WallFrame::of(&lines, &params.wall).unwrap();
+        let walls = frame.walls(&lines, &params.wall);
         let found = |every: usize| {
             let mut boundary = boundary.clone();
             for (bearing, sight) in boundary.sights.iter_mut().enumerate() {
@@ -306,11 +313,11 @@ mod tests {
                     *sight = Sight::default();
                 }
             }
-            junction(&corners(&walls), &walls, &boundary, &frame)
+            junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
         };
         // Of its walls half is seen, but that is a seventh of all that is around the robot.
-        assert!(matches!(found(1), Finding::Junction(_)));
-        assert_eq!(found(2), Finding::Nothing);
+        assert!(matches!(found(1), JunctionSearch::Junction(_)));
+        assert_eq!(found(2), JunctionSearch::Nothing);
     }
 
     #[test]
@@ -319,7 +326,7 @@ mod tests {
             position: [0.5, 0.8],
             arms: [-1.0, 1.0],
             bend,
-            formed: Formed::Clusters,
+            formed: CornerSource::Clusters,
         };
         // An edge between the hallway behind and the one to the left.
         let (square, kinds) = around(&corner(Bend::Outwards), HALF);

@@ -32,6 +32,7 @@ pub mod junction;
 pub mod line;
 pub mod marker;
 pub mod outline;
+pub mod params;
 pub mod sensing;
 pub mod wall;
 

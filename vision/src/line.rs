@@ -2,11 +2,14 @@
 
 use nalgebra::{Matrix2, SymmetricEigen};
 
-use crate::cluster::{Cluster, distance, range};
+use crate::{
+    cluster::{Cluster, distance, range},
+    params::LineParams,
+};
 
 /// A straight piece of wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct WallLine {
     /// The mean of its points.
     pub middle: [f64; 2],
     /// The unit vector along it, from the first point to the last.
@@ -23,16 +26,7 @@ pub struct Line {
     pub cluster: usize,
 }
 
-/// A cluster is split where a point is so far from its line, in metres,
-const BEND: f64 = 0.035;
-/// and so much more for each metre from the robot: a pixel covers more there.
-const BEND_BY_RANGE: f64 = 0.02;
-/// A line has at least so many points,
-const LEAST: usize = 5;
-/// and is at least so long, in metres.
-const SHORTEST: f64 = 0.10;
-
-impl Line {
+impl WallLine {
     /// The line on which the points lie best: their first principal component. `None` for fewer
     /// than two different points.
     // paper: sense.pca
@@ -85,37 +79,36 @@ impl Line {
 /// until none is far (Ramer 1972, Douglas and Peucker 1973).
 // paper: sense.corner.single
 #[must_use]
-pub fn lines(clusters: &[Cluster]) -> Vec<Line> {
+pub fn lines(clusters: &[Cluster], params: &LineParams) -> Vec<WallLine> {
     let pieces = clusters.iter().enumerate().flat_map(|(number, cluster)| {
-        split(cluster).into_iter().map(move |line| Line { cluster: number, ..line })
+        split(cluster, params).into_iter().map(move |line| WallLine { cluster: number, ..line })
     });
     pieces.collect()
 }
 
-fn split(cluster: &Cluster) -> Vec<Line> {
+fn split(cluster: &Cluster, params: &LineParams) -> Vec<WallLine> {
     let mut lines = Vec::new();
     let mut open = vec![cluster.points.as_slice()];
     while let Some(points) = open.pop() {
-        match bend(points) {
+        match bend(points, params) {
             Some(at) => open.extend([&points[at..], &points[..=at]]),
-            None => lines.extend(
-                Line::through(points)
-                    .filter(|line| line.points >= LEAST && line.length() >= SHORTEST),
-            ),
+            None => lines.extend(WallLine::through(points).filter(|line| {
+                line.points >= params.min_points && line.length() >= params.min_length
+            })),
         }
     }
     lines
 }
 
 /// Where points that follow each other are farthest from the line between their ends, if that is far.
-fn bend(points: &[[f64; 2]]) -> Option<usize> {
+fn bend(points: &[[f64; 2]], params: &LineParams) -> Option<usize> {
     let (&first, &last) = (points.first()?, points.last()?);
-    if points.len() < 2 * LEAST {
+    if points.len() < 2 * params.min_points {
         return None;
     }
     let chord = distance(first, last);
     let off = |point: [f64; 2]| {
-        if chord < SHORTEST {
+        if chord < params.min_length {
             return distance(first, point);
         }
         let [x, y] = [last[0] - first[0], last[1] - first[1]];
@@ -123,7 +116,8 @@ fn bend(points: &[[f64; 2]]) -> Option<usize> {
     };
     let inner = 1..points.len() - 1;
     let at = inner.max_by(|&one, &other| off(points[one]).total_cmp(&off(points[other])))?;
-    (off(points[at]) > BEND + BEND_BY_RANGE * range(points[at])).then_some(at)
+    let far = params.bend + params.bend_per_metre * range(points[at]);
+    (off(points[at]) > far).then_some(at)
 }
 
 #[cfg(test)]
@@ -139,7 +133,7 @@ mod tests {
     fn a_straight_cluster_is_one_line() {
         let wall =
             cluster((0..50).map(|step| [0.02 * f64::from(step), 1.0 + 0.01 * f64::from(step)]));
-        let [line] = split(&wall)[..] else { panic!("one line") };
+        let [line] = split(&wall, &LineParams::default())[..] else { panic!("one line") };
         assert!((line.direction() - 0.5_f64.atan()).abs() < 1e-9);
         assert!(line.spread < 1e-6);
         assert!((line.length() - 0.02 * 49.0 * 1.25_f64.sqrt()).abs() < 1e-9);
@@ -153,7 +147,7 @@ mod tests {
                 .map(|step| [1.0, 0.02 * f64::from(step) - 0.5])
                 .chain((1..50).map(|step| [1.0 - 0.02 * f64::from(step), 0.48])),
         );
-        let [one, other] = split(&bent)[..] else { panic!("two lines") };
+        let [one, other] = split(&bent, &LineParams::default())[..] else { panic!("two lines") };
         let dot = one.along[0] * other.along[0] + one.along[1] * other.along[1];
         assert!(dot.abs() < 0.02, "{dot}");
         assert!(distance(one.to, other.from) < 0.05);
@@ -161,7 +155,7 @@ mod tests {
 
     #[test]
     fn one_point_is_no_line() {
-        assert_eq!(Line::through(&[]), None);
-        assert_eq!(Line::through(&[[1.0, 1.0]; 9]), None);
+        assert_eq!(WallLine::through(&[]), None);
+        assert_eq!(WallLine::through(&[[1.0, 1.0]; 9]), None);
     }
 }

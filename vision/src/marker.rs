@@ -7,25 +7,11 @@ use toposlam_model::{
 
 use crate::{
     boundary::{Boundary, bearing},
-    colour::Class,
+    colour::PixelClass,
     ground_view::GroundView,
-    line::Line,
+    line::WallLine,
+    params::MarkerParams,
 };
-
-// paper: marker-sense.shape
-/// The marker's length, in metres.
-pub const LENGTH: f64 = 0.60;
-/// Its width, in metres.
-pub const WIDTH: f64 = 0.18;
-
-/// Part of the marker's area that must be seen.
-const SEEN: f64 = 0.12;
-/// It lies on the floor before the wall; so far behind it a colour is something else, in metres.
-const BEHIND: f64 = 0.05;
-/// How far from the median point of its colour a point may be, in metres.
-const FAR: f64 = 0.40;
-/// At a junction it lies within this of the turning point, in metres.
-const CENTRED: f64 = 0.30;
 
 /// The marker, if enough of its colour is seen on the floor.
 // paper: marker-sense.present, marker-sense.direction
@@ -34,17 +20,20 @@ pub fn marker(
     view: &GroundView,
     boundary: &Boundary,
     junction: Option<&JunctionView>,
+    params: &MarkerParams,
 ) -> Option<MarkerView> {
-    let points = pixels(view, boundary);
-    let least = SEEN * LENGTH * WIDTH / (GroundView::SCALE * GroundView::SCALE);
+    let &MarkerParams { length, width, .. } = params;
+    let points = pixels(view, boundary, params);
+    let least = params.min_seen * length * width / (GroundView::SCALE * GroundView::SCALE);
     if (points.len() as f64) < least {
         return None;
     }
-    let line = Line::through(&points)?;
+    let line = WallLine::through(&points)?;
     let axis = undirected(line.direction());
     let at_l = junction.filter(|junction| {
         let [x, y] = junction.turning_point;
-        junction.doors.len() == 2 && (x - line.middle[0]).hypot(y - line.middle[1]) < CENTRED
+        junction.doors.len() == 2
+            && (x - line.middle[0]).hypot(y - line.middle[1]) < params.max_off_centre
     });
     let Some(junction) = at_l else {
         return Some(MarkerView { position: line.middle, axis, door: None });
@@ -56,8 +45,8 @@ pub fn marker(
         let [u, v] = junction.turning_point;
         let inside = points.iter().filter(|[x, y]| {
             let [x, y] = [x - u, y - v];
-            (cosine * x + sine * y).abs() <= LENGTH / 2.0
-                && (cosine * y - sine * x).abs() <= WIDTH / 2.0
+            (cosine * x + sine * y).abs() <= length / 2.0
+                && (cosine * y - sine * x).abs() <= width / 2.0
         });
         inside.count()
     };
@@ -71,11 +60,11 @@ pub fn marker(
 }
 
 /// The points of the floor that have the marker's colour, without those far from most of them.
-fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<[f64; 2]> {
+fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<[f64; 2]> {
     let on_floor = view.marker.iter().filter_map(|&index| {
         let [x, y] = GroundView::ground(index as usize);
         let sight = boundary.sights[bearing(y.atan2(x))];
-        let reach = sight.floor + BEHIND;
+        let reach = sight.floor + params.max_behind;
         (x.hypot(y) <= reach && is_within(view, index as usize)).then_some([x, y])
     });
     let points: Vec<_> = on_floor.collect();
@@ -87,13 +76,18 @@ fn pixels(view: &GroundView, boundary: &Boundary) -> Vec<[f64; 2]> {
         let middle = parts.len() / 2;
         *parts.select_nth_unstable_by(middle, f64::total_cmp).1
     });
-    points.into_iter().filter(|[x, y]| (x - median[0]).hypot(y - median[1]) <= FAR).collect()
+    points
+        .into_iter()
+        .filter(|[x, y]| (x - median[0]).hypot(y - median[1]) <= params.max_spread)
+        .collect()
 }
 
 /// Whether a pixel's neighbours to the left and above have the colour, too: a speck has none.
 fn is_within(view: &GroundView, index: usize) -> bool {
     let of_marker = |index: Option<usize>| {
-        index.and_then(|index| view.classes.get(index)).is_some_and(|&class| class == Class::Marker)
+        index
+            .and_then(|index| view.classes.get(index))
+            .is_some_and(|&class| class == PixelClass::Marker)
     };
     of_marker(index.checked_sub(1)) && of_marker(index.checked_sub(GroundView::SIDE))
 }
@@ -105,7 +99,10 @@ mod tests {
     use toposlam_model::driving::scene::CentreLine;
 
     use super::*;
-    use crate::drawn;
+    use crate::{
+        drawn,
+        params::{MARKER_LENGTH, MARKER_WIDTH},
+    };
 
     /// Floor everywhere but under the body, and a marker on it.
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
@@ -115,13 +112,13 @@ mod tests {
             let (sine, cosine) = axis.sin_cos();
             let [dx, dy] = [x - position[0], y - position[1]];
             let [along, across] = [cosine * dx + sine * dy, cosine * dy - sine * dx];
-            let on_it = along.abs() <= LENGTH / 2.0 && across.abs() <= WIDTH / 2.0;
+            let on_it = along.abs() <= MARKER_LENGTH / 2.0 && across.abs() <= MARKER_WIDTH / 2.0;
             view.classes[index] = match () {
-                () if x.hypot(y) < 0.32 => Class::Unseen,
-                () if on_it => Class::Marker,
-                () => Class::Floor,
+                () if x.hypot(y) < 0.32 => PixelClass::Unseen,
+                () if on_it => PixelClass::Marker,
+                () => PixelClass::Floor,
             };
-            if view.classes[index] == Class::Marker {
+            if view.classes[index] == PixelClass::Marker {
                 view.marker.push(index as u32);
             }
         }
@@ -130,7 +127,7 @@ mod tests {
 
     fn found(position: [f64; 2], axis: f64, junction: Option<&JunctionView>) -> Option<MarkerView> {
         let view = floor_with_marker(position, axis);
-        marker(&view, &drawn::bearings().look(&view), junction)
+        marker(&view, &drawn::bearings().look(&view), junction, &MarkerParams::default())
     }
 
     // paper: marker-sense.direction
@@ -153,12 +150,13 @@ mod tests {
         for index in 0..view.classes.len() {
             let [x, _] = GroundView::ground(index);
             if (1.0..1.05).contains(&x) {
-                view.classes[index] = Class::Stripe;
-            } else if x > 1.05 && view.classes[index] == Class::Floor {
-                view.classes[index] = Class::Other;
+                view.classes[index] = PixelClass::Stripe;
+            } else if x > 1.05 && view.classes[index] == PixelClass::Floor {
+                view.classes[index] = PixelClass::Other;
             }
         }
-        assert_eq!(marker(&view, &drawn::bearings().look(&view), None), None);
+        let boundary = drawn::bearings().look(&view);
+        assert_eq!(marker(&view, &boundary, None, &MarkerParams::default()), None);
     }
 
     #[test]

@@ -5,7 +5,8 @@ use nalgebra::{Matrix4, Vector4};
 use crate::{
     boundary::Boundary,
     cluster::range,
-    wall::{Axis, Frame},
+    params::OutlineParams,
+    wall::{Axis, WallFrame},
 };
 
 /// The four directions of a frame, counter-clockwise: x, y, and their opposites.
@@ -14,14 +15,14 @@ pub const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0
 /// A place with walls along the axes of a frame: a piece of hallway, or a junction with its arms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    pub(crate) sides: Vec<Side>,
+    pub(crate) sides: Vec<OutlineSide>,
     /// How wide its hallways are, in metres.
     pub(crate) width: f64,
 }
 
 /// A side of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Side {
+pub(crate) struct OutlineSide {
     /// What is there.
     kind: Kind,
     /// In which of the four [`DIRECTIONS`] it is, as seen from the middle.
@@ -50,14 +51,8 @@ pub struct Square {
     pub half: f64,
 }
 
-/// A point agrees with a wall that is so near, in metres,
-const NEAR: f64 = 0.05;
-/// and so much farther for each metre from the robot.
-const NEAR_BY_RANGE: f64 = 0.03;
 /// A junction has at most so many sides: a T, with three at each door and the wall opposite.
 const MOST_SIDES: usize = 12;
-/// How far the arms of a junction reach from its square, in its widths: there the next one may begin.
-const ARM: f64 = 1.0;
 
 impl Outline {
     /// A piece of hallway along an axis, from a coordinate along it to another.
@@ -69,7 +64,7 @@ impl Outline {
             let (first, _) = axis.split();
             if sign > 0.0 { first } else { first + 2 }
         };
-        let wall = |sign: f64| Side {
+        let wall = |sign: f64| OutlineSide {
             kind: Kind::Wall(sign),
             towards: number(axis.across(), sign),
             along: axis,
@@ -77,7 +72,7 @@ impl Outline {
             from: beside + from,
             to: beside + to,
         };
-        let end = |at: f64| Side {
+        let end = |at: f64| OutlineSide {
             kind: Kind::Open,
             towards: number(axis, at),
             along: axis.across(),
@@ -90,15 +85,19 @@ impl Outline {
 
     /// A junction with doors in some of the four [`DIRECTIONS`].
     #[must_use]
-    pub fn junction(doors: [bool; 4], Square { middle, half }: Square) -> Self {
+    pub fn junction(
+        doors: [bool; 4],
+        Square { middle, half }: Square,
+        params: &OutlineParams,
+    ) -> Self {
         let mut sides = Vec::with_capacity(MOST_SIDES);
         for (towards, (&open, [x, y])) in doors.iter().zip(DIRECTIONS).enumerate() {
             let sign = x + y;
             let arm = if y == 0.0 { Axis::X } else { Axis::Y };
             let (along, across) = arm.split();
-            let (edge, end) = (half, half + 2.0 * half * ARM);
+            let (edge, end) = (half, half + 2.0 * half * params.arm);
             let [near, far] = [edge, end].map(|reach| middle[along] + sign * reach);
-            let closing = |kind, offset| Side {
+            let closing = |kind, offset| OutlineSide {
                 kind,
                 towards,
                 along: arm.across(),
@@ -108,7 +107,7 @@ impl Outline {
             };
             if open {
                 sides.push(closing(Kind::Open, far));
-                sides.extend([1.0, -1.0].map(|side| Side {
+                sides.extend([1.0, -1.0].map(|side| OutlineSide {
                     kind: Kind::Wall(side),
                     towards,
                     along: arm,
@@ -150,7 +149,13 @@ impl Outline {
     /// The place moved, turned and widened so that its walls lie best on the boundary points near
     /// them, by least squares; and the frame turned with it.
     #[must_use]
-    pub fn fitted(&self, square: Square, boundary: &Boundary, frame: &Frame) -> (Square, Frame) {
+    pub fn fitted(
+        &self,
+        square: Square,
+        boundary: &Boundary,
+        frame: &WallFrame,
+        params: &OutlineParams,
+    ) -> (Square, WallFrame) {
         let mut normal = Matrix4::zeros();
         let mut right = Vector4::zeros();
         // What is not seen stays as it is: a weak pull, in parts of one point.
@@ -159,7 +164,7 @@ impl Outline {
         for (_, point) in boundary.points() {
             let from_robot = range(point);
             let point = frame.framed(point);
-            let near = near(from_robot);
+            let near = near(from_robot, params);
             let walls = self.sides.iter().filter_map(|side| match side.kind {
                 Kind::Wall(sign) => Some((side, sign, side.distance(point))),
                 Kind::Open => None,
@@ -189,11 +194,11 @@ impl Outline {
             middle: [square.middle[0] + moved[1], square.middle[1] + moved[2]],
             half: square.half + moved[3],
         };
-        (square, Frame::along(frame.angle() + moved[0]))
+        (square, WallFrame::along(frame.angle() + moved[0]))
     }
 }
 
-impl Side {
+impl OutlineSide {
     /// Whether there is a wall.
     pub(crate) fn is_wall(&self) -> bool {
         self.kind != Kind::Open
@@ -208,24 +213,26 @@ impl Side {
 }
 
 /// What counts as near a wall, so far from the robot.
-pub(crate) fn near(range: f64) -> f64 {
-    NEAR + NEAR_BY_RANGE * range
+pub(crate) fn near(range: f64, params: &OutlineParams) -> f64 {
+    params.near + params.near_per_metre * range
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawn::{self, Place};
+    use crate::drawn::{self, DrawnPlace};
 
     #[test]
     fn a_place_is_moved_turned_and_widened_to_where_its_walls_are_seen() {
         let doors = [true, false, true, true];
-        let view = Place::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
+        let view = DrawnPlace::junction(doors, 0.8).seen_from([-0.2, 0.1], 0.3);
         let boundary = drawn::bearings().look(&view);
-        let mut frame = Frame::along(-0.27);
+        let mut frame = WallFrame::along(-0.27);
+        let params = OutlineParams::default();
         let mut square = Square { middle: [0.16, -0.06], half: 0.78 };
         for _ in 0..4 {
-            (square, frame) = Outline::junction(doors, square).fitted(square, &boundary, &frame);
+            (square, frame) = Outline::junction(doors, square, &params)
+                .fitted(square, &boundary, &frame, &params);
         }
         let off = [
             square.middle[0] - 0.2,
@@ -239,7 +246,8 @@ mod tests {
     #[test]
     fn a_ray_meets_the_nearest_side_first() {
         let square = Square { middle: [0.0, 0.0], half: 0.8 };
-        let dead_end = Outline::junction([false, false, true, false], square);
+        let dead_end =
+            Outline::junction([false, false, true, false], square, &OutlineParams::default());
         let first = |ray| dead_end.first_on(ray).map(|(range, side)| (range, dead_end.sides[side]));
         let (ahead, wall) = first([1.0, 0.0]).unwrap();
         assert!((ahead - 0.8).abs() < 1e-12 && wall.is_wall() && wall.towards == 0);

@@ -5,18 +5,18 @@ use thiserror::Error;
 use toposlam_model::driving::scene::{Place, Reason, Scene};
 
 use crate::{
-    annotate,
     boundary::{Bearings, Boundary},
     camera::Camera,
     cluster::{Cluster, clusters},
     colour::{ColourModel, ColourTable, FloorRing, Stripe, StripeKind},
     corner::{Corner, corners},
     ground_view::{GroundView, Unwrapping},
-    hallway::{Hallway, hallway},
-    junction::{Finding, Junction, junction},
-    line::{Line, lines},
+    hallway::{FittedHallway, hallway},
+    junction::{FittedJunction, JunctionSearch, junction},
+    line::{WallLine, lines},
     marker::marker,
-    wall::{Frame, Wall},
+    params::SensingParams,
+    wall::{WallFrame, WallSegment, confirmed},
 };
 
 /// Sensing with one camera in one building: its tables, made once.
@@ -29,6 +29,7 @@ pub struct Sensor {
     model: ColourModel,
     colours: ColourTable,
     view: GroundView,
+    params: SensingParams,
 }
 
 /// An image that this camera did not take.
@@ -46,45 +47,44 @@ pub struct WrongSize {
 
 /// All that was made out on the way to a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trace {
+pub struct SensingTrace {
     /// What is seen on each bearing.
     pub boundary: Option<Boundary>,
     /// The pieces of wall.
     pub clusters: Vec<Cluster>,
     /// Their straight pieces.
-    pub lines: Vec<Line>,
+    pub lines: Vec<WallLine>,
     /// The axes along which they run.
-    pub frame: Option<Frame>,
+    pub frame: Option<WallFrame>,
     /// Those of them that run along the axes.
-    pub walls: Vec<Wall>,
+    pub walls: Vec<WallSegment>,
     /// Where they meet or end.
     pub corners: Vec<Corner>,
     /// The hallway, if it is one.
-    pub hallway: Option<Hallway>,
+    pub hallway: Option<FittedHallway>,
     /// The junction, if one was looked for and found.
-    pub junction: Option<Junction>,
+    pub junction: Option<FittedJunction>,
 }
-
-/// The name of each step, and its picture.
-pub type Stages = [(&'static str, RgbImage); 6];
-
-/// Fewer boundary points than these tell of no place.
-const FEW: usize = 40;
-/// Less floor than this around the robot is no floor: a part of all bearings.
-const FLOOR: usize = crate::boundary::BEARINGS / 5;
 
 impl Sensor {
     /// Sensing with a camera in a building with these colours.
     #[must_use]
     pub fn new(camera: &Camera, colours: &ColourModel) -> Self {
+        Self::with_params(camera, colours, &SensingParams::default())
+    }
+
+    /// Sensing with other parameters than the default ones.
+    #[must_use]
+    pub fn with_params(camera: &Camera, colours: &ColourModel, params: &SensingParams) -> Self {
         Self {
             camera: camera.clone(),
             unwrapping: Unwrapping::new(camera),
             ring: FloorRing::new(camera),
-            bearings: Bearings::new(colours.stripe, camera.eye_height()),
+            bearings: Bearings::new(colours.stripe, camera.eye_height(), &params.boundary),
             colours: colours.table(),
             model: colours.clone(),
             view: GroundView::unseen(),
+            params: *params,
         }
     }
 
@@ -100,7 +100,7 @@ impl Sensor {
     ///
     /// # Errors
     /// As [`Self::sense`].
-    pub fn trace(&mut self, image: &RgbImage) -> Result<(Scene, Trace), WrongSize> {
+    pub fn trace(&mut self, image: &RgbImage) -> Result<(Scene, SensingTrace), WrongSize> {
         let found = [image.width(), image.height()];
         if found != self.camera.image {
             return Err(WrongSize { found, expected: self.camera.image });
@@ -108,50 +108,51 @@ impl Sensor {
         let Some(gain) = self.model.gain(&self.ring.colours(image)) else {
             self.view = GroundView::unseen();
             let scene = Scene { place: Place::Unknown(Reason::NoFloor), marker: None };
-            return Ok((scene, Trace::default()));
+            return Ok((scene, SensingTrace::default()));
         };
         self.unwrapping.view(image, &self.colours.lit(gain), &mut self.view);
-        Ok(interpreted(&self.view, &self.bearings, self.model.stripe))
+        Ok(interpreted(&self.view, &self.bearings, self.model.stripe, &self.params))
     }
 
-    /// The scene in an image, and a picture of each step on the way to it, with its name.
-    ///
-    /// # Errors
-    /// As [`Self::sense`].
-    pub fn stages(&mut self, image: &RgbImage) -> Result<(Scene, Stages), WrongSize> {
-        let (scene, trace) = self.trace(image)?;
-        let stages = [
-            ("1-classes", annotate::classes(&self.view)),
-            ("2-boundary", annotate::boundary(&trace)),
-            ("3-clusters", annotate::clusters(&trace)),
-            ("4-lines", annotate::lines(&trace)),
-            ("5-scene", annotate::scene(&scene, &trace)),
-            ("6-image", annotate::over(image, &self.camera, &scene)),
-        ];
-        Ok((scene, stages))
+    /// The camera whose images it takes.
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The ground view of the last image.
+    #[must_use]
+    pub fn ground_view(&self) -> &GroundView {
+        &self.view
     }
 }
 
 /// The scene in a ground view, and all that was made out on the way to it.
 // paper: sense.hallway.first
 #[must_use]
-pub fn interpreted(view: &GroundView, bearings: &Bearings, stripe: Stripe) -> (Scene, Trace) {
+pub fn interpreted(
+    view: &GroundView,
+    bearings: &Bearings,
+    stripe: Stripe,
+    params: &SensingParams,
+) -> (Scene, SensingTrace) {
     let mut boundary = bearings.look(view);
-    let clusters = clusters(&boundary);
-    let lines = lines(&clusters);
-    let frame = Frame::of(&lines);
-    let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines));
+    let clusters = clusters(&boundary, &params.cluster);
+    let lines = lines(&clusters, &params.line);
+    let frame = WallFrame::of(&lines, &params.wall);
+    let walls = frame.map_or_else(Vec::new, |frame| frame.walls(&lines, &params.wall));
     if let Some(frame) = &frame {
-        boundary.make_sure(&walls, frame);
+        boundary = confirmed(boundary, &walls, frame, &params.wall);
     }
-    let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame));
-    let mut trace = Trace { clusters, lines, frame, walls, hallway, ..Trace::default() };
-    let place = place(&mut trace, &boundary, margin(stripe));
+    let hallway = frame.and_then(|frame| hallway(&walls, &boundary, &frame, params));
+    let mut trace =
+        SensingTrace { clusters, lines, frame, walls, hallway, ..SensingTrace::default() };
+    let place = place(&mut trace, &boundary, margin(stripe), params);
     let junction = match &place {
         Place::Junction(junction) => Some(junction),
         Place::Hallway(_) | Place::Unknown(_) => None,
     };
-    let scene = Scene { marker: marker(view, &boundary, junction), place };
+    let scene = Scene { marker: marker(view, &boundary, junction, &params.marker), place };
     trace.boundary = Some(boundary);
     (scene, trace)
 }
@@ -165,31 +166,38 @@ fn margin(stripe: Stripe) -> f64 {
 }
 
 /// Where the robot is: a hallway is looked for first, and a junction where there is none.
-fn place(trace: &mut Trace, boundary: &Boundary, margin: f64) -> Place {
-    if boundary.sights.iter().filter(|sight| sight.floor > 0.0).count() < FLOOR {
+fn place(
+    trace: &mut SensingTrace,
+    boundary: &Boundary,
+    margin: f64,
+    params: &SensingParams,
+) -> Place {
+    if boundary.sights.iter().filter(|sight| sight.floor > 0.0).count() < params.min_floor_bearings
+    {
         return Place::Unknown(Reason::NoFloor);
     }
-    let Some(frame) = trace.frame.filter(|_| boundary.points().count() >= FEW) else {
+    let Some(frame) = trace.frame.filter(|_| boundary.points().count() >= params.min_points) else {
         return Place::Unknown(Reason::FewWalls);
     };
-    let in_hallway = |hallway: &Hallway| Place::Hallway(hallway.view(margin));
-    if let Some(hallway) = trace.hallway.as_ref().filter(|hallway| hallway.is_sure()) {
+    let in_hallway =
+        |hallway: &FittedHallway| Place::Hallway(hallway.view(margin, &params.outline));
+    if let Some(hallway) = trace.hallway.as_ref().filter(|hallway| hallway.is_sure(params)) {
         return in_hallway(hallway);
     }
-    trace.corners = corners(&trace.walls);
+    trace.corners = corners(&trace.walls, &params.corner);
     let otherwise = |reason| match &trace.hallway {
         Some(hallway) => in_hallway(hallway),
         None => Place::Unknown(reason),
     };
-    match junction(&trace.corners, &trace.walls, boundary, &frame) {
-        Finding::Nothing => otherwise(Reason::NothingFits),
-        Finding::Ambiguous => otherwise(Reason::Ambiguous),
-        Finding::Junction(junction) => {
+    match junction(&trace.corners, &trace.walls, boundary, &frame, params) {
+        JunctionSearch::Nothing => otherwise(Reason::NothingFits),
+        JunctionSearch::Ambiguous => otherwise(Reason::Ambiguous),
+        JunctionSearch::Junction(junction) => {
             trace.junction = Some(junction);
-            if junction.is_here() {
-                return Place::Junction(junction.view());
+            if junction.is_here(&params.junction) {
+                return Place::Junction(junction.view(&params.outline));
             }
-            trace.hallway = junction.hallway(&trace.walls);
+            trace.hallway = junction.hallway(&trace.walls, &params.hallway);
             match &trace.hallway {
                 Some(hallway) => in_hallway(hallway),
                 None => Place::Unknown(Reason::NothingFits),
@@ -206,8 +214,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        colour::Class,
-        drawn::{self, Place as Drawn},
+        colour::PixelClass,
+        drawn::{self, DrawnPlace},
     };
 
     /// Each kind of junction, by the doors that it has ahead, to the left, behind and to the right.
@@ -224,8 +232,8 @@ mod tests {
 
     fn scene(doors: [bool; 4], before: f64, view: usize) -> Place {
         let (half, left, heading) = VIEWS[view % VIEWS.len()];
-        let drawn = Drawn::junction(doors, half).seen_from([-before, left], heading);
-        interpreted(&drawn, &drawn::bearings(), drawn::STRIPE).0.place
+        let drawn = DrawnPlace::junction(doors, half).seen_from([-before, left], heading);
+        interpreted(&drawn, &drawn::bearings(), drawn::STRIPE, &SensingParams::default()).0.place
     }
 
     // paper: sense.junction.type
@@ -288,11 +296,11 @@ mod tests {
         let reason = |class| {
             let mut view = GroundView::unseen();
             view.classes.fill(class);
-            interpreted(&view, &drawn::bearings(), drawn::STRIPE).0.place
+            interpreted(&view, &drawn::bearings(), drawn::STRIPE, &SensingParams::default()).0.place
         };
-        assert_eq!(reason(Class::Other), Place::Unknown(Reason::NoFloor));
-        assert_eq!(reason(Class::Stripe), Place::Unknown(Reason::NoFloor));
-        assert_eq!(reason(Class::Unseen), Place::Unknown(Reason::NoFloor));
-        assert_eq!(reason(Class::Floor), Place::Unknown(Reason::FewWalls));
+        assert_eq!(reason(PixelClass::Other), Place::Unknown(Reason::NoFloor));
+        assert_eq!(reason(PixelClass::Stripe), Place::Unknown(Reason::NoFloor));
+        assert_eq!(reason(PixelClass::Unseen), Place::Unknown(Reason::NoFloor));
+        assert_eq!(reason(PixelClass::Floor), Place::Unknown(Reason::FewWalls));
     }
 }

@@ -4,11 +4,15 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use toposlam_model::driving::scene::wrapped;
 
-use crate::line::Line;
+use crate::{
+    boundary::{Boundary, direction},
+    line::WallLine,
+    params::WallParams,
+};
 
 /// The axes along which the walls of a place run: x is the one nearest to ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct WallFrame {
     /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
     angle: f64,
     cosine: f64,
@@ -26,7 +30,7 @@ pub enum Axis {
 
 /// A piece of wall in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct WallSegment {
     /// Along which axis it runs.
     pub along: Axis,
     /// Its coordinate on the other axis, in metres.
@@ -39,16 +43,7 @@ pub struct Wall {
     pub cluster: usize,
 }
 
-/// A line that is off the axes by more is no wall, in radians.
-const ASKEW: f64 = 0.20;
-
-/// No wall is nearer to the robot's centre than the edge of its body, in metres: what looks so is the edge
-/// of a strut.
-const BODY: f64 = 0.20;
-/// A point is on a wall that is so near, in metres.
-const ON: f64 = 0.06;
-
-impl Frame {
+impl WallFrame {
     /// The frame with x in this direction, or at right angles to it.
     #[must_use]
     pub fn along(direction: f64) -> Self {
@@ -60,14 +55,14 @@ impl Frame {
     /// The frame along which the greatest length of lines runs; `None` without lines.
     // paper: env.right-angles
     #[must_use]
-    pub fn of(lines: &[Line]) -> Option<Self> {
+    pub fn of(lines: &[WallLine], params: &WallParams) -> Option<Self> {
         let angles: Vec<_> =
             lines.iter().map(|line| (Self::along(line.direction()).angle, line.length())).collect();
         let near = |angle: f64| {
             angles
                 .iter()
                 .map(move |&(other, length)| (wrapped(4.0 * (other - angle)) / 4.0, length))
-                .filter(|(off, _)| off.abs() < ASKEW)
+                .filter(|(off, _)| off.abs() < params.max_skew)
         };
         let supported = |angle: f64| near(angle).map(|(_, length)| length).sum::<f64>();
         let (angle, _) = angles
@@ -107,23 +102,23 @@ impl Frame {
 
     /// The walls among the lines: those that run along an axis.
     #[must_use]
-    pub fn walls(&self, lines: &[Line]) -> Vec<Wall> {
-        lines.iter().filter_map(|line| self.wall(line)).collect()
+    pub fn walls(&self, lines: &[WallLine], params: &WallParams) -> Vec<WallSegment> {
+        lines.iter().filter_map(|line| self.wall(line, params)).collect()
     }
 
-    fn wall(&self, line: &Line) -> Option<Wall> {
+    fn wall(&self, line: &WallLine, params: &WallParams) -> Option<WallSegment> {
         let off = wrapped(line.direction() - self.angle).rem_euclid(TAU);
         let quarters = (off / FRAC_PI_2).round();
-        if (off - quarters * FRAC_PI_2).abs() > ASKEW {
+        if (off - quarters * FRAC_PI_2).abs() > params.max_skew {
             return None;
         }
         let along = if (quarters as u32).is_multiple_of(2) { Axis::X } else { Axis::Y };
         let [middle, from, to] = [line.middle, line.from, line.to].map(|point| self.framed(point));
         let (on, off) = along.split();
-        if middle[off].abs() < BODY {
+        if middle[off].abs() < params.min_offset {
             return None;
         }
-        Some(Wall {
+        Some(WallSegment {
             along,
             offset: middle[off],
             from: from[on].min(to[on]),
@@ -171,13 +166,14 @@ impl Axis {
     }
 }
 
-impl Wall {
+impl WallSegment {
     /// Whether a point of the frame lies on it.
     #[must_use]
-    pub fn holds(&self, point: [f64; 2]) -> bool {
+    pub fn contains(&self, point: [f64; 2], params: &WallParams) -> bool {
         let (along, across) = self.along.split();
-        (self.from - ON..=self.to + ON).contains(&point[along])
-            && (point[across] - self.offset).abs() <= ON
+        let near = params.on_wall;
+        (self.from - near..=self.to + near).contains(&point[along])
+            && (point[across] - self.offset).abs() <= near
     }
 
     /// Its length in metres.
@@ -187,30 +183,45 @@ impl Wall {
     }
 }
 
+/// The boundary with the edges that lie on long walls sure, too: what is behind a wall may have the
+/// floor's colour.
+#[must_use]
+pub fn confirmed(
+    boundary: Boundary,
+    walls: &[WallSegment],
+    frame: &WallFrame,
+    params: &WallParams,
+) -> Boundary {
+    boundary.with_sure(|bearing, edge| {
+        let point = frame.framed(direction(bearing)).map(|part| edge.range * part);
+        walls.iter().any(|wall| wall.length() >= params.long_wall && wall.contains(point, params))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_4;
 
     use super::*;
 
-    fn line(from: [f64; 2], to: [f64; 2]) -> Line {
+    fn line(from: [f64; 2], to: [f64; 2]) -> WallLine {
         let between = |part: f64| [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
         let points: Vec<_> = (0..=20).map(|step| between(f64::from(step) / 20.0)).collect();
-        Line::through(&points).unwrap()
+        WallLine::through(&points).unwrap()
     }
 
     #[test]
     fn walls_at_right_angles_give_one_frame() {
         for turned in [-0.7, -0.3, 0.0, 0.4, 0.78] {
-            let frame = Frame::along(turned);
+            let frame = WallFrame::along(turned);
             let lines = [
                 line(frame.unframed([-1.0, 0.8]), frame.unframed([1.5, 0.8])),
                 line(frame.unframed([1.5, 0.8]), frame.unframed([1.5, -0.8])),
                 line(frame.unframed([0.3, 0.4]), frame.unframed([0.6, 0.7])),
             ];
-            let found = Frame::of(&lines).unwrap();
+            let found = WallFrame::of(&lines, &WallParams::default()).unwrap();
             assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
-            let walls = found.walls(&lines);
+            let walls = found.walls(&lines, &WallParams::default());
             assert_eq!(walls.len(), 2, "the slanted line is no wall");
             assert_eq!(walls[0].along, Axis::X);
             assert!((walls[0].offset - 0.8).abs() < 1e-9);
@@ -224,17 +235,17 @@ mod tests {
         let wall = line([-1.0, 0.8], [1.0, 0.8]);
         let strut = line([0.1, 0.4], [0.1, 0.7]);
         let across = line([1.2, 0.4], [1.2, 0.7]);
-        let walls = Frame::along(0.0).walls(&[wall, strut, across]);
+        let walls = WallFrame::along(0.0).walls(&[wall, strut, across], &WallParams::default());
         assert_eq!(walls.iter().map(|wall| wall.along).collect::<Vec<_>>(), [Axis::X, Axis::Y]);
         assert!((walls[1].offset - 1.2).abs() < 1e-9);
     }
 
     #[test]
     fn into_a_frame_and_out_again() {
-        let frame = Frame::along(0.3);
+        let frame = WallFrame::along(0.3);
         let [x, y] = frame.unframed(frame.framed([1.2, -0.7]));
         assert!((x - 1.2).abs() < 1e-12 && (y + 0.7).abs() < 1e-12);
-        assert!((Frame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
-        assert_eq!(Frame::of(&[]), None);
+        assert!((WallFrame::along(FRAC_PI_4 + 0.1).angle() + FRAC_PI_4 - 0.1).abs() < 1e-12);
+        assert_eq!(WallFrame::of(&[], &WallParams::default()), None);
     }
 }

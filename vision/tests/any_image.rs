@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use image::{Rgb, RgbImage};
 use proptest::{collection::vec, prelude::*};
 use toposlam_model::driving::scene::Place;
-use toposlam_vision::{camera::Camera, colour::ColourModel, sensing::Sensor};
+use toposlam_vision::{annotate, camera::Camera, colour::ColourModel, sensing::Sensor};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -120,7 +120,7 @@ proptest! {
         let image = painted(&patches);
         let mut sensor = SENSOR.clone();
         let scene = sensor.sense(&image).unwrap();
-        let (again, stages) = sensor.stages(&image).unwrap();
+        let (again, stages) = annotate::stages(&mut sensor, &image).unwrap();
         prop_assert_eq!(scene, again);
         prop_assert!(stages.iter().all(|(_, picture)| picture.width() > 0));
     }

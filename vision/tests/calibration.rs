@@ -42,25 +42,21 @@ fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
         (
             "\"below\"",
             "\"beneath\"",
-            "camera.seen_from: here should be \"below\" or \"above\", not another text",
+            "camera.seen_from: expected \"below\" or \"above\", found another text",
         ),
         (
             "\"spherical-mirror\"",
             "\"mirror\"",
-            "camera.kind: here should be \"spherical-mirror\" or \"ocamcalib\" or \"mei\", not another text",
+            "camera.kind: expected \"spherical-mirror\" or \"ocamcalib\" or \"mei\", found another text",
         ),
         ("kind = \"spherical-mirror\"", "", "camera: the key `kind` is missing"),
         (
             "focal = 1272.8 ",
             "focus = 1272.8",
-            "camera.focus: unknown key; here can stand: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim",
+            "camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim",
         ),
         ("focal = 1272.8 ", "", "camera: the key `focal` is missing"),
-        (
-            "focal = 1272.8 ",
-            "focal = \"long\"",
-            "camera.focal: here should be a number, not a text",
-        ),
+        ("focal = 1272.8 ", "focal = \"long\"", "camera.focal: expected a number, found a text"),
         (
             "focal = 1272.8 ",
             "focal = -3",
@@ -80,12 +76,12 @@ fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
         (
             "[640.0, 480.0]",
             "[640.0]",
-            "camera.centre: here should be a list of two numbers, not a list",
+            "camera.centre: expected a list of two numbers, found a list",
         ),
         (
             "[1280, 960]",
             "[1280, 960.5]",
-            "camera.image: here should be a list of two whole numbers, not fractions",
+            "camera.image: expected a list of two whole numbers, found fractions",
         ),
         (
             "[1280, 960]",
@@ -112,8 +108,8 @@ fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
             "ahead = 1e3",
             "camera.ahead: 1000 is out of range; an angle in degrees lies between -360 and 360",
         ),
-        ("[camera]", "[[camera]]", "camera: here should be a table, not a list"),
-        ("[camera]", "colour = 1\n[camera]", "colour: unknown key; here can stand: camera"),
+        ("[camera]", "[[camera]]", "camera: expected a table, found a list"),
+        ("[camera]", "colour = 1\n[camera]", "colour: unknown key; expected one of: camera"),
         ("[camera]", "[camera", "line 2, column 8: "),
     ];
     for (from, to, message) in cases {
@@ -159,18 +155,14 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
         message.strip_prefix("camera.file: calib_results.txt: ").unwrap().to_owned()
     };
     let cases = [
-        ("-2.553753e+02", "?", "line 3: here should be a number, not `?`"),
-        ("-2.553753e+02", "inf", "line 3: here should be a number, not `inf`"),
+        ("-2.553753e+02", "?", "line 3: expected a number, found `?`"),
+        ("-2.553753e+02", "inf", "line 3: expected a number, found `inf`"),
         (
             "-2.553753e+02",
             "0",
             "the size of the first coefficient is 0; it should lie between 1 and 1000000",
         ),
-        (
-            "-2.553753e+02",
-            "-2 -2e2",
-            "line 3: here should be 5 coefficients of the polynomial, not 6",
-        ),
+        ("-2.553753e+02", "-2 -2e2", "line 3: expected 5 coefficients of the polynomial, found 6"),
         (
             "5 -2.553753e+02",
             "99 -2.553753e+02",
@@ -179,7 +171,7 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
         (
             "480.000000 640.000000",
             "480",
-            "line 11: here should be 2 numbers, the centre's row and column, not 1",
+            "line 11: expected 2 numbers, the centre's row and column, found 1",
         ),
         (
             "480.000000 640.000000",
@@ -194,7 +186,7 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
         (
             "960 1280",
             "960",
-            "line 19: here should be 2 numbers, the height and the width of the image, not 1",
+            "line 19: expected 2 numbers, the height and the width of the image, found 1",
         ),
         ("960 1280", "960 1280\n5", "line 20: nothing should follow the size of the image"),
         ("960 1280", "960.5 1280", "the side of the image is 960.5; it should be whole"),
@@ -216,7 +208,7 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
     let message = "camera.file: calib_results.txt: this is not UTF-8 text";
     assert_eq!(read(toml.as_bytes(), b"\xff").unwrap_err().to_string(), message);
     let other = changed(&toml, "[camera]", "[camera]\nrim = 450");
-    let message = "camera.rim: unknown key; here can stand: kind, image, ahead, seen_from, mask, file, viewpoint_height";
+    let message = "camera.rim: unknown key; expected one of: kind, image, ahead, seen_from, mask, file, viewpoint_height";
     assert_eq!(read(other.as_bytes(), results.as_bytes()).unwrap_err().to_string(), message);
 }
 
@@ -231,11 +223,7 @@ fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
     let cases = [
         ("MEI", "PINHOLE", "`model_type` is `PINHOLE`, not `MEI`"),
         ("   xi: 1.6901164600000000e+00\n", "", "the key `mirror_parameters.xi` is missing"),
-        (
-            "   xi: 1.6901164600000000e+00",
-            "   xi: much",
-            "line 8: here should be a number, not `much`",
-        ),
+        ("   xi: 1.6901164600000000e+00", "   xi: much", "line 8: expected a number, found `much`"),
         ("   xi: 1.6901164600000000e+00", "   xi: -1", "xi is -1; it should lie between 0 and 100"),
         (
             "   xi: 1.6901164600000000e+00",

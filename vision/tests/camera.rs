@@ -6,7 +6,7 @@ use std::{fs, io, path::Path};
 
 use proptest::prelude::*;
 use toposlam_vision::camera::{
-    Camera, Mask, Optics, SeenFrom, SphericalMirror,
+    Camera, Mask, OpticsModel, SeenFrom, SphericalMirror,
     calibration::{self, CalibrationError},
 };
 
@@ -32,7 +32,7 @@ fn apart(one: [f64; 2], other: [f64; 2]) -> f64 {
 /// A camera's own mirror.
 fn mirror(camera: &Camera) -> SphericalMirror {
     match camera.optics {
-        Optics::SphericalMirror(mirror) => mirror,
+        OpticsModel::SphericalMirror(mirror) => mirror,
         _ => unreachable!("this camera has a mirror"),
     }
 }

@@ -10,13 +10,13 @@ use proptest::prelude::*;
 use toposlam_vision::{
     camera::Camera,
     colour::{
-        Class, ColourModel, Example, ExampleError, FloorRing, Gain, LightError, Stripe, StripeKind,
-        Training, TrainingError, View,
+        ColourModel, Example, ExampleError, FloorRing, Gain, LightError, PixelClass, Stripe,
+        StripeKind, Training, TrainingError, TrainingView,
     },
 };
 
 static CAMERA: LazyLock<Camera> = LazyLock::new(Camera::superscout);
-static VIEW: LazyLock<View> = LazyLock::new(|| View::new(&CAMERA));
+static VIEW: LazyLock<TrainingView> = LazyLock::new(|| TrainingView::new(&CAMERA));
 /// What the floor point is that each pixel shows.
 static GROUND: LazyLock<Vec<Option<[f64; 2]>>> = LazyLock::new(|| {
     let [width, height] = CAMERA.image;
@@ -31,16 +31,16 @@ const COLOURS: [[f64; 3]; 4] =
     [[104.0, 106.0, 110.0], [225.0, 224.0, 216.0], [205.0, 35.0, 140.0], [176.0, 150.0, 112.0]];
 
 /// A hallway along x, seen from its middle, with a marker ahead.
-fn class(ground: [f64; 2]) -> Class {
+fn class(ground: [f64; 2]) -> PixelClass {
     let [x, y] = [ground[0], ground[1].abs()];
     if y > 0.8 {
-        Class::Other
+        PixelClass::Other
     } else if y > 0.75 {
-        Class::Stripe
+        PixelClass::Stripe
     } else if (0.4..1.0).contains(&x) && y < 0.09 {
-        Class::Marker
+        PixelClass::Marker
     } else {
-        Class::Floor
+        PixelClass::Floor
     }
 }
 
@@ -72,8 +72,8 @@ fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
     let (mut image, mut labels) = (RgbImage::new(width, height), RgbImage::new(width, height));
     let pixels = image.pixels_mut().zip(labels.pixels_mut()).zip(GROUND.iter());
     for (nth, ((pixel, label), ground)) in pixels.enumerate() {
-        let class = ground.map_or(Class::Other, class);
-        let place = Class::LEARNED.iter().position(|&learned| learned == class).unwrap();
+        let class = ground.map_or(PixelClass::Other, class);
+        let place = PixelClass::LEARNED.iter().position(|&learned| learned == class).unwrap();
         *label = Rgb(class.label());
         *pixel = Rgb(std::array::from_fn(|channel| {
             let chance = chance(seed, nth as u64 * 3 + channel as u64);
@@ -105,7 +105,7 @@ fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
     for (pixel, ground) in image.pixels().zip(GROUND.iter()) {
         let near = ground.filter(|[x, y]| (0.35..3.0).contains(&x.hypot(*y)));
         let Some(class) = near.map(class) else { continue };
-        let place = Class::LEARNED.iter().position(|&learned| learned == class).unwrap();
+        let place = PixelClass::LEARNED.iter().position(|&learned| learned == class).unwrap();
         counts[place][0] += 1.0;
         counts[place][1] += f64::from(u8::from(lit.class(pixel.0) == class));
     }
@@ -138,14 +138,14 @@ fn a_colour_that_no_class_has_is_unknown() {
     let table = TRAINED.table();
     let lit = table.lit(Gain([1.0; 3]));
     for colour in [[0, 255, 0], [0, 0, 255], [255, 255, 0], [20, 90, 30], [0, 0, 0]] {
-        assert_eq!(lit.class(colour), Class::Unknown, "{colour:?}");
+        assert_eq!(lit.class(colour), PixelClass::Unknown, "{colour:?}");
     }
     // In the light to which images are brought.
     let gain = [0, 1, 2]
         .map(|channel| srgb_light(TRAINED.floor[channel]) / srgb_light(COLOURS[0][channel]));
     let lit = table.lit(Gain(gain));
     let seen = COLOURS.map(|colour| lit.class(colour.map(|level| level as u8)));
-    assert_eq!(seen, Class::LEARNED);
+    assert_eq!(seen, PixelClass::LEARNED);
 }
 
 /// A picture in which floor and tape mix at the tape's edges, and, if it is so, a patch of floor in the
@@ -160,7 +160,8 @@ fn blurred(shade: bool) -> (RgbImage, RgbImage) {
     for (nth, (u, v, pixel)) in image.enumerate_pixels_mut().enumerate() {
         let own = *labels.get_pixel(u, v);
         let is_mixed = around(u, v).any(|[u, v]| *labels.get_pixel(u, v) != own);
-        let by_tape = [Class::Floor, Class::Stripe].map(|class| Rgb(class.label())).contains(&own);
+        let by_tape =
+            [PixelClass::Floor, PixelClass::Stripe].map(|class| Rgb(class.label())).contains(&own);
         let in_shade =
             shade && GROUND[nth].is_some_and(|[x, y]| (-1.2..-1.0).contains(&x) && y.abs() < 0.1);
         if is_mixed && by_tape || in_shade {
@@ -174,7 +175,7 @@ const MIXTURE: [u8; 3] = [172, 172, 170];
 
 #[test]
 fn a_mixture_at_a_stripes_edge_is_the_stripe_unless_floor_has_its_colour() {
-    for (shade, expected) in [(false, Class::Stripe), (true, Class::Floor)] {
+    for (shade, expected) in [(false, PixelClass::Stripe), (true, PixelClass::Floor)] {
         let (image, labels) = blurred(shade);
         let mut training = Training::new(TAPE);
         training.add(&CAMERA, &image, &labels).unwrap();
@@ -190,12 +191,12 @@ fn cross_validation_counts_every_labelled_pixel_once() {
     let model = training.model().unwrap();
     for folds in [2, 3, 4] {
         let confusion = training.cross_validate(folds).unwrap();
-        let all: u64 = Class::LEARNED.map(|class| confusion.of(class)).iter().sum();
+        let all: u64 = PixelClass::LEARNED.map(|class| confusion.of(class)).iter().sum();
         let shown = |ground: &&Option<[f64; 2]>| {
             ground.is_some_and(|[x, y]| (0.32..=3.0).contains(&x.hypot(y)))
         };
         assert_eq!(all, 4 * GROUND.iter().filter(shown).count() as u64);
-        for class in Class::LEARNED {
+        for class in PixelClass::LEARNED {
             assert!(confusion.recall(class).unwrap() > 0.98, "{class:?} {confusion:?}");
             assert!(confusion.precision(class).unwrap() > 0.98, "{class:?} {confusion:?}");
         }
@@ -238,28 +239,28 @@ fn what_does_not_fit_is_refused() {
 #[test]
 fn floor_and_stripe_are_needed_and_the_marker_is_not() {
     let (image, labels) = taken(Taken { light: [1.0; 3], noise: 2.0, seed: 1 });
-    let without = |missing: Class| {
+    let without = |missing: PixelClass| {
         let mut training = Training::new(TAPE);
         let mut labels = labels.clone();
         for label in labels.pixels_mut().filter(|label| label.0 == missing.label()) {
-            *label = Rgb(Class::Unseen.label());
+            *label = Rgb(PixelClass::Unseen.label());
         }
         training.add(&CAMERA, &image, &labels).unwrap();
         training.model()
     };
-    for class in [Class::Floor, Class::Stripe] {
+    for class in [PixelClass::Floor, PixelClass::Stripe] {
         assert_eq!(without(class).unwrap_err(), TrainingError::NoPixel { class });
     }
-    let model = without(Class::Marker).unwrap();
+    let model = without(PixelClass::Marker).unwrap();
     let marker = COLOURS[2].map(|level| level as u8);
-    assert_eq!(model.table().lit(Gain([1.0; 3])).class(marker), Class::Unknown);
-    without(Class::Other).unwrap();
+    assert_eq!(model.table().lit(Gain([1.0; 3])).class(marker), PixelClass::Unknown);
+    without(PixelClass::Other).unwrap();
     // The first part has a stripe, the second has none.
     let mut training = Training::new(TAPE);
     training.add(&CAMERA, &image, &labels).unwrap();
     let mut no_stripe = labels.clone();
-    for label in no_stripe.pixels_mut().filter(|label| label.0 == Class::Stripe.label()) {
-        *label = Rgb(Class::Unseen.label());
+    for label in no_stripe.pixels_mut().filter(|label| label.0 == PixelClass::Stripe.label()) {
+        *label = Rgb(PixelClass::Unseen.label());
     }
     training.add(&CAMERA, &image, &no_stripe).unwrap();
     assert_eq!(

@@ -1,7 +1,7 @@
 //! Files of worlds: bytes in, types out, and back.
 
+pub mod document;
 pub mod dot;
 pub mod named_world;
-pub mod place;
 pub mod plantri;
 pub mod world_file;

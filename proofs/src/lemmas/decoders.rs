@@ -5,7 +5,7 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     format::{
         named_world::NamedWorld,
-        plantri::{self, Code},
+        plantri::{self, PlantriCode},
         world_file,
     },
 };
@@ -97,7 +97,7 @@ fn bytes<const MOST: usize, const LETTERS: u8>(choose: &mut impl Choose, also: u
 }
 
 /// The worlds read of some bytes, each of which is one; whether they were read to the end.
-fn worlds(bytes: &[u8], code: Code) -> Result<(Vec<EmbeddedGraph>, bool), Stop> {
+fn worlds(bytes: &[u8], code: PlantriCode) -> Result<(Vec<EmbeddedGraph>, bool), Stop> {
     let mut worlds = Vec::with_capacity(bytes.len());
     let mut read = plantri::read_headerless(bytes, code);
     while let Some(world) = read.next() {
@@ -113,7 +113,7 @@ fn worlds(bytes: &[u8], code: Code) -> Result<(Vec<EmbeddedGraph>, bool), Stop> 
 }
 
 /// The worlds, written and read again.
-fn again(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, Stop> {
+fn again(worlds: &[EmbeddedGraph], code: PlantriCode) -> Result<Vec<u8>, Stop> {
     let Ok(written) = plantri::write(worlds, code) else {
         return Err(Stop::Fails("what was read can be written"));
     };
@@ -126,7 +126,7 @@ fn again(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, Stop> {
 
 fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let bytes = bytes::<MOST, LETTERS>(choose, 0);
-    let (worlds, is_whole) = worlds(&bytes, Code::Planar)?;
+    let (worlds, is_whole) = worlds(&bytes, PlantriCode::Planar)?;
     if !is_whole {
         return Ok(());
     }
@@ -135,21 +135,21 @@ fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) 
     if bytes[0] == 0 {
         return Ok(());
     }
-    let written = again(&worlds, Code::Planar)?;
+    let written = again(&worlds, PlantriCode::Planar)?;
     let told = written.strip_prefix(b">>planar_code<<");
     claim("writing gives the bytes back", told == Some(bytes.as_slice()))
 }
 
 fn wide_planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
     let file = [b">>planar_code be<<", bytes::<MOST, LETTERS>(choose, 0).as_slice()].concat();
-    let (worlds, is_whole) = worlds(&file, Code::Planar)?;
+    let (worlds, is_whole) = worlds(&file, PlantriCode::Planar)?;
     claim("the worlds are simple", worlds.iter().all(is_simple))?;
-    if is_whole { again(&worlds, Code::Planar).map(drop) } else { Ok(()) }
+    if is_whole { again(&worlds, PlantriCode::Planar).map(drop) } else { Ok(()) }
 }
 
 fn edge_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
-    let (worlds, is_whole) = worlds(&bytes::<MOST, LETTERS>(choose, 255), Code::Edge)?;
-    if is_whole { again(&worlds, Code::Edge).map(drop) } else { Ok(()) }
+    let (worlds, is_whole) = worlds(&bytes::<MOST, LETTERS>(choose, 255), PlantriCode::Edge)?;
+    if is_whole { again(&worlds, PlantriCode::Edge).map(drop) } else { Ok(()) }
 }
 
 /// Any bytes are read without a panic, as no more worlds than bytes.
@@ -160,7 +160,7 @@ fn only_read<C: Choose, const LENGTH: usize, const EDGE_CODE: u8>(choose: &mut C
         bytes[place] = draw::byte(choose);
         place += 1;
     }
-    let code = if EDGE_CODE == 1 { Code::Edge } else { Code::Planar };
+    let code = if EDGE_CODE == 1 { PlantriCode::Edge } else { PlantriCode::Planar };
     let mut read = plantri::read_headerless(&bytes, code);
     let mut count = 0;
     while count <= LENGTH {
@@ -190,8 +190,8 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
         let read: Vec<_> = plantri::read_headerless(file, code).collect();
         read.len() == 1 && read[0].as_ref() == Ok(graph)
     };
-    let file = plantri::write(std::slice::from_ref(graph), Code::Edge);
-    let is_read = file.is_ok_and(|file| reads(&file, Code::Edge));
+    let file = plantri::write(std::slice::from_ref(graph), PlantriCode::Edge);
+    let is_read = file.is_ok_and(|file| reads(&file, PlantriCode::Edge));
     claim("edge_code as it is written reads as the same world", is_read)?;
     // By hand, the edges in any order, each of one byte where they fit and else of two.
     let order = draw::permutation::<MOST>(choose, graph.edge_count());
@@ -215,12 +215,12 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
             size => vec![0, 0x20 | size as u8, length[0], length[1]],
         };
         let file = [head, body].concat();
-        claim("edge_code by hand reads as the same world", reads(&file, Code::Edge))?;
+        claim("edge_code by hand reads as the same world", reads(&file, PlantriCode::Edge))?;
     }
-    let file = plantri::write(std::slice::from_ref(graph), Code::Planar);
+    let file = plantri::write(std::slice::from_ref(graph), PlantriCode::Planar);
     claim("planar_code tells simple worlds", file.is_ok() == is_simple(graph))?;
     let Ok(file) = file else { return Ok(()) };
-    claim("planar_code reads as the same world", reads(&file, Code::Planar))?;
+    claim("planar_code reads as the same world", reads(&file, PlantriCode::Planar))?;
     let mut numbers = vec![0, graph.vertex_count() as u16];
     for vertex in graph.vertices() {
         let far =
@@ -231,7 +231,7 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
     let big = after_first_byte(numbers.iter().flat_map(|number| number.to_be_bytes()).collect());
     let little = after_first_byte(numbers.iter().flat_map(|number| number.to_le_bytes()).collect());
     for (header, wide) in [(&b">>planar_code be<<"[..], big), (b">>planar_code le<<", little)] {
-        let is_read = reads(&[header, &wide].concat(), Code::Planar);
+        let is_read = reads(&[header, &wide].concat(), PlantriCode::Planar);
         claim("planar_code of two-byte numbers reads as the same world", is_read)?;
     }
     Ok(())

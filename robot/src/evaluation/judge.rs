@@ -14,8 +14,9 @@ use toposlam_model::{
     percept::{Percept, Sighting},
 };
 use toposlam_vision::{
+    annotate::{self, Stages},
     camera::Camera,
-    sensing::{Sensor, Stages, WrongSize},
+    sensing::{Sensor, WrongSize},
 };
 
 use super::{
@@ -191,7 +192,7 @@ impl Judge {
         calibration: Calibration,
     ) -> Result<(RgbImage, Scene, Stages), JudgingError> {
         let image = view.picture(self.rig(view, calibration), &view.building());
-        let (scene, stages) = self.with_sensor(view, |sensor| sensor.stages(&image))?;
+        let (scene, stages) = self.with_sensor(view, |sensor| annotate::stages(sensor, &image))?;
         Ok((image, scene, stages))
     }
 

@@ -8,7 +8,7 @@ use toposlam_model::{
     },
     floor_plan::JunctionKind,
 };
-use toposlam_vision::marker::{LENGTH, WIDTH};
+use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
 
 use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
@@ -168,7 +168,7 @@ fn is_on(marker: &MarkerTruth, [x, y]: [f64; 2]) -> bool {
     let [u, v] = [x - marker.position[0], y - marker.position[1]];
     let (sine, cosine) = marker.axis.sin_cos();
     let [along, across] = [u * cosine + v * sine, v * cosine - u * sine].map(f64::abs);
-    along <= LENGTH / 2.0 + MARKER_OFF && across <= WIDTH / 2.0 + MARKER_OFF
+    along <= MARKER_LENGTH / 2.0 + MARKER_OFF && across <= MARKER_WIDTH / 2.0 + MARKER_OFF
 }
 
 impl fmt::Display for PlaceVerdict {

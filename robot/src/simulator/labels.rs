@@ -1,7 +1,7 @@
 //! What each pixel shows, for training and judging the classifier of colours. Section 3.
 
 use image::{Rgb, RgbImage};
-use toposlam_vision::colour::Class;
+use toposlam_vision::colour::PixelClass;
 
 use super::building::{Building, WallPart};
 use super::effects::Effects;
@@ -11,21 +11,23 @@ use super::sight_lines::SightLines;
 use super::surfaces::Surface;
 use crate::pose::Pose;
 
-/// What the middle of each pixel shows, row by row: [`Class::Unseen`] on the robot, its struts and
-/// beyond the mirror, and never [`Class::Unknown`].
+/// What the middle of each pixel shows, row by row: [`PixelClass::Unseen`] on the robot, its struts and
+/// beyond the mirror, and never [`PixelClass::Unknown`].
 #[must_use]
-pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<Class> {
+pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<PixelClass> {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
     let shot = Shot::new(rig, building, &lines, pose, effects);
     let [width, height] = rig.image();
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
     pixels
         .map(|(u, v)| match shot.surface(u, v) {
-            Surface::Floor => Class::Floor,
-            Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => Class::Stripe,
-            Surface::Marker => Class::Marker,
-            Surface::Wall(..) | Surface::Ceiling | Surface::Lamp | Surface::Nothing => Class::Other,
-            Surface::Robot(_) | Surface::Holder => Class::Unseen,
+            Surface::Floor => PixelClass::Floor,
+            Surface::Tape | Surface::Wall(_, WallPart::Baseboard) => PixelClass::Stripe,
+            Surface::Marker => PixelClass::Marker,
+            Surface::Wall(..) | Surface::Ceiling | Surface::Lamp | Surface::Nothing => {
+                PixelClass::Other
+            }
+            Surface::Robot(_) | Surface::Holder => PixelClass::Unseen,
         })
         .collect()
 }
@@ -33,16 +35,16 @@ pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> 
 /// The label mask of these classes: floor green, stripe red, marker blue, anything else black, what is
 /// to be ignored white.
 #[must_use]
-pub fn label_mask(rig: &Rig, classes: &[Class]) -> RgbImage {
+pub fn label_mask(rig: &Rig, classes: &[PixelClass]) -> RgbImage {
     let [width, height] = rig.image();
     let mut mask = RgbImage::new(width, height);
     for (pixel, class) in mask.pixels_mut().zip(classes) {
         *pixel = Rgb(match class {
-            Class::Floor => [0, 255, 0],
-            Class::Stripe => [255, 0, 0],
-            Class::Marker => [0, 0, 255],
-            Class::Other => [0, 0, 0],
-            Class::Unseen | Class::Unknown => [255, 255, 255],
+            PixelClass::Floor => [0, 255, 0],
+            PixelClass::Stripe => [255, 0, 0],
+            PixelClass::Marker => [0, 0, 255],
+            PixelClass::Other => [0, 0, 0],
+            PixelClass::Unseen | PixelClass::Unknown => [255, 255, 255],
         });
     }
     mask

@@ -81,7 +81,7 @@ impl RigOptics {
             centre: [0, 1].map(|axis| centre[axis] + errors.centre[axis]),
             height: camera.height() + errors.height,
             kind: match &camera.optics {
-                camera::Optics::SphericalMirror(mirror) => {
+                camera::OpticsModel::SphericalMirror(mirror) => {
                     Kind::UnderSphere(UnderSphere::new(camera, mirror))
                 }
                 _ => Kind::Single(camera.clone()),
@@ -230,7 +230,7 @@ mod tests {
 
     fn mirror(camera: &Camera) -> SphericalMirror {
         match &camera.optics {
-            camera::Optics::SphericalMirror(mirror) => *mirror,
+            camera::OpticsModel::SphericalMirror(mirror) => *mirror,
             other => panic!("{other:?} is no mirror"),
         }
     }
@@ -239,7 +239,7 @@ mod tests {
         let below = Camera::superscout();
         let above = Camera { seen_from: SeenFrom::Above, ahead: 0.3, ..below.clone() };
         let off_middle = SphericalMirror { centre: [611.5, 502.25], ..mirror(&below) };
-        let optics = camera::Optics::SphericalMirror(off_middle);
+        let optics = camera::OpticsModel::SphericalMirror(off_middle);
         let turned = Camera { ahead: -2.0, optics, ..below.clone() };
         [below, above, turned]
     }
@@ -305,7 +305,8 @@ mod tests {
         let optics = RigOptics::new(&camera, &errors);
         let mirror =
             SphericalMirror { centre: [644.0, 477.0], camera_height: 0.92, ..mirror(&camera) };
-        let as_it_is = Camera { optics: camera::Optics::SphericalMirror(mirror), ..camera.clone() };
+        let as_it_is =
+            Camera { optics: camera::OpticsModel::SphericalMirror(mirror), ..camera.clone() };
         let (found, expected) =
             (optics.ray([700.0, 300.0]).floor(), as_it_is.pixel_to_ground([700.0, 300.0]));
         let ([x, y], [expected_x, expected_y]) = (found.unwrap(), expected.unwrap());

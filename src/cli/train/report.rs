@@ -4,7 +4,7 @@ use std::{io::Write, path::PathBuf};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use toposlam_vision::colour::{Class, Confusion, ExampleError, Stripe, StripeKind, Training};
+use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, StripeKind, Training};
 
 use crate::cli::{Failure, json::print_object, text::grouped, text::print_rows};
 
@@ -53,14 +53,14 @@ impl TrainingReport<'_> {
                 self.print_confusion(out, confusion)
             }
             Validation::None { why } => {
-                let rows = Class::LEARNED.map(|class| self.seen(class));
+                let rows = PixelClass::LEARNED.map(|class| self.seen(class));
                 print_rows(out, ["", "images", "    pixels"], &rows)?;
                 Ok(writeln!(out, "\nnot cross-validated: {why}")?)
             }
         }
     }
 
-    fn seen(&self, class: Class) -> [String; 3] {
+    fn seen(&self, class: PixelClass) -> [String; 3] {
         let seen = self.training.seen(class);
         let (images, pixels) = (grouped(seen.images as u128), grouped(seen.pixels.into()));
         [class.name().to_owned(), format!("{images:>6}"), format!("{pixels:>10}")]
@@ -71,7 +71,7 @@ impl TrainingReport<'_> {
             Confusion::TOLD.map(|class| format!("{:>10}", class.name()));
         let heads =
             ["", "images", "    pixels", &floor, &stripe, &marker, &other, &unknown, "    right"];
-        let rows = Class::LEARNED.iter().zip(&confusion.pixels).map(|(&class, told)| {
+        let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(&class, told)| {
             let [name, images, pixels] = self.seen(class);
             let [floor, stripe, marker, other, unknown] =
                 told.map(|pixels| format!("{:>10}", grouped(pixels.into())));
@@ -89,7 +89,7 @@ impl TrainingReport<'_> {
             Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion)),
             Validation::None { .. } => (None, None),
         };
-        let classes = Class::LEARNED.map(|class| {
+        let classes = PixelClass::LEARNED.map(|class| {
             let seen = self.training.seen(class);
             ClassFigures {
                 class: class.name(),
@@ -142,7 +142,7 @@ struct ClassFigures {
 
 /// A row for each class that pixels are, in it a number for each that they are told to be.
 fn confusion_json(confusion: &Confusion) -> Value {
-    let rows = Class::LEARNED.iter().zip(&confusion.pixels).map(|(is, told)| {
+    let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(is, told)| {
         let columns = Confusion::TOLD.iter().zip(told);
         let row: Map<_, _> =
             columns.map(|(told, &pixels)| (told.name().to_owned(), pixels.into())).collect();

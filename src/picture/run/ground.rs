@@ -1,7 +1,7 @@
 //! The ground of a run: floor, walls, the names of the junctions, and the marker. Section 2.4.
 
 use toposlam_robot::simulator::walls;
-use toposlam_vision::marker;
+use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
 
 use super::super::{
     geometry::{Extent, Point},
@@ -128,8 +128,8 @@ impl<'a> Ground<'a> {
     pub(super) fn write_marker(&self, page: &mut Page, facing: Dart, shift: Point) {
         let ahead = along(self.plan.direction(facing));
         let middle = self.turning_point(self.plan.graph().vertex(facing)) + shift;
-        let length = ahead * (marker::LENGTH / 2.0 * self.metre);
-        let width = ahead.quarter_turn() * (marker::WIDTH / 2.0 * self.metre);
+        let length = ahead * (MARKER_LENGTH / 2.0 * self.metre);
+        let width = ahead.quarter_turn() * (MARKER_WIDTH / 2.0 * self.metre);
         page.marker(&[
             middle + length + width,
             middle - length + width,

@@ -3,7 +3,7 @@
 use image::{Rgb, RgbImage};
 use imageproc::drawing::draw_line_segment_mut;
 
-use super::{Camera, Optics, rim::Rim};
+use super::{Camera, OpticsModel, rim::Rim};
 
 /// The rim, and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
@@ -37,7 +37,7 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
             Some([u + radius * angle.cos(), v + radius * angle.sin()])
         }
     };
-    if let Optics::SphericalMirror(mirror) = &camera.optics {
+    if let OpticsModel::SphericalMirror(mirror) = &camera.optics {
         closed(&mut picture, round(mirror.horizon()), GREEN);
     }
     closed(&mut picture, round(rim.radius), GREEN);

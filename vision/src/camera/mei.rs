@@ -7,7 +7,7 @@
 //! model's z is what the middle of the image shows: straight down.
 
 use super::{
-    Ray, length,
+    ViewingRay, length,
     optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place, yaml,
@@ -141,7 +141,7 @@ impl Mei {
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         let y = (pixel[1] - self.centre[1]) / self.focal[1];
         let x = (pixel[0] - self.centre[0] - self.skew * y) / self.focal[0];
         let [x, y] = self.undistorted([x, y])?;
@@ -151,7 +151,7 @@ impl Mei {
             return None;
         }
         let scale = (self.xi + under_root.sqrt()) / (1.0 + square);
-        Some(Ray {
+        Some(ViewingRay {
             origin: [0.0, 0.0, self.viewpoint_height],
             direction: [scale * x, -scale * y, self.xi - scale],
         })

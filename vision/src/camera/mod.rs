@@ -38,7 +38,7 @@ pub enum SeenFrom {
 
 /// How a camera sees.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Optics {
+pub enum OpticsModel {
     /// A pinhole under a spherical mirror.
     SphericalMirror(SphericalMirror),
     /// A single viewpoint, in OCamCalib's polynomial model.
@@ -69,21 +69,21 @@ pub struct Camera {
     /// Whether the image is mirrored.
     pub seen_from: SeenFrom,
     /// How it sees.
-    pub optics: Optics,
+    pub optics: OpticsModel,
     /// Where in the image the floor can be seen, if that is known.
     pub mask: Option<Mask>,
 }
 
 /// What a pixel looks along, in floor coordinates and metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct ViewingRay {
     /// Where it leaves the mirror; for a camera with a single viewpoint, that.
     pub origin: [f64; 3],
     /// Whither; of length one.
     pub direction: [f64; 3],
 }
 
-impl Ray {
+impl ViewingRay {
     /// Where it meets the floor; `None` if it does not go down.
     #[must_use]
     pub fn floor(&self) -> Option<[f64; 2]> {
@@ -93,9 +93,9 @@ impl Ray {
     }
 }
 
-impl Optics {
+impl OpticsModel {
     /// The ray of a pixel, in the image's axes: x to its right, y to its top, z up from the floor.
-    fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+    fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         match self {
             Self::SphericalMirror(mirror) => mirror.ray(pixel),
             Self::OCamCalib(ocam) => ocam.ray(pixel),
@@ -125,7 +125,7 @@ impl Camera {
             image: [1280, 960],
             ahead: std::f64::consts::FRAC_PI_2,
             seen_from: SeenFrom::Below,
-            optics: Optics::SphericalMirror(SphericalMirror {
+            optics: OpticsModel::SphericalMirror(SphericalMirror {
                 centre: [640.0, 480.0],
                 focal: 1272.8,
                 mirror_radius: 0.05,
@@ -142,9 +142,11 @@ impl Camera {
     pub fn sized(&self, image: [u32; 2]) -> Self {
         let factor = f64::from(image[0]) / f64::from(self.image[0]);
         let optics = match &self.optics {
-            Optics::SphericalMirror(mirror) => Optics::SphericalMirror(mirror.scaled(factor)),
-            Optics::OCamCalib(ocam) => Optics::OCamCalib(ocam.scaled(factor, image)),
-            Optics::Mei(mei) => Optics::Mei(mei.scaled(factor, image)),
+            OpticsModel::SphericalMirror(mirror) => {
+                OpticsModel::SphericalMirror(mirror.scaled(factor))
+            }
+            OpticsModel::OCamCalib(ocam) => OpticsModel::OCamCalib(ocam.scaled(factor, image)),
+            OpticsModel::Mei(mei) => OpticsModel::Mei(mei.scaled(factor, image)),
         };
         let mask = self.mask.as_ref().map(|mask| mask.sized(image));
         Self { image, optics, mask, ..*self }
@@ -154,9 +156,9 @@ impl Camera {
     #[must_use]
     pub fn middle(&self) -> [f64; 2] {
         match &self.optics {
-            Optics::SphericalMirror(mirror) => mirror.centre,
-            Optics::OCamCalib(ocam) => ocam.centre(),
-            Optics::Mei(mei) => mei.centre(),
+            OpticsModel::SphericalMirror(mirror) => mirror.centre,
+            OpticsModel::OCamCalib(ocam) => ocam.centre(),
+            OpticsModel::Mei(mei) => mei.centre(),
         }
     }
 
@@ -164,9 +166,9 @@ impl Camera {
     #[must_use]
     pub fn height(&self) -> f64 {
         match &self.optics {
-            Optics::SphericalMirror(mirror) => mirror.camera_height,
-            Optics::OCamCalib(ocam) => ocam.viewpoint_height,
-            Optics::Mei(mei) => mei.viewpoint_height,
+            OpticsModel::SphericalMirror(mirror) => mirror.camera_height,
+            OpticsModel::OCamCalib(ocam) => ocam.viewpoint_height,
+            OpticsModel::Mei(mei) => mei.viewpoint_height,
         }
     }
 
@@ -176,20 +178,20 @@ impl Camera {
     #[must_use]
     pub fn eye_height(&self) -> f64 {
         match &self.optics {
-            Optics::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
-            Optics::OCamCalib(_) | Optics::Mei(_) => self.height(),
+            OpticsModel::SphericalMirror(mirror) => mirror.camera_height + mirror.mirror_distance,
+            OpticsModel::OCamCalib(_) | OpticsModel::Mei(_) => self.height(),
         }
     }
 
     /// What a pixel looks along; `None` off the mirror, and where the calibration says nothing.
     #[must_use]
-    pub fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
-        let Ray { origin, direction } = self.optics.ray(pixel)?;
+    pub fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
+        let ViewingRay { origin, direction } = self.optics.ray(pixel)?;
         let turned = |[right, top, up]: [f64; 3]| {
             let [x, y] = self.to_robot([right, top]);
             [x, y, up]
         };
-        Some(Ray { origin: turned(origin), direction: turned(direction) })
+        Some(ViewingRay { origin: turned(origin), direction: turned(direction) })
     }
 
     /// The point of the floor that a pixel shows; `None` above the horizon and off the mirror.

@@ -12,7 +12,7 @@
 //! the file rows and columns count from 0 (in the toolbox itself, from 1).
 
 use super::{
-    Ray, length,
+    ViewingRay, length,
     optics_file::{OpticsFileError, shown, side_of_image, within},
     root::{first_change, polynomial, root},
     scaled_place,
@@ -133,7 +133,7 @@ impl OCam {
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         let [right, top] = self.plane(pixel);
         let rho = length([right, top]);
         if rho.is_nan() || rho > self.reach {
@@ -141,7 +141,7 @@ impl OCam {
         }
         let down = polynomial(&self.down, rho).0;
         let length = length([rho, down]);
-        Some(Ray {
+        Some(ViewingRay {
             origin: [0.0, 0.0, self.viewpoint_height],
             direction: [right / length, top / length, -down / length],
         })

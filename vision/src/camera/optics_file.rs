@@ -19,7 +19,7 @@ pub enum OpticsFileError {
         message: String,
     },
     /// Something else stands where a number should.
-    #[error("line {line}: here should be a number, not `{found}`")]
+    #[error("line {line}: expected a number, found `{found}`")]
     NotANumber {
         /// Counted from 1.
         line: usize,
@@ -27,7 +27,7 @@ pub enum OpticsFileError {
         found: String,
     },
     /// There are more or fewer numbers in a line than there should be.
-    #[error("line {line}: here should be {expected} numbers, {what}, not {found}")]
+    #[error("line {line}: expected {expected} numbers, {what}, found {found}")]
     LineCount {
         /// Counted from 1.
         line: usize,
@@ -39,7 +39,7 @@ pub enum OpticsFileError {
         expected: usize,
     },
     /// There are more or fewer numbers in a line than its first says.
-    #[error("line {line}: here should be {count} coefficients of {what}, not {found}")]
+    #[error("line {line}: expected {count} coefficients of {what}, found {found}")]
     FalseCount {
         /// Counted from 1.
         line: usize,

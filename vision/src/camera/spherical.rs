@@ -10,7 +10,7 @@
 //! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
 //! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
 
-use super::{Ray, length, root::root, scaled_place};
+use super::{ViewingRay, length, root::root, scaled_place};
 
 /// A pinhole camera under a spherical mirror, both on a vertical axis.
 // paper: hardware.camera
@@ -67,7 +67,7 @@ impl SphericalMirror {
     }
 
     /// The ray of a pixel, in the image's axes.
-    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<Ray> {
+    pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         let [right, top] = [pixel[0] - self.centre[0], self.centre[1] - pixel[1]];
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
         // From the pinhole, as (from the axis, up): the ray, and where it meets the sphere.
@@ -89,7 +89,7 @@ impl SphericalMirror {
         // The middle of the image looks along the axis, in no direction.
         let level = if from_centre > 0.0 { 1.0 / from_centre } else { 0.0 };
         let [right, top] = [level * right, level * top];
-        Some(Ray {
+        Some(ViewingRay {
             origin: [at * right, at * top, self.camera_height + up],
             direction: [out * right, out * top, -down],
         })

@@ -1,23 +1,28 @@
 //! How well colours are classified.
 
-use super::Class;
+use super::PixelClass;
 
 /// How many pixels of each class are classified as what.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Confusion {
-    /// A row for each of [`Class::LEARNED`], which the pixel is; a column for each of
+    /// A row for each of [`PixelClass::LEARNED`], which the pixel is; a column for each of
     /// [`Confusion::TOLD`], which it is told to be.
     pub pixels: [[u64; 5]; 4],
 }
 
 impl Confusion {
     /// What a pixel can be told to be.
-    pub const TOLD: [Class; 5] =
-        [Class::Floor, Class::Stripe, Class::Marker, Class::Other, Class::Unknown];
+    pub const TOLD: [PixelClass; 5] = [
+        PixelClass::Floor,
+        PixelClass::Stripe,
+        PixelClass::Marker,
+        PixelClass::Other,
+        PixelClass::Unknown,
+    ];
 
     /// Counts so many pixels.
-    pub fn count(&mut self, is: Class, told: Class, pixels: u64) {
-        let row = Class::LEARNED.iter().position(|&class| class == is);
+    pub fn count(&mut self, is: PixelClass, told: PixelClass, pixels: u64) {
+        let row = PixelClass::LEARNED.iter().position(|&class| class == is);
         let column = Self::TOLD.iter().position(|&class| class == told);
         if let (Some(row), Some(column)) = (row, column) {
             self.pixels[row][column] += pixels;
@@ -26,26 +31,26 @@ impl Confusion {
 
     /// All pixels of a class.
     #[must_use]
-    pub fn of(&self, is: Class) -> u64 {
-        let rows = Class::LEARNED.iter().zip(&self.pixels).filter(|(class, _)| **class == is);
+    pub fn of(&self, is: PixelClass) -> u64 {
+        let rows = PixelClass::LEARNED.iter().zip(&self.pixels).filter(|(class, _)| **class == is);
         rows.flat_map(|(_, row)| row).sum()
     }
 
     /// Which share of a class is told to be it; `None` if there is nothing of it.
     #[must_use]
-    pub fn recall(&self, class: Class) -> Option<f64> {
+    pub fn recall(&self, class: PixelClass) -> Option<f64> {
         share(self.right(class), self.of(class))
     }
 
     /// Which share of what is told to be of a class is of it; `None` if nothing is.
     #[must_use]
-    pub fn precision(&self, class: Class) -> Option<f64> {
+    pub fn precision(&self, class: PixelClass) -> Option<f64> {
         let column = Self::TOLD.iter().position(|&told| told == class)?;
         share(self.right(class), self.pixels.iter().map(|row| row[column]).sum())
     }
 
-    fn right(&self, class: Class) -> u64 {
-        let place = Class::LEARNED.iter().position(|&learned| learned == class);
+    fn right(&self, class: PixelClass) -> u64 {
+        let place = PixelClass::LEARNED.iter().position(|&learned| learned == class);
         place.map_or(0, |place| self.pixels[place][place])
     }
 }
@@ -61,18 +66,18 @@ mod tests {
     #[test]
     fn recall_is_a_share_of_a_row_and_precision_of_a_column() {
         let mut confusion = Confusion::default();
-        confusion.count(Class::Floor, Class::Floor, 6);
-        confusion.count(Class::Floor, Class::Stripe, 1);
-        confusion.count(Class::Floor, Class::Unknown, 1);
-        confusion.count(Class::Stripe, Class::Stripe, 3);
+        confusion.count(PixelClass::Floor, PixelClass::Floor, 6);
+        confusion.count(PixelClass::Floor, PixelClass::Stripe, 1);
+        confusion.count(PixelClass::Floor, PixelClass::Unknown, 1);
+        confusion.count(PixelClass::Stripe, PixelClass::Stripe, 3);
         assert_eq!(confusion.pixels, [[6, 1, 0, 0, 1], [0, 3, 0, 0, 0], [0; 5], [0; 5]]);
-        assert_eq!(confusion.of(Class::Floor), 8);
-        assert_eq!(confusion.recall(Class::Floor), Some(0.75));
-        assert_eq!(confusion.precision(Class::Floor), Some(1.0));
-        assert_eq!(confusion.recall(Class::Stripe), Some(1.0));
-        assert_eq!(confusion.precision(Class::Stripe), Some(0.75));
-        assert_eq!(confusion.recall(Class::Marker), None);
-        assert_eq!(confusion.precision(Class::Marker), None);
-        assert_eq!(confusion.precision(Class::Unseen), None);
+        assert_eq!(confusion.of(PixelClass::Floor), 8);
+        assert_eq!(confusion.recall(PixelClass::Floor), Some(0.75));
+        assert_eq!(confusion.precision(PixelClass::Floor), Some(1.0));
+        assert_eq!(confusion.recall(PixelClass::Stripe), Some(1.0));
+        assert_eq!(confusion.precision(PixelClass::Stripe), Some(0.75));
+        assert_eq!(confusion.recall(PixelClass::Marker), None);
+        assert_eq!(confusion.precision(PixelClass::Marker), None);
+        assert_eq!(confusion.precision(PixelClass::Unseen), None);
     }
 }

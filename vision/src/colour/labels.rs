@@ -1,8 +1,8 @@
 //! Label masks: what a person says that each pixel of an image shows.
 
-use super::Class;
+use super::PixelClass;
 
-impl Class {
+impl PixelClass {
     /// The colour of a class in a label mask. Pixels that are to be ignored are unseen.
     #[must_use]
     pub fn label(self) -> [u8; 3] {
@@ -15,7 +15,7 @@ impl Class {
         }
     }
 
-    /// The class that a colour of a label mask tells, [`Class::Unseen`] for one to be ignored.
+    /// The class that a colour of a label mask tells, [`PixelClass::Unseen`] for one to be ignored.
     #[must_use]
     pub fn of_label(label: [u8; 3]) -> Option<Self> {
         let told = Self::LEARNED.into_iter().chain([Self::Unseen]);

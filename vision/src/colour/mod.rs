@@ -16,16 +16,16 @@ mod table;
 mod training;
 
 pub use confusion::Confusion;
-pub use file::{Cause, ColourFileError};
+pub use file::{ColourFileError, ColourFileErrorKind};
 pub use light::{FloorRing, LightError};
 pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
-pub use training::{Example, ExampleError, Seen, Training, TrainingError, View};
+pub use training::{ClassPixels, Example, ExampleError, Training, TrainingError, TrainingView};
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
-pub enum Class {
+pub enum PixelClass {
     /// Outside of the view: beyond the mirror, or the robot's own body.
     #[default]
     Unseen,
@@ -41,7 +41,7 @@ pub enum Class {
     Other,
 }
 
-impl Class {
+impl PixelClass {
     /// The classes that are learned.
     pub const LEARNED: [Self; 4] = [Self::Floor, Self::Stripe, Self::Marker, Self::Other];
 

@@ -1,7 +1,7 @@
 //! What the classifier has learned.
 
 use super::{
-    Class, ColourTable, Gain,
+    ColourTable, Gain, PixelClass,
     hsv::{BINS, Bin, Lattice, PLANE, VALUES},
     light,
     table::{self, CELLS},
@@ -49,7 +49,7 @@ impl Priors {
     /// a wall, while a speck of floor that is taken for stripe is too small to matter.
     pub const EQUAL: Self = Self { floor: 0.25, stripe: 0.25, marker: 0.25, other: 0.25 };
 
-    /// Those of [`Class::LEARNED`].
+    /// Those of [`PixelClass::LEARNED`].
     pub(super) fn of_learned(self) -> [f64; 4] {
         [self.floor, self.stripe, self.marker, self.other]
     }
@@ -81,7 +81,7 @@ pub struct ColourModel {
     pub smoothing: Smoothing,
     /// A colour is unknown of which each class has a smaller share.
     pub unknown_below: f64,
-    /// What each of [`Class::LEARNED`] looks like.
+    /// What each of [`PixelClass::LEARNED`] looks like.
     pub(super) histograms: [Histogram; 4],
 }
 
@@ -105,11 +105,11 @@ impl ColourModel {
 
     /// The class of each bin: that of the greatest prior times density.
     // paper: sense.classify, marker-sense.colour
-    fn classes(&self) -> Vec<Class> {
-        let mut best = vec![(0.0, Class::Unknown); BINS];
+    fn classes(&self) -> Vec<PixelClass> {
+        let mut best = vec![(0.0, PixelClass::Unknown); BINS];
         let smoothed = self.smoothing.of(&self.histograms);
         for ((class, densities), prior) in
-            Class::LEARNED.into_iter().zip(smoothed).zip(self.priors.of_learned())
+            PixelClass::LEARNED.into_iter().zip(smoothed).zip(self.priors.of_learned())
         {
             for (best, density) in best.iter_mut().zip(densities) {
                 let likelihood = prior * density;

@@ -1,12 +1,12 @@
 //! The classifier as one lookup.
 
-use super::Class;
+use super::PixelClass;
 
 /// The class of every colour, six bits a channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColourTable {
     /// At index `red << 12 | green << 6 | blue`, each of six bits.
-    pub(crate) classes: Vec<Class>,
+    pub(crate) classes: Vec<PixelClass>,
 }
 
 /// How many colours there are of six bits a channel.
@@ -62,7 +62,7 @@ pub(super) fn index([reds, greens, blues]: &[[u32; 256]; 3], [red, green, blue]:
 /// A colour table for images of one gain.
 #[derive(Clone, Debug)]
 pub struct LitTable<'a> {
-    classes: &'a [Class],
+    classes: &'a [PixelClass],
     /// For each channel, where the level leads in `classes`.
     offsets: [[u32; 256]; 3],
 }
@@ -79,7 +79,7 @@ impl LitTable<'_> {
     /// The class of a colour.
     #[inline]
     #[must_use]
-    pub fn class(&self, colour: [u8; 3]) -> Class {
+    pub fn class(&self, colour: [u8; 3]) -> PixelClass {
         self.classes[index(&self.offsets, colour)]
     }
 }

@@ -4,7 +4,7 @@ use image::RgbImage;
 use thiserror::Error;
 
 use super::{
-    Class, ColourModel, Confusion, FloorRing, Priors, Smoothing, Stripe,
+    ColourModel, Confusion, FloorRing, PixelClass, Priors, Smoothing, Stripe,
     hsv::{BINS, Bin},
     light::{self, LightError},
     model::Histogram,
@@ -22,14 +22,14 @@ const UNKNOWN_BELOW: f64 = 1e-6;
 
 /// The pixels of a camera that matter.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct TrainingView {
     camera: Camera,
     /// Those that show the ground view, row by row.
     ground: Vec<usize>,
     ring: FloorRing,
 }
 
-impl View {
+impl TrainingView {
     /// What this camera sees.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
@@ -90,8 +90,8 @@ pub enum ExampleError {
 
 /// The colours of label masks.
 fn allowed() -> String {
-    let labels = Class::LEARNED.map(|class| (class.name(), class.label()));
-    let labels = labels.into_iter().chain([("ignore", Class::Unseen.label())]);
+    let labels = PixelClass::LEARNED.map(|class| (class.name(), class.label()));
+    let labels = labels.into_iter().chain([("ignore", PixelClass::Unseen.label())]);
     let told = labels.map(|(name, [red, green, blue])| format!("{name} ({red},{green},{blue})"));
     told.collect::<Vec<_>>().join(", ")
 }
@@ -109,7 +109,7 @@ pub struct Example {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Alike {
     colour: [u8; 3],
-    class: Class,
+    class: PixelClass,
     /// Pixels amid others of their class.
     pure: u32,
     /// Pixels beside others of another class, whose colours mix.
@@ -131,7 +131,11 @@ impl Example {
     ///
     /// # Errors
     /// Image or labels have another size, a label's colour tells nothing, or the light is not known.
-    pub fn new(view: &View, image: &RgbImage, labels: &RgbImage) -> Result<Self, ExampleError> {
+    pub fn new(
+        view: &TrainingView,
+        image: &RgbImage,
+        labels: &RgbImage,
+    ) -> Result<Self, ExampleError> {
         let expected = view.camera.image;
         let [found, labelled] = [image, labels].map(|image| <[u32; 2]>::from(image.dimensions()));
         if found != expected {
@@ -142,7 +146,7 @@ impl Example {
         }
         let [(colours, _), (labels, _)] =
             [image, labels].map(|image| image.as_raw().as_chunks::<3>());
-        if let Some(nth) = labels.iter().position(|&label| Class::of_label(label).is_none()) {
+        if let Some(nth) = labels.iter().position(|&label| PixelClass::of_label(label).is_none()) {
             let (nth, width) = (nth as u32, expected[0]);
             let (pixel, colour) = ([nth % width, nth / width], labels[nth as usize]);
             return Err(ExampleError::LabelColour { pixel, colour });
@@ -152,9 +156,9 @@ impl Example {
             .ground
             .iter()
             .filter_map(|&pixel| {
-                let class = Class::of_label(labels[pixel]).unwrap_or_default();
+                let class = PixelClass::of_label(labels[pixel]).unwrap_or_default();
                 let mixed = || is_mixed(labels, expected[0] as usize, pixel);
-                (class != Class::Unseen).then(|| (colours[pixel], class, mixed()))
+                (class != PixelClass::Unseen).then(|| (colours[pixel], class, mixed()))
             })
             .collect();
         pixels.sort_unstable();
@@ -185,7 +189,7 @@ pub enum TrainingError {
     #[error("no pixel within 3 m is labelled as {}", class.name())]
     NoPixel {
         /// The class: without floor or stripe there is no model, without marker no marker.
-        class: Class,
+        class: PixelClass,
     },
     /// The images cannot be parted so.
     #[error("{images} images cannot be parted in {folds}; there can be from 2 to {images} parts")]
@@ -207,7 +211,7 @@ pub enum TrainingError {
 
 /// How much of a class has been seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Seen {
+pub struct ClassPixels {
     /// In how many images.
     pub images: usize,
     /// In how many pixels of them, within the range of sensing.
@@ -218,7 +222,7 @@ pub struct Seen {
 #[derive(Clone, Debug)]
 pub struct Training {
     stripe: Stripe,
-    view: Option<View>,
+    view: Option<TrainingView>,
     examples: Vec<Example>,
 }
 
@@ -241,7 +245,7 @@ impl Training {
     ) -> Result<(), ExampleError> {
         let view = match self.view.take() {
             Some(view) if view.camera == *camera => view,
-            _ => View::new(camera),
+            _ => TrainingView::new(camera),
         };
         let example = Example::new(&view, image, labels);
         self.view = Some(view);
@@ -262,14 +266,13 @@ impl Training {
 
     /// How much of a class has been seen.
     #[must_use]
-    pub fn seen(&self, class: Class) -> Seen {
+    pub fn seen(&self, class: PixelClass) -> ClassPixels {
         let pixels = self.examples.iter().map(|example| {
             let of_class = example.colours.iter().filter(|alike| alike.class == class);
             of_class.map(Alike::pixels).sum::<u64>()
         });
-        pixels.filter(|&pixels| pixels > 0).fold(Seen::default(), |seen, pixels| Seen {
-            images: seen.images + 1,
-            pixels: seen.pixels + pixels,
+        pixels.filter(|&pixels| pixels > 0).fold(ClassPixels::default(), |seen, pixels| {
+            ClassPixels { images: seen.images + 1, pixels: seen.pixels + pixels }
         })
     }
 
@@ -315,7 +318,7 @@ impl Training {
     fn model_of(&self, examples: &[&Example]) -> Result<ColourModel, TrainingError> {
         let floor = common_floor(examples)?;
         let histograms = histograms(examples, floor);
-        let needed = [(Class::Floor, &histograms[0]), (Class::Stripe, &histograms[1])];
+        let needed = [(PixelClass::Floor, &histograms[0]), (PixelClass::Stripe, &histograms[1])];
         if let Some(&(class, _)) = needed.iter().find(|(_, histogram)| histogram.is_empty()) {
             return Err(TrainingError::NoPixel { class });
         }
@@ -344,7 +347,7 @@ fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
 
 /// The colours of each class, in the light in which the floor has this colour, as the table has them.
 fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
-    let mut cells = Class::LEARNED.map(|class| (class, vec![0_u64; CELLS]));
+    let mut cells = PixelClass::LEARNED.map(|class| (class, vec![0_u64; CELLS]));
     for example in examples {
         let offsets = light::gain(example.floor, floor).offsets();
         for alike in &example.colours {

@@ -14,12 +14,12 @@ pub struct PlantriError {
     pub world: usize,
     /// What is wrong.
     #[source]
-    pub cause: Cause,
+    pub cause: PlantriErrorKind,
 }
 
 /// What is wrong at a byte. Vertices are counted from 1 and edges from 0, as in the codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum Cause {
+pub enum PlantriErrorKind {
     /// There is nothing at all.
     #[error("there is no world")]
     Empty,
@@ -110,7 +110,7 @@ pub enum Cause {
 
 /// Why an embedded graph cannot be written in a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum WriteError {
+pub enum PlantriWriteError {
     /// A loop or a parallel edge.
     #[error(
         "world {world} has loops or parallel edges, which planar_code cannot tell; use edge_code"

@@ -22,13 +22,13 @@ mod error;
 mod read;
 mod write;
 
-pub use error::{Cause, PlantriError, WriteError};
+pub use error::{PlantriError, PlantriErrorKind, PlantriWriteError};
 pub use read::{Worlds, read, read_headerless};
 pub use write::write;
 
 /// One of plantri's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Code {
+pub enum PlantriCode {
     /// Lists of neighbours; simple graphs only.
     Planar,
     /// Lists of edges; all graphs.

@@ -1,6 +1,6 @@
 //! Reading plantri's codes, one world after the other.
 
-use super::{Cause, Code, PlantriError};
+use super::{PlantriCode, PlantriError, PlantriErrorKind};
 use crate::embedded_graph::{EmbeddedGraph, GraphError, MAX_EDGES};
 
 /// How the numbers of `planar_code` with two bytes are laid out.
@@ -15,11 +15,11 @@ enum ByteOrder {
 }
 
 /// The headers, and what they tell.
-const HEADERS: [(&[u8], Code, ByteOrder); 4] = [
-    (b">>planar_code<<", Code::Planar, ByteOrder::Untold),
-    (b">>planar_code le<<", Code::Planar, ByteOrder::Little),
-    (b">>planar_code be<<", Code::Planar, ByteOrder::Big),
-    (b">>edge_code<<", Code::Edge, ByteOrder::Untold),
+const HEADERS: [(&[u8], PlantriCode, ByteOrder); 4] = [
+    (b">>planar_code<<", PlantriCode::Planar, ByteOrder::Untold),
+    (b">>planar_code le<<", PlantriCode::Planar, ByteOrder::Little),
+    (b">>planar_code be<<", PlantriCode::Planar, ByteOrder::Big),
+    (b">>edge_code<<", PlantriCode::Edge, ByteOrder::Untold),
 ];
 
 /// The worlds of a file, in their order. Ends after the first error.
@@ -30,7 +30,7 @@ pub struct Worlds<'a> {
     bytes: &'a [u8],
     next: usize,
     read: usize,
-    code: Code,
+    code: PlantriCode,
     order: ByteOrder,
     done: bool,
 }
@@ -42,13 +42,13 @@ pub struct Worlds<'a> {
 /// lists them.
 #[must_use]
 pub fn read(bytes: &[u8]) -> Worlds<'_> {
-    read_headerless(bytes, Code::Planar)
+    read_headerless(bytes, PlantriCode::Planar)
 }
 
 /// The worlds of a file of which the code is known: as [`read`], but this code is taken where no
 /// header stands.
 #[must_use]
-pub fn read_headerless(bytes: &[u8], code: Code) -> Worlds<'_> {
+pub fn read_headerless(bytes: &[u8], code: PlantriCode) -> Worlds<'_> {
     Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Untold, done: false }
 }
 
@@ -76,7 +76,7 @@ impl Iterator for Worlds<'_> {
 }
 
 /// What is wrong, and at which byte.
-type Failure = (usize, Cause);
+type Failure = (usize, PlantriErrorKind);
 
 impl Worlds<'_> {
     /// Goes past a header. Where one can stand, none of its letters could be a vertex or an edge: a
@@ -94,7 +94,7 @@ impl Worlds<'_> {
                 self.order = order;
                 Ok(())
             }
-            None => Err((self.next, Cause::UnknownHeader)),
+            None => Err((self.next, PlantriErrorKind::UnknownHeader)),
         }
     }
 
@@ -102,10 +102,10 @@ impl Worlds<'_> {
     fn world(&self) -> Result<Option<(EmbeddedGraph, usize)>, Failure> {
         let at_end = self.next == self.bytes.len();
         match (at_end, self.code) {
-            (true, _) if self.read == 0 => Err((self.next, Cause::Empty)),
+            (true, _) if self.read == 0 => Err((self.next, PlantriErrorKind::Empty)),
             (true, _) => Ok(None),
-            (false, Code::Planar) => self.planar_code().map(Some),
-            (false, Code::Edge) => self.edge_code().map(Some),
+            (false, PlantriCode::Planar) => self.planar_code().map(Some),
+            (false, PlantriCode::Edge) => self.edge_code().map(Some),
         }
     }
 
@@ -133,7 +133,7 @@ impl Worlds<'_> {
                 let sizes = cursor.number(1, ByteOrder::Big)? as u8;
                 let (length_bytes, edge_bytes) = (sizes >> 4, sizes & 15);
                 if length_bytes == 0 || edge_bytes == 0 {
-                    let cause = Cause::Sizes { length_bytes, edge_bytes };
+                    let cause = PlantriErrorKind::Sizes { length_bytes, edge_bytes };
                     return Err((sizes_at, cause));
                 }
                 let length = cursor.number(length_bytes.into(), ByteOrder::Big)?;
@@ -145,7 +145,7 @@ impl Worlds<'_> {
             .ok()
             .and_then(|length| cursor.at.checked_add(length))
             .filter(|&end| end <= self.bytes.len())
-            .ok_or((self.bytes.len(), Cause::Truncated))?;
+            .ok_or((self.bytes.len(), PlantriErrorKind::Truncated))?;
         cursor.bytes = &self.bytes[..end];
         Ok((edge_code(cursor, edge_bytes)?, end))
     }
@@ -162,7 +162,7 @@ impl Cursor<'_> {
     /// The next number; one that does not fit is as high as can be.
     fn number(&mut self, size: usize, order: ByteOrder) -> Result<u64, Failure> {
         let bytes = self.at.checked_add(size).and_then(|end| self.bytes.get(self.at..end));
-        let bytes = bytes.ok_or((self.bytes.len(), Cause::Truncated))?;
+        let bytes = bytes.ok_or((self.bytes.len(), PlantriErrorKind::Truncated))?;
         self.at += size;
         let add = |number: u64, &byte: &u8| match number.checked_mul(256) {
             Some(shifted) => shifted | u64::from(byte),
@@ -195,7 +195,8 @@ fn planar_code(
                 break;
             }
             if neighbour > vertices {
-                let cause = Cause::UnknownNeighbour { vertex: vertex + 1, neighbour, vertices };
+                let cause =
+                    PlantriErrorKind::UnknownNeighbour { vertex: vertex + 1, neighbour, vertices };
                 return Err((at, cause));
             }
             darts.push((vertex as u32, neighbour as u32 - 1));
@@ -213,7 +214,7 @@ fn planar_code(
     let loops = (0..darts.len()).filter(|&dart| darts[dart].0 == darts[dart].1);
     if let Some(dart) = again.chain(loops).min() {
         let (vertex, neighbour) = numbers(darts[dart]);
-        return Err((place(dart), Cause::NotSimple { vertex, neighbour }));
+        return Err((place(dart), PlantriErrorKind::NotSimple { vertex, neighbour }));
     }
     let opposite = (0..darts.len())
         .map(|dart| {
@@ -223,7 +224,7 @@ fn planar_code(
                 .map(|at| sorted[at])
                 .map_err(|_| {
                     let (vertex, neighbour) = numbers(darts[dart]);
-                    (place(dart), Cause::OneSided { vertex, neighbour })
+                    (place(dart), PlantriErrorKind::OneSided { vertex, neighbour })
                 })
         })
         .collect::<Result<Vec<_>, _>>()?;
@@ -244,7 +245,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
             firsts.push(ends.len() as u32);
         } else {
             let at = cursor.at;
-            let half = |_| (at, Cause::HalfEdgeNumber);
+            let half = |_| (at, PlantriErrorKind::HalfEdgeNumber);
             ends.push(cursor.number(size, ByteOrder::Big).map_err(half)?);
         }
     }
@@ -253,7 +254,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
     let place = |dart: usize| start + size * dart + vertex(dart);
     check_size(start, ends.len())?;
     if ends.len() % 2 == 1 {
-        return Err((start, Cause::OddEnds { ends: ends.len() }));
+        return Err((start, PlantriErrorKind::OddEnds { ends: ends.len() }));
     }
     let mut first_end = vec![UNMET; ends.len() / 2];
     let mut opposite = vec![UNMET; ends.len()];
@@ -261,7 +262,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
         let edges = first_end.len();
         let Some(first) = usize::try_from(edge).ok().and_then(|edge| first_end.get_mut(edge))
         else {
-            let cause = Cause::UnknownEdge { vertex: vertex(dart) + 1, edge, edges };
+            let cause = PlantriErrorKind::UnknownEdge { vertex: vertex(dart) + 1, edge, edges };
             return Err((place(dart), cause));
         };
         let other = *first as usize;
@@ -271,7 +272,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
             opposite[other] = dart as u32;
             opposite[dart] = *first;
         } else {
-            return Err((place(dart), Cause::ThirdEnd { edge }));
+            return Err((place(dart), PlantriErrorKind::ThirdEnd { edge }));
         }
     }
     graph(start, &opposite, &firsts)
@@ -297,7 +298,7 @@ fn graph(start: usize, opposite: &[u32], firsts: &[u32]) -> Result<EmbeddedGraph
     let lists: Vec<_> = firsts.iter().copied().zip(ends).collect();
     let without_edge = lists.iter().position(|(first, end)| first == end);
     if let Some(vertex) = without_edge.filter(|_| darts > 0) {
-        return Err((start, Cause::NoEdge { vertex: vertex + 1 }));
+        return Err((start, PlantriErrorKind::NoEdge { vertex: vertex + 1 }));
     }
     let mut clockwise: Vec<u32> = (1..=darts).collect();
     for &(first, end) in lists.iter().filter(|(first, end)| first < end) {
@@ -307,7 +308,7 @@ fn graph(start: usize, opposite: &[u32], firsts: &[u32]) -> Result<EmbeddedGraph
         Ok((graph, _)) => Ok(graph),
         Err(GraphError::NotConnected { dart }) => {
             let vertex = firsts.partition_point(|&first| first <= dart);
-            Err((start, Cause::NotConnected { vertex }))
+            Err((start, PlantriErrorKind::NotConnected { vertex }))
         }
         Err(fault) => Err((start, fault.into())),
     }

@@ -15,7 +15,7 @@ fn message(bytes: &[u8]) -> String {
 }
 
 fn edge_message(body: &[u8]) -> String {
-    let error = read_headerless(body, Code::Edge).find_map(Result::err);
+    let error = read_headerless(body, PlantriCode::Edge).find_map(Result::err);
     error.unwrap().to_string()
 }
 
@@ -45,7 +45,7 @@ fn plantri_s_own_example_is_the_octahedron_in_the_plane() {
     assert_eq!(graph.genus(), 0);
     // The first neighbour of vertex 1 is vertex 4.
     assert_eq!(graph.vertex(graph.opposite(Dart(0))).0 + 1, 4);
-    assert_eq!(write(&worlds, Code::Planar).unwrap(), bytes);
+    assert_eq!(write(&worlds, PlantriCode::Planar).unwrap(), bytes);
     assert_eq!(all(&OCTAHEDRON).unwrap(), worlds);
 }
 
@@ -57,7 +57,7 @@ const NAUTY: &[u8] = b">>planar_code<<\x04\
 fn nauty_s_complete_graph_lies_in_the_plane() {
     let worlds = all(NAUTY).unwrap();
     assert_eq!((worlds[0].edge_count(), worlds[0].genus()), (6, 0));
-    assert_eq!(write(&worlds, Code::Planar).unwrap(), NAUTY);
+    assert_eq!(write(&worlds, PlantriCode::Planar).unwrap(), NAUTY);
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
             format!("byte {}, world 1: the file ends in the middle of a world", cut.len())
         );
     }
-    let written = write(&[path(300)], Code::Planar).unwrap();
+    let written = write(&[path(300)], PlantriCode::Planar).unwrap();
     assert_eq!(written, [b">>planar_code le<<".as_slice(), &little].concat());
 }
 
@@ -114,9 +114,9 @@ fn edge_code_tells_loops_and_parallel_edges() {
         .map(|graph| (graph.vertex_count(), graph.edge_count(), graph.genus()))
         .collect();
     assert_eq!(shapes, [(1, 2, 1), (2, 3, 0)]);
-    assert_eq!(write(&worlds, Code::Edge).unwrap(), bytes);
+    assert_eq!(write(&worlds, PlantriCode::Edge).unwrap(), bytes);
     assert_eq!(
-        write(&worlds, Code::Planar).unwrap_err().to_string(),
+        write(&worlds, PlantriCode::Planar).unwrap_err().to_string(),
         "world 1 has loops or parallel edges, which planar_code cannot tell; use edge_code"
     );
 }
@@ -124,21 +124,21 @@ fn edge_code_tells_loops_and_parallel_edges() {
 #[test]
 fn a_long_edge_code_tells_its_sizes() {
     // 170 edge ends and 85 separators are the most that one byte can tell the length of.
-    assert_eq!(write(&[path(86)], Code::Edge).unwrap()[13], 255);
-    assert_eq!(write(&[path(87)], Code::Edge).unwrap()[13..15], [0, 0x21]);
-    let bytes = write(&[path(100)], Code::Edge).unwrap();
+    assert_eq!(write(&[path(86)], PlantriCode::Edge).unwrap()[13], 255);
+    assert_eq!(write(&[path(87)], PlantriCode::Edge).unwrap()[13..15], [0, 0x21]);
+    let bytes = write(&[path(100)], PlantriCode::Edge).unwrap();
     // 198 edge ends and 99 separators: 0x129 bytes, told in two bytes, the edges in one.
     assert_eq!(bytes[13..20], [0, 0x21, 0x01, 0x29, 0, 255, 0]);
     assert_eq!(all(&bytes).unwrap(), [path(100)]);
-    let bytes = write(&[path(300)], Code::Edge).unwrap();
+    let bytes = write(&[path(300)], PlantriCode::Edge).unwrap();
     // 598 edge ends of two bytes and 299 separators of one: 0x5d7 bytes.
     assert_eq!(bytes[13..20], [0, 0x22, 0x05, 0xd7, 0, 0, 255]);
     assert_eq!(all(&bytes).unwrap(), [path(300)]);
     // 255 edges are the most that one byte can number, for 255 is the separator.
-    assert_eq!(write(&[path(256)], Code::Edge).unwrap()[14], 0x21);
-    assert_eq!(write(&[path(257)], Code::Edge).unwrap()[14], 0x22);
+    assert_eq!(write(&[path(256)], PlantriCode::Edge).unwrap()[14], 0x21);
+    assert_eq!(write(&[path(257)], PlantriCode::Edge).unwrap()[14], 0x22);
     for vertices in [256, 257] {
-        let bytes = write(&[path(vertices)], Code::Edge).unwrap();
+        let bytes = write(&[path(vertices)], PlantriCode::Edge).unwrap();
         assert_eq!(all(&bytes).unwrap(), [path(vertices)]);
     }
 }
@@ -230,13 +230,13 @@ proptest! {
     fn edge_code_is_read_as_it_was_written(
         worlds in vec(any_graph(Class::Multigraph, 200), 1..4)
     ) {
-        let bytes = write(&worlds, Code::Edge).unwrap();
+        let bytes = write(&worlds, PlantriCode::Edge).unwrap();
         prop_assert_eq!(all(&bytes).unwrap(), worlds);
     }
 
     #[test]
     fn planar_code_is_read_as_it_was_written(worlds in vec(any_graph(Class::Simple, 400), 1..4)) {
-        let bytes = write(&worlds, Code::Planar).unwrap();
+        let bytes = write(&worlds, PlantriCode::Planar).unwrap();
         prop_assert_eq!(all(&bytes).unwrap(), worlds);
     }
 
@@ -244,7 +244,7 @@ proptest! {
     fn a_truncated_file_is_an_error(
         graph in any_graph(Class::Simple, 20), cut in 1_usize..100, code in 0..2_usize
     ) {
-        let code = [Code::Planar, Code::Edge][code];
+        let code = [PlantriCode::Planar, PlantriCode::Edge][code];
         let bytes = write(&[graph], code).unwrap();
         let cut = cut % (bytes.len() - 1) + 1;
         prop_assert!(all(&bytes[..bytes.len() - cut]).is_err());

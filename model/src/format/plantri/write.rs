@@ -1,6 +1,6 @@
 //! Writing plantri's codes.
 
-use super::{Code, WriteError};
+use super::{PlantriCode, PlantriWriteError};
 use crate::embedded_graph::EmbeddedGraph;
 
 /// The worlds in one of the codes, with its header.
@@ -10,10 +10,10 @@ use crate::embedded_graph::EmbeddedGraph;
 ///
 /// # Errors
 /// Where `planar_code` cannot tell a world.
-pub fn write(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, WriteError> {
+pub fn write(worlds: &[EmbeddedGraph], code: PlantriCode) -> Result<Vec<u8>, PlantriWriteError> {
     match code {
-        Code::Planar => write_planar_code(worlds),
-        Code::Edge => {
+        PlantriCode::Planar => write_planar_code(worlds),
+        PlantriCode::Edge => {
             let mut bytes = b">>edge_code<<".to_vec();
             for graph in worlds {
                 push_edge_code(&mut bytes, graph);
@@ -23,7 +23,7 @@ pub fn write(worlds: &[EmbeddedGraph], code: Code) -> Result<Vec<u8>, WriteError
     }
 }
 
-fn write_planar_code(worlds: &[EmbeddedGraph]) -> Result<Vec<u8>, WriteError> {
+fn write_planar_code(worlds: &[EmbeddedGraph]) -> Result<Vec<u8>, PlantriWriteError> {
     let is_large = |graph: &EmbeddedGraph| graph.vertex_count() > 255;
     let header: &[u8] =
         if worlds.iter().any(is_large) { b">>planar_code le<<" } else { b">>planar_code<<" };
@@ -32,10 +32,10 @@ fn write_planar_code(worlds: &[EmbeddedGraph]) -> Result<Vec<u8>, WriteError> {
         let world = number + 1;
         let vertices = graph.vertex_count();
         if !graph.is_simple() {
-            return Err(WriteError::NotSimple { world });
+            return Err(PlantriWriteError::NotSimple { world });
         }
         if vertices > usize::from(u16::MAX) {
-            return Err(WriteError::TooManyVertices { world, vertices });
+            return Err(PlantriWriteError::TooManyVertices { world, vertices });
         }
         let size = if is_large(graph) {
             bytes.push(0);

@@ -4,10 +4,9 @@
 
 mod error;
 mod read;
-mod tree;
 mod write;
 
-pub use error::{Cause, WorldFileError};
+pub use error::{WorldFileError, WorldFileErrorKind};
 pub use read::read;
 pub use write::{to_json, to_json_text, to_toml};
 

@@ -158,12 +158,12 @@ fn broken_text_is_told_with_its_place() {
 fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("[clokwise]\na = [\"b\"]"),
-        "clokwise: unknown key; here can stand: \
+        "clokwise: unknown key; expected one of: \
          name, about, clockwise, doors, floor, junctions, hallways, start"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
-        "start.from: unknown key; here can stand: at, facing"
+        "start.from: unknown key; expected one of: at, facing"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\""),
@@ -171,7 +171,7 @@ fn unknown_and_missing_keys_are_named() {
     );
     assert_eq!(
         message("{\"a\\nb\": 1}"),
-        "a\\nb: unknown key; here can stand: \
+        "a\\nb: unknown key; expected one of: \
          name, about, clockwise, doors, floor, junctions, hallways, start"
     );
     assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
@@ -184,23 +184,23 @@ fn unknown_and_missing_keys_are_named() {
 #[test]
 fn values_of_the_wrong_kind_are_named() {
     for (text, expected) in [
-        ("name = 3", "name: here should be a name, not a number"),
-        ("about = []\n[doors]", "about: here should be a text, not a list"),
-        ("clockwise = []", "clockwise: here should be a table, not a list"),
-        ("[clockwise]\na = \"b\"", "clockwise.a: here should be a list of names, not a text"),
-        ("[clockwise]\na = [true]", "clockwise.a: here should be a name, not true or false"),
-        ("{\"doors\": {\"a\": [null]}}", "doors.a: here should be a name, not null"),
-        ("doors = 1979-05-27", "doors: here should be a table, not a date"),
+        ("name = 3", "name: expected a name, found a number"),
+        ("about = []\n[doors]", "about: expected a text, found a list"),
+        ("clockwise = []", "clockwise: expected a table, found a list"),
+        ("[clockwise]\na = \"b\"", "clockwise.a: expected a list of names, found a text"),
+        ("[clockwise]\na = [true]", "clockwise.a: expected a name, found true or false"),
+        ("{\"doors\": {\"a\": [null]}}", "doors.a: expected a name, found null"),
+        ("doors = 1979-05-27", "doors: expected a table, found a date"),
     ] {
         assert_eq!(message(text), expected);
     }
     assert_eq!(
         message(&PLAN.replace("[4.0, 0.0]", "[4.0]")),
-        "junctions.east: here should be a list of two numbers, x and y, not a list of another length"
+        "junctions.east: expected a list of two numbers, x and y, found a list of another length"
     );
     assert_eq!(
         message(&PLAN.replace("[4.0, 0.0]", "[4.0, \"0\"]")),
-        "junctions.east: here should be a number, not a text"
+        "junctions.east: expected a number, found a text"
     );
 }
 

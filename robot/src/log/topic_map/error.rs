@@ -1,47 +1,30 @@
 //! What can be wrong with a mapping file, and where.
 
 use thiserror::Error;
-use toposlam_model::format::place::Place;
+use toposlam_model::format::document::{DocumentError, DocumentErrorKind, TextPosition};
 
 use super::{Part, Role};
 
 /// Why a mapping cannot be read, or does not fit its log.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{place}{cause}")]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{position}{cause}")]
 pub struct TopicMapError {
     /// Where.
-    pub place: Place,
+    pub position: TextPosition,
     /// What is wrong there.
     #[source]
     pub cause: Cause,
 }
 
 /// What is wrong at a place of a mapping.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Cause {
-    /// The bytes are not UTF-8.
-    #[error("this is not UTF-8 text")]
-    NotText,
-    /// The text is not TOML.
-    #[error("{0}")]
-    Syntax(String),
-    /// Nothing is mapped.
-    #[error("no topic is told to carry anything")]
+    /// A key or a value of the file is not as it should be.
+    #[error(transparent)]
+    Document(DocumentErrorKind),
+    /// The file maps no topic.
+    #[error("no topic is mapped")]
     Empty,
-    /// A key that has no meaning here.
-    #[error("unknown key {key:?}; here can stand: {known}")]
-    UnknownKey {
-        /// The key.
-        key: String,
-        /// The keys that have one.
-        known: String,
-    },
-    /// A key that must be here is not.
-    #[error("the key `{0}` is missing")]
-    MissingKey(&'static str),
-    /// A value of the wrong kind.
-    #[error("here should be {0}")]
-    WrongKind(&'static str),
     /// Two ways to tell the same.
     #[error("either `heading` or `quaternion` tells where the robot looks, not both")]
     TwoHeadings,
@@ -105,10 +88,16 @@ pub enum Cause {
 
 impl Cause {
     pub(super) fn in_file(self) -> TopicMapError {
-        self.at(Place::File)
+        self.at(TextPosition::default())
     }
 
-    pub(super) fn at(self, place: Place) -> TopicMapError {
-        TopicMapError { place, cause: self }
+    pub(super) fn at(self, position: TextPosition) -> TopicMapError {
+        TopicMapError { position, cause: self }
+    }
+}
+
+impl From<DocumentError> for TopicMapError {
+    fn from(DocumentError { position, kind }: DocumentError) -> Self {
+        Cause::Document(kind).at(position)
     }
 }

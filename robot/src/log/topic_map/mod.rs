@@ -44,7 +44,7 @@ pub use role::{Angle, Length, Part, Role};
 
 use std::{collections::BTreeMap, fmt::Write};
 
-use toposlam_model::format::place::Place;
+use toposlam_model::format::document::TextPosition;
 
 use super::reader::Log;
 
@@ -66,9 +66,9 @@ pub struct Carrier {
     /// In what angles are.
     pub angle: Angle,
     /// Where the mapping file says so.
-    place: Place,
+    place: TextPosition,
     /// Where it says each path.
-    places: BTreeMap<Part, Place>,
+    places: BTreeMap<Part, TextPosition>,
 }
 
 impl Carrier {
@@ -80,7 +80,7 @@ impl Carrier {
             paths: BTreeMap::new(),
             length: Length::Metres,
             angle: Angle::Radians,
-            place: Place::File,
+            place: TextPosition::default(),
             places: BTreeMap::new(),
         }
     }

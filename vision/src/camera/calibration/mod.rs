@@ -29,10 +29,9 @@
 
 mod error;
 mod read;
-mod table;
 mod write;
 
-pub use error::{CalibrationError, Cause};
+pub use error::{CalibrationError, CalibrationErrorKind};
 pub use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;

@@ -1,141 +1,171 @@
-//! Reading a calibration: bytes in, a [`Camera`] out, or the one thing that is wrong.
+//! Reading a calibration: bytes in, a [`Camera`] or an error out.
 
-use std::io;
+use std::{io, ops::RangeInclusive};
 
-use super::{
-    error::{CalibrationError, Cause},
-    table::{Range, Table},
+use toposlam_model::format::document::{Document, DocumentTable, DocumentValue};
+
+use super::error::{CalibrationError, CalibrationErrorKind};
+use crate::camera::{
+    Camera, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
 };
-use crate::camera::{Camera, Mask, Mei, OCam, Optics, OpticsFileError, SeenFrom, SphericalMirror};
 
-/// How the files are read that a calibration names, by their names in it.
+/// Reads the files that a calibration names, by their names in it.
 pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
 /// The keys of every camera.
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
 
-/// Between how many pixels each side of an image must have.
+/// The least and the greatest number of pixels on a side of an image.
 pub const SIDES: [u32; 2] = [16, 16384];
 
-const SIDE: Range =
-    Range { what: "the side of an image in pixels", low: SIDES[0] as f64, high: SIDES[1] as f64 };
-const FOCAL: Range = Range { what: "a focal length in pixels", low: 1.0, high: 1e6 };
-const RADIUS: Range = Range { what: "the radius of a mirror in metres", low: 1e-3, high: 1.0 };
-const HEIGHT: Range = Range { what: "a height above the floor in metres", low: 0.01, high: 10.0 };
-const RIM: Range = Range { what: "the radius of a rim in pixels", low: 1.0, high: 1e6 };
-const ANGLE: Range = Range { what: "an angle in degrees", low: -360.0, high: 360.0 };
+const FOCAL: RangeInclusive<f64> = 1.0..=1e6;
+const MIRROR_RADIUS: RangeInclusive<f64> = 1e-3..=1.0;
+const HEIGHT: RangeInclusive<f64> = 0.01..=10.0;
+const RIM: RangeInclusive<f64> = 1.0..=1e6;
+const ANGLE: RangeInclusive<f64> = -360.0..=360.0;
+
+#[derive(Clone, Copy)]
+enum Kind {
+    SphericalMirror,
+    OCamCalib,
+    Mei,
+}
 
 /// Reads a calibration file, and through `files` those that it names.
 ///
-/// Takes at most 512 bytes of memory for each byte of the file, and 4096 besides, and what
-/// [`Mask::from_png`] takes for an image of the size that it says.
+/// Reading takes at most 512 bytes of memory for each byte of the file, and 4096 besides, and what
+/// [`Mask::from_png`] takes for an image of the calibration's size.
 ///
 /// # Errors
-/// The first thing that is wrong, with its place. No bytes make it panic.
+/// Returns an error if the bytes are not a calibration, or if a file that it names cannot be used. No
+/// bytes make it panic.
 pub fn read(bytes: &[u8], files: &mut Files<'_>) -> Result<Camera, CalibrationError> {
-    let file = parse(bytes)?;
-    let values = Table::new("", &file, &["camera"])?.table("camera")?;
-    let table = Table::unchecked("camera", values);
-    let mut camera = match table.word("kind", &["spherical-mirror", "ocamcalib", "mei"])? {
-        "spherical-mirror" => spherical_mirror(values)?,
-        "ocamcalib" => single_viewpoint(values, files, |file, bytes, height| {
+    let document = Document::parse_toml(bytes)?;
+    let value = document.root().table(&["camera"])?.need("camera")?;
+    let table = value.any_table()?;
+    let kind = table.need("kind")?.word(&[
+        ("spherical-mirror", Kind::SphericalMirror),
+        ("ocamcalib", Kind::OCamCalib),
+        ("mei", Kind::Mei),
+    ])?;
+    let (image, optics) = match kind {
+        Kind::SphericalMirror => spherical_mirror(value)?,
+        Kind::OCamCalib => single_viewpoint(value, files, |file, bytes, height| {
             let ocam = OCam::read(file, bytes, height)?;
-            Ok((Some(ocam.image()), Optics::OCamCalib(ocam)))
+            Ok((Some(ocam.image()), OpticsModel::OCamCalib(ocam)))
         })?,
-        _ => single_viewpoint(values, files, |file, bytes, height| {
+        Kind::Mei => single_viewpoint(value, files, |file, bytes, height| {
             let mei = Mei::read(file, bytes, height)?;
-            Ok((mei.image(), Optics::Mei(mei)))
+            Ok((mei.image(), OpticsModel::Mei(mei)))
         })?,
     };
-    if table.has("mask") {
-        let file = table.text("mask")?;
-        let cause = |cause: Cause| cause.in_named("mask", file);
-        let bytes = files(file).map_err(|error| cause(Cause::Unreadable(error)))?;
-        let mask = Mask::from_png(file, &bytes, camera.image);
-        camera.mask = Some(mask.map_err(|error| cause(error.into()))?);
-    }
-    Ok(camera)
+    let ahead = table.need("ahead")?.number_in("an angle in degrees", ANGLE)?.to_radians();
+    let seen_from =
+        table.need("seen_from")?.word(&[("below", SeenFrom::Below), ("above", SeenFrom::Above)])?;
+    let mask = table.get("mask").map(|mask| read_mask(mask, files, image)).transpose()?;
+    Ok(Camera { image, ahead, seen_from, optics, mask })
 }
 
-fn parse(bytes: &[u8]) -> Result<toml::Table, CalibrationError> {
-    let text = std::str::from_utf8(bytes)
-        .map_err(|error| Cause::NotText.at_byte(bytes, error.valid_up_to()))?;
-    if text.trim().is_empty() {
-        return Err(Cause::Empty.in_file());
-    }
-    toml::from_str(text).map_err(|error: toml::de::Error| {
-        let byte = error.span().map_or(0, |span| span.start);
-        Cause::Syntax(error.message().replace('\n', ", ")).at_byte(bytes, byte)
-    })
-}
-
-fn spherical_mirror(values: &toml::Table) -> Result<Camera, CalibrationError> {
+fn spherical_mirror(value: DocumentValue<'_>) -> Result<([u32; 2], OpticsModel), CalibrationError> {
     const KEYS: [&str; 6] =
         ["centre", "focal", "mirror_radius", "mirror_distance", "camera_height", "rim"];
-    let table = Table::new("camera", values, &[&COMMON[..], &KEYS].concat())?;
-    let image = table.whole_pair("image", SIDE)?;
-    let [across, down] = image.map(|side| Range {
-        what: "the centre of the mirror, in the image,",
-        low: 0.0,
-        high: f64::from(side) - 1.0,
-    });
-    let centre = table.pair("centre", [across, down])?;
-    let focal = table.number("focal", FOCAL)?;
-    let mirror_radius = table.number("mirror_radius", RADIUS)?;
-    let mirror_distance = table.number(
-        "mirror_distance",
-        Range {
-            what: "the distance of the sphere's centre in metres, more than its radius,",
-            low: mirror_radius * 1.001,
-            high: 10.0,
-        },
-    )?;
-    let camera_height = table.number("camera_height", HEIGHT)?;
-    let mirror = SphericalMirror { centre, focal, mirror_radius, mirror_distance, camera_height };
+    let table = value.table(&[&COMMON[..], &KEYS].concat())?;
+    let image = read_image(table.need("image")?)?;
+    let [across, down] = table.need("centre")?.array("a list of two numbers")?;
+    let in_image = |value: DocumentValue<'_>, side: u32| {
+        let what = "the centre of the mirror, in the image,";
+        value.number_in(what, 0.0..=f64::from(side) - 1.0)
+    };
+    let centre = [in_image(across, image[0])?, in_image(down, image[1])?];
+    let focal = table.need("focal")?.number_in("a focal length in pixels", FOCAL)?;
+    let mirror_radius = table
+        .need("mirror_radius")?
+        .number_in("the radius of a mirror in metres", MIRROR_RADIUS)?;
+    let mirror_distance = table.need("mirror_distance")?;
+    let camera_height = camera_height(&table, "camera_height")?;
+    let mirror = SphericalMirror {
+        centre,
+        focal,
+        mirror_radius,
+        mirror_distance: mirror_distance.number_in(
+            "the distance of the sphere's centre in metres, more than its radius,",
+            mirror_radius * 1.001..=10.0,
+        )?,
+        camera_height,
+    };
     let expected = mirror.rim();
-    if table.has("rim") {
-        let rim = table.number("rim", RIM)?;
+    if let Some(value) = table.get("rim") {
+        let rim = value.number_in("the radius of a rim in pixels", RIM)?;
         if (rim - expected).abs() > 0.02 * expected {
-            return Err(table.error("rim", Cause::Rim { rim, expected }));
+            return Err(CalibrationErrorKind::Rim { rim, expected }.at(value));
         }
     }
-    let Range { low, high, .. } = RIM;
-    if !(low..=high).contains(&expected) {
-        let cause = Cause::RimOutOfRange { rim: expected, low, high };
-        return Err(table.error("mirror_distance", cause));
+    if !RIM.contains(&expected) {
+        let (&low, &high) = (RIM.start(), RIM.end());
+        let kind = CalibrationErrorKind::RimOutOfRange { rim: expected, low, high };
+        return Err(kind.at(mirror_distance));
     }
-    on_robot(&table, image, Optics::SphericalMirror(mirror))
+    Ok((image, OpticsModel::SphericalMirror(mirror)))
 }
 
 /// A camera that another tool has calibrated, by its own file.
 fn single_viewpoint(
-    values: &toml::Table,
+    value: DocumentValue<'_>,
     files: &mut Files<'_>,
-    read: impl FnOnce(&str, &[u8], f64) -> Result<(Option<[u32; 2]>, Optics), OpticsFileError>,
-) -> Result<Camera, CalibrationError> {
-    let table =
-        Table::new("camera", values, &[&COMMON[..], &["file", "viewpoint_height"]].concat())?;
-    let height = table.number("viewpoint_height", HEIGHT)?;
-    let told = table.has("image").then(|| table.whole_pair("image", SIDE)).transpose()?;
-    let file = table.text("file")?;
-    let cause = |cause: Cause| cause.in_named("file", file);
-    let bytes = files(file).map_err(|error| cause(Cause::Unreadable(error)))?;
-    let (found, optics) = read(file, &bytes, height).map_err(|error| cause(error.into()))?;
-    let image = match (told, found) {
-        (Some(told), Some(found)) if told != found => {
-            return Err(table.error("image", Cause::OtherImage { told, found }));
+    read: impl FnOnce(&str, &[u8], f64) -> Result<(Option<[u32; 2]>, OpticsModel), OpticsFileError>,
+) -> Result<([u32; 2], OpticsModel), CalibrationError> {
+    let table = value.table(&[&COMMON[..], &["file", "viewpoint_height"]].concat())?;
+    let height = camera_height(&table, "viewpoint_height")?;
+    let given = table.get("image").map(read_image).transpose()?;
+    let file = table.need("file")?;
+    let (name, bytes) = open(file, files)?;
+    let (found, optics) = read(name, &bytes, height)
+        .map_err(|error| CalibrationErrorKind::Optics { file: shown(name), error }.at(file))?;
+    match (given, found, table.get("image")) {
+        (Some(given), Some(found), Some(value)) if given != found => {
+            Err(CalibrationErrorKind::OtherImage { given, found }.at(value))
         }
-        (Some(image), _) | (None, Some(image)) => image,
-        (None, None) => return Err(table.error("file", Cause::NoImage)),
-    };
-    on_robot(&table, image, optics)
+        (Some(image), ..) | (None, Some(image), _) => Ok((image, optics)),
+        (None, None, _) => Err(CalibrationErrorKind::NoImage.at(file)),
+    }
 }
 
-fn on_robot(table: &Table, image: [u32; 2], optics: Optics) -> Result<Camera, CalibrationError> {
-    let ahead = table.number("ahead", ANGLE)?.to_radians();
-    let seen_from = match table.word("seen_from", &["below", "above"])? {
-        "below" => SeenFrom::Below,
-        _ => SeenFrom::Above,
+fn read_mask(
+    value: DocumentValue<'_>,
+    files: &mut Files<'_>,
+    image: [u32; 2],
+) -> Result<Mask, CalibrationError> {
+    let (name, bytes) = open(value, files)?;
+    Mask::from_png(name, &bytes, image)
+        .map_err(|error| CalibrationErrorKind::Mask { file: shown(name), error }.at(value))
+}
+
+/// The name of a file, and its bytes.
+fn open<'d>(
+    value: DocumentValue<'d>,
+    files: &mut Files<'_>,
+) -> Result<(&'d str, Vec<u8>), CalibrationError> {
+    let name = value.text()?;
+    let bytes = files(name)
+        .map_err(|error| CalibrationErrorKind::Unreadable { file: shown(name), error }.at(value))?;
+    Ok((name, bytes))
+}
+
+/// The name of a file, in one line.
+fn shown(name: &str) -> String {
+    name.escape_debug().to_string()
+}
+
+#[expect(clippy::cast_sign_loss, reason = "the range is that of u32 at most")]
+fn read_image(value: DocumentValue<'_>) -> Result<[u32; 2], CalibrationError> {
+    let sides = value.array("a list of two whole numbers")?;
+    let [low, high] = SIDES.map(i64::from);
+    let side = |value: DocumentValue<'_>| {
+        value.whole_in("the side of an image in pixels", low..=high).map(|side| side as u32)
     };
-    Ok(Camera { image, ahead, seen_from, optics, mask: None })
+    Ok([side(sides[0])?, side(sides[1])?])
+}
+
+fn camera_height(table: &DocumentTable<'_>, key: &'static str) -> Result<f64, CalibrationError> {
+    Ok(table.need(key)?.number_in("a height above the floor in metres", HEIGHT)?)
 }

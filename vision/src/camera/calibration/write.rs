@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use crate::camera::{Camera, Mei, OCam, Optics, SeenFrom};
+use crate::camera::{Camera, Mei, OCam, OpticsModel, SeenFrom};
 
 /// The calibration file of a camera; the files that it names are those of the camera.
 #[must_use]
@@ -21,7 +21,7 @@ pub fn to_toml(camera: &Camera) -> String {
     };
     let [width, height] = camera.image;
     match &camera.optics {
-        Optics::SphericalMirror(mirror) => {
+        OpticsModel::SphericalMirror(mirror) => {
             line("kind", quoted("spherical-mirror"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             let [u, v] = mirror.centre;
@@ -39,13 +39,13 @@ pub fn to_toml(camera: &Camera) -> String {
                 "pixels; follows from the others",
             );
         }
-        Optics::OCamCalib(OCam { file, viewpoint_height, .. }) => {
+        OpticsModel::OCamCalib(OCam { file, viewpoint_height, .. }) => {
             line("kind", quoted("ocamcalib"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             line("file", quoted(file), "");
             line("viewpoint_height", number(*viewpoint_height), "metres above the floor");
         }
-        Optics::Mei(Mei { file, viewpoint_height, .. }) => {
+        OpticsModel::Mei(Mei { file, viewpoint_height, .. }) => {
             line("kind", quoted("mei"), "");
             line("image", format!("[{width}, {height}]"), "pixels");
             line("file", quoted(file), "");

@@ -55,17 +55,17 @@ fn what_is_wrong_is_named_with_its_place_and_range() {
     let cases = [
         ("version = 1\n", "", "the key `version` is missing"),
         ("version = 1", "version = 2", "this is version 2 of colour files; only version 1 is read"),
-        ("version = 1", "version = 1.0", "version: here should be a whole number, not a number"),
+        ("version = 1", "version = 1.0", "version: expected a whole number, found a number"),
         ("version = 1", "version =", "line 1, column 10: "),
         (
             "version = 1",
             "version = 1\nname = 1",
-            "name: unknown key; here can stand: version, stripe,",
+            "name: unknown key; expected one of: version, stripe,",
         ),
         (
             "[floor]\ncolour",
             "[flor]\ncolour",
-            "flor: unknown key; here can stand: version, stripe, floor",
+            "flor: unknown key; expected one of: version, stripe, floor",
         ),
         ("width = 0.05\n", "", "stripe: the key `width` is missing"),
         (
@@ -74,23 +74,15 @@ fn what_is_wrong_is_named_with_its_place_and_range() {
             "stripe.width: the width in metres is 5; it can be from 0.005 to 0.5",
         ),
         ("width = 0.05", "width = nan", "stripe.width: the width in metres is NaN; it can be"),
-        (
-            "width = 0.05",
-            "width = true",
-            "stripe.width: here should be a number, not true or false",
-        ),
+        ("width = 0.05", "width = true", "stripe.width: expected a number, found true or false"),
         (
             "\"floor\"",
             "\"roof\"",
             "stripe.kind: there is no stripe on the `roof`; there are floor and",
         ),
-        ("\"floor\"", "7", "stripe.kind: here should be a text, not a whole number"),
+        ("\"floor\"", "7", "stripe.kind: expected a text, found a whole number"),
         ("104", "0", "floor.colour: a channel is 0; it can be from 1 to 255"),
-        (
-            "104,",
-            "",
-            "floor.colour: here should be a list of three numbers, red, green and blue, not",
-        ),
+        ("104,", "", "floor.colour: expected a list of three numbers, red, green and blue, not"),
         (
             "stripe = 0.25",
             "stripe = 0",
@@ -99,7 +91,7 @@ fn what_is_wrong_is_named_with_its_place_and_range() {
         (
             "stripe = 0.25",
             "stripes = 1",
-            "priors.stripes: unknown key; here can stand: floor, stripe,",
+            "priors.stripes: unknown key; expected one of: floor, stripe,",
         ),
         (
             "0.7",
@@ -118,22 +110,10 @@ fn what_is_wrong_is_named_with_its_place_and_range() {
             "histograms.floor[0]: the number of pixels is 0; it can be from 1 to 1000000000000",
         ),
         ("100]", "-1]", "histograms.floor[0]: the number of pixels is -1; it can be"),
-        (
-            "100]",
-            "1.5]",
-            "histograms.floor[0]: here should be a list of four whole numbers, value,",
-        ),
-        (
-            ", 100]",
-            "]",
-            "histograms.floor[0]: here should be a list of four whole numbers, value, ",
-        ),
-        ("[13, 0, 0, 100]", "\"x\"", "histograms.floor[0]: here should be a list of four whole"),
-        (
-            "marker = []",
-            "marker = {}",
-            "histograms.marker: here should be a list of bins, not a table",
-        ),
+        ("100]", "1.5]", "histograms.floor[0]: expected a list of four whole numbers, value,"),
+        (", 100]", "]", "histograms.floor[0]: expected a list of four whole numbers, value, "),
+        ("[13, 0, 0, 100]", "\"x\"", "histograms.floor[0]: expected a list of four whole"),
+        ("marker = []", "marker = {}", "histograms.marker: expected a list of bins, found a table"),
         ("28, 1, 5", "28, 0, 0", "histograms.stripe: value 28, chroma 0, hue 0 has stood before"),
         ("marker = []\n", "", "histograms: the key `marker` is missing"),
     ];
@@ -216,6 +196,6 @@ proptest! {
     #[test]
     fn any_model_has_a_table(model in models()) {
         let table = model.table();
-        prop_assert!(table.classes.iter().all(|&class| class != Class::Unseen));
+        prop_assert!(table.classes.iter().all(|&class| class != PixelClass::Unseen));
     }
 }
