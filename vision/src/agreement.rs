@@ -1,8 +1,8 @@
-//! Agreement: an outline held against what is seen on each bearing. Section 3.
+//! Agreement: an outline compared with what is seen on each bearing. Section 3.
 //!
-//! A place is decided on by its walls *and* by its floor: where floor is seen through a wall that an
-//! outline has, or a wall where it has floor, the outline is wrong. A door of the floor's colour looks
-//! like more floor, too; but it is narrower than any hallway, with the wall on either side of it.
+//! A place has walls *and* floor. If floor is seen behind a wall of an outline, or a wall where it has
+//! floor, the outline is wrong. A door of the floor's colour looks like floor, too, but it is narrower
+//! than any hallway, and there is wall on both sides of it.
 
 use crate::{
     boundary::{BEARINGS, Boundary, Edge, Sight, direction},
@@ -11,26 +11,26 @@ use crate::{
     wall::WallFrame,
 };
 
-/// How an outline agrees with what is seen: a count of bearings for each kind.
+/// How an outline agrees with what is seen: the number of bearings of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutlineAgreement {
-    /// A wall is seen where the outline has one.
+    /// The wall of the outline is seen.
     pub support: u32,
-    /// The floor ends where the outline has a wall, though at no stripe: at a door, or a gap.
+    /// The floor ends at the wall of the outline, but without a stripe: at a door or a gap.
     pub ended: u32,
-    /// The outline has a wall, and nothing is seen there.
+    /// The outline has a wall, but nothing is seen there.
     pub silent: u32,
     /// Floor is seen behind a wall of the outline, through a door.
     pub door: u32,
-    /// Floor is seen behind a wall of the outline, and no door explains it.
+    /// Floor is seen behind a wall of the outline, where there can be no door.
     pub through: u32,
     /// A wall is seen where the outline has floor.
     pub against: u32,
-    /// In how many of the four directions neither the wall nor the floor of it is seen.
+    /// The number of the four directions in which neither its wall nor its floor is seen.
     pub blank: u32,
 }
 
-/// What is seen on one bearing where an outline has something.
+/// How an outline agrees with what is seen on one bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Support,
@@ -40,14 +40,14 @@ enum Held {
     Against,
     /// Floor is seen behind a wall, through a door.
     Door,
-    /// There is floor, as the outline says.
+    /// Floor is seen where the outline has floor.
     Open,
-    /// There may be floor, as the outline says.
+    /// Nothing is seen where the outline has floor.
     Unseen,
 }
 
 impl Outline {
-    /// How the outline agrees with what is seen, on every so many bearings.
+    /// How the outline agrees with what is seen, on one bearing in `every`.
     #[must_use]
     pub fn agreement(
         &self,
@@ -99,7 +99,7 @@ impl Outline {
         agreement
     }
 
-    /// What is seen on a bearing that meets a side first, so far away.
+    /// What is seen on a bearing that first meets this side, at the range `at`.
     fn held(
         &self,
         side: &OutlineSide,
@@ -108,7 +108,7 @@ impl Outline {
         sight: &Sight,
         params: &OutlineParams,
     ) -> Held {
-        // How far in front of the side something is, perpendicular to it.
+        // The distance of something in front of the side, perpendicular to it.
         let (_, across) = side.along.split();
         let before = |range: f64| (at - range) * ray[across].abs();
         let is_wall = side.is_wall();
@@ -119,7 +119,7 @@ impl Outline {
         };
         match sight.edges().find(fits) {
             Some(edge) if edge.width * ray[across].abs() <= 1.0 => Held::Support,
-            // What is so wide is no stripe, but a wall of its colour, or a shadow.
+            // A wider edge is not a stripe, but a wall of its colour, or a shadow.
             Some(_) => Held::Silent,
             None if sight.sure().is_some_and(|wall| wall < at) => Held::Against,
             None if is_wall && before(sight.floor).abs() < near(at, params) => Held::Ended,
@@ -130,8 +130,8 @@ impl Outline {
         }
     }
 
-    /// The gap in a wall through which floor is seen on a bearing that meets it: from where to where the
-    /// wall does not go on. It is a door if the other side of a hallway would be farther away.
+    /// The gap in a wall through which floor is seen on a bearing: from the last place of the wall to
+    /// the next. It is a door if it is narrower than a hallway.
     fn gap(
         &self,
         number: usize,
@@ -143,7 +143,7 @@ impl Outline {
     ) -> Gap {
         let side = &self.sides[number];
         let (along, across) = side.along.split();
-        // Where the wall would be met on another bearing, and whether it is seen there.
+        // The place at which another bearing meets the wall, and whether the wall is seen there.
         let on_wall = |bearing: usize| {
             let ray = frame.framed(direction(bearing));
             let range = side.offset / ray[across];
@@ -162,7 +162,7 @@ impl Outline {
                 .map(|(_, (on, _))| on)
         };
         let edges = [edge(1), edge(BEARINGS - 1)];
-        // Bearings go along a wall one way or the other.
+        // Bearings follow a wall in one direction or the other.
         let before = edges.iter().flatten().copied().filter(|&edge| edge <= at);
         let behind = edges.iter().flatten().copied().filter(|&edge| edge > at);
         Gap {
@@ -173,7 +173,7 @@ impl Outline {
     }
 }
 
-/// Whether a wall goes on from the first of these places, where it is met and may be seen.
+/// Whether a wall goes on from the first of these places; each with whether the wall is seen there.
 fn goes_on(wall: impl Iterator<Item = (f64, bool)>, params: &OutlineParams) -> bool {
     let mut wall = wall.peekable();
     let Some(&(first, _)) = wall.peek() else { return false };
@@ -184,7 +184,7 @@ fn goes_on(wall: impl Iterator<Item = (f64, bool)>, params: &OutlineParams) -> b
     length >= 0.8 * params.door_wall && f64::from(seen) >= params.door_wall_seen * f64::from(all)
 }
 
-/// A gap in a side of an outline: from where to where along it, in metres.
+/// A gap in a side of an outline, from one place along it to another, in metres.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     side: usize,
@@ -192,7 +192,7 @@ struct Gap {
     to: f64,
 }
 
-/// On how many bearings something should be seen, and is.
+/// The number of bearings on which something should be seen, and on which it is.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     due: u32,
@@ -200,7 +200,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// Whether it is not seen at all, though many bearings lead there.
+    /// Whether it is hardly seen, although many bearings lead there.
     fn is_blank(self, every: usize, params: &OutlineParams) -> bool {
         let Self { due, seen } = self;
         f64::from(due) > bearings(params.narrow, every)
@@ -209,7 +209,7 @@ impl Seen {
 }
 
 impl OutlineAgreement {
-    /// What supports the outline, less what does not, which weighs more.
+    /// What supports the outline minus what contradicts it, which has more weight.
     #[must_use]
     pub fn balance(&self, params: &OutlineParams) -> f64 {
         self.good(params)
@@ -237,14 +237,14 @@ impl OutlineAgreement {
         self.trust(params) * self.cover(params).sqrt()
     }
 
-    /// What supports the outline, in bearings on which a stripe is seen where it should be.
+    /// What supports the outline, as a number of bearings on which its wall is seen.
     #[must_use]
     pub fn good(&self, params: &OutlineParams) -> f64 {
         f64::from(self.support) + params.ended_weight * f64::from(self.ended)
     }
 
-    /// Whether so much of what is seen supports the outline, little of it stands against it, and
-    /// there is more wall than door.
+    /// Whether the trust is at least this, few bearings contradict the outline, and there is not
+    /// much more door than wall.
     #[must_use]
     pub fn holds(&self, trust: f64, params: &OutlineParams) -> bool {
         let good = self.good(params);
@@ -254,7 +254,7 @@ impl OutlineAgreement {
     }
 }
 
-/// A number of bearings as a part of all.
+/// A part of all bearings, as a number of bearings, of which one in `every` is used.
 #[must_use]
 pub fn bearings(part: f64, every: usize) -> f64 {
     part * (BEARINGS / every) as f64

@@ -31,7 +31,7 @@ const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 const ORANGE: Rgb<u8> = Rgb([255, 150, 0]);
 /// Corners of the room, which bend inwards.
 const CYAN: Rgb<u8> = Rgb([0, 220, 230]);
-/// Clusters, in turn.
+/// The colours of clusters, in turn.
 const CLUSTERS: [Rgb<u8>; 6] = [
     Rgb([230, 80, 70]),
     Rgb([80, 170, 255]),
@@ -42,11 +42,11 @@ const CLUSTERS: [Rgb<u8>; 6] = [
 ];
 /// The radius of the robot's body, in metres.
 const RADIUS: f64 = 0.205;
-/// How far a centre line is drawn, in metres.
+/// The length of a centre line in a picture, in metres.
 const CENTRE_LINE: f64 = 1.6;
-/// The pixels that a line over an image covers, about its own.
+/// The pixels around each pixel of a line over an image.
 const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-/// The colour of what was not made out.
+/// The background.
 const DARK: Rgb<u8> = Rgb([24, 24, 28]);
 
 /// The name of each step, and its picture.
@@ -69,7 +69,7 @@ pub fn stages(sensor: &mut Sensor, image: &RgbImage) -> Result<(Scene, Stages), 
     Ok((found, stages))
 }
 
-/// The colour in which a class is shown.
+/// The colour of a class in pictures.
 #[must_use]
 pub fn shade(class: PixelClass) -> Rgb<u8> {
     match class {
@@ -82,7 +82,7 @@ pub fn shade(class: PixelClass) -> Rgb<u8> {
     }
 }
 
-/// A ground view: each pixel in the shade of its class.
+/// A ground view: each pixel in the colour of its class.
 #[must_use]
 pub fn classes(view: &GroundView) -> RgbImage {
     let side = GroundView::SIDE as u32;
@@ -94,7 +94,7 @@ pub fn classes(view: &GroundView) -> RgbImage {
     picture
 }
 
-/// The boundary points alone, and how far the floor is seen.
+/// The boundary points, and the floor up to its farthest point.
 #[must_use]
 pub fn boundary(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
@@ -114,7 +114,7 @@ pub fn boundary(trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// The clusters, each in a colour of its own.
+/// The clusters, each in its own colour.
 #[must_use]
 pub fn clusters(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
@@ -127,8 +127,7 @@ pub fn clusters(trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// Straight lines, in the colours of their clusters; those that are walls are bright, with a point at
-/// either end.
+/// Straight lines, in the colours of their clusters. Walls are thick, with a point at both ends.
 #[must_use]
 pub fn lines(trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
@@ -145,7 +144,7 @@ pub fn lines(trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// What it all comes to: walls, corners, centre lines, the marker.
+/// The scene: walls, corners, centre lines, the marker.
 #[must_use]
 pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
@@ -175,7 +174,7 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     picture
 }
 
-/// The image itself, with the centre lines and the marker drawn over it.
+/// The image with the centre lines and the marker drawn over it.
 #[must_use]
 pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
     let mut picture = image.clone();
@@ -207,7 +206,7 @@ pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
     picture
 }
 
-/// The centre lines of a scene: that of the edge on which the robot is is green, others are red.
+/// The centre lines of a scene. That of the edge on which the robot stands is green, others are red.
 // paper: sense.centre-lines
 fn centre_lines(scene: &Scene) -> Vec<([f64; 2], [f64; 2], Rgb<u8>)> {
     let onwards = |[x, y]: [f64; 2], direction: f64, far: f64| {
@@ -264,7 +263,7 @@ fn body(picture: &mut RgbImage) {
     line(picture, [0.0; 2], [RADIUS, 0.0], WHITE);
 }
 
-/// The pixel of a ground view in which a point of the floor is.
+/// The pixel of a ground view that contains a point of the floor.
 fn at([x, y]: [f64; 2]) -> [i32; 2] {
     let middle = GroundView::SIDE as f64 / 2.0;
     [middle - y / GroundView::SCALE, middle - x / GroundView::SCALE].map(|part| part as i32)
@@ -332,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hallways_centre_line_is_between_its_walls_and_of_nothing_there_is_none() {
+    fn a_hallways_centre_line_is_between_its_walls_and_an_unknown_place_has_none() {
         let hallway = HallwayView {
             heading: 0.0,
             left: 1.0,
@@ -348,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn every_class_has_a_shade_of_its_own() {
+    fn every_class_has_its_own_shade() {
         let mut view = GroundView::unseen();
         let classes = [
             PixelClass::Floor,

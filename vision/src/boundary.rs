@@ -1,10 +1,10 @@
-//! Boundary points: where the floor ends at a stripe, as seen from the robot outwards. Section 3,
+//! Boundary points: where the floor ends at a stripe, seen from the robot outwards. Section 3,
 //! Figure 6(d).
 //!
-//! Walls are higher than the camera, so that on each bearing one stripe behind the floor is that of the
-//! only wall that can be seen. Which one is not always plain: joints between tiles and reflections of
-//! lamps look like stripes, and walls may have the floor's colour. So on a bearing there may be several
-//! edges, the last of them sure or not; which of them are walls, their neighbours decide.
+//! Walls are higher than the camera, so on each bearing only one wall can be seen, with its stripe at
+//! the end of the floor. But joints between tiles and reflections of lamps look like stripes, too, and a
+//! wall may have the floor's colour. So a bearing may have several edges, the last of them sure or not.
+//! The neighbouring bearings decide which of them are walls.
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
@@ -17,27 +17,27 @@ use crate::{
 /// What is seen on each bearing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// On bearing `TAU * index / BEARINGS`, counter-clockwise from ahead.
+    /// One for each bearing: `TAU * index / BEARINGS` radians, counter-clockwise from ahead.
     pub sights: Vec<Sight>,
 }
 
 /// What is seen on one bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
-    /// Where floor ends at a stripe, outwards; as many as there are come first.
+    /// Where floor ends at a stripe, outwards. The first ones are used, the others are `None`.
     edges: [Option<Edge>; EDGES],
-    /// How far away floor was seen, in metres; 0 if nowhere. Nothing is seen behind a sure edge.
+    /// The range of the farthest floor, in metres; 0 without floor. Nothing is seen behind a sure edge.
     pub floor: f64,
 }
 
 /// Where floor ends at a stripe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// How far away, in metres.
+    /// Its range, in metres.
     pub range: f64,
-    /// Whether it is a stripe behind which no floor is seen, or part of a long straight wall.
+    /// Whether it is a stripe without floor behind it, or part of a long straight wall.
     pub sure: bool,
-    /// How wide the stripe is along the bearing, as a part of what a stripe may measure across.
+    /// The width of the stripe along the bearing, as a part of the widest possible stripe's.
     pub width: f64,
 }
 
@@ -57,14 +57,13 @@ const STEPS: usize = ((REACH - NEAREST) / GroundView::SCALE) as usize;
 pub struct Bearings {
     /// [`STEPS`] for each bearing.
     pixels: Vec<u32>,
-    /// How wide a stripe is that begins at a step and is met at a right angle, in steps.
+    /// The width of a stripe that begins at a step and is met at a right angle, in steps.
     width: Vec<f64>,
     params: BoundaryParams,
 }
 
 impl Bearings {
-    /// The bearings of a camera that is so high above the floor, in metres, where walls have such a
-    /// stripe.
+    /// The bearings of a camera at this height above the floor, in metres, for walls with this stripe.
     #[must_use]
     pub fn new(stripe: Stripe, height: f64, params: &BoundaryParams) -> Self {
         let pixels = (0..BEARINGS)
@@ -79,7 +78,7 @@ impl Bearings {
         let width = (0..STEPS).map(|step| {
             let width = match stripe.kind {
                 StripeKind::OnFloor => stripe.width,
-                // What is above the floor is seen as if it lay behind.
+                // What is above the floor appears farther away.
                 StripeKind::OnWall => {
                     range(step as f64) * stripe.width / (height - stripe.width).max(stripe.width)
                 }
@@ -104,7 +103,7 @@ impl Bearings {
         Boundary { sights: sights.collect() }
     }
 
-    /// What is seen on one bearing, by the classes on it from the robot outwards.
+    /// What is seen on one bearing, from its classes, from the robot outwards.
     fn sight(&self, classes: &[PixelClass]) -> Sight {
         let params = &self.params;
         let mut sight = Sight::default();
@@ -130,8 +129,8 @@ impl Bearings {
                     if let Some(floor) = floor
                         && width >= params.min_stripe_width * self.width[from]
                     {
-                        // The edge is where the floor's last pixel ends; floor that was taken for
-                        // something else has none.
+                        // The edge is at the end of the floor's last pixel. Floor that was taken for
+                        // something else has no such pixel.
                         let (last, seen) = if from - floor <= params.mixed_steps {
                             (floor, true)
                         } else {
@@ -164,7 +163,7 @@ impl Bearings {
 }
 
 impl Sight {
-    /// A bearing on which there are only these edges.
+    /// A bearing with one sure edge or none.
     #[cfg(test)]
     pub(crate) fn at(range: Option<f64>) -> Self {
         let edge = range.map(|range| Edge { range, sure: true, width: 0.5 });
@@ -176,21 +175,21 @@ impl Sight {
         self.edges.iter().flatten().copied()
     }
 
-    /// The edge behind which nothing is seen.
+    /// The range of the sure edge.
     #[must_use]
     pub fn sure(&self) -> Option<f64> {
         self.edges().find(|edge| edge.sure).map(|edge| edge.range)
     }
 }
 
-/// Whether floor goes on behind a stripe; more stripe tells nothing.
+/// Whether floor goes on behind a stripe; more stripe does not matter.
 fn floor_follows(behind: &[PixelClass], params: &BoundaryParams) -> bool {
     let behind =
         behind.iter().filter(|&&class| class != PixelClass::Stripe).take(params.behind_steps);
     behind.filter(|&&class| class == PixelClass::Floor).count() >= params.floor_behind_steps
 }
 
-/// How far away a step is.
+/// The range of a step.
 fn range(step: f64) -> f64 {
     NEAREST + step * GroundView::SCALE
 }
@@ -214,7 +213,7 @@ pub fn bearing(direction: f64) -> usize {
 }
 
 impl Boundary {
-    /// The boundary points, counter-clockwise from ahead: their bearing and their position.
+    /// The boundary points, counter-clockwise from ahead, each with its bearing.
     pub fn points(&self) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
         self.sights.iter().enumerate().flat_map(|(bearing, sight)| {
             let ray = direction(bearing);
@@ -238,7 +237,7 @@ impl Boundary {
 mod tests {
     use super::*;
 
-    /// Classes on a bearing, a letter each, eight steps a letter.
+    /// Classes on a bearing: one letter is eight steps of a class.
     fn on(letters: &str) -> Vec<PixelClass> {
         let class = |letter| match letter {
             'f' => PixelClass::Floor,
@@ -310,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_wall_the_floor_seen_is_told() {
+    fn without_a_wall_the_farthest_floor_counts() {
         assert_eq!(sight("fffffoooo").edges().count(), 0);
         assert_eq!(sight("fffffoooo").floor, range(39.5));
         assert_eq!(sight("         "), Sight::default());

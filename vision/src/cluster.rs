@@ -20,7 +20,7 @@ pub struct Cluster {
 #[must_use]
 pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
     let mut chains: Vec<Chain> = Vec::new();
-    // Those that may go on, by their index.
+    // The indices of those that may go on.
     let mut open: Vec<usize> = Vec::new();
     for point in boundary.points() {
         open.retain(|&chain| point.0 <= chains[chain].last.0 + params.hidden_bearings);
@@ -45,7 +45,7 @@ pub fn clusters(boundary: &Boundary, params: &ClusterParams) -> Vec<Cluster> {
     clusters
 }
 
-/// A cluster that grows: its first point and its last, with their bearings.
+/// A growing cluster: its first and its last point, with their bearings.
 struct Chain {
     first: (usize, [f64; 2]),
     last: (usize, [f64; 2]),
@@ -58,7 +58,7 @@ impl Chain {
     }
 }
 
-/// The clusters, those that go on across straight ahead put together.
+/// The clusters; those that go on across the bearing straight ahead are joined.
 fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster> {
     let mut at = 0;
     while at < chains.len() {
@@ -77,7 +77,7 @@ fn joined_around(mut chains: Vec<Chain>, params: &ClusterParams) -> Vec<Cluster>
     chains.into_iter().map(|chain| chain.cluster).collect()
 }
 
-/// Whether the second point goes on where the first was.
+/// Whether the second point continues the cluster of the first.
 fn follows(
     (bearing, one): (usize, [f64; 2]),
     (next, other): (usize, [f64; 2]),
@@ -85,7 +85,7 @@ fn follows(
 ) -> bool {
     let hidden = (next + BEARINGS - bearing) % BEARINGS;
     let farther = range(one).max(range(other));
-    // Behind a strut the wall may go on for as far as the strut hides it.
+    // The wall may go on behind a strut.
     let bridged = if hidden > 1 { farther * hidden as f64 * TAU / BEARINGS as f64 } else { 0.0 };
     (1..=params.hidden_bearings).contains(&hidden)
         && distance(one, other) <= params.gap + params.gap_per_metre * farther + bridged
@@ -103,13 +103,13 @@ impl Cluster {
     }
 }
 
-/// How far a point is from the robot.
+/// The distance of a point from the robot.
 #[must_use]
 pub(crate) fn range([x, y]: [f64; 2]) -> f64 {
     x.hypot(y)
 }
 
-/// How far two points are from each other.
+/// The distance between two points.
 #[must_use]
 pub(crate) fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
     range([one[0] - other[0], one[1] - other[1]])
@@ -147,14 +147,14 @@ mod tests {
     }
 
     #[test]
-    fn a_strut_does_not_part_a_cluster() {
+    fn a_strut_does_not_split_a_cluster() {
         let strut = boundary(|bearing| Some(1.0).filter(|_| !(1.0..1.1).contains(&bearing)));
         assert_eq!(clusters(&strut).len(), 1);
     }
 
     // paper: sense.small-clusters
     #[test]
-    fn a_speck_is_no_cluster() {
+    fn a_speck_is_not_a_cluster() {
         let speck = boundary(|bearing| Some(1.0).filter(|_| (1.0..1.03).contains(&bearing)));
         assert_eq!(clusters(&speck), []);
         assert_eq!(clusters(&boundary(|_| None)), []);

@@ -10,16 +10,16 @@ use crate::{
 pub struct Corner {
     /// In the frame, in metres.
     pub position: [f64; 2],
-    /// Which way its two walls go from it, on x and on y: -1 or 1. This is its type: followed ahead,
-    /// the wall behind it turns to the left or to the right.
+    /// The directions of its two walls, on x and on y: -1 or 1. This is its type: the wall behind it,
+    /// followed ahead, turns to the left or to the right.
     pub arms: [f64; 2],
     /// Whether it is a corner of the room or an edge.
     pub bend: Bend,
-    /// From what it was made out.
+    /// What it was found from.
     pub formed: CornerSource,
 }
 
-/// Which way a corner bends.
+/// The direction in which a corner bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bend {
     /// A quarter of floor, three of wall.
@@ -28,7 +28,7 @@ pub enum Bend {
     Outwards,
 }
 
-/// From what a corner was made out.
+/// What a corner was found from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CornerSource {
     /// The ends of two clusters.
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_that_do_not_touch_are_no_corner() {
+    fn walls_that_do_not_touch_have_no_corner() {
         assert_eq!(met(&[wall(Axis::X, 0.8, -1.0, 0.5, 0), wall(Axis::Y, 1.5, -0.8, 0.7, 1)]), []);
     }
 

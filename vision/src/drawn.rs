@@ -14,12 +14,12 @@ pub(crate) struct DrawnPlace {
     pub(crate) floor: Vec<[f64; 4]>,
 }
 
-/// How wide the tape along the walls is, in metres.
+/// The width of the tape along the walls, in metres.
 pub(crate) const TAPE: f64 = 0.05;
 /// The tape as a stripe.
 pub(crate) const STRIPE: Stripe = Stripe { kind: StripeKind::OnFloor, width: TAPE };
 
-/// The bearings of a camera above such floors.
+/// The bearings of a camera above such a floor.
 pub(crate) fn bearings() -> Bearings {
     Bearings::new(STRIPE, 1.05, &BoundaryParams::default())
 }

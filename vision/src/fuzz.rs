@@ -1,8 +1,7 @@
-//! What fuzzers try to break: what sensing promises of any bytes, as an image, as a calibration and as
-//! a colour file.
+//! Fuzz targets: what sensing guarantees for any bytes, as an image, a calibration and a colour file.
 //!
-//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by `tests/fuzz.rs` on stable Rust, on
-//! the seeds in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
+//! Each target is run by cargo-fuzz, in `fuzz/`, and on stable Rust by `tests/fuzz.rs`, which uses the
+//! seeds in `fuzz/corpus/` and mutations of them. A target panics if a guarantee does not hold.
 
 use std::{cell::RefCell, fmt};
 
@@ -15,14 +14,11 @@ use crate::{
     sensing::Sensor,
 };
 
-/// A body, and its name: that of the target in `fuzz/`, and of the folder of its seeds.
-pub type Target = (&'static str, fn(&[u8]));
-
-/// All bodies.
-pub const TARGETS: &[Target] =
+/// All targets by their names, which are also those of their folders in `fuzz/corpus/`.
+pub const TARGETS: &[(&str, fn(&[u8]))] =
     &[("image", image), ("calibration", calibration), ("colours", colours)];
 
-/// The images of the small camera: as small as tells hallways from junctions.
+/// The size of the images: the smallest with which hallways and junctions can be distinguished.
 const SIZE: [u32; 2] = [96, 72];
 
 /// The colours of the seeds.
@@ -36,14 +32,14 @@ thread_local! {
     ));
 }
 
-/// Any bytes are a PNG or JPEG image, in which a small camera senses a scene of numbers, the same
-/// again; or there is one message that says why not.
+/// Any bytes are either a PNG or JPEG image, in which sensing finds a scene of finite numbers, twice the
+/// same, or an error with one message.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn image(bytes: &[u8]) {
     let image = match ImageFile::open(bytes) {
-        // As it is read: one of another size is refused by its head.
+        // An image of another size is rejected by its header.
         Ok(file) if file.size() != SIZE => return,
         Ok(file) => file.image(),
         Err(error) => Err(error),
@@ -58,7 +54,7 @@ pub fn image(bytes: &[u8]) {
             assert_eq!(scene, again);
             assert_is_of_numbers(&scene);
         }
-        (one, other) => panic!("{one:?}, {other:?}: an image of the right size is refused"),
+        (one, other) => panic!("{one:?}, {other:?}: an image of the right size is rejected"),
     });
 }
 
@@ -82,12 +78,12 @@ fn assert_is_of_numbers(scene: &Scene) {
     assert!(numbers.iter().all(|number| number.is_finite()), "{scene:?}");
 }
 
-/// Any bytes are a calibration, and after a zero byte the file that it names: they tell a camera that
-/// answers with numbers, and that is written so that it reads again; or there is one message that says
-/// why not.
+/// Any bytes, up to the first zero byte, are either a calibration or an error with one message; what
+/// follows is the file that the calibration names. The camera gives finite numbers, and what is written
+/// of it can be read.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn calibration(bytes: &[u8]) {
     let mut parts = bytes.splitn(2, |&byte| byte == 0);
     let (toml, named) = (parts.next().unwrap_or_default(), parts.next());
@@ -113,11 +109,11 @@ pub fn calibration(bytes: &[u8]) {
     assert!(again.is_ok(), "{again:?}\n{text}");
 }
 
-/// Any bytes are a colour file, and it is written so that it reads as the same model, which knows the
-/// class of every colour in every light; or there is one message that says why not.
+/// Any bytes are either a colour file or an error with one message. The model is written so that it
+/// reads as the same model, and it has a class for every colour in every light.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn colours(bytes: &[u8]) {
     let model = match ColourModel::read(bytes) {
         Ok(model) => model,
@@ -137,6 +133,6 @@ pub fn colours(bytes: &[u8]) {
 
 fn assert_is_a_message(error: &impl fmt::Display) {
     let message = error.to_string();
-    assert!(!message.is_empty(), "an error says nothing");
+    assert!(!message.is_empty(), "an error has no message");
     assert!(!message.contains(char::is_control), "a message has control characters: {message:?}");
 }

@@ -1,7 +1,7 @@
 //! The floor from straight above. Section 3, Figure 6(c).
 //!
-//! Which pixel of the image shows a point of the floor never changes: one table of pixels, made once
-//! from the calibration, unwraps and classifies an image in one go, and only where there is floor.
+//! The pixel of the image that shows a point of the floor never changes. So one table of pixels, computed
+//! once from the calibration, unwraps and classifies an image in one pass, and only where there is floor.
 
 use image::RgbImage;
 
@@ -10,21 +10,21 @@ use crate::{
     colour::{LitTable, PixelClass},
 };
 
-/// What the floor around the robot shows, seen from straight above: the robot in the middle, ahead up,
-/// left to the left.
+/// The floor around the robot, seen from straight above: the robot in the middle, ahead up, left to the
+/// left.
 // paper: sense.orthographic
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroundView {
-    /// Rows from ahead to behind, in each from left to right.
+    /// Rows from ahead to behind, each from left to right.
     pub classes: Vec<PixelClass>,
-    /// Where the marker is, as indices in `classes`, ascending.
+    /// The indices in `classes` of the marker, ascending.
     pub marker: Vec<u32>,
 }
 
 impl GroundView {
-    /// Pixels a side.
+    /// Pixels on a side.
     pub const SIDE: usize = 800;
-    /// Metres a pixel.
+    /// Metres per pixel.
     pub const SCALE: f64 = 0.0075;
     /// Metres from the robot to the middle of each side.
     pub const REACH: f64 = Self::SCALE * Self::SIDE as f64 / 2.0;
@@ -37,14 +37,14 @@ impl GroundView {
         Self { classes: vec![PixelClass::Unseen; Self::SIDE * Self::SIDE], marker: Vec::new() }
     }
 
-    /// The point of the floor that is in the middle of a pixel.
+    /// The point of the floor in the middle of a pixel.
     #[must_use]
     pub fn ground(index: usize) -> [f64; 2] {
         let (row, column) = (index / Self::SIDE, index % Self::SIDE);
         [row, column].map(|at| (Self::MIDDLE - at as f64) * Self::SCALE)
     }
 
-    /// The pixel in which a point of the floor lies; `None` outside of the view.
+    /// The pixel that contains a point of the floor; `None` outside of the view.
     #[must_use]
     pub fn index([x, y]: [f64; 2]) -> Option<usize> {
         let [row, column] = [x, y].map(|at| (Self::MIDDLE - at / Self::SCALE).round());
@@ -54,7 +54,7 @@ impl GroundView {
     }
 }
 
-/// Which pixel of a camera's images shows each pixel of the ground view.
+/// For each pixel of the ground view, the pixel of a camera's images that shows it.
 #[derive(Clone, Debug)]
 pub struct Unwrapping {
     /// For each pixel of the ground view, the index of the image's pixel, or [`Self::UNSEEN`].
@@ -62,7 +62,7 @@ pub struct Unwrapping {
 }
 
 impl Unwrapping {
-    /// In place of a pixel, where none shows the floor.
+    /// Stands for a pixel of the ground view that no pixel of the image shows.
     const UNSEEN: u32 = u32::MAX;
 
     /// The table for a camera.
@@ -74,7 +74,7 @@ impl Unwrapping {
         Self { pixels }
     }
 
-    /// What the floor shows in an image of the camera's size.
+    /// Fills a ground view from an image of the camera's size.
     pub fn view(&self, image: &RgbImage, colours: &LitTable<'_>, view: &mut GroundView) {
         let raw = image.as_raw();
         view.marker.clear();

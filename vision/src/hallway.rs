@@ -1,4 +1,4 @@
-//! Hallways: two parallel walls on opposite sides of the robot, and floor that goes on. Section 3,
+//! Hallways: two parallel walls on opposite sides of the robot, and floor ahead and behind. Section 3,
 //! Figure 7.
 
 use toposlam_model::driving::scene::{HallwayStatus, HallwayView, Unclear, undirected};
@@ -14,19 +14,19 @@ use crate::{
 /// A hallway that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedHallway {
-    /// Turned so that the walls lie best on what is seen.
+    /// The frame that fits the walls best.
     pub frame: WallFrame,
-    /// Along which axis of the frame it runs.
+    /// Its axis in the frame.
     pub axis: Axis,
-    /// Its centre line and half its width, between the edges that were seen.
+    /// Its centre line and half its width, between the edges that are seen.
     pub square: Square,
     /// Whether it is clear.
     pub status: HallwayStatus,
-    /// How its walls agree with what is seen.
+    /// The agreement of its walls with what is seen.
     pub agreement: OutlineAgreement,
 }
 
-/// The hallway in which the robot is, if it is in one.
+/// The hallway that the robot is in, if any.
 // paper: sense.hallway.two-clusters
 // paper: sense.hallway.major
 #[must_use]
@@ -42,7 +42,7 @@ pub fn hallway(
         .max_by(|one, other| one.balance(params).total_cmp(&other.balance(params)))
 }
 
-/// The best hallway along an axis, of the pieces of wall nearest to the robot on either side.
+/// The best hallway along an axis, between the nearest walls on both sides.
 fn along(
     axis: Axis,
     walls: &[WallSegment],
@@ -94,8 +94,8 @@ fn between(
     })
 }
 
-/// The offsets of the pieces of wall that are nearest to the robot, on one side of an axis; the major
-/// cluster is the first, unless what looks like it is a lamp's reflection on the floor.
+/// The offsets of the nearest walls on one side of the robot. The first is that of the major cluster,
+/// unless it is the reflection of a lamp.
 // paper: sense.opposite
 // paper: sense.parallel
 fn majors(axis: Axis, side: f64, walls: &[WallSegment], params: &HallwayParams) -> Vec<f64> {
@@ -113,7 +113,7 @@ fn majors(axis: Axis, side: f64, walls: &[WallSegment], params: &HallwayParams) 
     offsets
 }
 
-/// Whether the floor goes on, ahead or behind, so far that no turning point is near.
+/// Whether the floor goes on, ahead or behind, so that no turning point is near.
 fn goes_on(
     axis: Axis,
     sign: f64,
@@ -139,7 +139,7 @@ fn goes_on(
             _ => far += 1,
         }
     }
-    // What is behind the robot may be in the dark; it has come from there.
+    // Behind the robot it may be dark; the robot came from there.
     let enough = !ahead
         || far > sector / 3
         || reaches(axis, sign * (square.half + wall_ahead), square, walls, &params.hallway);
@@ -147,7 +147,7 @@ fn goes_on(
     enough && !closed && !is_closed(axis, sign * least, square, walls, params.outline.door_width)
 }
 
-/// Whether a wall at a side goes on as far as this.
+/// Whether a wall at a side reaches this coordinate.
 fn reaches(
     axis: Axis,
     least: f64,
@@ -163,7 +163,7 @@ fn reaches(
     })
 }
 
-/// Whether walls stand across half of the hallway or more, nearer than this; doors in them included.
+/// Whether nearer walls close half of the hallway or more; doors in them count as wall.
 fn is_closed(
     axis: Axis,
     least: f64,
@@ -249,7 +249,8 @@ impl FittedHallway {
         self.agreement.balance(&params.outline)
     }
 
-    /// What the robot is told of it; `margin` is from the edges that were seen to the wall planes.
+    /// The hallway in a scene. `margin` is the distance from the edges that are seen to the wall
+    /// planes.
     // paper: sense.distances
     #[must_use]
     pub fn view(&self, margin: f64, params: &OutlineParams) -> HallwayView {
@@ -286,7 +287,7 @@ mod tests {
     const DOOR_WIDTH: f64 = 0.75;
     const SQUARE: Square = Square { middle: [0.0, 0.0], half: 0.8 };
 
-    /// The hallway in which a robot is that stands at the origin of a place and looks along x.
+    /// The hallway for a robot at the origin of a place that looks along x.
     fn seen(place: &DrawnPlace) -> Option<FittedHallway> {
         let boundary = drawn::bearings().look(&place.seen_from([0.0, 0.0], 0.0));
         let params = SensingParams::default();
@@ -295,7 +296,7 @@ mod tests {
         hallway(&frame.walls(&lines, &params.wall), &boundary, &frame, &params)
     }
 
-    /// A hallway along x, so wide between its tapes.
+    /// A hallway along x with this width between its tapes.
     fn straight(width: f64) -> DrawnPlace {
         DrawnPlace::junction([true, false, true, false], width / 2.0 + drawn::TAPE)
     }
@@ -322,7 +323,7 @@ mod tests {
     // paper: sense.clear.behind
     // paper: sense.unclear.ahead
     #[test]
-    fn a_further_cluster_counts_ahead_and_not_behind() {
+    fn another_cluster_counts_ahead_and_not_behind() {
         let across = |at| clear_or_not(&[wall(Axis::Y, at, -0.8, 0.8)], [-2.0, 2.0], [-2.0, 2.0]);
         assert_eq!(across(1.9), HallwayStatus::Unclear(Unclear::ClustersAhead));
         assert_eq!(across(-1.9), HallwayStatus::Clear);
@@ -331,7 +332,7 @@ mod tests {
     // paper: sense.unclear.sizes
     // paper: sense.unclear.behind
     #[test]
-    fn a_major_cluster_that_is_short_or_behind_is_unclear() {
+    fn a_hallway_whose_major_cluster_is_short_or_behind_is_unclear() {
         let sizes = HallwayStatus::Unclear(Unclear::SizesDiffer);
         assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-1.0, 0.9]), sizes);
         let behind = HallwayStatus::Unclear(Unclear::ClusterBehind);
@@ -354,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_narrower_or_wider_than_any_hallway_is_none() {
+    fn a_place_narrower_or_wider_than_any_hallway_is_not_one() {
         for width in [1.0, 1.6, 2.3] {
             let found = seen(&straight(width)).unwrap();
             assert!((2.0 * found.square.half - width).abs() < 0.02, "{width}: {found:?}");
@@ -365,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn in_a_wide_hallway_too_more_is_looked_at_than_the_wall_just_beside_the_robot() {
+    fn in_a_wide_hallway_too_the_walls_must_be_closed_ahead_and_behind() {
         let between_openings = |wall: f64| {
             let mut place = straight(2.2);
             place.floor.extend([[-9.0, -9.0, -wall, 9.0], [wall, -9.0, 9.0, 9.0]]);

@@ -1,31 +1,31 @@
-//! Image files, PNG or JPEG: what a camera's driver writes and logs hold.
+//! Image files, PNG or JPEG, as cameras write them and logs contain them.
 
 use std::io::Cursor;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, RgbImage};
 use thiserror::Error;
 
-/// An image file of which only the head has been read.
+/// An image file. Only its header has been read.
 pub struct ImageFile<'bytes> {
     decoder: Box<dyn ImageDecoder + 'bytes>,
 }
 
-/// Why bytes are no image.
+/// Why bytes are not an image.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ImageFileError {
-    /// They are neither PNG nor JPEG.
+    /// It is neither PNG nor JPEG.
     #[error("this is not an image; it must be PNG or JPEG")]
     NotAnImage,
-    /// They are the beginning of a JPEG.
+    /// It is only the beginning of a JPEG.
     #[error("this cannot be read as an image: the file is truncated")]
     Truncated,
-    /// The image takes more memory than any camera's.
+    /// The image is larger than that of any camera.
     #[error("the image has {} x {} pixels, which are too many", .size[0], .size[1])]
     TooLarge {
         /// Its width and height.
         size: [u32; 2],
     },
-    /// They cannot be decoded.
+    /// It cannot be decoded.
     #[error("this cannot be read as an image: {0}")]
     Undecodable(String),
 }
@@ -34,18 +34,18 @@ pub enum ImageFileError {
 const MOST_BYTES: u64 = 240_000_000;
 
 impl<'bytes> ImageFile<'bytes> {
-    /// Reads the head of an image file. No bytes make it panic.
+    /// Reads the header of an image file. No bytes make it panic.
     ///
-    /// Takes at most 16 bytes of memory for each byte of the file, and 1 MiB besides, whatever size the
-    /// head promises.
+    /// This takes at most 16 bytes of memory for each byte of the file, and 1 MiB besides, whatever size
+    /// the header gives.
     ///
     /// # Errors
-    /// If it is neither PNG nor JPEG, has no whole head, or is a truncated JPEG.
+    /// Returns an error if it is neither PNG nor JPEG, has no whole header, or is a truncated JPEG.
     pub fn open(bytes: &'bytes [u8]) -> Result<Self, ImageFileError> {
         let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
         let reader = reader.map_err(|error| undecodable(&error))?;
         match reader.format() {
-            // The decoder would make up what is missing.
+            // The decoder would invent what is missing.
             Some(ImageFormat::Jpeg) if !is_whole_jpeg(bytes) => {
                 return Err(ImageFileError::Truncated);
             }
@@ -64,10 +64,10 @@ impl<'bytes> ImageFile<'bytes> {
 
     /// The image. No bytes make it panic.
     ///
-    /// Takes at most 16 bytes of memory for each pixel, besides what [`Self::open`] takes.
+    /// This takes at most 16 bytes of memory for each pixel, besides what [`Self::open`] takes.
     ///
     /// # Errors
-    /// If it has more pixels than any camera's, or cannot be decoded.
+    /// Returns an error if it has too many pixels or cannot be decoded.
     pub fn image(self) -> Result<RgbImage, ImageFileError> {
         let size = self.size();
         if self.decoder.total_bytes() > MOST_BYTES {
@@ -82,7 +82,7 @@ fn undecodable(error: &impl ToString) -> ImageFileError {
     ImageFileError::Undecodable(error.to_string().replace('\n', ", "))
 }
 
-/// Whether a JPEG file goes on to the end of its image. (ITU T.81, B.1 and B.2.)
+/// Whether a JPEG file contains the end of its image. (ITU T.81, B.1 and B.2.)
 fn is_whole_jpeg(bytes: &[u8]) -> bool {
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
@@ -116,7 +116,7 @@ mod tests {
         for length in 0..bytes.len() {
             assert!(!is_whole_jpeg(&bytes[..length]), "{length} of {}", bytes.len());
         }
-        // The end of a preview is not that of the picture.
+        // The end of a preview is not the end of the image.
         let mut with_preview = vec![0xff, 0xd8, 0xff, 0xe1];
         with_preview.extend((2 + bytes.len() as u16).to_be_bytes());
         with_preview.extend(&bytes);

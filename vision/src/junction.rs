@@ -1,11 +1,10 @@
-//! Junctions: which corners and walls make which junction, and where its doors are. Section 3,
-//! Figures 8 and 9.
+//! Junctions: the corners and walls of each kind of junction, and its doors. Section 3, Figures 8 and 9.
 //!
-//! A corner and the width of the hallways say where the turning point would be, and a corner's type
-//! which junctions it can belong to: an edge belongs to an L between its two doors and to the Ts that
-//! have these doors; a corner of the room to an L opposite its two doors and to two dead ends. Each of
-//! these is held against all that is seen, and so the second corner and the straight wall of the paper
-//! must be there, too.
+//! A corner and the width of the hallways give a turning point. The type of the corner gives the
+//! junctions that it can belong to: an edge belongs to an L between its two doors, or to a T with these
+//! doors; a corner of the room belongs to an L opposite its two doors, or to one of two dead ends. Each
+//! of these candidates is compared with all that is seen, so the second corner and the straight wall of
+//! the paper must be there, too.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -24,28 +23,28 @@ use crate::{
 /// A junction that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedJunction {
-    /// Turned so that the walls lie best on what is seen.
+    /// The frame that fits the walls best.
     pub frame: WallFrame,
-    /// In which of the four [`DIRECTIONS`] of the frame there are doors.
+    /// Whether there is a door in each of the four [`DIRECTIONS`] of the frame.
     pub doors: [bool; 4],
-    /// The turning point, and half the width between the edges that were seen.
+    /// The turning point, and half the width between the edges that are seen.
     pub square: Square,
-    /// How its walls agree with what is seen.
+    /// The agreement of its walls with what is seen.
     pub agreement: OutlineAgreement,
 }
 
-/// What the corners and walls make.
+/// The result of the search for a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JunctionSearch {
-    /// This junction.
+    /// One junction fits best.
     Junction(FittedJunction),
-    /// Two different junctions, equally well.
+    /// Different junctions fit about as well.
     Ambiguous,
-    /// None.
+    /// No junction fits.
     Nothing,
 }
 
-/// The junction that the corners and walls make.
+/// The junction that fits the corners and walls.
 // paper: sense.junction.type
 // paper: sense.junction.two
 // paper: sense.junction.three
@@ -88,7 +87,7 @@ pub fn junction(
     decided(&found, params)
 }
 
-/// The best of these junctions, which are given best first, if it is seen well and no different one is as good.
+/// The best junction, if it is seen well and no different one is about as good. The best is first.
 fn decided(found: &[FittedJunction], params: &SensingParams) -> JunctionSearch {
     let Some(&best) = found.first() else { return JunctionSearch::Nothing };
     let JunctionParams { min_trust, min_cover, min_support, min_lead, same_place, .. } =
@@ -118,12 +117,12 @@ fn best_first(guesses: &mut [FittedJunction], params: &OutlineParams) {
     guesses.sort_by(|one, other| balance(other).total_cmp(&balance(one)));
 }
 
-/// How far two turning points are from each other.
+/// The distance between two turning points.
 fn apart(one: Square, other: Square) -> f64 {
     (one.middle[0] - other.middle[0]).hypot(one.middle[1] - other.middle[1])
 }
 
-/// Half the distances between walls on opposite sides of the robot.
+/// Half the distance between each two walls on opposite sides of the robot, each once.
 fn half_widths(walls: &[WallSegment], params: &SensingParams) -> Vec<f64> {
     let same = params.junction.same_candidate / 2.0;
     let mut halves: Vec<f64> = Vec::new();
@@ -140,10 +139,10 @@ fn half_widths(walls: &[WallSegment], params: &SensingParams) -> Vec<f64> {
     halves
 }
 
-/// Where the turning point is if this is a corner of a junction, and which doors the junction can have.
+/// The turning point of a junction with this corner, and the doors that the junction can have.
 fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
     let [x, y] = corner.arms;
-    // The two directions of the corner's walls, among the four.
+    // The directions of the corner's two walls.
     let of_x = if x > 0.0 { 0 } else { 2 };
     let of_y = if y > 0.0 { 1 } else { 3 };
     let doors = |open: &[usize]| [0, 1, 2, 3].map(|direction| open.contains(&direction));
@@ -164,7 +163,7 @@ fn around(corner: &Corner, half: f64) -> (Square, [[bool; 4]; 3]) {
 }
 
 impl FittedJunction {
-    /// The same junction, moved to where its walls lie best on what is seen.
+    /// The same junction, moved so that its walls fit best.
     fn fitted(self, boundary: &Boundary, params: &OutlineParams) -> Self {
         let (mut square, mut frame) = (self.square, self.frame);
         for _ in 0..3 {
@@ -176,7 +175,7 @@ impl FittedJunction {
         Self { frame, square, agreement, ..self }
     }
 
-    /// Whether the robot is there: the turning point is neither far ahead nor left behind.
+    /// Whether the robot is there: the turning point is neither far ahead nor far behind.
     #[must_use]
     pub fn is_here(&self, params: &JunctionParams) -> bool {
         let away = -self.square.middle[0];
@@ -184,7 +183,7 @@ impl FittedJunction {
         (-params.ahead..=params.behind).contains(&away) && aside <= params.ahead
     }
 
-    /// The hallway before or behind it, in which the robot is.
+    /// The hallway of the junction that the robot is in.
     #[must_use]
     pub fn hallway(&self, walls: &[WallSegment], params: &HallwayParams) -> Option<FittedHallway> {
         let axis = self.arm()?;
@@ -194,7 +193,7 @@ impl FittedJunction {
         Some(FittedHallway { frame: self.frame, axis, square, status, agreement: self.agreement })
     }
 
-    /// Along which axis the hallway runs in which the robot is.
+    /// The axis of the hallway that the robot is in.
     fn arm(&self) -> Option<Axis> {
         let from_middle = self.square.middle.map(|part| -part);
         let far =
@@ -207,7 +206,7 @@ impl FittedJunction {
             .next()
     }
 
-    /// What the robot is told of it: the doors clockwise from the one behind.
+    /// The junction in a scene: its doors clockwise from the one behind.
     // paper: sense.junction.entry
     // paper: sense.centre-lines
     #[must_use]
@@ -278,8 +277,8 @@ mod tests {
     }
 
     #[test]
-    fn where_half_of_the_view_is_dark_no_junction_is_made_up() {
-        // What is dark would tell the L from the T.
+    fn no_junction_is_found_if_half_of_the_view_is_dark() {
+        // The dark half has the difference between the L and the T.
         for doors in [[false, true, true, false], [false, true, true, true]] {
             let found = seen(doors, BEARINGS / 2..BEARINGS);
             assert!(!matches!(found, JunctionSearch::Junction(_)), "{doors:?}: {found:?}");
@@ -287,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dark_in_one_direction_is_no_junction() {
+    fn no_junction_is_found_if_one_direction_is_dark() {
         let doors = [false, true, true, true];
         assert!(matches!(seen(doors, 0..0), JunctionSearch::Junction(_)));
         // The wall ahead, of a robot that is turned by 0.2.
@@ -299,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_on_few_bearings_is_no_junction() {
+    fn no_junction_is_found_on_few_bearings() {
         let far_off = DrawnPlace::junction([false, true, true, true], 0.55);
         let boundary = bearings_of(&far_off, [-1.9, 0.0]);
         let params = SensingParams::default();
@@ -315,13 +314,13 @@ mod tests {
             }
             junction(&corners(&walls, &params.corner), &walls, &boundary, &frame, &params)
         };
-        // Of its walls half is seen, but that is a seventh of all that is around the robot.
+        // Half of its walls is seen, but on only a seventh of all bearings.
         assert!(matches!(found(1), JunctionSearch::Junction(_)));
         assert_eq!(found(2), JunctionSearch::Nothing);
     }
 
     #[test]
-    fn a_corner_tells_the_turning_point_and_the_doors_that_there_can_be() {
+    fn a_corner_gives_the_turning_point_and_the_possible_doors() {
         let corner = |bend| Corner {
             position: [0.5, 0.8],
             arms: [-1.0, 1.0],

@@ -2,19 +2,20 @@
 //!
 //! From the ground up:
 //!
-//! * [`image_file`]: the image of a PNG or JPEG file;
+//! * [`params`]: the thresholds of all steps;
+//! * [`image_file`]: the image in a PNG or JPEG file;
 //! * [`colour`]: floor, stripe, marker or something else, by a Bayes classifier on HSV colours;
-//! * [`camera`]: which point of the floor a pixel shows;
+//! * [`camera`]: the point of the floor that a pixel shows;
 //! * [`ground_view`]: the floor from straight above;
-//! * [`boundary`]: where the floor ends at a wall, on every bearing;
-//! * [`cluster`], [`line`](mod@line), [`wall`]: pieces of wall, straight, and at right angles to each other;
-//! * [`outline`], [`agreement`]: a place of a given form, held against what is seen;
+//! * [`boundary`]: the end of the floor on every bearing;
+//! * [`cluster`], [`line`](mod@line), [`wall`]: pieces of wall, straight, at right angles to each other;
+//! * [`outline`], [`agreement`]: the walls of a hallway or junction, compared with what is seen;
 //! * [`hallway`], [`corner`], [`junction`]: what place it is;
-//! * [`marker`]: whether the marker is there, and along which hallway it lies;
-//! * [`sensing`]: all of it;
+//! * [`marker`]: whether the marker is there, and its direction;
+//! * [`sensing`]: all of these steps;
 //! * [`annotate`]: a picture of each step.
 
-// Tests state numbers as they are, and list at length what is wrong with a file.
+// Tests compare numbers exactly and list many wrong files.
 #![cfg_attr(test, allow(clippy::float_cmp, clippy::too_many_lines))]
 
 pub mod agreement;

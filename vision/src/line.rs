@@ -14,21 +14,21 @@ pub struct WallLine {
     pub middle: [f64; 2],
     /// The unit vector along it, from the first point to the last.
     pub along: [f64; 2],
-    /// Where it begins, counter-clockwise as seen from the robot, in metres.
+    /// Its first end, counter-clockwise as seen from the robot, in metres.
     pub from: [f64; 2],
-    /// Where it ends.
+    /// Its last end.
     pub to: [f64; 2],
-    /// How far its points are from it: the root of the mean square, in metres.
+    /// The root mean square of its points' distances from it, in metres.
     pub spread: f64,
-    /// How many points it has.
+    /// The number of its points.
     pub points: usize,
-    /// The number of the cluster that it is a piece of.
+    /// The index of its cluster.
     pub cluster: usize,
 }
 
 impl WallLine {
-    /// The line on which the points lie best: their first principal component. `None` for fewer
-    /// than two different points.
+    /// The line that fits the points best: their first principal component. `None` for fewer than two
+    /// different points.
     // paper: sense.pca
     #[must_use]
     pub fn through(points: &[[f64; 2]]) -> Option<Self> {
@@ -62,7 +62,7 @@ impl WallLine {
         [self.middle[0] + at * self.along[0], self.middle[1] + at * self.along[1]]
     }
 
-    /// How long it is, in metres.
+    /// Its length in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
         distance(self.from, self.to)
@@ -75,8 +75,8 @@ impl WallLine {
     }
 }
 
-/// The straight pieces of clusters: each is split at the point farthest from the line between its ends
-/// until none is far (Ramer 1972, Douglas and Peucker 1973).
+/// The straight pieces of clusters. A cluster is split at the point farthest from the chord between its
+/// ends, until no point is far (Ramer 1972, Douglas and Peucker 1973).
 // paper: sense.corner.single
 #[must_use]
 pub fn lines(clusters: &[Cluster], params: &LineParams) -> Vec<WallLine> {
@@ -100,7 +100,7 @@ fn split(cluster: &Cluster, params: &LineParams) -> Vec<WallLine> {
     lines
 }
 
-/// Where points that follow each other are farthest from the line between their ends, if that is far.
+/// The index of the point farthest from the chord between the ends, if it is far.
 fn bend(points: &[[f64; 2]], params: &LineParams) -> Option<usize> {
     let (&first, &last) = (points.first()?, points.last()?);
     if points.len() < 2 * params.min_points {
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn one_point_is_no_line() {
+    fn one_point_is_not_a_line() {
         assert_eq!(WallLine::through(&[]), None);
         assert_eq!(WallLine::through(&[[1.0, 1.0]; 9]), None);
     }

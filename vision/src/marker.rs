@@ -1,4 +1,4 @@
-//! The marker: a plain rectangle of a colour of its own on the floor. Section 5.1, Figure 10.
+//! The marker: a rectangle on the floor in its own colour. Section 5.1, Figure 10.
 
 use toposlam_model::{
     driving::scene::{JunctionView, MarkerView, undirected},
@@ -38,8 +38,8 @@ pub fn marker(
     let Some(junction) = at_l else {
         return Some(MarkerView { position: line.middle, axis, door: None });
     };
-    // The body may hide a part, and then the principal component misleads: which door's rectangle
-    // explains more of what is seen?
+    // The body may hide a part of the marker; then its principal component is wrong. So choose the door
+    // whose rectangle contains more of what is seen.
     let explained = |direction: f64| {
         let (sine, cosine) = direction.sin_cos();
         let [u, v] = junction.turning_point;
@@ -59,7 +59,7 @@ pub fn marker(
     })
 }
 
-/// The points of the floor that have the marker's colour, without those far from most of them.
+/// The points of the floor in the marker's colour, without those far from most of them.
 fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<[f64; 2]> {
     let on_floor = view.marker.iter().filter_map(|&index| {
         let [x, y] = GroundView::ground(index as usize);
@@ -82,7 +82,7 @@ fn pixels(view: &GroundView, boundary: &Boundary, params: &MarkerParams) -> Vec<
         .collect()
 }
 
-/// Whether a pixel's neighbours to the left and above have the colour, too: a speck has none.
+/// Whether the pixels to the left and above have the colour, too; a speck has no such neighbours.
 fn is_within(view: &GroundView, index: usize) -> bool {
     let of_marker = |index: Option<usize>| {
         index
@@ -104,7 +104,7 @@ mod tests {
         params::{MARKER_LENGTH, MARKER_WIDTH},
     };
 
-    /// Floor everywhere but under the body, and a marker on it.
+    /// Floor everywhere except under the body, and a marker on it.
     fn floor_with_marker(position: [f64; 2], axis: f64) -> GroundView {
         let mut view = GroundView::unseen();
         for index in 0..view.classes.len() {
@@ -133,7 +133,7 @@ mod tests {
     // paper: marker-sense.direction
     // paper: marker-sense.shape
     #[test]
-    fn a_whole_marker_is_where_it_is_and_lies_as_it_lies() {
+    fn a_whole_marker_has_its_true_position_and_axis() {
         for axis in [0.0, 0.7, 1.5, -1.2] {
             let view = found([1.0, 0.2], axis, None).unwrap();
             assert!((view.position[0] - 1.0).abs() < 0.01 && (view.position[1] - 0.2).abs() < 0.01);
@@ -144,7 +144,7 @@ mod tests {
 
     // paper: marker-sense.present
     #[test]
-    fn under_the_body_and_behind_a_wall_there_is_none() {
+    fn no_marker_is_seen_under_the_body_or_behind_a_wall() {
         assert_eq!(found([0.0, 0.0], 0.0, None), None);
         let mut view = floor_with_marker([1.5, 0.0], 0.3);
         for index in 0..view.classes.len() {
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_marker_half_hidden_by_the_body_still_tells_its_door() {
+    fn a_marker_half_hidden_by_the_body_still_gives_its_door() {
         let l = |distance: f64| JunctionView {
             doors: [PI, FRAC_PI_2]
                 .map(|direction| CentreLine { through: [distance, 0.0], direction })

@@ -1,4 +1,4 @@
-//! Outlines: the walls that a robot would see at a place of a given form, laid on what it sees. Section 3.
+//! Outlines: the walls of a hallway or a junction, fitted to what the robot sees. Section 3.
 
 use nalgebra::{Matrix4, Vector4};
 
@@ -16,16 +16,16 @@ pub const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     pub(crate) sides: Vec<OutlineSide>,
-    /// How wide its hallways are, in metres.
+    /// The width of its hallways, in metres.
     pub(crate) width: f64,
 }
 
 /// A side of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OutlineSide {
-    /// What is there.
+    /// Wall or opening.
     kind: Kind,
-    /// In which of the four [`DIRECTIONS`] it is, as seen from the middle.
+    /// Its direction from the middle, an index in [`DIRECTIONS`].
     pub(crate) towards: usize,
     pub(crate) along: Axis,
     /// Its coordinate on the other axis, in metres.
@@ -36,26 +36,26 @@ pub(crate) struct OutlineSide {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// A wall, on this side of the place's middle on the axis across it: -1 or 1.
+    /// A wall on this side of the middle, on the axis across it: -1 or 1.
     Wall(f64),
-    /// The outline says nothing of what comes behind.
+    /// An opening. What is behind it does not matter.
     Open,
 }
 
 /// A hallway or a junction in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
-    /// Of a junction, the turning point; of a hallway, the point of its centre line beside the robot.
+    /// The turning point of a junction; the point of a hallway's centre line beside the robot.
     pub middle: [f64; 2],
     /// Half the width between the walls, in metres.
     pub half: f64,
 }
 
-/// A junction has at most so many sides: a T, with three at each door and the wall opposite.
+/// The most sides of a junction.
 const MOST_SIDES: usize = 12;
 
 impl Outline {
-    /// A piece of hallway along an axis, from a coordinate along it to another.
+    /// A piece of hallway along an axis, between two coordinates along it.
     #[must_use]
     pub fn hallway(axis: Axis, square: Square, from: f64, to: f64) -> Self {
         let (along, across) = axis.split();
@@ -122,7 +122,7 @@ impl Outline {
         Self { sides, width: 2.0 * half }
     }
 
-    /// How far away a ray from the robot meets a side first, and which.
+    /// The side that a ray from the robot meets first: its range and its index.
     pub(crate) fn first_on(&self, ray: [f64; 2]) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         for (number, side) in self.sides.iter().enumerate() {
@@ -140,14 +140,14 @@ impl Outline {
         first
     }
 
-    /// How far a point is from the nearest wall, in metres.
+    /// The distance of a point from the nearest wall, in metres.
     pub(crate) fn distance(&self, point: [f64; 2]) -> f64 {
         let walls = self.sides.iter().filter(|side| side.is_wall());
         walls.map(|side| side.distance(point)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The place moved, turned and widened so that its walls lie best on the boundary points near
-    /// them, by least squares; and the frame turned with it.
+    /// The place moved, turned and widened so that its walls fit the boundary points near them best,
+    /// by least squares; and the frame turned with it.
     #[must_use]
     pub fn fitted(
         &self,
@@ -158,7 +158,7 @@ impl Outline {
     ) -> (Square, WallFrame) {
         let mut normal = Matrix4::zeros();
         let mut right = Vector4::zeros();
-        // What is not seen stays as it is: a weak pull, in parts of one point.
+        // What is not seen stays as it is: a pull of a thousandth of a point.
         let pull = Vector4::new(1e-3, 1e-3, 1e-3, 1e-3);
         normal += Matrix4::from_diagonal(&pull);
         for (_, point) in boundary.points() {
@@ -183,7 +183,7 @@ impl Outline {
             let mut row = Vector4::new(by_turn, 0.0, 0.0, sign);
             row[1 + across] = 1.0;
             let residual = point[across] - side.offset;
-            // A pixel covers more where it is farther away.
+            // Pixels that are farther away cover more floor.
             let weight = 1.0 / (1.0 + from_robot.powi(4));
             normal += weight * row * row.transpose();
             right += weight * residual * row;
@@ -204,7 +204,7 @@ impl OutlineSide {
         self.kind != Kind::Open
     }
 
-    /// How far a point is from it, in metres.
+    /// The distance of a point from it, in metres.
     fn distance(&self, point: [f64; 2]) -> f64 {
         let (along, across) = self.along.split();
         let beyond = (self.from - point[along]).max(point[along] - self.to).max(0.0);
@@ -212,7 +212,7 @@ impl OutlineSide {
     }
 }
 
-/// What counts as near a wall, so far from the robot.
+/// The distance from a wall that counts as near, at this range from the robot.
 pub(crate) fn near(range: f64, params: &OutlineParams) -> f64 {
     params.near + params.near_per_metre * range
 }

@@ -1,4 +1,4 @@
-//! The whole of sensing: from an image to a scene. Section 3, Figure 5.
+//! Sensing: from an image to a scene. Section 3, Figure 5.
 
 use image::RgbImage;
 use thiserror::Error;
@@ -19,7 +19,7 @@ use crate::{
     wall::{WallFrame, WallSegment, confirmed},
 };
 
-/// Sensing with one camera in one building: its tables, made once.
+/// Sensing with one camera in one building. Its tables are computed once.
 #[derive(Clone, Debug)]
 pub struct Sensor {
     camera: Camera,
@@ -32,20 +32,20 @@ pub struct Sensor {
     params: SensingParams,
 }
 
-/// An image that this camera did not take.
+/// An image of another size than the camera's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "the image has {} x {} pixels; those of the calibrated camera have {} x {}",
     .found[0], .found[1], .expected[0], .expected[1]
 )]
 pub struct WrongSize {
-    /// The image's width and height.
+    /// Width and height of the image.
     pub found: [u32; 2],
-    /// The camera's.
+    /// Width and height of the camera's images.
     pub expected: [u32; 2],
 }
 
-/// All that was made out on the way to a scene.
+/// The results of all steps that lead to a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensingTrace {
     /// What is seen on each bearing.
@@ -54,26 +54,26 @@ pub struct SensingTrace {
     pub clusters: Vec<Cluster>,
     /// Their straight pieces.
     pub lines: Vec<WallLine>,
-    /// The axes along which they run.
+    /// The frame along which most of them run.
     pub frame: Option<WallFrame>,
-    /// Those of them that run along the axes.
+    /// The lines that run along its axes.
     pub walls: Vec<WallSegment>,
-    /// Where they meet or end.
+    /// The corners where they meet or end.
     pub corners: Vec<Corner>,
-    /// The hallway, if it is one.
+    /// The hallway, if there is one.
     pub hallway: Option<FittedHallway>,
-    /// The junction, if one was looked for and found.
+    /// The junction, if one was searched for and found.
     pub junction: Option<FittedJunction>,
 }
 
 impl Sensor {
-    /// Sensing with a camera in a building with these colours.
+    /// Sensing with a camera in a building with these colours, and with the default parameters.
     #[must_use]
     pub fn new(camera: &Camera, colours: &ColourModel) -> Self {
         Self::with_params(camera, colours, &SensingParams::default())
     }
 
-    /// Sensing with other parameters than the default ones.
+    /// Sensing with other parameters.
     #[must_use]
     pub fn with_params(camera: &Camera, colours: &ColourModel, params: &SensingParams) -> Self {
         Self {
@@ -91,12 +91,12 @@ impl Sensor {
     /// The scene in an image.
     ///
     /// # Errors
-    /// [`WrongSize`] for an image that is not of the calibrated camera's size.
+    /// Returns an error if the image is not of the calibrated camera's size.
     pub fn sense(&mut self, image: &RgbImage) -> Result<Scene, WrongSize> {
         self.trace(image).map(|(scene, _)| scene)
     }
 
-    /// The scene in an image, and all that was made out on the way to it.
+    /// The scene in an image, and the results of the steps that lead to it.
     ///
     /// # Errors
     /// As [`Self::sense`].
@@ -127,7 +127,7 @@ impl Sensor {
     }
 }
 
-/// The scene in a ground view, and all that was made out on the way to it.
+/// The scene in a ground view, and the results of the steps that lead to it.
 // paper: sense.hallway.first
 #[must_use]
 pub fn interpreted(
@@ -157,7 +157,7 @@ pub fn interpreted(
     (scene, trace)
 }
 
-/// From the edge that is seen, where the floor ends at the stripe, to the wall plane, in metres.
+/// The distance from the edge that is seen, between floor and stripe, to the wall plane, in metres.
 fn margin(stripe: Stripe) -> f64 {
     match stripe.kind {
         StripeKind::OnFloor => stripe.width,
@@ -165,7 +165,7 @@ fn margin(stripe: Stripe) -> f64 {
     }
 }
 
-/// Where the robot is: a hallway is looked for first, and a junction where there is none.
+/// Where the robot is. It searches for a hallway first, then for a junction.
 fn place(
     trace: &mut SensingTrace,
     boundary: &Boundary,
@@ -218,7 +218,7 @@ mod tests {
         drawn::{self, DrawnPlace},
     };
 
-    /// Each kind of junction, by the doors that it has ahead, to the left, behind and to the right.
+    /// Each kind of junction: whether it has a door ahead, to the left, behind and to the right.
     const KINDS: [[bool; 4]; 6] = [
         [false, false, true, false],
         [false, true, true, false],
@@ -243,7 +243,7 @@ mod tests {
     // paper: drive.junction
     // paper: alg2.6
     #[test]
-    fn every_junction_is_made_out_from_half_a_metre_before_it_to_beyond_it() {
+    fn every_junction_is_found_from_half_a_metre_before_it_to_beyond_it() {
         for (number, doors) in KINDS.into_iter().enumerate() {
             for (step, before) in [0.5, 0.2, 0.0, -0.1].into_iter().enumerate() {
                 let view = number + step;
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_floor_without_walls_are_unknown_with_their_reason() {
+    fn without_floor_or_walls_the_scene_is_unknown_with_a_reason() {
         let reason = |class| {
             let mut view = GroundView::unseen();
             view.classes.fill(class);

@@ -1,4 +1,4 @@
-//! Walls: lines that stand at right angles to each other. Section 2.4.
+//! Walls: lines at right angles to each other. Section 2.4.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -10,7 +10,7 @@ use crate::{
     params::WallParams,
 };
 
-/// The axes along which the walls of a place run: x is the one nearest to ahead.
+/// A frame of reference along the walls of a place. Its x axis is the one nearest to ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallFrame {
     /// The direction of x, in radians counter-clockwise from ahead, in (-pi/4, pi/4].
@@ -19,7 +19,7 @@ pub struct WallFrame {
     sine: f64,
 }
 
-/// Along which axis of the frame a wall runs.
+/// An axis of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// Nearest to ahead.
@@ -28,10 +28,10 @@ pub enum Axis {
     Y,
 }
 
-/// A piece of wall in a frame.
+/// A segment of a wall, in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSegment {
-    /// Along which axis it runs.
+    /// Its axis.
     pub along: Axis,
     /// Its coordinate on the other axis, in metres.
     pub offset: f64,
@@ -39,12 +39,12 @@ pub struct WallSegment {
     pub from: f64,
     /// Its greater end.
     pub to: f64,
-    /// The number of the cluster that it is a piece of.
+    /// The index of its cluster.
     pub cluster: usize,
 }
 
 impl WallFrame {
-    /// The frame with x in this direction, or at right angles to it.
+    /// The frame with an axis in this direction.
     #[must_use]
     pub fn along(direction: f64) -> Self {
         let angle = wrapped(4.0 * direction) / 4.0;
@@ -52,7 +52,7 @@ impl WallFrame {
         Self { angle, cosine, sine }
     }
 
-    /// The frame along which the greatest length of lines runs; `None` without lines.
+    /// The frame along which the most lines run, by length; `None` without lines.
     // paper: env.right-angles
     #[must_use]
     pub fn of(lines: &[WallLine], params: &WallParams) -> Option<Self> {
@@ -82,25 +82,25 @@ impl WallFrame {
         self.angle
     }
 
-    /// Which way along an axis is rather ahead than behind: 1 or -1.
+    /// The direction along an axis that is rather ahead than behind: 1 or -1.
     #[must_use]
     pub fn ahead(&self, axis: Axis) -> f64 {
         if axis == Axis::Y && self.angle > 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// A point or vector of the robot's floor coordinates, in the frame.
+    /// A point or vector in the robot's floor coordinates, in the frame.
     #[must_use]
     pub fn framed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.cosine * x + self.sine * y, self.cosine * y - self.sine * x]
     }
 
-    /// A point or vector of the frame, in the robot's floor coordinates.
+    /// A point or vector in the frame, in the robot's floor coordinates.
     #[must_use]
     pub fn unframed(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.cosine * x - self.sine * y, self.cosine * y + self.sine * x]
     }
 
-    /// The walls among the lines: those that run along an axis.
+    /// The lines that run along an axis.
     #[must_use]
     pub fn walls(&self, lines: &[WallLine], params: &WallParams) -> Vec<WallSegment> {
         lines.iter().filter_map(|line| self.wall(line, params)).collect()
@@ -222,7 +222,7 @@ mod tests {
             let found = WallFrame::of(&lines, &WallParams::default()).unwrap();
             assert!((found.angle() - turned).abs() < 1e-9, "{found:?}");
             let walls = found.walls(&lines, &WallParams::default());
-            assert_eq!(walls.len(), 2, "the slanted line is no wall");
+            assert_eq!(walls.len(), 2, "the slanted line is not a wall");
             assert_eq!(walls[0].along, Axis::X);
             assert!((walls[0].offset - 0.8).abs() < 1e-9);
             assert!((walls[1].offset - 1.5).abs() < 1e-9);
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_go_through_the_robots_body_is_the_edge_of_a_strut() {
+    fn a_line_through_the_robots_body_is_the_edge_of_a_strut() {
         let wall = line([-1.0, 0.8], [1.0, 0.8]);
         let strut = line([0.1, 0.4], [0.1, 0.7]);
         let across = line([1.2, 0.4], [1.2, 0.7]);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn into_a_frame_and_out_again() {
+    fn a_point_in_a_frame_converts_back() {
         let frame = WallFrame::along(0.3);
         let [x, y] = frame.unframed(frame.framed([1.2, -0.7]));
         assert!((x - 1.2).abs() < 1e-12 && (y + 0.7).abs() < 1e-12);

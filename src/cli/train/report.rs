@@ -68,7 +68,7 @@ impl TrainingReport<'_> {
 
     fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), Failure> {
         let [floor, stripe, marker, other, unknown] =
-            Confusion::TOLD.map(|class| format!("{:>10}", class.name()));
+            Confusion::GIVEN.map(|class| format!("{:>10}", class.name()));
         let heads =
             ["", "images", "    pixels", &floor, &stripe, &marker, &other, &unknown, "    right"];
         let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(&class, told)| {
@@ -143,7 +143,7 @@ struct ClassFigures {
 /// A row for each class that pixels are, in it a number for each that they are told to be.
 fn confusion_json(confusion: &Confusion) -> Value {
     let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(is, told)| {
-        let columns = Confusion::TOLD.iter().zip(told);
+        let columns = Confusion::GIVEN.iter().zip(told);
         let row: Map<_, _> =
             columns.map(|(told, &pixels)| (told.name().to_owned(), pixels.into())).collect();
         (is.name().to_owned(), Value::Object(row))

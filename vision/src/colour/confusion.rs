@@ -2,17 +2,17 @@
 
 use super::PixelClass;
 
-/// How many pixels of each class are classified as what.
+/// The numbers of pixels by their true class and the class that the classifier gives them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Confusion {
-    /// A row for each of [`PixelClass::LEARNED`], which the pixel is; a column for each of
-    /// [`Confusion::TOLD`], which it is told to be.
+    /// A row for each true class, one of [`PixelClass::LEARNED`]; a column for each given class, one of
+    /// [`Confusion::GIVEN`].
     pub pixels: [[u64; 5]; 4],
 }
 
 impl Confusion {
-    /// What a pixel can be told to be.
-    pub const TOLD: [PixelClass; 5] = [
+    /// The classes that the classifier can give.
+    pub const GIVEN: [PixelClass; 5] = [
         PixelClass::Floor,
         PixelClass::Stripe,
         PixelClass::Marker,
@@ -20,10 +20,10 @@ impl Confusion {
         PixelClass::Unknown,
     ];
 
-    /// Counts so many pixels.
-    pub fn count(&mut self, is: PixelClass, told: PixelClass, pixels: u64) {
+    /// Counts pixels of a true class that the classifier gives another or the same class.
+    pub fn count(&mut self, is: PixelClass, given: PixelClass, pixels: u64) {
         let row = PixelClass::LEARNED.iter().position(|&class| class == is);
-        let column = Self::TOLD.iter().position(|&class| class == told);
+        let column = Self::GIVEN.iter().position(|&class| class == given);
         if let (Some(row), Some(column)) = (row, column) {
             self.pixels[row][column] += pixels;
         }
@@ -36,16 +36,16 @@ impl Confusion {
         rows.flat_map(|(_, row)| row).sum()
     }
 
-    /// Which share of a class is told to be it; `None` if there is nothing of it.
+    /// The share of a class's pixels that is given this class; `None` without pixels.
     #[must_use]
     pub fn recall(&self, class: PixelClass) -> Option<f64> {
         share(self.right(class), self.of(class))
     }
 
-    /// Which share of what is told to be of a class is of it; `None` if nothing is.
+    /// The share of the pixels given a class that is of this class; `None` without pixels.
     #[must_use]
     pub fn precision(&self, class: PixelClass) -> Option<f64> {
-        let column = Self::TOLD.iter().position(|&told| told == class)?;
+        let column = Self::GIVEN.iter().position(|&given| given == class)?;
         share(self.right(class), self.pixels.iter().map(|row| row[column]).sum())
     }
 

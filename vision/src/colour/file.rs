@@ -68,7 +68,7 @@ impl From<DocumentError> for ColourFileError {
 }
 
 impl StripeKind {
-    /// Where it is, in a word: floor or wall.
+    /// Its place in one word: floor or wall.
     #[must_use]
     pub fn place(self) -> &'static str {
         match self {
@@ -191,9 +191,9 @@ fn read_stripe(value: DocumentValue<'_>) -> Result<Stripe, DocumentError> {
 }
 
 fn read_colour(value: DocumentValue<'_>) -> Result<[f64; 3], DocumentError> {
-    let levels = value.array("a list of three numbers, red, green and blue")?;
+    let [red, green, blue] = value.array("a list of three numbers, red, green and blue")?;
     let level = |value: DocumentValue<'_>| value.number_in("a channel", 1.0..=255.0);
-    Ok([level(levels[0])?, level(levels[1])?, level(levels[2])?])
+    Ok([level(red)?, level(green)?, level(blue)?])
 }
 
 fn read_histogram(

@@ -1,26 +1,26 @@
 //! HSV colours, in bins of about the same size.
 //!
-//! Saturation is told as chroma, which is saturation times value: the noise of a camera makes the
-//! saturation, and with it the hue, of dark colours mean nothing, while chroma stays small there.
-//! Bins are eight levels of 256 wide in value and four in chroma, for a floor and a wall are often of
-//! nearly the same chroma, and of any value. The hues of one chroma lie on a ring around the greys;
-//! the `r`-th ring has `6 r` bins, so that each is again four levels of the middle channel long. Greys,
-//! in the middle, have one bin and no hue. So the bins of one value are a lattice of hexagons.
+//! Instead of saturation this uses chroma, which is saturation times value: noise of the camera makes
+//! the saturation and the hue of dark colours meaningless, but their chroma stays small. Bins are eight
+//! of 256 levels wide in value and four in chroma, because a floor and a wall often have nearly the same
+//! chroma, and any value. The hues of one chroma lie on a ring around the greys. The `r`-th ring has
+//! `6 r` bins, so each is four levels of the middle channel long. Greys, in the middle, have one bin and
+//! no hue. So the bins of one value are a lattice of hexagons.
 
 /// A bin of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Bin {
-    /// Of the brightest channel, in steps of [`VALUE_STEP`].
+    /// The level of the brightest channel, in steps of [`VALUE_STEP`].
     pub(super) value: u8,
-    /// From the darkest to the brightest channel, in steps of [`CHROMA_STEP`].
+    /// The difference between the brightest and the darkest channel, in steps of [`CHROMA_STEP`].
     pub(super) chroma: u8,
-    /// Where on the ring of this chroma, counted from red by way of green and blue.
+    /// The index on the ring of this chroma, from red to green to blue.
     pub(super) hue: u16,
 }
 
-/// Levels of a step of value.
+/// Levels in a step of value.
 const VALUE_STEP: f64 = 8.0;
-/// Levels of a step of chroma.
+/// Levels in a step of chroma.
 const CHROMA_STEP: f64 = 4.0;
 /// Bins along the value.
 pub(super) const VALUES: u8 = 32;
@@ -31,7 +31,7 @@ pub(super) const PLANE: usize = ring_start(CHROMAS);
 /// All bins.
 pub(super) const BINS: usize = VALUES as usize * PLANE;
 
-/// How many bins the rings before this one have.
+/// The number of bins on the rings before this one.
 const fn ring_start(chroma: u8) -> usize {
     let chroma = chroma as usize;
     if chroma == 0 { 0 } else { 1 + 3 * chroma * (chroma - 1) }
@@ -65,22 +65,22 @@ impl Bin {
         2 * value + 1
     }
 
-    /// How many hues there are at a chroma.
+    /// The number of hues at a chroma.
     pub(super) fn hues(chroma: u8) -> u16 {
         if chroma == 0 { 1 } else { 6 * u16::from(chroma) }
     }
 
-    /// Its place among those of the same value.
+    /// Its index among the bins of the same value.
     pub(super) fn in_plane(self) -> usize {
         ring_start(self.chroma) + usize::from(self.hue)
     }
 
-    /// Its place among all.
+    /// Its index among all bins.
     pub(super) fn index(self) -> usize {
         usize::from(self.value) * PLANE + self.in_plane()
     }
 
-    /// What it becomes under so many times the light: hue and saturation are kept.
+    /// The bin of the same colour in other light, multiplied by a factor. Hue and saturation stay.
     pub(super) fn under(self, light: f64) -> Self {
         let lit = |steps: u8, most: u8| {
             let middle = (f64::from(steps) + 0.5) * light;
@@ -103,7 +103,7 @@ impl Bin {
         }
         let (ring, hue) = (i32::from(self.chroma), i32::from(self.hue));
         let side = (hue / ring) as usize;
-        // A side leads on in the direction of the corner after its end.
+        // A side points in the direction of the corner after its end.
         let (corner, along) = (CORNERS[side % 6], CORNERS[(side + 2) % 6]);
         [0, 1].map(|axis| corner[axis] * ring + along[axis] * (hue % ring))
     }
@@ -112,13 +112,13 @@ impl Bin {
 /// The lattice of the bins of one value.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
-    /// Where each bin lies.
+    /// The place of each bin.
     hexagons: Vec<[i32; 2]>,
-    /// Which bin lies where.
+    /// The bin at each place.
     bins: Vec<Option<usize>>,
 }
 
-/// Hexagons along either axis.
+/// Hexagons along each axis.
 const ACROSS: usize = 2 * CHROMAS as usize - 1;
 
 impl Lattice {
@@ -137,13 +137,13 @@ impl Lattice {
         Self { hexagons, bins }
     }
 
-    /// The bin that lies by so much beside another one.
+    /// The bin at an offset from another one.
     pub(super) fn beside(&self, bin: usize, [along, across]: [i32; 2]) -> Option<usize> {
         let [x, y] = self.hexagons[bin];
         self.bins[place([x + along, y + across])?]
     }
 
-    /// Everywhere that is no more than so many bins away, each with its distance.
+    /// All offsets up to a distance in bins, each with its distance.
     pub(super) fn offsets(reach: i32) -> impl Iterator<Item = ([i32; 2], f64)> {
         let range = -reach..=reach;
         let pairs = range.clone().flat_map(move |x| range.clone().map(move |y| [x, y]));
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn every_bin_has_a_place_of_its_own_in_their_order() {
+    fn every_bin_has_its_own_index_in_order() {
         let places: Vec<_> = all().map(Bin::index).collect();
         assert!(places.iter().copied().eq(0..BINS));
         assert_eq!(PLANE, 12_097);
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn the_circle_of_hues_is_closed() {
-        // A red on either side of where the circle begins, and their common neighbour.
+        // Two reds on both sides of the circle's beginning, and their common neighbour.
         let (purple, orange) = (Bin::of([200.0, 40.0, 44.0]), Bin::of([200.0, 44.0, 40.0]));
         assert_eq!([purple.hue, orange.hue], [239, 1]);
         let red = Bin { hue: 0, ..purple };

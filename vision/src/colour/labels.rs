@@ -1,9 +1,9 @@
-//! Label masks: what a person says that each pixel of an image shows.
+//! Label masks: the class of each pixel of an image, labelled by a person.
 
 use super::PixelClass;
 
 impl PixelClass {
-    /// The colour of a class in a label mask. Pixels that are to be ignored are unseen.
+    /// The colour of a class in a label mask. Pixels to ignore are unseen.
     #[must_use]
     pub fn label(self) -> [u8; 3] {
         match self {
@@ -15,10 +15,10 @@ impl PixelClass {
         }
     }
 
-    /// The class that a colour of a label mask tells, [`PixelClass::Unseen`] for one to be ignored.
+    /// The class for a colour of a label mask, [`PixelClass::Unseen`] for pixels to ignore.
     #[must_use]
     pub fn of_label(label: [u8; 3]) -> Option<Self> {
-        let told = Self::LEARNED.into_iter().chain([Self::Unseen]);
-        told.into_iter().find(|class| class.label() == label)
+        let classes = Self::LEARNED.into_iter().chain([Self::Unseen]);
+        classes.into_iter().find(|class| class.label() == label)
     }
 }

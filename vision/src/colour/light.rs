@@ -1,4 +1,7 @@
-//! The light of an image, by the floor beside the robot's body.
+//! The light of an image, from the floor beside the robot's body.
+//!
+//! The constants are those of the colour model, not of [`SensingParams`](crate::params::SensingParams):
+//! training and sensing must use the same.
 
 use image::RgbImage;
 use thiserror::Error;
@@ -6,8 +9,8 @@ use thiserror::Error;
 use super::Gain;
 use crate::camera::Camera;
 
-/// The floor beside the robot's body, where there is floor wherever the robot is: a ring of samples,
-/// evenly spread in bearing and range.
+/// A ring of samples beside the robot's body, evenly spread in bearing and range. There is floor
+/// wherever the robot is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FloorRing {
     size: [u32; 2],
@@ -15,14 +18,14 @@ pub struct FloorRing {
     pixels: Vec<usize>,
 }
 
-/// From where to where the ring lies, in metres from the robot's centre. The body hides all that is
-/// nearer, walls may be all that is farther.
+/// The inner and the outer radius of the ring, in metres. The body hides what is nearer; farther away
+/// there may be walls.
 const RING: [f64; 2] = [0.34, 0.50];
 const BEARINGS: u32 = 240;
 const RANGES: u32 = 12;
 
 impl FloorRing {
-    /// Where a camera sees the ring.
+    /// The ring in the images of a camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
@@ -45,7 +48,7 @@ impl FloorRing {
         Self { size: camera.image, pixels }
     }
 
-    /// The colours that an image of this camera shows there; none in one of another size.
+    /// The colours of the ring in an image of this camera; none in an image of another size.
     #[must_use]
     pub fn colours(&self, image: &RgbImage) -> Vec<[u8; 3]> {
         if <[u32; 2]>::from(image.dimensions()) != self.size {
@@ -56,41 +59,40 @@ impl FloorRing {
     }
 }
 
-/// Why a ring of samples does not tell the light.
+/// Why a ring of samples does not give the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum LightError {
     /// There are no samples.
     #[error("no floor beside the robot's body is seen")]
     Unseen,
-    /// Most samples have a channel at its end.
+    /// Most samples have a channel at its greatest level.
     #[error("the floor beside the robot's body is burnt out")]
     BurntOut,
     /// There is too little light.
     #[error("the floor beside the robot's body is too dark")]
     TooDark,
-    /// No colour is that of many samples.
+    /// No colour is common to many samples.
     #[error("the floor beside the robot's body has no common colour")]
     Mixed,
 }
 
-/// From this level on a channel may have been brighter than it can tell.
+/// From this level on, a channel may be saturated.
 const BURNT: u8 = 250;
-/// Below this level of the brightest channel, steps of one level are too coarse to be multiplied.
+/// Below this level of the brightest channel, single levels are too coarse to be multiplied.
 const DARK: f64 = 16.0;
 /// Levels below this are noise.
 const NOISE: f64 = 4.0;
-/// Samples of the floor differ from its colour by no more than this factor.
+/// Samples of the floor differ from its colour by at most this factor.
 const SPREAD: f64 = 1.35;
 /// At least this share of the samples is floor.
 const AGREEING: f64 = 0.3;
 
 /// The colour of the floor in a ring of samples.
 ///
-/// It begins with the median of each channel, and goes on to the mean of the samples near to it in all
-/// channels. The median is not moved far by what is not floor, a wall, a stripe, the marker, the
-/// reflection of a lamp, as long as that is less than half; then it is left out, and moves the mean
-/// not at all. Where the light changes around the robot, the mean is that of the middle: a mode would
-/// choose an end.
+/// It starts with the median of each channel and continues with the mean of the samples near it in all
+/// channels. Walls, stripes, the marker and reflections of lamps do not move the median far as long as
+/// they are less than half of the samples; then they are left out and do not move the mean. If the light
+/// changes around the robot, the mean is in the middle; a mode would be at one end.
 pub(super) fn floor_colour(ring: &[[u8; 3]]) -> Result<[f64; 3], LightError> {
     let lit: Vec<_> =
         ring.iter().copied().filter(|colour| colour.iter().all(|&level| level < BURNT)).collect();
@@ -147,7 +149,7 @@ fn median(colours: &[[u8; 3]]) -> [f64; 3] {
     })
 }
 
-/// What brings the floor of an image from one colour to another.
+/// The gain that changes the floor of an image from one colour to another.
 pub(super) fn gain(from: [f64; 3], to: [f64; 3]) -> Gain {
     Gain::between(from.map(|level| level.max(NOISE)), to.map(|level| level.max(NOISE)))
 }
@@ -160,7 +162,7 @@ mod tests {
 
     const FLOOR: [u8; 3] = [104, 106, 110];
 
-    /// So many samples of the floor, and so many of other colours.
+    /// Samples of the floor and samples of another colour.
     fn ring(floor: usize, others: &[([u8; 3], usize)]) -> Vec<[u8; 3]> {
         let others = others.iter().flat_map(|&(colour, count)| vec![colour; count]);
         vec![FLOOR; floor].into_iter().chain(others).collect()
@@ -176,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_less_than_half_of_the_ring_moves_nothing() {
+    fn less_than_half_of_the_ring_moves_nothing() {
         let (wall, marker, lamp, tape) = ([206, 190, 158], [205, 35, 140], [255; 3], [240; 3]);
         assert!(is_floor(&ring(100, &[])));
         assert!(is_floor(&ring(60, &[(wall, 40)])));
@@ -187,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_light_changes_around_the_robot_the_middle_counts() {
+    fn if_the_light_changes_around_the_robot_the_middle_counts() {
         // From three quarters to five quarters of the light, as around a circle.
         let bearings = (0..360).map(|degree| f64::from(degree).to_radians().cos());
         let ring: Vec<_> = bearings
@@ -200,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_that_does_not_tell_the_light_says_why() {
+    fn a_ring_that_does_not_give_the_light_gives_the_reason() {
         assert_eq!(floor_colour(&[]), Err(LightError::Unseen));
         assert_eq!(floor_colour(&ring(40, &[([255, 200, 180], 60)])), Err(LightError::BurntOut));
         assert_eq!(floor_colour(&[[15, 12, 3]; 10]), Err(LightError::TooDark));

@@ -1,8 +1,8 @@
-//! Colour classes: what a pixel shows. Section 3.
+//! Colour classes of pixels. Section 3.
 //!
-//! A [`Training`] learns a [`ColourModel`] from images with label masks. An image is brought to the
-//! light of the model by the colour of its [`FloorRing`]; then one lookup in a [`LitTable`] tells the
-//! class of a pixel.
+//! A [`Training`] learns a [`ColourModel`] from images with label masks. The colour of its
+//! [`FloorRing`] gives the gain that brings an image to the light of the model. Then one lookup in a
+//! [`LitTable`] gives the class of a pixel.
 
 #![allow(clippy::cast_sign_loss, reason = "levels and pixels are never negative")]
 
@@ -22,7 +22,7 @@ pub use model::{ColourModel, Priors, Smoothing, Stripe, StripeKind};
 pub use table::{ColourTable, Gain, LitTable};
 pub use training::{ClassPixels, Example, ExampleError, Training, TrainingError, TrainingView};
 
-/// What a pixel shows.
+/// The class of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum PixelClass {

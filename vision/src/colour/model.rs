@@ -1,4 +1,4 @@
-//! What the classifier has learned.
+//! The learned classifier.
 
 use super::{
     ColourTable, Gain, PixelClass,
@@ -7,21 +7,21 @@ use super::{
     table::{self, CELLS},
 };
 
-/// What the stripe between floor and wall is.
+/// The stripe between floor and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripe {
-    /// Where it is.
+    /// Its place.
     pub kind: StripeKind,
-    /// How wide it is, in metres: across the floor, or up the wall.
+    /// Its width in metres: across the floor, or up the wall.
     pub width: f64,
 }
 
 impl Stripe {
-    /// How narrow and how wide a stripe can be, in metres.
+    /// The least and the greatest width of a stripe, in metres.
     pub const WIDTHS: [f64; 2] = [0.005, 0.5];
 }
 
-/// Where a stripe is.
+/// The place of a stripe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StripeKind {
     /// A tape on the floor along the wall: its outer edge is the wall's foot.
@@ -30,7 +30,7 @@ pub enum StripeKind {
     OnWall,
 }
 
-/// How likely each class is before its colour is seen; only their ratios matter.
+/// The prior probability of each class. Only the ratios matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Priors {
     /// Floor.
@@ -44,9 +44,9 @@ pub struct Priors {
 }
 
 impl Priors {
-    /// All alike. Of a picture the stripe is a few hundredths, the marker less: priors that are their
-    /// shares would call what could be either floor or stripe floor. But a stripe that is missed opens
-    /// a wall, while a speck of floor that is taken for stripe is too small to matter.
+    /// Equal priors. The stripe is a few hundredths of a picture, the marker less, so priors equal to
+    /// these shares would classify as floor what could be either. But a missed stripe opens a wall,
+    /// while a speck of floor that is taken for stripe does not matter.
     pub const EQUAL: Self = Self { floor: 0.25, stripe: 0.25, marker: 0.25, other: 0.25 };
 
     /// Those of [`PixelClass::LEARNED`].
@@ -55,17 +55,17 @@ impl Priors {
     }
 }
 
-/// How far the colours that were seen stand for others.
+/// How far the learned colours stand for similar ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smoothing {
-    /// By how much the same colour in the same light differs, in steps of chroma, for a picture is
-    /// noisy, and the light is never quite as white as it was.
+    /// The spread of one colour in the same light, in steps of chroma: images are noisy, and the light
+    /// is never equally white.
     pub colour: f64,
-    /// By which share the light differs from place to place.
+    /// The relative spread of the light from place to place.
     pub light: f64,
 }
 
-/// Which colours a class has: bins in their order, each once, and how many pixels are in each.
+/// The colours of a class: bins in order, each once, with their numbers of pixels.
 pub(super) type Histogram = Vec<(Bin, u64)>;
 
 /// A learned classifier of colours.
@@ -73,23 +73,22 @@ pub(super) type Histogram = Vec<(Bin, u64)>;
 pub struct ColourModel {
     /// The stripe of the building.
     pub stripe: Stripe,
-    /// The floor's colour, to which each image is brought, as red, green and blue from 0 to 255.
+    /// The floor's colour in the light of the model: red, green and blue from 0 to 255.
     pub floor: [f64; 3],
-    /// How likely each class is.
+    /// The prior probability of each class.
     pub priors: Priors,
-    /// How far the colours that were seen stand for others.
+    /// How far the learned colours stand for similar ones.
     pub smoothing: Smoothing,
-    /// A colour is unknown of which each class has a smaller share.
+    /// A colour is unknown if each class has a smaller share of it.
     pub unknown_below: f64,
-    /// What each of [`PixelClass::LEARNED`] looks like.
+    /// The colours of each of [`PixelClass::LEARNED`].
     pub(super) histograms: [Histogram; 4],
 }
 
 impl ColourModel {
-    /// By what an image is multiplied to be brought to the light of this model; `None` where it is too
-    /// dark, burnt out, or without a common colour of the floor.
-    ///
-    /// `ring`: the image's colours in the [`FloorRing`](super::FloorRing).
+    /// The gain that brings an image to the light of this model. `ring` has the colours of its
+    /// [`FloorRing`](super::FloorRing). `None` if they are too dark, burnt out, or without a common
+    /// colour.
     #[must_use]
     pub fn gain(&self, ring: &[[u8; 3]]) -> Option<Gain> {
         light::floor_colour(ring).ok().map(|floor| light::gain(floor, self.floor))
@@ -103,7 +102,7 @@ impl ColourModel {
         ColourTable { classes: (0..CELLS).map(cell).collect() }
     }
 
-    /// The class of each bin: that of the greatest prior times density.
+    /// The class of each bin: the one with the greatest prior times density.
     // paper: sense.classify, marker-sense.colour
     fn classes(&self) -> Vec<PixelClass> {
         let mut best = vec![(0.0, PixelClass::Unknown); BINS];
@@ -149,7 +148,7 @@ impl Smoothing {
         })
     }
 
-    /// The shares of a class when the light is as often brighter as darker than it was.
+    /// The shares of a class if the light is brighter as often as darker.
     fn in_other_light(self, histogram: &Histogram) -> Vec<f64> {
         const STEPS: i32 = 8;
         let lights = (-STEPS..=STEPS).map(|step| {
@@ -168,9 +167,9 @@ impl Smoothing {
         shares
     }
 
-    /// Where in the lattice, and how many values on, which share of a bin goes. Student's
-    /// distribution: most stays near, and a little goes far, so that a colour that was never quite
-    /// seen belongs to what is most like it.
+    /// How a bin is spread: offsets in the lattice and in value, each with its share. It is Student's
+    /// distribution: most stays near, and a little goes far, so that a new colour belongs to the class
+    /// with the most similar ones.
     fn near(self) -> Vec<([i32; 2], i8, f64)> {
         // A step of value is two steps of chroma.
         let apart = |[offset, value]: [f64; 2]| (offset * offset + 4.0 * value * value).sqrt();

@@ -2,33 +2,33 @@
 
 use super::PixelClass;
 
-/// The class of every colour, six bits a channel.
+/// The class of every colour, with six bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColourTable {
     /// At index `red << 12 | green << 6 | blue`, each of six bits.
     pub(crate) classes: Vec<PixelClass>,
 }
 
-/// How many colours there are of six bits a channel.
+/// The number of colours with six bits per channel.
 pub(super) const CELLS: usize = 1 << 18;
 
-/// The middle of the colours of 256 levels a channel that have this index.
+/// The middle of the colours with 256 levels per channel that have this index.
 pub(super) fn centre(cell: usize) -> [f64; 3] {
     [12, 6, 0].map(|shift| (4 * (cell >> shift & 63)) as f64 + 1.5)
 }
 
-/// By what the light of an image's channels, red, green and blue, is multiplied.
+/// The factors for the light of an image's channels: red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain(pub [f64; 3]);
 
-/// The light that a level tells, from 0 to 1, by the curve of sRGB: that of most cameras, or near it.
-/// Light is what lamps multiply; multiplied levels would make dark surfaces too dark.
+/// The light of a level, from 0 to 1, by the curve of sRGB, which most cameras use or nearly. Lamps
+/// multiply light; multiplied levels would make dark surfaces too dark.
 fn light(level: f64) -> f64 {
     let part = level / 255.0;
     if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The level that tells a light.
+/// The level of a light.
 fn level(light: f64) -> f64 {
     let part =
         if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
@@ -36,12 +36,12 @@ fn level(light: f64) -> f64 {
 }
 
 impl Gain {
-    /// What makes these levels those.
+    /// The gain that changes these levels to those.
     pub(super) fn between(from: [f64; 3], to: [f64; 3]) -> Self {
         Self(std::array::from_fn(|channel| light(to[channel]) / light(from[channel])))
     }
 
-    /// For each level of each channel, its part of the index of a colour.
+    /// For each level of each channel, its part of a colour's index.
     pub(super) fn offsets(self) -> [[u32; 256]; 3] {
         let lights: [_; 256] = std::array::from_fn(|dark| light(dark as f64));
         std::array::from_fn(|channel| {
@@ -53,7 +53,7 @@ impl Gain {
     }
 }
 
-/// The index of a colour, of the parts of its channels.
+/// The index of a colour, from the parts of its channels.
 #[inline]
 pub(super) fn index([reds, greens, blues]: &[[u32; 256]; 3], [red, green, blue]: [u8; 3]) -> usize {
     (reds[red as usize] | greens[green as usize] | blues[blue as usize]) as usize
@@ -63,12 +63,12 @@ pub(super) fn index([reds, greens, blues]: &[[u32; 256]; 3], [red, green, blue]:
 #[derive(Clone, Debug)]
 pub struct LitTable<'a> {
     classes: &'a [PixelClass],
-    /// For each channel, where the level leads in `classes`.
+    /// For each level of each channel, its part of the index in `classes`.
     offsets: [[u32; 256]; 3],
 }
 
 impl ColourTable {
-    /// The table for images that are brought to the common light by this gain.
+    /// The table for images that this gain brings to the common light.
     #[must_use]
     pub fn lit(&self, gain: Gain) -> LitTable<'_> {
         LitTable { classes: &self.classes, offsets: gain.offsets() }
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn half_the_light_is_what_srgb_says() {
+    fn half_the_light_is_that_of_srgb() {
         // 50 % grey is level 188, a quarter 137, as printed in tables of sRGB.
         let gain = Gain([0.5, 0.25, 1.0]);
         let centre = centre(index(&gain.offsets(), [255, 255, 255]));
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn no_gain_leads_out_of_the_table() {
+    fn no_gain_leaves_the_table() {
         for gain in [0.0, -1.0, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let offsets = Gain([gain; 3]).offsets();
             for level in 0..=255 {

@@ -12,15 +12,15 @@ use super::{
 };
 use crate::camera::Camera;
 
-/// How far from the robot's centre the floor is looked at, in metres.
+/// The radius of the floor that is learned from, in metres from the robot's centre.
 const RANGE: f64 = 3.0;
 
-/// What served best on rendered pictures of other buildings than those learned from.
+/// The best values on rendered pictures of other buildings than those learned from.
 const SMOOTHING: Smoothing = Smoothing { colour: 0.7, light: 0.08 };
-/// The share of a class below which it does not have a colour.
+/// A class does not have a colour if its share is less.
 const UNKNOWN_BELOW: f64 = 1e-6;
 
-/// The pixels of a camera that matter.
+/// The pixels of a camera that are learned from.
 #[derive(Clone, Debug)]
 pub struct TrainingView {
     camera: Camera,
@@ -30,7 +30,7 @@ pub struct TrainingView {
 }
 
 impl TrainingView {
-    /// What this camera sees.
+    /// The pixels of this camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let [width, height] = camera.image;
@@ -47,7 +47,7 @@ impl TrainingView {
     }
 }
 
-/// Why an image and its labels cannot be learned from.
+/// Why an image and its labels cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ExampleError {
     /// The image is not of this camera.
@@ -72,13 +72,13 @@ pub enum ExampleError {
         /// Those of the image.
         expected: [u32; 2],
     },
-    /// A colour of the labels tells nothing.
+    /// A label has an unknown colour.
     #[error(
         "the label at pixel ({}, {}) has the colour ({}, {}, {}); there can be {}",
         pixel[0], pixel[1], colour[0], colour[1], colour[2], allowed()
     )]
     LabelColour {
-        /// Where it is, u and v.
+        /// The pixel, u and v.
         pixel: [u32; 2],
         /// The colour.
         colour: [u8; 3],
@@ -92,16 +92,16 @@ pub enum ExampleError {
 fn allowed() -> String {
     let labels = PixelClass::LEARNED.map(|class| (class.name(), class.label()));
     let labels = labels.into_iter().chain([("ignore", PixelClass::Unseen.label())]);
-    let told = labels.map(|(name, [red, green, blue])| format!("{name} ({red},{green},{blue})"));
-    told.collect::<Vec<_>>().join(", ")
+    let shown = labels.map(|(name, [red, green, blue])| format!("{name} ({red},{green},{blue})"));
+    shown.collect::<Vec<_>>().join(", ")
 }
 
-/// An image and its labels, as far as they matter.
+/// What is learned from an image and its labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Example {
     /// The floor's colour in this light.
     floor: [f64; 3],
-    /// Which colours of which classes there are, in order.
+    /// The colours of each class, in order.
     colours: Vec<Alike>,
 }
 
@@ -110,9 +110,9 @@ pub struct Example {
 struct Alike {
     colour: [u8; 3],
     class: PixelClass,
-    /// Pixels amid others of their class.
+    /// Pixels among others of their class.
     pure: u32,
-    /// Pixels beside others of another class, whose colours mix.
+    /// Pixels beside another class: their colours mix.
     mixed: u32,
 }
 
@@ -122,15 +122,16 @@ impl Alike {
     }
 }
 
-/// So many mixed pixels count as much as a pure one. A floor in the shade has the colour of a mixture of
-/// lit floor and dark stripe; it is floor. Where nothing pure has that colour, it is a mixture.
+/// The number of mixed pixels that count as one pure pixel. A floor in the shade has the colour of a
+/// mixture of lit floor and dark stripe, and is floor. If no pure pixel has the colour, it is a mixture.
 const MIXED: u64 = 256;
 
 impl Example {
-    /// What an image shows where the robot sees the floor's surroundings, by its labels.
+    /// An image with its labels.
     ///
     /// # Errors
-    /// Image or labels have another size, a label's colour tells nothing, or the light is not known.
+    /// Returns an error if image or labels have another size, if a label has an unknown colour, or if the
+    /// light is not known.
     pub fn new(
         view: &TrainingView,
         image: &RgbImage,
@@ -179,46 +180,48 @@ fn is_mixed(labels: &[[u8; 3]], width: usize, pixel: usize) -> bool {
     })
 }
 
-/// Why nothing can be learned.
+/// Why colours cannot be learned.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TrainingError {
-    /// There is nothing to learn from.
+    /// There is no image.
     #[error("there is no image to learn from")]
     NoImage,
-    /// There is nothing to learn a class from.
+    /// There is no pixel of a class.
     #[error("no pixel within 3 m is labelled as {}", class.name())]
     NoPixel {
-        /// The class: without floor or stripe there is no model, without marker no marker.
+        /// The class.
         class: PixelClass,
     },
-    /// The images cannot be parted so.
-    #[error("{images} images cannot be parted in {folds}; there can be from 2 to {images} parts")]
+    /// The images cannot be divided into this number of parts.
+    #[error(
+        "{images} images cannot be divided into {folds} parts; the number of parts must be from 2 to {images}"
+    )]
     Folds {
-        /// How many parts were asked for.
+        /// The number of parts.
         folds: usize,
-        /// How many images there are.
+        /// The number of images.
         images: usize,
     },
-    /// One part cannot be classified by what is learned from the others.
+    /// Nothing can be learned from all parts but one.
     #[error("without part {fold} of the images {cause}")]
     InFold {
         /// The part, from 1.
         fold: usize,
-        /// Why nothing can be learned from the others.
+        /// The reason.
         cause: Box<TrainingError>,
     },
 }
 
-/// How much of a class has been seen.
+/// The images and pixels of a class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassPixels {
-    /// In how many images.
+    /// The number of images.
     pub images: usize,
-    /// In how many pixels of them, within the range of sensing.
+    /// The number of their pixels, within the range of sensing.
     pub pixels: u64,
 }
 
-/// What has been seen of a building, to learn its colours from.
+/// The examples from which the colours of a building are learned.
 #[derive(Clone, Debug)]
 pub struct Training {
     stripe: Stripe,
@@ -227,16 +230,16 @@ pub struct Training {
 }
 
 impl Training {
-    /// Nothing seen yet, of a building with such a stripe.
+    /// A training without examples, for a building with this stripe.
     #[must_use]
     pub fn new(stripe: Stripe) -> Self {
         Self { stripe, view: None, examples: Vec::new() }
     }
 
-    /// Sees an image of this camera with its labels.
+    /// Adds an image of this camera with its labels.
     ///
     /// # Errors
-    /// They do not fit, or the light is not known; then they are left out.
+    /// Returns an error if they cannot be used; then they are left out.
     pub fn add(
         &mut self,
         camera: &Camera,
@@ -253,18 +256,18 @@ impl Training {
         Ok(())
     }
 
-    /// Sees an example.
+    /// Adds an example.
     pub fn push(&mut self, example: Example) {
         self.examples.push(example);
     }
 
-    /// How many images have been seen.
+    /// The number of images.
     #[must_use]
     pub fn images(&self) -> usize {
         self.examples.len()
     }
 
-    /// How much of a class has been seen.
+    /// The images and pixels of a class.
     #[must_use]
     pub fn seen(&self, class: PixelClass) -> ClassPixels {
         let pixels = self.examples.iter().map(|example| {
@@ -276,19 +279,19 @@ impl Training {
         })
     }
 
-    /// What is learned from all that has been seen.
+    /// The model that is learned from all examples.
     ///
     /// # Errors
-    /// There is no image, or no pixel of floor or stripe.
+    /// Returns an error if there is no image, or no pixel of floor or stripe.
     pub fn model(&self) -> Result<ColourModel, TrainingError> {
         self.model_of(&self.examples.iter().collect::<Vec<_>>())
     }
 
-    /// Parts the images in so many parts, as they come, and classifies each part by what is learned
-    /// from the others.
+    /// Cross-validation: divides the images into parts, in their order, and classifies each part with
+    /// the model that is learned from the others.
     ///
     /// # Errors
-    /// There are fewer images than parts, or from the others nothing can be learned.
+    /// Returns an error if there are fewer images than parts, or if a part's others give no model.
     pub fn cross_validate(&self, folds: usize) -> Result<Confusion, TrainingError> {
         let images = self.examples.len();
         if folds < 2 || folds > images {
@@ -333,7 +336,7 @@ impl Training {
     }
 }
 
-/// The median of the floor's colours, to a hundredth, which people can read.
+/// The median of the floor's colours, rounded to a hundredth.
 fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
     if examples.is_empty() {
         return Err(TrainingError::NoImage);
@@ -345,7 +348,7 @@ fn common_floor(examples: &[&Example]) -> Result<[f64; 3], TrainingError> {
     }))
 }
 
-/// The colours of each class, in the light in which the floor has this colour, as the table has them.
+/// The colours of each class, in the light in which the floor has this colour, as in the table.
 fn histograms(examples: &[&Example], floor: [f64; 3]) -> [Histogram; 4] {
     let mut cells = PixelClass::LEARNED.map(|class| (class, vec![0_u64; CELLS]));
     for example in examples {

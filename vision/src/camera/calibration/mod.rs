@@ -1,4 +1,4 @@
-//! Calibration files: which camera it is, in numbers.
+//! Calibration files: the parameters of a camera.
 //!
 //! ```toml
 //! [camera]
@@ -15,7 +15,8 @@
 //! mask = "mask.png"            # optional: white where the floor can be seen
 //! ```
 //!
-//! A camera that OCamCalib, OpenCV's omnidir or camodocal has calibrated is told by their own file:
+//! For a camera that OCamCalib, OpenCV's omnidir or camodocal has calibrated, the calibration names
+//! their file:
 //!
 //! ```toml
 //! [camera]
@@ -24,7 +25,7 @@
 //! viewpoint_height = 1.02      # metres above the floor
 //! ahead = 90.0
 //! seen_from = "below"
-//! image = [1280, 960]          # only needed where the file does not tell it
+//! image = [1280, 960]          # only needed if the file does not give it
 //! ```
 
 mod error;

@@ -158,12 +158,12 @@ fn shown(name: &str) -> String {
 
 #[expect(clippy::cast_sign_loss, reason = "the range is that of u32 at most")]
 fn read_image(value: DocumentValue<'_>) -> Result<[u32; 2], CalibrationError> {
-    let sides = value.array("a list of two whole numbers")?;
+    let [width, height] = value.array("a list of two whole numbers")?;
     let [low, high] = SIDES.map(i64::from);
     let side = |value: DocumentValue<'_>| {
         value.whole_in("the side of an image in pixels", low..=high).map(|side| side as u32)
     };
-    Ok([side(sides[0])?, side(sides[1])?])
+    Ok([side(width)?, side(height)?])
 }
 
 fn camera_height(table: &DocumentTable<'_>, key: &'static str) -> Result<f64, CalibrationError> {

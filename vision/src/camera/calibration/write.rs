@@ -6,17 +6,17 @@ use toml::Value;
 
 use crate::camera::{Camera, Mei, OCam, OpticsModel, SeenFrom};
 
-/// The calibration file of a camera; the files that it names are those of the camera.
+/// The calibration file of a camera. It names the files that the camera was read from.
 #[must_use]
 pub fn to_toml(camera: &Camera) -> String {
     let mut text = String::from("[camera]\n");
     let mut line = |key: &str, value: String, comment: &str| {
-        let told = format!("{key} = {value}");
+        let entry = format!("{key} = {value}");
         // Writing to a string cannot fail.
         let _ = if comment.is_empty() {
-            writeln!(text, "{told}")
+            writeln!(text, "{entry}")
         } else {
-            writeln!(text, "{told:<28} # {comment}")
+            writeln!(text, "{entry:<28} # {comment}")
         };
     };
     let [width, height] = camera.image;
@@ -73,7 +73,7 @@ fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 
-/// An angle in degrees, as short as it can be told.
+/// An angle in degrees, with as few digits as possible.
 fn degrees(radians: f64) -> f64 {
     let exactly = radians.to_degrees();
     let rounded = (0..12).map(|digits| {
