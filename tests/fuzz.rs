@@ -17,7 +17,7 @@ use proptest::{
     test_runner::{RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner},
 };
 use toposlam_model::format::{
-    plantri::{self, Code},
+    plantri::{self, PlantriCode},
     world_file,
 };
 use toposlam_robot::log::{
@@ -325,8 +325,8 @@ fn seeds_are_what_they_are_called() {
         for (name, bytes) in seeds(target) {
             let all = |code| plantri::read_headerless(&bytes, code).all(|result| result.is_ok());
             let is_read = match target {
-                "planar_code" => all(Code::Planar),
-                "edge_code" => all(Code::Edge),
+                "planar_code" => all(PlantriCode::Planar),
+                "edge_code" => all(PlantriCode::Edge),
                 "image" => ImageFile::open(&bytes)
                     .is_ok_and(|file| file.size() == [96, 72] && file.image().is_ok()),
                 "calibration" => {

@@ -231,7 +231,7 @@ fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
         (&[image, "--mirror-distance", "0.05"], "--mirror-distance: 0.05 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10".to_owned()),
         (&[image, "--camera-height", "nan"], "--camera-height: NaN is out of range".to_owned()),
         (&[image, "--ahead", "1000"], "--ahead: ".to_owned()),
-        (&[image, "--mask-out", &mask], "--mask-out: 1 images are too few to tell what never changes; take at least 4, from different places".to_owned()),
+        (&[image, "--mask-out", &mask], "--mask-out: 1 images are too few to find what never changes; take at least 4, from different places".to_owned()),
         (&[image, image, image, image, "--mask-out", &mask], "--mask-out: nearly nothing changes from image to image".to_owned()),
         (&[image, "--picture", "fit.bmp"], "fit.bmp: the name must end in .png or .jpg or .jpeg".to_owned()),
     ];

@@ -160,13 +160,13 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
         (
             "-2.553753e+02",
             "0",
-            "the size of the first coefficient is 0; it should lie between 1 and 1000000",
+            "the size of the first coefficient is 0; it must be between 1 and 1000000",
         ),
         ("-2.553753e+02", "-2 -2e2", "line 3: expected 5 coefficients of the polynomial, found 6"),
         (
             "5 -2.553753e+02",
             "99 -2.553753e+02",
-            "how many coefficients there are is 99; it should lie between 1 and 64",
+            "the number of coefficients is 99; it must be between 1 and 64",
         ),
         (
             "480.000000 640.000000",
@@ -176,12 +176,12 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
         (
             "480.000000 640.000000",
             "640 1480",
-            "the centre's column is 1480; it should lie between 0 and 1279",
+            "the centre's column is 1480; it must be between 0 and 1279",
         ),
         (
             "1.000000 0.000000 0.000000",
             "0.0 0.0 0.0",
-            "the affine c is 0; it should lie between 0.5 and 2",
+            "the affine c is 0; it must be between 0.5 and 2",
         ),
         (
             "960 1280",
@@ -189,11 +189,11 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
             "line 19: expected 2 numbers, the height and the width of the image, found 1",
         ),
         ("960 1280", "960 1280\n5", "line 20: nothing should follow the size of the image"),
-        ("960 1280", "960.5 1280", "the side of the image is 960.5; it should be whole"),
+        ("960 1280", "960.5 1280", "the side of the image is 960.5; it must be a whole number"),
         (
             "0.000000e+00 1.770647e-03 -2.520355e-06 9.359533e-09",
             "0 300 0 0",
-            "by these numbers no floor is seen around the middle of the image",
+            "with these numbers no floor is seen around the middle of the image",
         ),
     ];
     for (from, to, message) in cases {
@@ -224,11 +224,11 @@ fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
         ("MEI", "PINHOLE", "`model_type` is `PINHOLE`, not `MEI`"),
         ("   xi: 1.6901164600000000e+00\n", "", "the key `mirror_parameters.xi` is missing"),
         ("   xi: 1.6901164600000000e+00", "   xi: much", "line 8: expected a number, found `much`"),
-        ("   xi: 1.6901164600000000e+00", "   xi: -1", "xi is -1; it should lie between 0 and 100"),
+        ("   xi: 1.6901164600000000e+00", "   xi: -1", "xi is -1; it must be between 0 and 100"),
         (
             "   xi: 1.6901164600000000e+00",
             "   xi: 1\n   xi: 1",
-            "line 9: the key `mirror_parameters.xi` stands twice",
+            "line 9: the key `mirror_parameters.xi` is repeated",
         ),
         (
             "   xi: 1.6901164600000000e+00",
@@ -236,17 +236,21 @@ fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
             "line 8: while parsing node, found unknown anchor",
         ),
         ("   xi: 1.6901164600000000e+00", "   xi: [", "line 9: "),
-        ("image_width: 1280", "image_width: 1280.5", "image_width is 1280.5; it should be whole"),
+        (
+            "image_width: 1280",
+            "image_width: 1280.5",
+            "image_width is 1280.5; it must be a whole number",
+        ),
         ("image_width: 1280\n", "", "the key `image_width` is missing"),
         (
             "k1: -4.8503199300000001e-01",
             "k1: -1e9",
-            "k1 is -1000000000; it should lie between -1000 and 1000",
+            "k1 is -1000000000; it must be between -1000 and 1000",
         ),
         (
             "image_width: 1280\nimage_height: 960\n",
             "",
-            "the file does not tell the size of the images; the key `image` must",
+            "the file does not give the size of the images; the key `image` must",
         ),
     ];
     for (from, to, message) in cases {
@@ -262,7 +266,7 @@ fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
     let (toml, yaml) = (text("omnidir.toml"), text("omnidir.yml"));
     let named = changed(&yaml, "2.7131395400000002e-01,", "2.7131395400000002e-01, 0.,");
     let message =
-        "camera.file: omnidir.yml: `distortion_coefficients.data` has 5 numbers; it should have 4";
+        "camera.file: omnidir.yml: `distortion_coefficients.data` has 5 numbers; it must have 4";
     assert_eq!(read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string(), message);
 }
 

@@ -1,22 +1,22 @@
-//! A calibration drawn over an image: what was found, and what follows from it.
+//! A calibration drawn over an image.
 
 use image::{Rgb, RgbImage};
 use imageproc::drawing::draw_line_segment_mut;
 
 use super::{Camera, OpticsModel, rim::Rim};
 
-/// The rim, and the horizon.
+/// The rim and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
-/// Where the rim was seen.
+/// The points of the rim.
 const YELLOW: Rgb<u8> = Rgb([255, 230, 0]);
-/// The floor one, two, three metres from the robot.
+/// The floor at one, two and three metres.
 const BLUE: Rgb<u8> = Rgb([70, 150, 255]);
 /// The centre, and ahead.
 const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 
-/// An image with a camera drawn over it: the centre and ahead in white, the rim and the horizon in
-/// green, where the rim was seen in yellow, the floor at one, two and three metres in blue; reddish is
-/// what the camera's mask hides.
+/// An image with a calibration drawn over it: the centre and ahead in white, the rim and the horizon in
+/// green, the points of the rim in yellow, the floor at one, two and three metres in blue. What the
+/// camera's mask hides is reddish.
 #[must_use]
 pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     let mut picture = image.clone();
@@ -41,7 +41,7 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
         closed(&mut picture, round(mirror.horizon()), GREEN);
     }
     closed(&mut picture, round(rim.radius), GREEN);
-    // Both sides of the rim, so that the line can be held against what it lies on.
+    // On both sides of the rim, so that the rim itself stays visible.
     for place in rim.places.iter().step_by(6) {
         let out = [0, 1].map(|axis| (place[axis] - rim.centre[axis]) / rim.radius);
         let tick = |far: f64| [0, 1].map(|axis| place[axis] + far * out[axis]);
@@ -57,7 +57,7 @@ pub fn fit_picture(image: &RgbImage, camera: &Camera, rim: &Rim) -> RgbImage {
     picture
 }
 
-/// A closed curve, by the angle all around.
+/// A closed curve, by angle.
 fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<[f64; 2]>, colour: Rgb<u8>) {
     const STEPS: u32 = 720;
     let angle = |step: u32| f64::from(step) * std::f64::consts::TAU / f64::from(STEPS);

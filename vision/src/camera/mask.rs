@@ -1,4 +1,4 @@
-//! Where in the image the floor can be seen: not on the body, struts, the lens and beyond the rim.
+//! Masks: the pixels in which the floor can be seen, without body, struts, lens and rim.
 
 use std::io::Cursor;
 
@@ -10,20 +10,20 @@ use thiserror::Error;
 /// The pixels in which the floor can be seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
-    /// The file it is in, as the calibration file names it.
+    /// Its file, as the calibration file names it.
     pub file: String,
     size: [u32; 2],
     /// Row by row.
     seen: Vec<bool>,
 }
 
-/// Why bytes are no mask.
+/// Why bytes are not a mask.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MaskError {
-    /// They are no PNG.
+    /// They are not a PNG image.
     #[error("this is not a PNG image: {0}")]
     NotPng(String),
-    /// It does not belong to the camera's images.
+    /// The mask has another size than the camera's images.
     #[error(
         "the mask is {} by {} pixels, the camera's images are {} by {}",
         .found[0], .found[1], .expected[0], .expected[1]
@@ -37,12 +37,12 @@ pub enum MaskError {
 }
 
 impl Mask {
-    /// A mask from a PNG: white, or at least brighter than middle grey, where the floor can be seen.
+    /// A mask from a PNG. Where the floor can be seen it is white, or at least brighter than middle grey.
     ///
-    /// Takes at most sixteen bytes of memory for each pixel of an image of that size.
+    /// This takes at most sixteen bytes of memory for each pixel of an image of that size.
     ///
     /// # Errors
-    /// If it is no PNG of that size. No bytes make it panic.
+    /// Returns an error if it is not a PNG of that size. No bytes make it panic.
     pub fn from_png(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<Self, MaskError> {
         let not_png = |error: ImageError| MaskError::NotPng(error.to_string().replace('\n', ", "));
         let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(not_png)?;
@@ -54,10 +54,10 @@ impl Mask {
         Ok(Self::new(file, size, image.pixels().map(|pixel| pixel.0[0] >= 128).collect()))
     }
 
-    /// A mask of so many pixels, row by row.
+    /// A mask from its pixels, row by row.
     ///
     /// # Panics
-    /// If there are not as many as an image of that size has.
+    /// Panics if their number is not that of an image of this size.
     #[must_use]
     pub fn new(file: &str, size: [u32; 2], seen: Vec<bool>) -> Self {
         assert_eq!(seen.len(), size[0] as usize * size[1] as usize);
@@ -74,14 +74,14 @@ impl Mask {
     /// The mask as a PNG.
     ///
     /// # Errors
-    /// If there is no memory for it.
+    /// Returns an error if there is not enough memory.
     pub fn to_png(&self) -> Result<Vec<u8>, ImageError> {
         let mut bytes = Vec::new();
         self.to_image().write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)?;
         Ok(bytes)
     }
 
-    /// The same in another size: each pixel as the nearest is here.
+    /// The same mask in another size: each pixel is its nearest one here.
     pub(super) fn sized(&self, size: [u32; 2]) -> Self {
         let nearest = |at: u32, axis: usize| {
             (u64::from(at) * u64::from(self.size[axis]) / u64::from(size[axis])) as u32

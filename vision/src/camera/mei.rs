@@ -2,9 +2,9 @@
 //! files that they write.
 //!
 //! C. Mei, P. Rives: Single view point omnidirectional camera calibration from planar grids. ICRA 2007.
-//! A point is moved onto the unit sphere around the viewpoint, seen from xi above the sphere's middle
-//! in a plane at distance one, there distorted (k1, k2, p1, p2), and mapped to pixels by a matrix. The
-//! model's z is what the middle of the image shows: straight down.
+//! A point is projected onto the unit sphere around the viewpoint, then from xi above the sphere's middle
+//! onto a plane at distance one, distorted there (k1, k2, p1, p2), and mapped to pixels by a matrix. The
+//! model's z axis points straight down, to the middle of the image.
 
 use super::{
     ViewingRay, length,
@@ -16,26 +16,26 @@ use super::{
 /// A camera with a single viewpoint, in the unified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mei {
-    /// The file that says so, as the calibration file names it.
+    /// The file with the calibration, as the calibration file names it.
     pub file: String,
-    /// From the floor up to the viewpoint, in metres.
+    /// The height of the viewpoint above the floor, in metres.
     pub viewpoint_height: f64,
-    /// Width and height of the images in pixels, where the file says it.
+    /// Width and height of the images in pixels, if the file gives them.
     image: Option<[u32; 2]>,
     xi: f64,
     /// k1 and k2.
     radial: [f64; 2],
     /// p1 and p2.
     tangential: [f64; 2],
-    /// Pixels by the plane's two axes.
+    /// The matrix from the plane to pixels.
     focal: [f64; 2],
     skew: f64,
     centre: [f64; 2],
-    /// How far from the middle of the plane the distortion can be undone.
+    /// The distance from the middle of the plane up to which the distortion can be inverted.
     reach: f64,
 }
 
-/// Where OpenCV's omnidir and where camodocal keep what we need.
+/// The keys of OpenCV's omnidir and of camodocal.
 const KEYS: [&str; 18] = [
     "image_width",
     "image_height",
@@ -61,10 +61,10 @@ impl Mei {
     /// Reads the YAML of OpenCV's omnidir (K, xi, D: also `camera_matrix`, `distortion_coefficients`)
     /// or of camodocal (`model_type: MEI`).
     ///
-    /// Takes at most 512 bytes of memory for each byte of the file, and 65536 besides.
+    /// Reading takes at most 512 bytes of memory for each byte of the file, and 65536 besides.
     ///
     /// # Errors
-    /// The first thing that is wrong. No bytes make it panic.
+    /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
         let found = yaml::values(text, &KEYS)?;
@@ -101,12 +101,12 @@ impl Mei {
         .reaching()
     }
 
-    /// Finds how far the distortion can be undone.
+    /// Finds how far the distortion can be inverted.
     fn reaching(mut self) -> Result<Self, OpticsFileError> {
-        // Beyond this the plane shows nothing; 100 is half a degree short of level with xi 0.
+        // The plane shows nothing farther out; 100 is half a degree below level if xi is 0.
         let end = if self.xi > 1.0 { 1.0 / (self.xi * self.xi - 1.0).sqrt() } else { 100.0_f64 };
-        // The distortion's derivative is symmetric. Where both of its eigenvalues stay positive, in a
-        // disc, no two points are distorted to the same one. Radially and across they are at least:
+        // The distortion's derivative is symmetric. In a disc in which both of its eigenvalues are
+        // positive, no two points are distorted to the same one. Radially and across they are at least:
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
         let tangential = -6.0 * length([p1, p2]);
         let across = [1.0 - Self::LEAST_SLOPE, tangential, k1, 0.0, k2];
@@ -116,10 +116,10 @@ impl Mei {
         if self.reach < 1e-3 { Err(OpticsFileError::NoView) } else { Ok(self) }
     }
 
-    /// How much the distortion may shrink a small piece of the plane, at most.
+    /// The least scale of the distortion for a small piece of the plane.
     const LEAST_SLOPE: f64 = 0.02;
 
-    /// Width and height of the images in pixels, where the file says it.
+    /// Width and height of the images in pixels, if the file gives them.
     #[must_use]
     pub fn image(&self) -> Option<[u32; 2]> {
         self.image
@@ -129,7 +129,7 @@ impl Mei {
         self.centre
     }
 
-    /// The same, with every pixel larger.
+    /// The same camera with an image that is scaled by a factor.
     pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
         Self {
             image: Some(image),
@@ -173,7 +173,7 @@ impl Mei {
         ])
     }
 
-    /// A point of the plane distorted, and the derivative: along x, across, along y.
+    /// A point of the plane after distortion, and the derivative: along x, across, along y.
     fn distorted(&self, [x, y]: [f64; 2]) -> ([f64; 2], [f64; 3]) {
         let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
         let square = x * x + y * y;
@@ -210,7 +210,7 @@ impl Mei {
                 (slope[2] * rest[0] - slope[1] * rest[1]) / determinant,
                 (slope[0] * rest[1] - slope[1] * rest[0]) / determinant,
             ];
-            // Newton's step, shorter where it would lead astray.
+            // Newton's step, shortened if it does not get nearer.
             (at, rest, slope) = (0..30).find_map(|halves| {
                 let share = 0.5_f64.powi(halves);
                 let next = lack([at[0] + share * step[0], at[1] + share * step[1]]);
@@ -221,8 +221,8 @@ impl Mei {
         None
     }
 
-    /// The same, as if there were no tangential distortion; inside the reach. `None` if what is beyond
-    /// it is distorted to here.
+    /// The same without tangential distortion, inside the reach. `None` if a point outside of the reach
+    /// is distorted to here.
     fn undistorted_radially(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
         let far = length(distorted);
         if far == 0.0 {
@@ -246,7 +246,7 @@ impl Mei {
     }
 }
 
-/// xi, the four of the distortion, and of the matrix what can differ.
+/// xi, the four numbers of the distortion, and the variable numbers of the matrix.
 type Numbers = (f64, [f64; 4], [f64; 5]);
 
 fn camodocal(found: &yaml::Values) -> Result<Numbers, OpticsFileError> {

@@ -1,12 +1,11 @@
-//! Which point of the floor a pixel shows. Section 3.
+//! Cameras: the point of the floor that a pixel shows. Section 3.
 //!
 //! Pixels are (u, v), u to the right and v down; pixel centres are integers. Floor coordinates have
 //! the robot's centre as origin, x ahead and y to the left, in metres; z is up.
 //!
-//! Whatever the kind of camera, its axis is vertical above the robot's centre, and the middle of the
-//! image shows what is straight below: the lens of a camera that looks up into a mirror, the floor
-//! under one that looks down. Which way the camera looks only tells whether the image is mirrored
-//! ([`SeenFrom`]).
+//! The axis of every kind of camera is vertical above the robot's centre, and the middle of the image
+//! shows what is straight below: its own lens, if the camera looks up into a mirror, or the floor, if it
+//! looks down. The direction only decides whether the image is mirrored ([`SeenFrom`]).
 
 pub mod calibration;
 mod fit_picture;
@@ -27,7 +26,7 @@ pub use ocam::OCam;
 pub use optics_file::OpticsFileError;
 pub use spherical::SphericalMirror;
 
-/// From where the camera sees what it sees.
+/// The side from which the camera looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeenFrom {
     /// It looks up into the mirror: with ahead up, the image's right is the robot's left.
@@ -36,7 +35,7 @@ pub enum SeenFrom {
     Above,
 }
 
-/// How a camera sees.
+/// The optics of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OpticsModel {
     /// A pinhole under a spherical mirror.
@@ -47,14 +46,14 @@ pub enum OpticsModel {
     Mei(Mei),
 }
 
-/// The length of a vector whose square is neither too large nor too small for a number.
+/// The length of a vector; its square must be neither too large nor too small for a number.
 #[inline]
 fn length([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Where something at a place of an image is, once every pixel is larger by a factor: pixel centres
-/// are integers, so an image begins at -0.5.
+/// A place in an image that is scaled by a factor: pixel centres are integers, so an image begins at
+/// -0.5.
 fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
     place.map(|at| (at + 0.5) * factor - 0.5)
 }
@@ -64,27 +63,27 @@ fn scaled_place(place: [f64; 2], factor: f64) -> [f64; 2] {
 pub struct Camera {
     /// Width and height of its images, in pixels.
     pub image: [u32; 2],
-    /// Where ahead is in the image, in radians counter-clockwise from u.
+    /// The direction of ahead in the image, in radians counter-clockwise from u.
     pub ahead: f64,
     /// Whether the image is mirrored.
     pub seen_from: SeenFrom,
-    /// How it sees.
+    /// Its optics.
     pub optics: OpticsModel,
-    /// Where in the image the floor can be seen, if that is known.
+    /// The pixels in which the floor can be seen, if they are known.
     pub mask: Option<Mask>,
 }
 
-/// What a pixel looks along, in floor coordinates and metres.
+/// The ray along which a pixel looks, in floor coordinates and metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewingRay {
-    /// Where it leaves the mirror; for a camera with a single viewpoint, that.
+    /// The point at which it leaves the mirror; the viewpoint of a camera with a single one.
     pub origin: [f64; 3],
-    /// Whither; of length one.
+    /// Its direction, of length one.
     pub direction: [f64; 3],
 }
 
 impl ViewingRay {
-    /// Where it meets the floor; `None` if it does not go down.
+    /// The point at which it meets the floor; `None` if it does not go down.
     #[must_use]
     pub fn floor(&self) -> Option<[f64; 2]> {
         let length = -self.origin[2] / self.direction[2];
@@ -114,11 +113,11 @@ impl OpticsModel {
 }
 
 impl Camera {
-    /// Without a mask, floor nearer than this to the robot's centre is taken as unseen, for the body
-    /// hides it; in metres.
+    /// Without a mask, floor nearer than this to the robot's centre counts as unseen, because the body
+    /// hides it. In metres.
     pub const HIDDEN: f64 = 0.32;
 
-    /// The camera of the design page: a spherical mirror seen from below, 1280 by 960 pixels.
+    /// The SuperScout's camera: a spherical mirror seen from below, 1280 by 960 pixels.
     #[must_use]
     pub fn superscout() -> Self {
         Self {
@@ -136,8 +135,8 @@ impl Camera {
         }
     }
 
-    /// The same camera with another size of image: every pixel larger or smaller. The larger image
-    /// shows what the smaller shows, and its proportions should be the same.
+    /// The same camera with another size of image. Both images show the same, so their proportions
+    /// should be the same.
     #[must_use]
     pub fn sized(&self, image: [u32; 2]) -> Self {
         let factor = f64::from(image[0]) / f64::from(self.image[0]);
@@ -162,7 +161,7 @@ impl Camera {
         }
     }
 
-    /// How high above the floor the pinhole or the single viewpoint is, in metres.
+    /// The height of the pinhole or the single viewpoint above the floor, in metres.
     #[must_use]
     pub fn height(&self) -> f64 {
         match &self.optics {
@@ -173,7 +172,7 @@ impl Camera {
     }
 
     // paper: hardware.height
-    /// How high above the floor the floor is seen from, in metres: the mirror's middle, or the single
+    /// The height from which the floor is seen, in metres: that of the mirror's middle, or of the single
     /// viewpoint.
     #[must_use]
     pub fn eye_height(&self) -> f64 {
@@ -183,7 +182,7 @@ impl Camera {
         }
     }
 
-    /// What a pixel looks along; `None` off the mirror, and where the calibration says nothing.
+    /// The ray along which a pixel looks; `None` outside of the mirror or of the calibration.
     #[must_use]
     pub fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         let ViewingRay { origin, direction } = self.optics.ray(pixel)?;
@@ -194,7 +193,7 @@ impl Camera {
         Some(ViewingRay { origin: turned(origin), direction: turned(direction) })
     }
 
-    /// The point of the floor that a pixel shows; `None` above the horizon and off the mirror.
+    /// The point of the floor that a pixel shows; `None` above the horizon and outside of the mirror.
     #[must_use]
     pub fn pixel_to_ground(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
         self.optics.ray(pixel)?.floor().map(|ground| self.to_robot(ground))
@@ -218,13 +217,13 @@ impl Camera {
                 .is_some_and(|[x, y]| self.mask.is_some() || x.hypot(y) >= Self::HIDDEN)
     }
 
-    /// The image's axes, right and top, to the robot's, ahead and left.
+    /// From the image's axes, right and top, to the robot's, ahead and left.
     fn to_robot(&self, [right, top]: [f64; 2]) -> [f64; 2] {
         let (sine, cosine) = self.ahead.sin_cos();
         [right * cosine + top * sine, self.mirrored() * (right * sine - top * cosine)]
     }
 
-    /// The robot's axes to the image's.
+    /// From the robot's axes to the image's.
     fn to_image(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sine, cosine) = self.ahead.sin_cos();
         let y = self.mirrored() * y;

@@ -1,14 +1,14 @@
 //! The polynomial model of OCamCalib, and its file `calib_results.txt`.
 //!
 //! D. Scaramuzza, A. Martinelli, R. Siegwart: A toolbox for easily calibrating omnidirectional cameras.
-//! IROS 2006. A pixel, less the centre and with the affine distortion undone, is a point (x, y) of a
-//! plane, x along the image's columns and y along its rows; it looks along (x, y, f(rho)), f being the
+//! IROS 2006. A pixel, minus the centre and without the affine distortion, is a point (x, y) of a plane,
+//! x along the image's columns and y along its rows. It looks along (x, y, f(rho)), where f is the
 //! polynomial and rho the length of (x, y). The middle looks straight down here, so f(0) is downward,
-//! whichever its sign: a plane pattern, from which such a camera is calibrated, cannot tell.
+//! whatever its sign: calibration with a plane pattern does not determine the sign.
 //!
 //! The file, as OCamCalib writes it, has five lines of numbers between comments (`#`): the polynomial
-//! (how many coefficients, then they, from the constant one on), the polynomial that is roughly its
-//! inverse, the centre's row and column, the affine c, d and e, and the image's height and width. In
+//! (the number of coefficients, then the coefficients, the constant first), a polynomial that is roughly
+//! its inverse, the centre's row and column, the affine c, d and e, and the image's height and width. In
 //! the file rows and columns count from 0 (in the toolbox itself, from 1).
 
 use super::{
@@ -21,32 +21,32 @@ use super::{
 /// A camera with a single viewpoint, as OCamCalib calibrates it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OCam {
-    /// The file that says so, as the calibration file names it.
+    /// The file with the calibration, as the calibration file names it.
     pub file: String,
-    /// From the floor up to the viewpoint, in metres.
+    /// The height of the viewpoint above the floor, in metres.
     pub viewpoint_height: f64,
     image: [u32; 2],
-    /// How far down a point of the plane looks, by its distance from the middle; positive in the
-    /// middle.
+    /// The polynomial: how far down a point of the plane looks, by its distance from the middle.
+    /// Positive in the middle.
     down: Vec<f64>,
-    /// The distance from the middle by the angle above the level, nearly.
+    /// Roughly its inverse: the distance from the middle by the angle above level.
     inverse: Vec<f64>,
     centre: [f64; 2],
     /// c, d and e: rows and columns are `[[c, d], [e, 1]]` times (x, y).
     affine: [f64; 3],
-    /// How far from the middle the plane's points look farther and farther out.
+    /// The distance from the middle up to which points look farther and farther out.
     reach: f64,
-    /// How far from the middle they look at the floor.
+    /// The distance from the middle up to which points look at the floor.
     horizon: f64,
 }
 
 impl OCam {
     /// Reads `calib_results.txt`.
     ///
-    /// Takes at most 32 bytes of memory for each byte of the file, and 4096 besides.
+    /// Reading takes at most 32 bytes of memory for each byte of the file, and 4096 besides.
     ///
     /// # Errors
-    /// The first thing that is wrong. No bytes make it panic.
+    /// Returns an error if the file is not as it should be. No bytes make it panic.
     pub fn read(file: &str, bytes: &[u8], viewpoint_height: f64) -> Result<Self, OpticsFileError> {
         let text = std::str::from_utf8(bytes).map_err(|_| OpticsFileError::NotText)?;
         let mut lines = Lines::of(text);
@@ -77,7 +77,7 @@ impl OCam {
         .reaching()
     }
 
-    /// Finds how far the polynomial tells anything.
+    /// Finds the range in which the polynomial is valid.
     fn reaching(mut self) -> Result<Self, OpticsFileError> {
         let constant = self.down.first().copied().unwrap_or_default();
         within("the size of the first coefficient", constant.abs(), [1.0, 1e6])?;
@@ -111,7 +111,8 @@ impl OCam {
         self.centre
     }
 
-    /// The same, with every pixel larger: both of the plane's coordinates, and f with them.
+    /// The same camera with an image that is scaled by a factor: the plane's coordinates and f are
+    /// scaled, too.
     pub(super) fn scaled(&self, factor: f64, image: [u32; 2]) -> Self {
         let mut scaled = self.clone();
         scaled.image = image;
@@ -125,7 +126,7 @@ impl OCam {
         scaled
     }
 
-    /// A pixel in the plane of the model: to the right, and to the top.
+    /// The point of the model's plane at a pixel: to the right, and to the top.
     fn plane(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let ([c, d, e], [row, column]) = (self.affine, [v - self.centre[1], u - self.centre[0]]);
         let scale = 1.0 / (c - d * e);
@@ -149,14 +150,14 @@ impl OCam {
 
     /// The pixel that shows a point of the floor, in the image's axes.
     ///
-    /// The file's own inverse is where the search begins, no more: it is an approximation.
+    /// The search starts with the file's own inverse, which is only an approximation.
     pub(super) fn pixel(&self, [right, top]: [f64; 2]) -> Option<[f64; 2]> {
         let range = length([right, top]);
         let lack = |rho: f64| {
             let (down, slope) = polynomial(&self.down, rho);
             (rho * self.viewpoint_height - range * down, self.viewpoint_height - range * slope)
         };
-        // Not for a floor without end, nor beyond what the polynomial tells.
+        // Only at a finite distance, and in the range in which the polynomial is valid.
         if !range.is_finite() || lack(self.horizon).0 < 0.0 {
             return None;
         }
@@ -199,7 +200,7 @@ impl<'a> Lines<'a> {
         Ok((line, text.split_whitespace().map(number).collect::<Result<_, _>>()?))
     }
 
-    /// As many numbers as there should be in the next line.
+    /// The numbers of the next line, of which there must be `COUNT`.
     fn numbers<const N: usize>(&mut self, what: &'static str) -> Result<[f64; N], OpticsFileError> {
         let (line, numbers) = self.next(what)?;
         numbers.try_into().map_err(|numbers: Vec<f64>| OpticsFileError::LineCount {
@@ -210,11 +211,11 @@ impl<'a> Lines<'a> {
         })
     }
 
-    /// The numbers of the next line but its first, which tells how many there are.
+    /// The numbers of the next line after the first, which is their count.
     fn counted(&mut self, what: &'static str) -> Result<Vec<f64>, OpticsFileError> {
         let (line, mut numbers) = self.next(what)?;
         let count = numbers.remove(0);
-        within("how many coefficients there are", count, [1.0, 64.0])?;
+        within("the number of coefficients", count, [1.0, 64.0])?;
         if (count - numbers.len() as f64).abs() > 0.0 {
             return Err(OpticsFileError::FalseCount { line, what, found: numbers.len(), count });
         }

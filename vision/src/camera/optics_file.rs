@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::calibration::SIDES;
 
-/// Why a file tells no optics.
+/// Why a file is not a calibration.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum OpticsFileError {
     /// The bytes are not UTF-8.
@@ -15,100 +15,100 @@ pub enum OpticsFileError {
     Syntax {
         /// Counted from 1.
         line: usize,
-        /// What the parser says.
+        /// The message of the parser.
         message: String,
     },
-    /// Something else stands where a number should.
+    /// A word is not a number.
     #[error("line {line}: expected a number, found `{found}`")]
     NotANumber {
         /// Counted from 1.
         line: usize,
-        /// What is here.
+        /// The word.
         found: String,
     },
-    /// There are more or fewer numbers in a line than there should be.
+    /// A line has the wrong count of numbers.
     #[error("line {line}: expected {expected} numbers, {what}, found {found}")]
     LineCount {
         /// Counted from 1.
         line: usize,
-        /// What they say.
+        /// The meaning of the numbers.
         what: &'static str,
-        /// How many there are.
+        /// Their count.
         found: usize,
-        /// How many there should be.
+        /// The count that is expected.
         expected: usize,
     },
-    /// There are more or fewer numbers in a line than its first says.
+    /// A line has another count of numbers than its first number.
     #[error("line {line}: expected {count} coefficients of {what}, found {found}")]
     FalseCount {
         /// Counted from 1.
         line: usize,
-        /// What they are of.
+        /// What they belong to.
         what: &'static str,
-        /// How many there are.
+        /// Their count.
         found: usize,
-        /// How many there should be.
+        /// The count that is expected.
         count: f64,
     },
     /// The file ends too early.
     #[error("the file ends before {0}")]
     EndsBefore(&'static str),
-    /// The file goes on.
+    /// The file does not end.
     #[error("line {line}: nothing should follow the size of the image")]
     GoesOn {
         /// Counted from 1.
         line: usize,
     },
-    /// The file says nothing of something.
+    /// A key is missing.
     #[error("the key `{0}` is missing")]
     MissingKey(&'static str),
-    /// The file says something twice.
-    #[error("line {line}: the key `{key}` stands twice")]
+    /// A key is repeated.
+    #[error("line {line}: the key `{key}` is repeated")]
     Twice {
         /// Counted from 1.
         line: usize,
         /// The key.
         key: String,
     },
-    /// There are more or fewer numbers than there should be.
-    #[error("`{key}` has {found} numbers; it should have {expected}")]
+    /// A key has the wrong count of numbers.
+    #[error("`{key}` has {found} numbers; it must have {expected}")]
     Count {
         /// The key.
         key: &'static str,
-        /// How many there are.
+        /// Their count.
         found: usize,
-        /// How many there should be.
+        /// The count that is expected.
         expected: usize,
     },
     /// The file is that of another model.
     #[error("`model_type` is `{0}`, not `MEI`")]
     OtherModel(String),
-    /// A fraction where a whole number should be.
-    #[error("{what} is {value}; it should be whole")]
+    /// A number is not whole.
+    #[error("{what} is {value}; it must be a whole number")]
     NotWhole {
-        /// What it says.
+        /// The meaning of the number.
         what: &'static str,
-        /// What was given.
+        /// The number.
         value: f64,
     },
-    /// A number that no camera has.
-    #[error("{what} is {value}; it should lie between {low} and {high}")]
+    /// A number is out of range.
+    #[error("{what} is {value}; it must be between {low} and {high}")]
     OutOfRange {
-        /// What it says.
+        /// The meaning of the number.
         what: &'static str,
-        /// What was given.
+        /// The number.
         value: f64,
-        /// The least that it can be.
+        /// Its least value.
         low: f64,
-        /// The most that it can be.
+        /// Its greatest value.
         high: f64,
     },
-    /// By these numbers, pixels farther from the middle of the image do not look farther out.
-    #[error("by these numbers no floor is seen around the middle of the image")]
+    /// Pixels farther from the middle of the image do not look farther out.
+    #[error("with these numbers no floor is seen around the middle of the image")]
     NoView,
 }
 
-/// A number within bounds.
+/// A number in a range.
 pub(super) fn within(
     what: &'static str,
     value: f64,
@@ -131,7 +131,7 @@ pub(super) fn side_of_image(what: &'static str, side: f64) -> Result<u32, Optics
     }
 }
 
-/// A word of a file as an error shows it: its beginning, in one line.
+/// The beginning of a word in one line, for errors.
 pub(super) fn shown(word: &str) -> String {
     let beginning: String = word.chars().take(40).collect();
     let escaped = beginning.escape_debug().to_string();

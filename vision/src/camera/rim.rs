@@ -1,11 +1,11 @@
-//! The mirror's rim in images: the circle inside of which it is brighter than outside.
+//! The mirror's rim in images: a circle that is brighter inside than outside.
 //!
-//! What the mirror shows changes from image to image, its rim does not: so the images are averaged,
-//! which leaves of the scene little but its mean brightness. In that, first coarsely, the circle is
-//! looked for along which the brightness falls most, outwards (J. Daugman: High confidence visual
-//! recognition of persons by a test of statistical independence. PAMI 1993, equation 1); then, bearing
-//! by bearing, the steepest fall near it, and through those points a circle that heeds none that lie
-//! apart. Of a rim that the image's border crops, the arcs do.
+//! The scene in the mirror changes from image to image, the rim does not. So the images are averaged,
+//! which leaves little of the scene but its mean brightness. The search is coarse first: for the circle
+//! along which the brightness falls most, outwards (J. Daugman: High confidence visual recognition of
+//! persons by a test of statistical independence. PAMI 1993, equation 1). Then it takes the steepest
+//! fall near the circle on each bearing, and fits a circle through these points that ignores outliers.
+//! If the image's border crops the rim, arcs are enough.
 
 #![allow(clippy::cast_sign_loss, reason = "places inside of an image are not negative")]
 
@@ -24,11 +24,11 @@ pub struct Rim {
     pub centre: [f64; 2],
     /// Its radius, in pixels.
     pub radius: f64,
-    /// Over which share of the full circle it was seen.
+    /// The share of the full circle that was seen.
     pub seen: f64,
-    /// How far the places at which it was seen are from the circle: root mean square, in pixels.
+    /// The root mean square distance of its points from the circle, in pixels.
     pub spread: f64,
-    /// Those places.
+    /// The points at which it was seen.
     pub places: Vec<[f64; 2]>,
 }
 
@@ -44,15 +44,15 @@ pub enum RimError {
         .found[0], .found[1], .expected[0], .expected[1]
     )]
     Sizes {
-        /// Which image, counted from 1.
+        /// The number of the image, from 1.
         number: usize,
         /// Its width and height.
         found: [u32; 2],
-        /// Those of the first.
+        /// Width and height of the first.
         expected: [u32; 2],
     },
-    /// The images are too small for a mirror in them.
-    #[error("the images are {} by {} pixels, too few to find a mirror in", .0[0], .0[1])]
+    /// The images are too small for a mirror.
+    #[error("the images are {} by {} pixels, too few to find a mirror", .0[0], .0[1])]
     TooSmall([u32; 2]),
     /// No circle is bright inside and dark outside.
     #[error(
@@ -62,22 +62,22 @@ pub enum RimError {
     NoRim,
 }
 
-/// Bearings at which the rim is looked for.
+/// The number of bearings on which the rim is searched for.
 const BEARINGS: usize = 1440;
 
-/// Over which share of the full circle it must be seen.
+/// The least share of the full circle that must be seen.
 const LEAST_SEEN: f64 = 0.25;
 
-/// By how much it must be darker outside than inside, on the mean, of a mean brightness of 64.
+/// How much darker it must be outside than inside, on average, at a mean brightness of 64.
 const LEAST_MEAN_FALL: f64 = 6.0;
 
-/// How near the circle a place is that belongs to it, in pixels.
+/// The greatest distance of a point of the circle from it, in pixels.
 const NEAR: f64 = 1.0;
 
-/// The rim that images of one camera show.
+/// The rim in images of one camera.
 ///
 /// # Errors
-/// If there is none, or the images do not go together.
+/// Returns an error if there is none, or if the images differ in size.
 pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     let mean = Brightness::mean(images)?;
     let coarse = mean.shrunk(mean.width.max(mean.height).div_ceil(160));
@@ -88,14 +88,14 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
         radius: circle.radius * factor,
     };
     let mut places = Vec::new();
-    // As near as the coarse circle must be; then as near as the finer ones are.
+    // How near the circle must be: first the coarse one, then the finer ones.
     for reach in [3.0 * factor.max(2.0), 8.0, 4.0, 4.0] {
         places = mean.falls(&circle, reach);
         circle = circle.through(&places);
     }
     places.retain(|place| circle.off(place).abs() < NEAR);
     let seen = places.len() as f64 / BEARINGS as f64;
-    // Noise has falls everywhere, but not on the whole along a circle.
+    // Noise falls everywhere, but not all along a circle.
     if seen < LEAST_SEEN || mean.mean_fall(&circle) < LEAST_MEAN_FALL {
         return Err(RimError::NoRim);
     }
@@ -109,7 +109,7 @@ pub fn find(images: &[GrayImage]) -> Result<Rim, RimError> {
     })
 }
 
-/// A place at which the brightness falls.
+/// A point at which the brightness falls.
 struct Place {
     at: [f64; 2],
 }
@@ -121,13 +121,12 @@ struct Circle {
 }
 
 impl Circle {
-    /// How far outside of the circle a place is.
+    /// The distance of a point outside of the circle.
     fn off(&self, place: &Place) -> f64 {
         length([place.at[0] - self.centre[0], place.at[1] - self.centre[1]]) - self.radius
     }
 
-    /// The circle that goes best through places of which some do not belong to it: least squares,
-    /// weighted by Tukey's function.
+    /// The circle that fits points with outliers best: least squares, weighted by Tukey's function.
     fn through(self, places: &[Place]) -> Self {
         let mut circle = self;
         for _ in 0..30 {
@@ -168,7 +167,7 @@ struct Brightness {
 }
 
 impl Brightness {
-    /// The mean of images, each first brought to the same mean brightness.
+    /// The mean of images that are first brought to the same mean brightness.
     fn mean(images: &[GrayImage]) -> Result<Self, RimError> {
         let expected = <[u32; 2]>::from(images.first().ok_or(RimError::NoImage)?.dimensions());
         let [width, height] = expected.map(|side| side as usize);
@@ -204,7 +203,7 @@ impl Brightness {
 
     /// The circle along which the brightness falls most, outwards.
     fn steepest_circle(&self) -> Circle {
-        /// A fall by more than this, from one pixel to the next but one, counts no more.
+        /// The greatest fall that counts, over two pixels.
         const STEEP: f32 = 24.0;
         let (width, height) = (self.width, self.height);
         let mut falls = Vec::new();
@@ -238,7 +237,7 @@ impl Brightness {
                 for radius in least as usize..most as usize {
                     let sum = rings[radius - 1..=radius + 1].iter().sum::<f32>();
                     let inside = self.share_inside([u, v], radius);
-                    // What the whole circle would show; but rather a whole circle than an arc.
+                    // Scaled to the whole circle, but with a preference for whole circles over arcs.
                     let score = sum / (radius as f32 * inside.sqrt());
                     if inside >= 0.3 && score > best.0 {
                         let centre = [u as f64, v as f64];
@@ -250,7 +249,7 @@ impl Brightness {
         best.1
     }
 
-    /// Which share of a circle is inside of the image.
+    /// The share of a circle inside of the image.
     fn share_inside(&self, [u, v]: [usize; 2], radius: usize) -> f32 {
         let radius = radius as f32;
         let hidden = |distance: usize| {
@@ -258,7 +257,7 @@ impl Brightness {
             if share < 1.0 { 2.0 * share.acos() } else { 0.0 }
         };
         let sides = [u, v, self.width - 1 - u, self.height - 1 - v];
-        // Corners that two sides hide are counted twice: what is left is an underestimate.
+        // Corners count twice, so this is an underestimate.
         1.0 - sides.map(hidden).iter().sum::<f32>() / std::f32::consts::TAU
     }
 
@@ -280,8 +279,8 @@ impl Brightness {
         Some(upper + (v - row) * (lower - upper))
     }
 
-    /// By how much it is darker just outside of a circle than just inside, on the mean over the bearings
-    /// that are in the image.
+    /// How much darker it is just outside of a circle than just inside, on average over the bearings in
+    /// the image.
     fn mean_fall(&self, circle: &Circle) -> f64 {
         let fall = |bearing: usize| {
             let (sine, cosine) = (TAU * bearing as f64 / BEARINGS as f64).sin_cos();
@@ -299,11 +298,11 @@ impl Brightness {
         falls.iter().sum::<f64>() / falls.len().max(1) as f64
     }
 
-    /// Bearing by bearing, where the brightness falls most steeply near a circle.
+    /// For each bearing, the point at which the brightness falls most steeply near a circle.
     fn falls(&self, circle: &Circle, reach: f64) -> Vec<Place> {
-        /// A fall is the difference between means over so many half pixels.
+        /// A fall is the difference between means over this number of half pixels.
         const WIDE: usize = 5;
-        /// And must be at least so large, of a mean brightness of 64.
+        /// The least fall, at a mean brightness of 64.
         const LEAST: f64 = 3.0;
         let steps = (2.0 * reach) as usize + WIDE;
         let place = |bearing: usize| {
@@ -331,7 +330,7 @@ impl Brightness {
             if fall(steepest) < LEAST || steepest == WIDE || steepest + WIDE + 1 == profile.len() {
                 return None;
             }
-            // Between the half pixels: the top of a parabola.
+            // Interpolated between the half pixels: the top of a parabola.
             let [before, top, after] = [steepest - 1, steepest, steepest + 1].map(fall);
             let curve = before - 2.0 * top + after;
             let shift = if curve < 0.0 { 0.5 * (before - after) / curve } else { 0.0 };

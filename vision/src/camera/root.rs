@@ -1,7 +1,7 @@
-//! Roots, to the last bits.
+//! Roots of functions, to the last bits.
 
-/// Where a function is zero that is not positive at the lower end and positive at the upper, given
-/// with its slope: Newton's steps, and halves of the bracket where they would leave it.
+/// The root of a function with a slope that is not positive at the lower end and positive at the upper:
+/// Newton's steps, or halves of the bracket if a step would leave it.
 pub(super) fn root(
     function: impl Fn(f64) -> (f64, f64),
     [mut low, mut high]: [f64; 2],
@@ -9,7 +9,7 @@ pub(super) fn root(
 ) -> f64 {
     let mut at = if guess > low && guess < high { guess } else { f64::midpoint(low, high) };
     let mut last = high - low;
-    // Newton's steps double the digits, halves add one each: no function takes more than these.
+    // Newton's steps double the digits and halves add one: no function takes more steps.
     for _ in 0..200 {
         let (value, slope) = function(at);
         if value > 0.0 {
@@ -19,10 +19,10 @@ pub(super) fn root(
         }
         let newton = at - value / slope;
         let step = (newton - at).abs();
-        // A step that is not at most half as long as the last gets no nearer than a half would.
+        // A step more than half as long as the last is no better than a half of the bracket.
         if newton >= low && newton <= high && step <= 0.5 * last {
             (at, last) = (newton, step);
-            // The rest is about the square of the step.
+            // The remaining error is about the square of the step.
             if step <= 1e-10 * at.abs() {
                 break;
             }
@@ -37,7 +37,7 @@ pub(super) fn root(
     at
 }
 
-/// The value and the slope of a polynomial, its coefficients from the constant one on.
+/// The value and the slope of a polynomial; the constant coefficient is the first.
 #[inline]
 pub(super) fn polynomial(coefficients: &[f64], at: f64) -> (f64, f64) {
     coefficients.iter().rev().fold((0.0, 0.0), |(value, slope), coefficient| {
@@ -50,7 +50,7 @@ pub(super) fn first_change(coefficients: &[f64], bracket: [f64; 2]) -> Option<f6
     changes(coefficients, bracket).first().copied()
 }
 
-/// Where a polynomial changes its sign: at most once between two changes of its slope's.
+/// The points at which a polynomial changes its sign: at most one between two sign changes of its slope.
 fn changes(coefficients: &[f64], [low, high]: [f64; 2]) -> Vec<f64> {
     if coefficients.len() < 2 {
         return Vec::new();

@@ -1,12 +1,12 @@
 //! The spherical mirror above a camera that looks up, in closed form.
 //!
-//! All of it happens in a plane through the axis. A ray leaves the pinhole at an angle alpha from the
+//! Everything is in a plane through the axis. A ray leaves the pinhole at an angle alpha from the
 //! axis and meets the sphere at an angle theta, seen from the sphere's centre, from its lowest point.
-//! It goes on at psi = alpha + 2 theta from straight down. With R the sphere's radius, d the distance
+//! It is reflected at psi = alpha + 2 theta from straight down. With R the sphere's radius, d the distance
 //! from the pinhole up to its centre and H the height of its centre above the floor:
 //!
-//! * sin(alpha + theta) = (d / R) sin(alpha), the law of sines; here, the same without angles: where the
-//!   ray meets a circle;
+//! * sin(alpha + theta) = (d / R) sin(alpha), the law of sines; in the code, the same without angles: the
+//!   ray's intersection with a circle;
 //! * the floor is met at R sin(theta) + (H - R cos(theta)) tan(psi) from the axis;
 //! * sin(psi) and cos(psi) are as d sin(2 theta) - R sin(theta) to d cos(2 theta) - R cos(theta).
 
@@ -16,38 +16,38 @@ use super::{ViewingRay, length, root::root, scaled_place};
 // paper: hardware.camera
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalMirror {
-    /// Where the axis meets the image, in pixels.
+    /// The point at which the axis meets the image, in pixels.
     pub centre: [f64; 2],
     /// Focal length, in pixels.
     pub focal: f64,
     /// Radius of the sphere, in metres.
     pub mirror_radius: f64,
-    /// From the pinhole up to the sphere's centre, in metres; more than the radius.
+    /// The height of the sphere's centre above the pinhole, in metres; more than the radius.
     pub mirror_distance: f64,
-    /// From the floor up to the pinhole, in metres.
+    /// The height of the pinhole above the floor, in metres.
     pub camera_height: f64,
 }
 
 impl SphericalMirror {
-    /// How far from the centre the mirror ends in the image, in pixels.
+    /// The radius of the mirror's rim in the image, in pixels.
     #[must_use]
     pub fn rim(&self) -> f64 {
         self.focal * (self.mirror_radius / self.mirror_distance).asin().tan()
     }
 
-    /// The focal length with which the mirror ends so many pixels from the centre.
+    /// The focal length for which the rim has this radius in pixels.
     #[must_use]
     pub fn focal_of_rim(rim: f64, mirror_radius: f64, mirror_distance: f64) -> f64 {
         rim / (mirror_radius / mirror_distance).asin().tan()
     }
 
-    /// How far from the centre the horizon is in the image, in pixels: always inside of the rim.
+    /// The radius of the horizon in the image, in pixels. It is always inside of the rim.
     #[must_use]
     pub fn horizon(&self) -> f64 {
         self.radius_at(self.horizon_sine())
     }
 
-    /// How far from the axis the floor is that is seen so many pixels from the centre, in metres;
+    /// The distance from the axis of the floor that is seen this many pixels from the centre, in metres;
     /// `None` from the horizon on.
     #[must_use]
     pub fn range(&self, radius: f64) -> Option<f64> {
@@ -55,13 +55,14 @@ impl SphericalMirror {
         self.ray([u + radius, v])?.floor().map(|[range, _]| range)
     }
 
-    /// How many pixels from the centre the floor is seen that is so far from the axis.
+    /// The distance from the centre, in pixels, at which the floor at this distance from the axis is
+    /// seen.
     #[must_use]
     pub fn radius(&self, range: f64) -> Option<f64> {
         range.is_finite().then(|| self.radius_at(self.sine_of(range.abs())))
     }
 
-    /// The same, with every pixel larger.
+    /// The same camera with an image that is scaled by a factor.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         Self { centre: scaled_place(self.centre, factor), focal: factor * self.focal, ..*self }
     }
@@ -70,7 +71,8 @@ impl SphericalMirror {
     pub(super) fn ray(&self, pixel: [f64; 2]) -> Option<ViewingRay> {
         let [right, top] = [pixel[0] - self.centre[0], self.centre[1] - pixel[1]];
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
-        // From the pinhole, as (from the axis, up): the ray, and where it meets the sphere.
+        // In coordinates from the pinhole (away from the axis, up): the ray, and its intersection with
+        // the sphere.
         let from_centre = length([right, top]);
         let focal_ray = length([from_centre, self.focal]);
         let along = distance * self.focal / focal_ray;
@@ -80,13 +82,13 @@ impl SphericalMirror {
         }
         let share = (along - half_chord.sqrt()) / focal_ray;
         let [at, up] = [share * from_centre, share * self.focal];
-        // What is mirrored goes on at alpha + 2 theta.
+        // The reflected ray has the angle alpha + 2 theta.
         let (sine, cosine) = (at / radius, (distance - up) / radius);
         let (twice_sine, twice_cosine) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
         let scale = 1.0 / (share * focal_ray);
         let out = scale * (at * twice_cosine + up * twice_sine);
         let down = scale * (up * twice_cosine - at * twice_sine);
-        // The middle of the image looks along the axis, in no direction.
+        // The middle of the image looks along the axis, so it has no azimuth.
         let level = if from_centre > 0.0 { 1.0 / from_centre } else { 0.0 };
         let [right, top] = [level * right, level * top];
         Some(ViewingRay {
@@ -105,12 +107,12 @@ impl SphericalMirror {
         Some([self.centre[0] + scale * right, self.centre[1] - scale * top])
     }
 
-    /// How high above the floor the sphere's centre is.
+    /// The height of the sphere's centre above the floor.
     fn height(&self) -> f64 {
         self.camera_height + self.mirror_distance
     }
 
-    /// The pixels from the centre at an angle theta, by its sine.
+    /// The distance from the centre, in pixels, at an angle theta given by its sine.
     fn radius_at(&self, sine: f64) -> f64 {
         let up = self.mirror_distance - self.mirror_radius * (1.0 - sine * sine).sqrt();
         self.focal * self.mirror_radius * sine / up
@@ -124,10 +126,10 @@ impl SphericalMirror {
         (1.0 - cosine * cosine).sqrt()
     }
 
-    /// The sine of the angle theta at which the floor is seen that is so far from the axis.
+    /// The sine of the angle theta at which the floor at this distance from the axis is seen.
     ///
-    /// The range grows with theta, without end at the horizon. So theta is the one root of what the
-    /// range lacks, times cos(psi), between straight down and the horizon.
+    /// The distance grows with theta, to infinity at the horizon. So theta is the only root of the
+    /// difference from the given distance, times cos(psi), between straight down and the horizon.
     fn sine_of(&self, range: f64) -> f64 {
         let (radius, distance) = (self.mirror_radius, self.mirror_distance);
         let lack = |sine: f64| {
@@ -143,7 +145,7 @@ impl SphericalMirror {
                 + height * (2.0 * distance * twice_cosine - radius * cosine);
             (at * down + height * out, by_angle / cosine)
         };
-        // As if the view were from one point, and the mirror everywhere as at its lowest point.
+        // A first guess: a single viewpoint, and a mirror that is flat like its lowest point.
         let viewpoint = self.height() - 0.5 * radius;
         let half_tangent = range / (viewpoint + length([viewpoint, range]));
         let half_sine = half_tangent / length([1.0, half_tangent]);

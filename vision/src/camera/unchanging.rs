@@ -1,10 +1,11 @@
-//! What never changes in images from several places: the robot's body, struts, the lens, the rim.
+//! The pixels that never change in images from several places: the robot's body, struts, the lens, the
+//! rim.
 //!
-//! Brightness says little: floor is as uniform as a body, and a body is brighter near a lamp. Edges
-//! say more: those of the robot are in the same place in every image, those of the building nowhere
-//! twice. So: the edges that all images have; what they enclose, if nothing in it changes; and that
-//! tidied up. A strut is a thin rod beside the axis, so it hides the same few bearings all the way
-//! out; it may be as dark as the walls behind it, but not along all of its length and in most images.
+//! Brightness does not help: floor is as uniform as a body, and a body is brighter near a lamp. Edges
+//! do: those of the robot are in the same place in every image, those of the building are not. So the
+//! result is the edges that all images have, and the areas inside them in which nothing changes, with
+//! small pieces removed. A strut is a thin rod beside the axis, so it hides the same few bearings at
+//! every range. It may be as dark as the walls behind it, but not along all its length in most images.
 
 #![allow(clippy::cast_sign_loss, reason = "sizes are not negative")]
 
@@ -19,37 +20,37 @@ use thiserror::Error;
 
 use super::{Mask, length, rim::Rim};
 
-/// Why images show nothing that never changes, or nothing else.
+/// Why the pixels that never change cannot be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum UnchangingError {
     /// Too few images.
     #[error(
-        "{0} images are too few to tell what never changes; take at least {least}, from different \
+        "{0} images are too few to find what never changes; take at least {least}, from different \
          places",
         least = FEWEST
     )]
     TooFew(usize),
     /// The images are all the same.
     #[error(
-        "nearly nothing changes from image to image; take them from different places, looking \
-         different ways"
+        "almost nothing changes from image to image; take them from different places and in \
+         different directions"
     )]
     Still,
 }
 
-/// How many images it takes.
+/// The least number of images.
 pub const FEWEST: usize = 4;
 
-/// Larger images are looked at in squares of pixels, so that they are no longer than this.
+/// The longest side in pixels. Larger images are reduced.
 const LONGEST: u32 = 640;
 
-/// Where inside of the rim something changes in the images: the floor can be seen there, or a wall.
+/// The mask of the pixels inside the rim that change: they can show floor or walls.
 ///
 /// The images must be of the same size. For each of them, and for each of at most 640 by 640 pixels, it
 /// takes some 40 bytes of memory.
 ///
 /// # Errors
-/// If they are too few, or all the same.
+/// Returns an error if there are too few images, or if they are all the same.
 pub fn mask(file: &str, images: &[RgbImage], rim: &Rim) -> Result<Mask, UnchangingError> {
     if images.len() < FEWEST {
         return Err(UnchangingError::TooFew(images.len()));
@@ -76,7 +77,7 @@ struct Disc {
 }
 
 impl Disc {
-    /// Whether a pixel is inside of it, and not at its border.
+    /// Whether a pixel is inside of it and not at its border.
     fn holds(&self, u: u32, v: u32) -> bool {
         let off = [f64::from(u) - self.centre[0], f64::from(v) - self.centre[1]];
         length(off) < self.radius - 1.5
@@ -88,7 +89,7 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     let (width, height) = (slopes[0].width, slopes[0].height);
     let changes = Changes::between(slopes);
     let struts = Struts::in_all(slopes, disc);
-    // The edges' own surroundings belong to them.
+    // The pixels around edges belong to them.
     let edges = dilate(&close(&changes.stay, Norm::L2, 2), Norm::L2, 1);
     let free = binary(width, height, |u, v| {
         disc.holds(u, v) && edges.get_pixel(u, v)[0] == 0 && !struts.hide(u, v, disc)
@@ -111,39 +112,39 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     if count < LEAST_SEEN * all { Err(UnchangingError::Still) } else { Ok(seen) }
 }
 
-/// Which share of the pixels of a piece must change, somewhen.
+/// The least share of a piece's pixels that change in some image.
 const LEAST_CHANGING: f64 = 0.04;
 
-/// A piece of the mirror that is smaller than this share of it shows nothing that is of use.
+/// Pieces with a smaller share of the mirror are ignored.
 const SMALL: f64 = 0.01;
 
-/// Which share of the mirror must be seen.
+/// The least share of the mirror that must be seen.
 const LEAST_SEEN: f64 = 0.3;
 
 fn binary(width: u32, height: u32, is: impl Fn(u32, u32) -> bool) -> GrayImage {
     GrayImage::from_fn(width, height, |u, v| Luma([if is(u, v) { 255 } else { 0 }]))
 }
 
-/// How the logarithms of an image's red, green and blue rise, to the right and down: no gain changes
-/// that.
+/// The slopes of the logarithms of an image's red, green and blue, to the right and down. No gain
+/// changes them.
 struct Slopes {
     width: u32,
     height: u32,
     /// For each channel to the right, and then down.
     rises: Vec<[f32; 6]>,
-    /// How large they are by noise alone.
+    /// The size of slopes that are only noise.
     noise: Vec<f32>,
 }
 
 impl Slopes {
     fn of(image: &RgbImage, factor: u32) -> Self {
-        /// Added to the brightness, so that black is not endlessly dark.
+        /// Added to the brightness, so that its logarithm is finite.
         const BLACK: f32 = 8.0;
-        /// Of the smoothing, in pixels.
+        /// The sigma of the smoothing, in pixels.
         const SIGMA: f32 = 1.0;
         let image = shrunk(image, factor);
         let (width, height) = image.dimensions();
-        // Of a slope in what was smoothed, by noise in what was not; of six.
+        // The noise of a slope after smoothing, from the noise before it; there are six slopes.
         let share =
             6.0_f32.sqrt() * noise(&image) / (SIGMA * SIGMA * (8.0 * std::f32::consts::PI).sqrt());
         let logarithms = ImageBuffer::from_fn(width, height, |u, v| {
@@ -165,7 +166,7 @@ impl Slopes {
         Self { width, height, rises, noise }
     }
 
-    /// How each channel rises from one bearing to the next, on the mean over all radii.
+    /// The slope of each channel from one bearing to the next, on average over all radii.
     fn across(&self, bearing: usize, disc: &Disc) -> [f32; 3] {
         let angle = std::f64::consts::TAU * (bearing as f64 + 0.5) / Struts::BEARINGS as f64;
         let (sine, cosine) = angle.sin_cos();
@@ -207,8 +208,8 @@ fn shrunk(image: &RgbImage, factor: u32) -> Colours {
     })
 }
 
-/// The standard deviation of an image's noise, in green: what a pixel differs from the mean of its
-/// neighbours, in most places.
+/// The standard deviation of an image's noise, in green, from the median difference between a pixel and
+/// the mean of its neighbours.
 fn noise(image: &Colours) -> f32 {
     let (width, height) = image.dimensions();
     let at = |u: u32, v: u32| image.get_pixel(u, v)[1];
@@ -223,7 +224,8 @@ fn noise(image: &Colours) -> f32 {
         return 1.0;
     }
     let (_, median, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
-    // A difference of four and one times the noise is sqrt(20) as large. Rounding is noise too.
+    // The difference between four times a pixel and its four neighbours has sqrt(20) times the noise.
+    // Rounding is noise, too.
     (*median * 1.4826 / 20.0_f32.sqrt()).max(0.3)
 }
 
@@ -234,9 +236,9 @@ struct Struts {
 
 impl Struts {
     const BEARINGS: usize = 2048;
-    /// From which share of the rim's radius to which it is looked for them.
+    /// The radii at which they are searched for, as shares of the rim's.
     const REACH: [f64; 2] = [0.25, 0.97];
-    /// The most bearings that one hides: about seven degrees.
+    /// The most bearings that one strut hides: about seven degrees.
     const WIDEST: usize = 40;
 
     /// The struts that are in most of the images.
@@ -258,17 +260,17 @@ impl Struts {
         struts
     }
 
-    /// The struts in one channel, by how it rises from bearing to bearing.
+    /// The struts in one channel, from its slopes from bearing to bearing.
     fn add(&mut self, rises: &[f32]) {
         let mut sizes: Vec<f32> = rises.iter().map(|rise| rise.abs()).collect();
         sizes.sort_by(f32::total_cmp);
         let steep = (8.0 * sizes[sizes.len() / 2]).max(0.004);
-        // Where it gets darker, and then as bright again; or the other way round.
+        // It gets darker and then as bright again, or the other way round.
         for (from, &rise) in rises.iter().enumerate().filter(|(_, rise)| rise.abs() > steep) {
             let back = (1..=Self::WIDEST)
                 .rev()
                 .find(|step| -rise.signum() * rises[(from + step) % Self::BEARINGS] > steep);
-            // And a little on both sides.
+            // With a margin on both sides.
             for step in 0..back.map_or(0, |back| back + 3) {
                 self.hidden[(from + Self::BEARINGS + step - 1) % Self::BEARINGS] = true;
             }
@@ -283,11 +285,11 @@ impl Struts {
     }
 }
 
-/// What stays and what moves.
+/// Edges that stay and edges that move.
 struct Changes {
-    /// Edges that are in nearly all images, and alike.
+    /// Edges that are the same in nearly all images.
     stay: GrayImage,
-    /// Edges that are in some.
+    /// Edges in some images.
     moved: GrayImage,
 }
 
@@ -313,7 +315,7 @@ impl Changes {
                 let dot: f32 = mean.iter().zip(slopes.rises[at]).map(|(a, b)| a * b).sum();
                 *along = dot / steep.max(1e-9);
             }
-            // One image of five may be otherwise.
+            // One image in five may differ.
             along.sort_by(f32::total_cmp);
             let low = along[slopes.len() / 5];
             if steep > STEEP.max(4.0 * noise * share.sqrt()) && low > 0.4 * steep {

@@ -1,10 +1,10 @@
-//! The few values that we need of a YAML file.
+//! Values of a YAML file, as far as calibrations need them.
 
 use saphyr_parser::{Event, Parser};
 
 use super::optics_file::{OpticsFileError, shown};
 
-/// Values by the keys that lead to them, joined by points.
+/// Values by their keys; nested keys are joined by points.
 pub(super) struct Values {
     found: Vec<Value>,
 }
@@ -12,23 +12,22 @@ pub(super) struct Values {
 struct Value {
     key: &'static str,
     line: usize,
-    /// One, or those of a list.
+    /// A word, or the words of a list.
     words: Vec<String>,
 }
 
-/// What the parser is in: a mapping, under a key once that is read, or a list.
+/// What the parser is in: a mapping, under the key that was read last, or a list.
 enum Inside {
     Mapping(Option<String>),
     List,
 }
 
-/// How many keys lead to a value that we need, at most.
+/// The greatest depth of a key.
 const DEPTH: usize = 2;
 
-/// Reads the values, each a word or a list of words, that stand under known keys. Aliases are not
-/// followed, tags not heeded.
+/// Reads the values of known keys, each a word or a list of words. Aliases and tags are ignored.
 pub(super) fn values(text: &str, known: &[&'static str]) -> Result<Values, OpticsFileError> {
-    // OpenCV begins its files with a directive that is none in YAML; older ones go on without `---`.
+    // OpenCV's files begin with a directive that is not YAML; in older ones no `---` follows.
     let first = text.lines().next().unwrap_or_default();
     let rest = if first.starts_with("%YAML:") { &text[first.len()..] } else { text };
     let mut reading = Reading { path: Vec::new(), found: Vec::new(), known };
@@ -47,7 +46,7 @@ pub(super) fn values(text: &str, known: &[&'static str]) -> Result<Values, Optic
                 reading.begin(Inside::List, line)?;
                 reading.end();
             }
-            // The first document only.
+            // Only the first document.
             Event::DocumentEnd => break,
             _ => {}
         }
@@ -62,7 +61,7 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// A word is a key, or a value, or one of a list.
+    /// A word is a key, a value, or an item of a list.
     fn word(&mut self, word: &str, line: usize) -> Result<(), OpticsFileError> {
         if let Some(Inside::Mapping(key @ None)) = self.path.last_mut() {
             *key = Some(word.to_owned());
@@ -104,7 +103,7 @@ impl Reading<'_> {
         }
     }
 
-    /// The known key under which the parser is: in mappings, and perhaps in a list in them.
+    /// The known key that the parser is under: in mappings, perhaps in a list in them.
     fn known_key(&self) -> Option<&'static str> {
         let lists = usize::from(matches!(self.path.last(), Some(Inside::List)));
         let mappings = &self.path[..self.path.len() - lists];
@@ -132,12 +131,12 @@ impl Values {
         self.get(key).is_some()
     }
 
-    /// The word under a key, if there is one.
+    /// The word of a key, if there is one.
     pub(super) fn text(&self, key: &str) -> Option<&str> {
         self.get(key)?.words.first().map(String::as_str)
     }
 
-    /// As many numbers as there should be under a key.
+    /// The numbers of a key, of which there must be `COUNT`.
     pub(super) fn numbers<const N: usize>(
         &self,
         key: &'static str,
