@@ -149,7 +149,7 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["check", "--max-states", "5"], "--max-states: this goes with --choices all"),
         (&["explore", WORLD, "--max-states", "5"], "--max-states: this goes with --choices all"),
         (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
-        (&["explore", WORLD, "--start", "corner"], "--start: `corner` is no start"),
+        (&["explore", WORLD, "--start", "corner"], "--start: `corner` is not a start"),
         (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),
         (
             &["explore", WORLD, "--start", "corner:sw"],
@@ -160,7 +160,7 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["compare", WORLD, WORLD, "--marker", "chalk"], "[possible values: none, undirected,"),
         (&["draw", WORLD, "--marker", "chalk"], "invalid value 'chalk' for '--marker <KIND>'"),
         (&["counterexample", "--marker", "chalk"], "two-identical, two-distinct, movable]"),
-        (&["compare", WORLD, WORLD, "--start", "corner"], "--start: `corner` is no start"),
+        (&["compare", WORLD, WORLD, "--start", "corner"], "--start: `corner` is not a start"),
         (
             &["compare", WORLD, WORLD, "--start", "corner:sw"],
             "`corner` has no neighbour `sw`; it has",

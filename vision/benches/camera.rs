@@ -1,4 +1,4 @@
-//! How long a camera takes for every pixel of the ground view: 640,000 of them, once at the start.
+//! The time of a camera for all 640,000 pixels of the ground view, which are computed once at the start.
 
 use std::{fs, path::Path};
 

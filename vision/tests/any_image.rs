@@ -1,5 +1,5 @@
-//! Whatever an image shows, sensing tells a scene, and the same each time: buildings in pieces, lamps
-//! and posters anywhere, noise.
+//! For any image, sensing finds a scene, and the same one each time: buildings in pieces, lamps and posters
+//! anywhere, noise.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -12,7 +12,7 @@ use toposlam_vision::{annotate, camera::Camera, colour::ColourModel, sensing::Se
 
 const SIZE: [u32; 2] = [160, 120];
 
-/// Floor, stripe, marker and wall, as these colours have them.
+/// Floor, stripe, marker and wall in these colours.
 const COLOURS: [[u8; 3]; 4] = [[104, 106, 110], [232, 231, 224], [205, 35, 140], [150, 120, 80]];
 const MODEL: &str = include_str!("../../fuzz/corpus/colours/of-the-images");
 
@@ -21,16 +21,16 @@ static SENSOR: LazyLock<Sensor> = LazyLock::new(|| {
     Sensor::new(&Camera::superscout().sized(SIZE), &colours)
 });
 
-/// What is painted over an image.
+/// A patch that is painted over an image.
 #[derive(Clone, Debug)]
 enum Patch {
-    /// From a corner to another.
+    /// A rectangle from one corner to another.
     Rectangle { from: [u32; 2], to: [u32; 2], colour: [u8; 3] },
-    /// All that is farther from the middle.
+    /// Everything farther from the middle.
     Beyond { radius: f64, colour: [u8; 3] },
-    /// All that is seen between two bearings.
+    /// Everything between two bearings.
     Sector { from: f64, wide: f64, colour: [u8; 3] },
-    /// Every so many pixels.
+    /// Single pixels at regular distances.
     Specks { step: usize, colour: [u8; 3] },
 }
 
@@ -89,7 +89,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
 
     #[test]
-    fn a_scene_of_numbers_is_told_of_any_image(patches in vec(any_patch(), 0..14)) {
+    fn any_image_has_a_scene_of_finite_numbers(patches in vec(any_patch(), 0..14)) {
         let image = painted(&patches);
         let mut sensor = SENSOR.clone();
         let scene = sensor.sense(&image).unwrap();
@@ -116,7 +116,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(100) })]
 
     #[test]
-    fn the_steps_of_sensing_are_drawn_of_any_image(patches in vec(any_patch(), 0..14)) {
+    fn the_steps_of_sensing_are_drawn_for_any_image(patches in vec(any_patch(), 0..14)) {
         let image = painted(&patches);
         let mut sensor = SENSOR.clone();
         let scene = sensor.sense(&image).unwrap();

@@ -1,4 +1,4 @@
-//! Calibration files: what is wrong with one is told in one message, and no bytes break the reader.
+//! Calibration files: an error has one message, and no bytes break the reader.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -19,24 +19,24 @@ fn text(name: &str) -> String {
     String::from_utf8(file(name)).unwrap()
 }
 
-/// Reads a calibration whose every named file is this.
+/// Reads a calibration; each file that it names has these bytes.
 fn read(calibration: &[u8], named: &[u8]) -> Result<Camera, CalibrationError> {
     calibration::read(calibration, &mut |_| Ok(named.to_vec()))
 }
 
-/// A text in which one thing is another.
+/// A text in which one part is replaced.
 fn changed(text: &str, from: &str, to: &str) -> String {
     assert_eq!(text.matches(from).count(), 1, "{from}");
     text.replace(from, to)
 }
 
 #[test]
-fn the_design_pages_calibration_is_the_superscouts() {
+fn the_default_camera_has_the_superscouts_calibration() {
     assert_eq!(read(&file("superscout.toml"), b"").unwrap(), Camera::superscout());
 }
 
 #[test]
-fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
+fn an_error_in_a_calibration_has_its_place() {
     let toml = text("superscout.toml");
     let cases = [
         (
@@ -131,7 +131,7 @@ fn what_is_wrong_with_a_calibration_is_told_with_its_place() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_that_a_calibration_names_is_told_with_both_names() {
+fn an_error_in_a_file_that_a_calibration_names_has_both_names() {
     let toml = changed(&text("superscout.toml"), "[camera]", "[camera]\nmask = \"m.png\"");
     let gone = calibration::read(toml.as_bytes(), &mut |_| Err(io::ErrorKind::NotFound.into()));
     let message = "camera.mask: m.png: cannot be read: entity not found";
@@ -147,7 +147,7 @@ fn what_is_wrong_with_a_file_that_a_calibration_names_is_told_with_both_names() 
 }
 
 #[test]
-fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
+fn an_error_in_ocamcalibs_file_has_its_line() {
     let (toml, results) = (text("ocamcalib.toml"), text("calib_results.txt"));
     let refusal = |from: &str, to: &str| {
         let named = changed(&results, from, to);
@@ -213,7 +213,7 @@ fn what_is_wrong_with_ocamcalibs_file_is_told_with_its_line() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
+fn an_error_in_a_file_of_the_unified_model_has_its_line_or_key() {
     let (toml, yaml) = (text("camodocal.toml"), text("camodocal.yaml"));
     let refusal = |from: &str, to: &str| {
         let named = changed(&yaml, from, to);
@@ -271,7 +271,7 @@ fn what_is_wrong_with_a_file_of_the_unified_model_is_told() {
 }
 
 #[test]
-fn opencvs_header_may_be_yamls_or_its_own_with_or_without_a_line_after_it() {
+fn opencvs_header_may_be_that_of_yaml_or_its_own() {
     let (toml, yaml) = (text("camodocal.toml"), text("camodocal.yaml"));
     let camera = read(toml.as_bytes(), yaml.as_bytes()).unwrap();
     for header in ["%YAML:1.0\n", "%YAML:1.0\n\n", "%YAML 1.0\n---\n", "---\n", "", "# camera\n"] {
@@ -299,7 +299,7 @@ const SAMPLES: [(&str, &str); 4] = [
     ("omnidir.toml", "omnidir.yml"),
 ];
 
-/// Asks a camera, if there is one, for what it says near and far, which must be numbers.
+/// Checks that a camera, if there is one, gives finite numbers near and far.
 fn asked(read: Result<Camera, CalibrationError>) -> Result<(), TestCaseError> {
     let camera = match read {
         Ok(camera) => camera,

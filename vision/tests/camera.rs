@@ -1,4 +1,4 @@
-//! Cameras: which point of the floor a pixel shows, for each kind of calibration file.
+//! Cameras: the point of the floor that a pixel shows, for each kind of calibration file.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -20,7 +20,7 @@ fn camera(name: &str) -> Camera {
     calibration::read(&file(name).unwrap(), &mut file).unwrap()
 }
 
-/// The camera of a text, and of another that it names.
+/// The camera of a calibration, given with the file that it names.
 fn camera_of(text: &str, named: &str) -> Result<Camera, CalibrationError> {
     calibration::read(text.as_bytes(), &mut |_| Ok(named.as_bytes().to_vec()))
 }
@@ -29,7 +29,7 @@ fn apart(one: [f64; 2], other: [f64; 2]) -> f64 {
     (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
-/// A camera's own mirror.
+/// The mirror of a camera.
 fn mirror(camera: &Camera) -> SphericalMirror {
     match camera.optics {
         OpticsModel::SphericalMirror(mirror) => mirror,
@@ -37,8 +37,8 @@ fn mirror(camera: &Camera) -> SphericalMirror {
     }
 }
 
-/// What a pixel on the mirror shows, traced: from the pinhole at the origin to the sphere's surface,
-/// mirrored at its normal, to the floor.
+/// The floor that a pixel on the mirror shows, by ray tracing: from the pinhole at the origin to the
+/// sphere's surface, reflected there, to the floor.
 fn traced(mirror: &SphericalMirror, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     type Vector = nalgebra::Vector3<f64>;
     let out = Vector::new(u - mirror.centre[0], mirror.centre[1] - v, mirror.focal).normalize();
@@ -54,9 +54,9 @@ fn traced(mirror: &SphericalMirror, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
 
 // paper: hardware.height
 #[test]
-fn the_superscouts_next_pixel_outwards_shows_floor_so_many_centimetres_farther() {
+fn the_superscouts_pixels_cover_the_expected_centimetres_of_floor() {
     let mirror = mirror(&Camera::superscout());
-    // The facts page's table, to a tenth and a bit.
+    // Published values, which are rounded to a tenth.
     for (range, table) in [(0.5, 0.5), (1.0, 0.9), (2.0, 2.4), (3.0, 5.2), (4.0, 9.2)] {
         let next = mirror.range(mirror.radius(range).unwrap() + 1.0).unwrap();
         let covered = 100.0 * (next - range);
@@ -69,7 +69,7 @@ fn the_superscouts_next_pixel_outwards_shows_floor_so_many_centimetres_farther()
 
 // paper: hardware.camera
 #[test]
-fn the_mirror_shows_what_tracing_its_rays_shows() {
+fn the_mirror_agrees_with_ray_tracing() {
     let camera = Camera { seen_from: SeenFrom::Above, ahead: 0.0, ..Camera::superscout() };
     let mirror = mirror(&camera);
     let mut most: f64 = 0.0;
@@ -89,8 +89,8 @@ fn the_mirror_shows_what_tracing_its_rays_shows() {
 }
 
 #[test]
-fn the_mirror_shows_what_its_closed_form_says() {
-    // The facts page's, with its angles.
+fn the_mirror_agrees_with_the_closed_form() {
+    // The closed form with angles.
     let mirror = mirror(&Camera::superscout());
     let height = mirror.camera_height + mirror.mirror_distance;
     for radius in (1..4250).map(|tenth| f64::from(tenth) / 10.0) {
@@ -166,7 +166,7 @@ fn other_tools_calibrations_of_the_superscout_agree_with_its_mirror() {
 }
 
 #[test]
-fn ahead_is_where_it_is_said_to_be_and_the_left_on_the_side_from_which_it_is_seen() {
+fn ahead_and_left_are_as_in_the_calibration() {
     for name in ["superscout.toml", "ocamcalib.toml", "camodocal.toml"] {
         let text = String::from_utf8(file(name).unwrap()).unwrap();
         // Ahead at the top: left is on the right when seen from below, on the left from above.
@@ -230,12 +230,12 @@ fn without_a_mask_the_floor_is_seen_from_where_the_body_ends() {
     };
     assert!(!sees([0.0, 0.0]) && !sees([0.31, 0.0]) && !sees([0.0, -0.31]));
     assert!(sees([0.33, 0.0]) && sees([0.0, -0.33]) && sees([-2.0, 1.0]));
-    // The corner is beyond the mirror, what follows beyond the image.
+    // The corner is outside of the mirror, the next pixel outside of the image.
     assert!(!camera.sees([0, 0]) && !camera.sees([1280, 480]) && !camera.sees([640, u32::MAX]));
 }
 
 #[test]
-fn a_mask_tells_where_the_floor_is_seen() {
+fn a_mask_gives_the_pixels_in_which_the_floor_is_seen() {
     let all = vec![true; 1280 * 960];
     let hidden = 300 * 1280 + 500;
     let seen = (0..all.len()).map(|pixel| pixel != hidden).collect();
@@ -266,7 +266,7 @@ fn an_image_twice_as_large_shows_the_same_in_twice_as_many_pixels() {
     }
 }
 
-/// Calibrations with a spherical mirror, and those that leave out what is optional.
+/// Calibrations with a spherical mirror, with and without optional keys.
 fn spherical() -> impl Strategy<Value = (String, String)> {
     let optics = (100.0..4000.0, 0.01..0.3, 1.2..6.0, 0.2..2.0);
     (optics, centre(), pose()).prop_map(|((focal, radius, farther, height), [u, v], pose)| {
@@ -280,8 +280,8 @@ fn spherical() -> impl Strategy<Value = (String, String)> {
     })
 }
 
-/// Calibrations by OCamCalib: polynomials as mirrors and fisheyes have them, affine distortion, and
-/// an inverse that is about right, or wrong.
+/// Calibrations by OCamCalib: polynomials of mirrors and fisheyes, affine distortion, and an inverse
+/// that is roughly right or wrong.
 fn ocamcalib() -> impl Strategy<Value = (String, String)> {
     let polynomial = (100.0..600.0_f64, 0.2..1.2, -0.2..0.2, -0.1..0.2);
     let affine = (0.95..1.05, -0.02..0.02, -0.02..0.02);
@@ -380,7 +380,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
-    fn a_spherical_mirror_shows_floor_and_pixel_each_by_the_other(
+    fn a_spherical_mirror_maps_pixels_to_floor_and_back(
         (text, named) in spherical(), pixel in pixel(), ground in ground(),
     ) {
         let camera = camera_of(&text, &named).unwrap();
@@ -392,7 +392,7 @@ proptest! {
     }
 
     #[test]
-    fn ocamcalibs_camera_shows_floor_and_pixel_each_by_the_other(
+    fn ocamcalibs_camera_maps_pixels_to_floor_and_back(
         (text, named) in ocamcalib(), pixel in pixel(), ground in ground(),
     ) {
         let camera = camera_of(&text, &named).unwrap();
@@ -400,7 +400,7 @@ proptest! {
     }
 
     #[test]
-    fn the_unified_camera_shows_floor_and_pixel_each_by_the_other(
+    fn the_unified_camera_maps_pixels_to_floor_and_back(
         (text, named) in mei(), pixel in pixel(), ground in ground(),
     ) {
         let camera = camera_of(&text, &named).unwrap();

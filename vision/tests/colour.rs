@@ -1,4 +1,4 @@
-//! The classifier of colours on pictures made of a few colours, under many lights.
+//! The colour classifier on pictures of a few colours, in many kinds of light.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 #![allow(clippy::cast_sign_loss, reason = "levels are never negative")]
@@ -17,7 +17,7 @@ use toposlam_vision::{
 
 static CAMERA: LazyLock<Camera> = LazyLock::new(Camera::superscout);
 static VIEW: LazyLock<TrainingView> = LazyLock::new(|| TrainingView::new(&CAMERA));
-/// What the floor point is that each pixel shows.
+/// The point of the floor that each pixel shows.
 static GROUND: LazyLock<Vec<Option<[f64; 2]>>> = LazyLock::new(|| {
     let [width, height] = CAMERA.image;
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v].map(f64::from)));
@@ -44,24 +44,24 @@ fn class(ground: [f64; 2]) -> PixelClass {
     }
 }
 
-/// The light that a level tells.
+/// The light of a level.
 fn srgb_light(level: f64) -> f64 {
     ((level / 255.0 + 0.055) / 1.055).powf(2.4)
 }
 
-/// Chance, the same each time: from -1 to 1.
+/// A random number from -1 to 1, always from the same seed.
 fn chance(seed: u64, nth: u64) -> f64 {
     let mut mixed = (seed << 40 ^ nth).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     mixed = (mixed ^ mixed >> 31).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// How a picture is taken.
+/// The light of a picture.
 #[derive(Clone, Copy, Debug)]
 struct Taken {
-    /// By what the colours are multiplied.
+    /// The factors of the colours.
     light: [f64; 3],
-    /// By how many levels they differ at most.
+    /// The greatest noise, in levels.
     noise: f64,
     seed: u64,
 }
@@ -85,7 +85,7 @@ fn taken(Taken { light, noise, seed }: Taken) -> (RgbImage, RgbImage) {
 
 const LIGHTS: [[f64; 3]; 4] = [[1.0; 3], [0.6, 0.62, 0.7], [1.1, 1.05, 0.8], [0.8, 0.9, 0.5]];
 
-/// What is learned from pictures under all lights but one.
+/// The model that is learned from pictures in all lights but one.
 fn trained_without(left_out: usize) -> Training {
     let mut training = Training::new(TAPE);
     for (seed, &light) in LIGHTS.iter().enumerate().filter(|(nth, _)| *nth != left_out) {
@@ -97,7 +97,7 @@ fn trained_without(left_out: usize) -> Training {
 
 static TRAINED: LazyLock<ColourModel> = LazyLock::new(|| trained_without(9).model().unwrap());
 
-/// Which share of each class is recognised.
+/// The share of each class that is recognised.
 fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
     let table = model.table();
     let lit = table.lit(gain);
@@ -114,7 +114,7 @@ fn recalls(model: &ColourModel, image: &RgbImage, gain: Gain) -> [f64; 4] {
 
 // paper: sense.classify
 #[test]
-fn colours_are_recognised_under_a_light_that_was_never_seen() {
+fn colours_are_recognised_in_new_light() {
     let ring = FloorRing::new(&CAMERA);
     for (left_out, &light) in LIGHTS.iter().enumerate() {
         let model = trained_without(left_out).model().unwrap();
@@ -140,7 +140,7 @@ fn a_colour_that_no_class_has_is_unknown() {
     for colour in [[0, 255, 0], [0, 0, 255], [255, 255, 0], [20, 90, 30], [0, 0, 0]] {
         assert_eq!(lit.class(colour), PixelClass::Unknown, "{colour:?}");
     }
-    // In the light to which images are brought.
+    // In the light of the model.
     let gain = [0, 1, 2]
         .map(|channel| srgb_light(TRAINED.floor[channel]) / srgb_light(COLOURS[0][channel]));
     let lit = table.lit(Gain(gain));
@@ -148,8 +148,8 @@ fn a_colour_that_no_class_has_is_unknown() {
     assert_eq!(seen, PixelClass::LEARNED);
 }
 
-/// A picture in which floor and tape mix at the tape's edges, and, if it is so, a patch of floor in the
-/// shade has the colour of their mixture; and its labels.
+/// A picture in which floor and tape mix at the tape's edges, and its labels. On request a patch of floor
+/// in the shade has the colour of the mixture.
 fn blurred(shade: bool) -> (RgbImage, RgbImage) {
     let (mut image, labels) = taken(Taken { light: [1.0; 3], noise: 0.0, seed: 0 });
     let [width, height] = CAMERA.image;
@@ -180,8 +180,8 @@ fn a_mixture_at_a_stripes_edge_is_the_stripe_unless_floor_has_its_colour() {
         let mut training = Training::new(TAPE);
         training.add(&CAMERA, &image, &labels).unwrap();
         let model = training.model().unwrap();
-        let told = model.table().lit(Gain([1.0; 3])).class(MIXTURE);
-        assert_eq!(told, expected, "with floor of this colour: {shade}");
+        let found = model.table().lit(Gain([1.0; 3])).class(MIXTURE);
+        assert_eq!(found, expected, "with floor of this colour: {shade}");
     }
 }
 
@@ -206,7 +206,7 @@ fn cross_validation_counts_every_labelled_pixel_once() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn images_and_labels_that_do_not_fit_are_rejected() {
     let (image, labels) = taken(Taken { light: [1.0; 3], noise: 2.0, seed: 1 });
     let mut training = Training::new(TAPE);
     let small = RgbImage::new(640, 480);
@@ -270,7 +270,7 @@ fn floor_and_stripe_are_needed_and_the_marker_is_not() {
 }
 
 #[test]
-fn what_is_learned_does_not_hang_on_the_order_of_the_images() {
+fn the_order_of_the_images_does_not_matter() {
     let forwards = trained_without(9).model().unwrap();
     let mut training = Training::new(TAPE);
     for (seed, &light) in LIGHTS.iter().enumerate().rev() {
@@ -294,7 +294,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn any_light_is_told_by_the_ring(
+    fn the_ring_gives_any_light(
         light in prop::array::uniform3(0.3..1.1_f64), noise in 0.0..8.0_f64, seed in 0..1000_u64,
     ) {
         let (image, _) = taken(Taken { light, noise, seed });

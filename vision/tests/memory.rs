@@ -1,4 +1,4 @@
-//! No bytes make a reader of calibrations, of colours or of images take more memory than it states.
+//! No bytes make a reader of calibrations, of colours or of images take more memory than documented.
 //! The allocator of the whole program is watched, so this is a program of its own, with one test in it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
@@ -16,10 +16,10 @@ use toposlam_vision::{
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// What a reader states: so many bytes of memory for each byte, and so many besides.
+/// A reader with its documented memory: bytes for each byte of the file, and bytes besides.
 struct Stated {
     reader: &'static str,
-    /// Reads all there is, and says what is wrong.
+    /// Reads everything and returns the error, if any.
     read: fn(&[u8]),
     multiple: usize,
     besides: usize,
@@ -72,7 +72,7 @@ const IMAGE_HEAD: Stated = Stated {
     besides: 1 << 20,
 };
 
-/// The most memory taken at any time while this runs.
+/// The peak of the memory while this runs.
 fn peak(run: impl FnOnce()) -> usize {
     let before = MEMORY.current_usage();
     MEMORY.reset_peak_usage();
@@ -81,7 +81,7 @@ fn peak(run: impl FnOnce()) -> usize {
 }
 
 impl Stated {
-    /// The memory for each byte, which is no more than stated.
+    /// The memory for each byte, which must not be more than documented.
     fn holds(&self, bytes: &[u8]) -> usize {
         let taken = peak(|| (self.read)(bytes));
         let stated = self.multiple * bytes.len() + self.besides;
@@ -97,8 +97,8 @@ impl Stated {
 }
 
 #[test]
-fn reading_takes_no_more_memory_than_stated() {
-    // The watch sees what is there.
+fn reading_takes_no_more_memory_than_documented() {
+    // The allocator is measured.
     assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
 
     let parts = [
@@ -185,7 +185,7 @@ fn reading_takes_no_more_memory_than_stated() {
     images_hold();
 }
 
-/// Colour files that are read, with many bins.
+/// Valid colour files with many bins.
 fn colour_files_hold() {
     let colours = include_str!("../../fuzz/corpus/colours/of-the-images");
     for bins in [1, 10, 100, 1000, 5000] {
@@ -197,8 +197,8 @@ fn colour_files_hold() {
     COLOURS.holds(colours.as_bytes());
 }
 
-/// The head of an image takes no more, whatever it promises; and the pixels of one that promises more
-/// than any camera's are never asked for.
+/// The header of an image takes no more memory, whatever size it gives. An image that is too large is not
+/// decoded.
 fn images_hold() {
     let (head, pixels) = (include_bytes!("../../fuzz/corpus/image/error-promises-much"), 16_384);
     IMAGE_HEAD.holds(head);

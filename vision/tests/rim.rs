@@ -1,11 +1,11 @@
-//! The mirror's rim, found in images that are drawn for it.
+//! The mirror's rim in drawn images.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use image::{GrayImage, Luma};
 use toposlam_vision::camera::rim::{self, RimError};
 
-/// Numbers by chance.
+/// Random numbers.
 struct Chance(u64);
 
 impl Chance {
@@ -21,13 +21,13 @@ impl Chance {
         low + (high - low) * self.number()
     }
 
-    /// Of mean 0 and, nearly, standard deviation 1.
+    /// A number with mean 0 and a standard deviation of about 1.
     fn noise(&mut self) -> f64 {
         (0..12).map(|_| self.number()).sum::<f64>() - 6.0
     }
 }
 
-/// How images are drawn.
+/// The parameters of drawn images.
 #[derive(Clone, Copy)]
 struct Drawn {
     size: [u32; 2],
@@ -44,7 +44,7 @@ const PLAIN: Drawn =
 /// A disc with a scene in it: patches of light and dark, and two struts across; vignetting, noise.
 fn draw(drawn: &Drawn, seed: u64) -> GrayImage {
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    // Half planes, each of which makes what lies in it brighter or darker.
+    // Half planes that are brighter or darker.
     let patches: Vec<[f64; 4]> = (0..12)
         .map(|_| {
             let angle = chance.between(0.0, std::f64::consts::TAU);
@@ -71,7 +71,7 @@ fn draw(drawn: &Drawn, seed: u64) -> GrayImage {
     };
     GrayImage::from_fn(width, height, |u, v| {
         let [across, down] = [f64::from(u) - drawn.centre[0], f64::from(v) - drawn.centre[1]];
-        // More closely at the rim.
+        // With more samples at the rim.
         let finely = (across.hypot(down) - drawn.radius).abs() < 2.0;
         let steps = if finely { 8 } else { 1 };
         let within = |step: u32| (f64::from(step) + 0.5) / f64::from(steps) - 0.5;
@@ -151,13 +151,13 @@ fn without_a_mirror_there_is_no_rim() {
         let flat = GrayImage::from_pixel(320, 240, Luma([value]));
         assert!(matches!(rim::find(&[flat]), Err(RimError::NoRim)));
     }
-    // A mirror darker than its surroundings is none.
+    // A disc darker than its surroundings is not a mirror.
     let drawn = Drawn { around: 250.0, ..PLAIN };
     assert!(rim::find(&images(&drawn, 2, 5)).is_err());
 }
 
 #[test]
-fn images_that_do_not_go_together_are_refused() {
+fn images_of_different_sizes_are_rejected() {
     let small = GrayImage::new(320, 240);
     let error = rim::find(&[small.clone(), GrayImage::new(640, 480)]).unwrap_err();
     assert_eq!(error.to_string(), "image 2 is 640 by 480 pixels, the first is 320 by 240");

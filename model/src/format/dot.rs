@@ -5,10 +5,10 @@ use crate::embedded_graph::Dart;
 
 /// The world in DOT.
 ///
-/// At each end of an edge stands its door, counted clockwise from the vertex's first dart. The
-/// vertex of the start has a double border, and its facing edge is bold, with an arrow away from
-/// it. The vertices of a floor plan are pinned to their places (`neato -n`), in points of 1/72
-/// inch, a quarter inch for a metre.
+/// Each end of an edge has its door, counted clockwise from the vertex's first dart. The vertex of the
+/// start has a double border, and its facing edge is bold, with an arrow away from it. The vertices of
+/// a floor plan are pinned to their positions (`neato -n`), in points of 1/72 inch, a quarter inch for
+/// a metre.
 #[must_use]
 pub fn write(world: &NamedWorld) -> String {
     let mut text = format!("graph {} {{\n", quoted(&world.name));
@@ -46,7 +46,7 @@ pub fn write(world: &NamedWorld) -> String {
     text
 }
 
-/// How the edge of the two darts shows that one of them is the facing one.
+/// The attributes of the edge of two darts, if one of them is the facing one.
 fn facing(start: Option<Dart>, tail: Dart, head: Dart) -> Option<String> {
     let direction = match start? {
         dart if dart == tail => "forward",
@@ -70,7 +70,7 @@ fn line(text: &mut String, statement: &str) {
     text.push_str(";\n");
 }
 
-/// A text as a quoted string, in which nothing is an escape of Graphviz's.
+/// A text as a quoted string without escapes of Graphviz.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {
@@ -79,7 +79,7 @@ fn quoted(text: &str) -> String {
             '\\' => quoted.push_str("\\\\"),
             '\n' => quoted.push_str("\\n"),
             other if other.is_control() => quoted.push(' '),
-            // Labels take character entities; a plain ampersand is one.
+            // Labels can have character entities, so an ampersand is written as one.
             '&' => quoted.push_str("&amp;"),
             other => quoted.push(other),
         }

@@ -1,5 +1,4 @@
-//! A world with the names that its file gives to its vertices and edges, and the starts that are
-//! told by these names. Section 2.1.
+//! A world with the names of its vertices and edges, and starts given by these names. Section 2.1.
 
 use thiserror::Error;
 
@@ -11,35 +10,35 @@ use crate::{
     world::State,
 };
 
-/// A world as a file tells it.
+/// A world with names, as in a world file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedWorld {
-    /// What the world is called; may be empty.
+    /// The name of the world; may be empty.
     pub name: String,
-    /// What it is, in a line or two; may be empty.
+    /// A short description; may be empty.
     pub about: String,
     /// The embedded graph; its vertices and darts are numbered in the order of the file.
     pub graph: EmbeddedGraph,
-    /// The facing dart, where the file has a start.
+    /// The facing dart, if the file has a start.
     pub start: Option<Dart>,
     /// The name of each vertex.
     pub vertex_names: Vec<String>,
-    /// The name of each dart's edge, one entry a dart; `None` where the file speaks of neighbours,
-    /// which it can do only of a simple graph.
+    /// The name of each dart's edge; `None` if the file lists neighbours, which it can only do for a
+    /// simple graph.
     pub edge_names: Option<Vec<String>>,
-    /// Where each vertex is, where the world is a floor plan: metres, x to the east, y to the north.
+    /// The position of each vertex of a floor plan: metres, x to the east, y to the north.
     pub positions: Option<Vec<[f64; 2]>>,
-    /// The floor plan, where the world is one; its junctions are the vertices, in the same order.
+    /// The floor plan, if the world is one. Its junctions are the vertices, in the same order.
     pub plan: Option<FloorPlan>,
 }
 
-/// Why names do not tell a start.
+/// Why names do not give a start.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartError {
     /// A start on the command line has no colon.
-    #[error("`{text}` is no start; write `vertex:facing`")]
+    #[error("`{text}` is not a start; write `vertex:facing`")]
     NoColon {
-        /// What was given.
+        /// The text.
         text: String,
     },
     /// No vertex has this name.
@@ -53,22 +52,22 @@ pub enum StartError {
     NoSuchNeighbour {
         /// The vertex.
         vertex: String,
-        /// What was given.
+        /// The name.
         facing: String,
-        /// The neighbours that there are.
+        /// Its neighbours.
         listed: String,
     },
     /// No such edge ends at the vertex.
-    #[error("no edge `{facing}` ends at vertex `{vertex}`; there end {listed}")]
+    #[error("no edge `{facing}` ends at vertex `{vertex}`; the edges there are {listed}")]
     NoSuchEdge {
         /// The vertex.
         vertex: String,
-        /// What was given.
+        /// The name.
         facing: String,
-        /// The edges that there are.
+        /// The edges that end there.
         listed: String,
     },
-    /// The edge is a loop, and nothing tells which of its ends is meant.
+    /// The edge is a loop, and the text does not name one of its ends.
     #[error("edge `{edge}` is a loop; write `{edge}:1` or `{edge}:2` for one of its ends")]
     BareLoop {
         /// The loop.
@@ -77,9 +76,8 @@ pub enum StartError {
 }
 
 impl NamedWorld {
-    /// A world that the tools made, with vertices `v0`, `v1`, ... as they are numbered, and edges
-    /// `e0`, `e1`, ... in the order of their lower darts. Edges have names exactly when the graph is
-    /// not simple.
+    /// A world with generated names: vertices `v0`, `v1`, ... in their order, and edges `e0`, `e1`, ...
+    /// in the order of their lower darts. Edges have names exactly if the graph is not simple.
     #[must_use]
     pub fn numbered(name: &str, about: &str, graph: EmbeddedGraph, start: Option<Dart>) -> Self {
         let edge_names = (!graph.is_simple()).then(|| {
@@ -102,25 +100,25 @@ impl NamedWorld {
         }
     }
 
-    /// The world of a start, [`numbered`](Self::numbered) in the order in which a robot discovers
-    /// it that looks at the darts of each vertex clockwise from the one by which it first came. The
-    /// facing dart becomes dart 0.
+    /// The world of a start, [`numbered`](Self::numbered) in the order of discovery by a robot that
+    /// follows the darts of each vertex clockwise from the one by which it first came. The facing dart
+    /// becomes dart 0.
     #[must_use]
     pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, facing: Dart) -> Self {
         Self::numbered(name, about, as_discovered(graph, facing), Some(Dart(0)))
     }
 
-    /// The vertex of this name.
+    /// The vertex with this name.
     #[must_use]
     pub fn vertex_named(&self, name: &str) -> Option<Vertex> {
         let number = self.vertex_names.iter().position(|known| known == name)?;
         Some(Vertex(number as u32))
     }
 
-    /// The dart of a start as the command line tells it: `vertex:facing`.
+    /// The dart of a start in the form of the command line, `vertex:facing`.
     ///
     /// # Errors
-    /// Where there is no colon, or no such dart.
+    /// Returns an error if there is no colon or no such dart.
     pub fn start_from_text(&self, text: &str) -> Result<Dart, StartError> {
         match text.split_once(':') {
             Some((at, facing)) => self.start_from_names(at, facing),
@@ -128,12 +126,12 @@ impl NamedWorld {
         }
     }
 
-    /// The dart at the vertex `at` that `facing` tells: a neighbour's name where the world speaks
-    /// of neighbours, else an edge's, and for a loop `e:1` or `e:2`, the first or second of its
-    /// ends in the order of the file.
+    /// The dart at the vertex `at` with the name `facing`: a neighbour's name if the world lists
+    /// neighbours, else an edge's. For a loop it is `e:1` or `e:2`, the first or second of its ends in
+    /// the order of the file.
     ///
     /// # Errors
-    /// Where there is no such dart, or the name of a loop stands alone.
+    /// Returns an error if there is no such dart, or if the edge is a loop and no end is named.
     pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
         let vertex =
             self.vertex_named(at).ok_or_else(|| StartError::UnknownVertex { vertex: shown(at) })?;
@@ -164,16 +162,16 @@ impl NamedWorld {
         })
     }
 
-    /// The start `vertex:facing` that tells this dart; the inverse of
+    /// The text `vertex:facing` of this dart, the inverse of
     /// [`start_from_text`](Self::start_from_text).
     #[must_use]
     pub fn start_text(&self, dart: Dart) -> String {
         format!("{}:{}", self.at_text(dart), self.facing_text(dart))
     }
 
-    /// A state of a robot in this world: its pose as `vertex:door`, the door counted from the first
-    /// that is listed at the vertex; and where the marker is, if it can be moved: `@vertex`, or
-    /// `+marker` while the robot carries it.
+    /// A state of a robot in this world: its pose as `vertex:door`, where the first door that is listed
+    /// at the vertex is 0; and the place of a movable marker: `@vertex`, or `+marker` while the robot
+    /// carries it.
     #[must_use]
     pub fn state_text(&self, marker: &impl Marker, state: State) -> String {
         let pose = format!("{}:{}", self.at_text(state.pose), self.graph.index(state.pose));
@@ -184,13 +182,13 @@ impl NamedWorld {
         }
     }
 
-    /// The name of the vertex at which the dart is: what a file's `at` says of it.
+    /// The name of the dart's vertex, as in a file's `at`.
     #[must_use]
     pub fn at_text(&self, dart: Dart) -> &str {
         &self.vertex_names[self.graph.vertex(dart).at()]
     }
 
-    /// What a file's `facing` says of this dart.
+    /// The name of this dart, as in a file's `facing`.
     #[must_use]
     pub fn facing_text(&self, dart: Dart) -> String {
         let name = self.leads_to(dart);
@@ -202,7 +200,7 @@ impl NamedWorld {
         }
     }
 
-    /// What the file lists at the dart's place: its edge, or the neighbour at its other end.
+    /// The name that the file lists for the dart: its edge, or the neighbour at its other end.
     #[must_use]
     pub fn leads_to(&self, dart: Dart) -> &str {
         match &self.edge_names {
@@ -216,7 +214,7 @@ impl NamedWorld {
             && self.graph.vertex(dart) == self.graph.vertex(self.graph.opposite(dart))
     }
 
-    /// What can be faced at a vertex, for a message: the first few.
+    /// The first few names that can be faced at a vertex, for a message.
     fn listed(&self, vertex: &str) -> String {
         const SHOWN: usize = 8;
         let Some(vertex) = self.vertex_named(vertex) else {
@@ -229,7 +227,7 @@ impl NamedWorld {
     }
 }
 
-/// What was given, for a message, which is one line whatever was given.
+/// A text in one line, for a message.
 fn shown(text: &str) -> String {
     text.escape_debug().to_string()
 }
@@ -275,12 +273,12 @@ mod tests {
     }
 
     #[test]
-    fn a_start_that_is_not_there_is_told_with_what_is() {
+    fn the_error_for_a_wrong_start_lists_the_right_ones() {
         fn message(world: &NamedWorld, text: &str) -> String {
             world.start_from_text(text).unwrap_err().to_string()
         }
         let world = with_loop();
-        assert_eq!(message(&world, "u"), "`u` is no start; write `vertex:facing`");
+        assert_eq!(message(&world, "u"), "`u` is not a start; write `vertex:facing`");
         assert_eq!(message(&world, "w:a"), "there is no vertex `w`");
         assert_eq!(
             message(&world, "u:a"),
@@ -289,14 +287,14 @@ mod tests {
         for wrong in ["d", "a:3", "b:1", "a:1:1", ""] {
             assert_eq!(
                 message(&world, &format!("u:{wrong}")),
-                format!("no edge `{wrong}` ends at vertex `u`; there end a:1, b, a:2, c")
+                format!("no edge `{wrong}` ends at vertex `u`; the edges there are a:1, b, a:2, c")
             );
         }
-        assert_eq!(message(&world, "\u{7}"), "`\\u{7}` is no start; write `vertex:facing`");
+        assert_eq!(message(&world, "\u{7}"), "`\\u{7}` is not a start; write `vertex:facing`");
         assert_eq!(message(&world, "w\n:a"), "there is no vertex `w\\n`");
         assert_eq!(
             message(&world, "v:\u{1b}[1m"),
-            "no edge `\\u{1b}[1m` ends at vertex `v`; there end b, c"
+            "no edge `\\u{1b}[1m` ends at vertex `v`; the edges there are b, c"
         );
         assert_eq!(message(&path(), "v1:v1"), "vertex `v1` has no neighbour `v1`; it has v0, v2");
     }
@@ -315,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_tools_made_is_named_as_it_is_discovered() {
+    fn generated_names_are_in_the_order_of_discovery() {
         // From v facing c: its darts clockwise are c, b; c leads to u, entered by c, whose other
         // darts are, clockwise, a, b, a.
         let graph = with_loop().graph;
@@ -329,7 +327,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_text_of_a_start_tells_it(graph in any_graph(Class::Multigraph, 12)) {
+        fn the_text_of_a_start_gives_it_back(graph in any_graph(Class::Multigraph, 12)) {
             let world = NamedWorld::numbered("", "", graph, None);
             for dart in world.graph.darts() {
                 prop_assert_eq!(world.start_from_text(&world.start_text(dart)), Ok(dart));

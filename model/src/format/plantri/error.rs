@@ -8,9 +8,9 @@ use crate::embedded_graph::GraphError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("byte {offset}, world {world}: {cause}")]
 pub struct PlantriError {
-    /// Where in the file it shows; the first byte is 0.
+    /// The offset in the file; the first byte is 0.
     pub offset: usize,
-    /// In which world of the file; the first is 1.
+    /// The number of the world in the file; the first is 1.
     pub world: usize,
     /// What is wrong.
     #[source]
@@ -20,21 +20,21 @@ pub struct PlantriError {
 /// What is wrong at a byte. Vertices are counted from 1 and edges from 0, as in the codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum PlantriErrorKind {
-    /// There is nothing at all.
+    /// There are no bytes.
     #[error("there is no world")]
     Empty,
-    /// A header of something else.
+    /// The header is not one of plantri's.
     #[error("unknown header; known are planar_code, planar_code le, planar_code be and edge_code")]
     UnknownHeader,
     /// The file ends too early.
     #[error("the file ends in the middle of a world")]
     Truncated,
-    /// A neighbour is no vertex.
+    /// A neighbour is not a vertex.
     #[error("vertex {vertex} lists the neighbour {neighbour}, but there are {vertices} vertices")]
     UnknownNeighbour {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: usize,
-        /// The number that is no vertex.
+        /// The number that is not a vertex.
         neighbour: usize,
         /// The number of vertices.
         vertices: usize,
@@ -42,7 +42,7 @@ pub enum PlantriErrorKind {
     /// A neighbour does not list the vertex back.
     #[error("vertex {vertex} lists the neighbour {neighbour}, which does not list {vertex} back")]
     OneSided {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: usize,
         /// The neighbour.
         neighbour: usize,
@@ -50,12 +50,12 @@ pub enum PlantriErrorKind {
     /// A parallel edge or a loop in `planar_code`.
     #[error(
         "vertex {vertex} lists {neighbour} again or itself; \
-         planar_code cannot tell parallel edges and loops apart, edge_code can"
+         planar_code cannot have parallel edges and loops, edge_code can"
     )]
     NotSimple {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: usize,
-        /// What it lists.
+        /// The neighbour.
         neighbour: usize,
     },
     /// A vertex has an empty list.
@@ -64,8 +64,8 @@ pub enum PlantriErrorKind {
         /// The vertex.
         vertex: usize,
     },
-    /// The byte that tells the sizes tells a size that cannot be.
-    #[error("a length of {length_bytes} bytes and edges of {edge_bytes} bytes cannot be")]
+    /// The byte with the sizes is not valid.
+    #[error("a length of {length_bytes} bytes and edges of {edge_bytes} bytes are not possible")]
     Sizes {
         /// The bytes of the length.
         length_bytes: u8,
@@ -78,29 +78,29 @@ pub enum PlantriErrorKind {
     /// An edge's number is too high.
     #[error("vertex {vertex} lists edge {edge}, but there are {edges} edges, counted from 0")]
     UnknownEdge {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: usize,
-        /// The number that is no edge.
+        /// The number that is not an edge.
         edge: u64,
         /// The number of edges.
         edges: usize,
     },
     /// There is an odd number of edge ends.
-    #[error("the lists hold {ends} edge ends; every edge has two")]
+    #[error("the lists have {ends} edge ends; every edge has two")]
     OddEnds {
         /// Their number.
         ends: usize,
     },
     /// An edge is listed too often.
-    #[error("edge {edge} stands here for the third time; every edge has two ends")]
+    #[error("edge {edge} is listed for the third time; every edge has two ends")]
     ThirdEnd {
         /// The edge.
         edge: u64,
     },
-    /// The graph falls into pieces.
+    /// The graph is not connected.
     #[error("the world is not connected: vertex {vertex} cannot be reached from 1")]
     NotConnected {
-        /// The first vertex out of reach.
+        /// The first vertex that cannot be reached.
         vertex: usize,
     },
     /// The graph has no edge or too many.
@@ -113,18 +113,18 @@ pub enum PlantriErrorKind {
 pub enum PlantriWriteError {
     /// A loop or a parallel edge.
     #[error(
-        "world {world} has loops or parallel edges, which planar_code cannot tell; use edge_code"
+        "world {world} has loops or parallel edges, which planar_code cannot have; use edge_code"
     )]
     NotSimple {
-        /// Which world; the first is 1.
+        /// The number of the world; the first is 1.
         world: usize,
     },
     /// More vertices than two bytes can number.
     #[error("world {world} has {vertices} vertices; planar_code goes up to 65535")]
     TooManyVertices {
-        /// Which world; the first is 1.
+        /// The number of the world; the first is 1.
         world: usize,
-        /// How many it has.
+        /// The number of its vertices.
         vertices: usize,
     },
 }

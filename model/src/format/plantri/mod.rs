@@ -1,22 +1,21 @@
 //! plantri's binary codes for embedded graphs, `planar_code` and `edge_code`. Section 2.1.
 //!
-//! As plantri (Brinkmann and McKay), nauty and graphtools (Van Cleemput) write and read them. Both
-//! codes list the darts of each vertex clockwise, and nothing in them needs the plane: any genus can
-//! be told.
+//! plantri (Brinkmann and McKay), nauty and graphtools (Van Cleemput) write and read them. Both codes
+//! list the darts of each vertex clockwise, so they can represent graphs of any genus.
 //!
 //! **planar_code**, after the header `>>planar_code<<`: for each graph the number of vertices, and
 //! for each vertex its neighbours, counted from 1, and a 0. Numbers have one byte; if the first is
-//! 0, then it is followed by the same with numbers of two bytes. The headers `>>planar_code le<<`
-//! and `>>planar_code be<<` tell their order. Under the bare header graphtools takes the lesser
-//! byte first and nauty the greater one, so there the reader takes the order in which the graph
-//! makes sense. Lists of neighbours do not tell which parallel edge is which, nor which ends
-//! belong to the same loop, so these are refused: `edge_code` tells them.
+//! 0, the same follows with numbers of two bytes. The headers `>>planar_code le<<` and
+//! `>>planar_code be<<` give their order. With the bare header graphtools takes the lesser byte first
+//! and nauty the greater one, so the reader takes the order in which the graph makes sense. Lists of
+//! neighbours do not determine parallel edges or the ends of loops, so these are rejected; `edge_code`
+//! does.
 //!
 //! **edge_code**, after the header `>>edge_code<<`: for each graph the length of its body in bytes,
-//! and the body, in which each vertex lists its edges, counted from 0, and a byte 255 stands between
-//! the lists. The length has one byte, and so has each edge; or it begins with a 0, then a byte
-//! 16 k + l tells that the length follows in k bytes and that each edge has l, the greatest byte
-//! first. No edge's first byte is 255.
+//! and the body, in which each vertex lists its edges, counted from 0, with a byte 255 between
+//! the lists. The length has one byte, and so has each edge; or it begins with a 0 and a byte 16 k + l,
+//! and then the length has k bytes and each edge l bytes, the greatest byte first. No edge's first byte
+//! is 255.
 
 mod error;
 mod read;

@@ -3,26 +3,26 @@
 use super::{PlantriCode, PlantriError, PlantriErrorKind};
 use crate::embedded_graph::{EmbeddedGraph, GraphError, MAX_EDGES};
 
-/// How the numbers of `planar_code` with two bytes are laid out.
+/// The byte order of the numbers of `planar_code` with two bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ByteOrder {
     /// The lesser byte first.
     Little,
     /// The greater byte first.
     Big,
-    /// The header does not say.
-    Untold,
+    /// The header does not give it.
+    Unknown,
 }
 
-/// The headers, and what they tell.
+/// The headers with their meanings.
 const HEADERS: [(&[u8], PlantriCode, ByteOrder); 4] = [
-    (b">>planar_code<<", PlantriCode::Planar, ByteOrder::Untold),
+    (b">>planar_code<<", PlantriCode::Planar, ByteOrder::Unknown),
     (b">>planar_code le<<", PlantriCode::Planar, ByteOrder::Little),
     (b">>planar_code be<<", PlantriCode::Planar, ByteOrder::Big),
-    (b">>edge_code<<", PlantriCode::Edge, ByteOrder::Untold),
+    (b">>edge_code<<", PlantriCode::Edge, ByteOrder::Unknown),
 ];
 
-/// The worlds of a file, in their order. Ends after the first error.
+/// The worlds of a file in order. The iterator ends after the first error.
 ///
 /// Reading a world takes at most 128 bytes of memory for each byte of it.
 #[derive(Clone, Debug)]
@@ -35,8 +35,8 @@ pub struct Worlds<'a> {
     done: bool,
 }
 
-/// The worlds of a file of either code, which its header tells; without a header it is
-/// `planar_code`. Headers may stand again between worlds, as in files joined together.
+/// The worlds of a file. The header gives the code; without one it is `planar_code`. There may be
+/// headers between worlds, as in files joined together.
 ///
 /// Vertices are numbered in the order of the file, and the darts of each in the order in which it
 /// lists them.
@@ -45,11 +45,10 @@ pub fn read(bytes: &[u8]) -> Worlds<'_> {
     read_headerless(bytes, PlantriCode::Planar)
 }
 
-/// The worlds of a file of which the code is known: as [`read`], but this code is taken where no
-/// header stands.
+/// The worlds of a file: as [`read`], but without a header it has this code.
 #[must_use]
 pub fn read_headerless(bytes: &[u8], code: PlantriCode) -> Worlds<'_> {
-    Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Untold, done: false }
+    Worlds { bytes, next: 0, read: 0, code, order: ByteOrder::Unknown, done: false }
 }
 
 impl Iterator for Worlds<'_> {
@@ -75,12 +74,12 @@ impl Iterator for Worlds<'_> {
     }
 }
 
-/// What is wrong, and at which byte.
+/// A byte, and what is wrong there.
 type Failure = (usize, PlantriErrorKind);
 
 impl Worlds<'_> {
-    /// Goes past a header. Where one can stand, none of its letters could be a vertex or an edge: a
-    /// world that begins with `>>` has 62 vertices, or a body of 62 bytes and so at most 31 edges.
+    /// Skips a header. A header is not confused with a world: a world that begins with `>>` has 62
+    /// vertices, or a body of 62 bytes and so at most 31 edges, less than its letters.
     fn take_header(&mut self) -> Result<(), Failure> {
         let rest = &self.bytes[self.next..];
         let is_header = rest.starts_with(b">>") && rest.get(2).is_some_and(u8::is_ascii_lowercase);
@@ -116,8 +115,8 @@ impl Worlds<'_> {
         }
         cursor.at += 1;
         match self.order {
-            ByteOrder::Untold => planar_code(cursor, 2, ByteOrder::Little).or_else(|little| {
-                // Of two readings that fail, the one that got further tells more.
+            ByteOrder::Unknown => planar_code(cursor, 2, ByteOrder::Little).or_else(|little| {
+                // If both orders fail, the error that is farther in the file is the better one.
                 planar_code(cursor, 2, ByteOrder::Big)
                     .map_err(|big| if big.0 > little.0 { big } else { little })
             }),
@@ -159,7 +158,7 @@ struct Cursor<'a> {
 }
 
 impl Cursor<'_> {
-    /// The next number; one that does not fit is as high as can be.
+    /// The next number; the greatest one if it does not fit.
     fn number(&mut self, size: usize, order: ByteOrder) -> Result<u64, Failure> {
         let bytes = self.at.checked_add(size).and_then(|end| self.bytes.get(self.at..end));
         let bytes = bytes.ok_or((self.bytes.len(), PlantriErrorKind::Truncated))?;
@@ -170,7 +169,7 @@ impl Cursor<'_> {
         };
         Ok(match order {
             ByteOrder::Little => bytes.iter().rev().fold(0, add),
-            ByteOrder::Big | ByteOrder::Untold => bytes.iter().fold(0, add),
+            ByteOrder::Big | ByteOrder::Unknown => bytes.iter().fold(0, add),
         })
     }
 }
@@ -203,7 +202,7 @@ fn planar_code(
         }
     }
     check_size(start, darts.len())?;
-    // The byte at which a dart stands: one number for each dart and each list before it.
+    // The byte of a dart: one number for each dart and each list before it.
     let place = |dart: usize| lists + size * (dart + darts[dart].0 as usize);
     let mut sorted: Vec<u32> = (0..darts.len() as u32).collect();
     sorted.sort_unstable_by_key(|&dart| (darts[dart as usize], dart));
@@ -249,7 +248,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
             ends.push(cursor.number(size, ByteOrder::Big).map_err(half)?);
         }
     }
-    // The byte at which a dart stands: its vertex has as many lists before it.
+    // The byte of a dart: one separator for each list before its vertex.
     let vertex = |dart: usize| firsts.partition_point(|&first| first as usize <= dart) - 1;
     let place = |dart: usize| start + size * dart + vertex(dart);
     check_size(start, ends.len())?;
@@ -278,7 +277,7 @@ fn edge_code(mut cursor: Cursor<'_>, size: usize) -> Result<EmbeddedGraph, Failu
     graph(start, &opposite, &firsts)
 }
 
-/// Refuses more darts than can be numbered, before anything is numbered.
+/// Rejects more darts than can be numbered, before anything is numbered.
 fn check_size(start: usize, darts: usize) -> Result<(), Failure> {
     if darts / 2 > MAX_EDGES {
         return Err((start, GraphError::TooManyEdges.into()));
@@ -291,7 +290,7 @@ fn numbers((vertex, neighbour): (u32, u32)) -> (usize, usize) {
     (vertex as usize + 1, neighbour as usize + 1)
 }
 
-/// The graph of vertices whose darts begin at `firsts`, of the world that stands at `start`.
+/// The graph of vertices whose darts begin at `firsts`, of the world at `start`.
 fn graph(start: usize, opposite: &[u32], firsts: &[u32]) -> Result<EmbeddedGraph, Failure> {
     let darts = opposite.len() as u32;
     let ends = firsts.iter().skip(1).copied().chain([darts]);

@@ -19,7 +19,7 @@ fn edge_message(body: &[u8]) -> String {
     error.unwrap().to_string()
 }
 
-/// A path of so many vertices.
+/// A path with a number of vertices.
 fn path(vertices: usize) -> EmbeddedGraph {
     let lists: Vec<(String, Vec<String>)> = (0..vertices)
         .map(|vertex| {
@@ -49,7 +49,7 @@ fn plantri_s_own_example_is_the_octahedron_in_the_plane() {
     assert_eq!(all(&OCTAHEDRON).unwrap(), worlds);
 }
 
-/// What nauty 2.8.6 writes for the complete graph of four vertices (`geng 4 6:6 | planarg -p`).
+/// The output of nauty 2.8.6 for the complete graph of four vertices (`geng 4 6:6 | planarg -p`).
 const NAUTY: &[u8] = b">>planar_code<<\x04\
     \x02\x04\x03\0\x03\x04\x01\0\x01\x04\x02\0\x01\x02\x03\0";
 
@@ -70,7 +70,7 @@ fn headers_may_stand_between_worlds() {
 }
 
 #[test]
-fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
+fn two_bytes_are_read_in_the_order_of_the_header_or_the_one_that_makes_sense() {
     let numbers = |order: fn(u16) -> [u8; 2]| {
         let list = |vertex: u16| {
             let neighbours = [vertex - 1, vertex + 1];
@@ -105,7 +105,7 @@ fn two_bytes_are_read_in_the_order_that_the_header_tells_or_that_makes_sense() {
 }
 
 #[test]
-fn edge_code_tells_loops_and_parallel_edges() {
+fn edge_code_has_loops_and_parallel_edges() {
     // Two loops on the torus, then two vertices with three edges in the plane.
     let bytes = b">>edge_code<<\x04\x00\x01\x00\x01\x07\x00\x01\x02\xff\x02\x01\x00";
     let worlds = all(bytes).unwrap();
@@ -117,24 +117,24 @@ fn edge_code_tells_loops_and_parallel_edges() {
     assert_eq!(write(&worlds, PlantriCode::Edge).unwrap(), bytes);
     assert_eq!(
         write(&worlds, PlantriCode::Planar).unwrap_err().to_string(),
-        "world 1 has loops or parallel edges, which planar_code cannot tell; use edge_code"
+        "world 1 has loops or parallel edges, which planar_code cannot have; use edge_code"
     );
 }
 
 #[test]
-fn a_long_edge_code_tells_its_sizes() {
-    // 170 edge ends and 85 separators are the most that one byte can tell the length of.
+fn a_long_edge_code_gives_its_sizes() {
+    // 170 edge ends and 85 separators are the longest body whose length is one byte.
     assert_eq!(write(&[path(86)], PlantriCode::Edge).unwrap()[13], 255);
     assert_eq!(write(&[path(87)], PlantriCode::Edge).unwrap()[13..15], [0, 0x21]);
     let bytes = write(&[path(100)], PlantriCode::Edge).unwrap();
-    // 198 edge ends and 99 separators: 0x129 bytes, told in two bytes, the edges in one.
+    // 198 edge ends and 99 separators: 0x129 bytes; the length has two bytes, each edge one.
     assert_eq!(bytes[13..20], [0, 0x21, 0x01, 0x29, 0, 255, 0]);
     assert_eq!(all(&bytes).unwrap(), [path(100)]);
     let bytes = write(&[path(300)], PlantriCode::Edge).unwrap();
     // 598 edge ends of two bytes and 299 separators of one: 0x5d7 bytes.
     assert_eq!(bytes[13..20], [0, 0x22, 0x05, 0xd7, 0, 0, 255]);
     assert_eq!(all(&bytes).unwrap(), [path(300)]);
-    // 255 edges are the most that one byte can number, for 255 is the separator.
+    // 255 edges are the most that one byte can number, because 255 is the separator.
     assert_eq!(write(&[path(256)], PlantriCode::Edge).unwrap()[14], 0x21);
     assert_eq!(write(&[path(257)], PlantriCode::Edge).unwrap()[14], 0x22);
     for vertices in [256, 257] {
@@ -162,7 +162,7 @@ fn each_fault_of_planar_code_has_its_byte() {
         message(&[3, 2, 0, 1, 3, 0, 1, 0]),
         "byte 4, world 1: vertex 2 lists the neighbour 3, which does not list 2 back"
     );
-    let not_simple = "planar_code cannot tell parallel edges and loops apart, edge_code can";
+    let not_simple = "planar_code cannot have parallel edges and loops, edge_code can";
     assert_eq!(
         message(&[2, 2, 2, 0, 1, 1, 0]),
         format!("byte 2, world 1: vertex 1 lists 2 again or itself; {not_simple}")
@@ -187,7 +187,7 @@ fn each_fault_of_edge_code_has_its_byte() {
     );
     assert_eq!(
         edge_message(&[0, 0x20, 0, 1]),
-        "byte 1, world 1: a length of 2 bytes and edges of 0 bytes cannot be"
+        "byte 1, world 1: a length of 2 bytes and edges of 0 bytes are not possible"
     );
     assert_eq!(
         edge_message(&[0, 0x12, 3, 0, 0, 0]),
@@ -195,7 +195,7 @@ fn each_fault_of_edge_code_has_its_byte() {
     );
     assert_eq!(
         edge_message(&[4, 0, 255, 0, 0]),
-        "byte 1, world 1: the lists hold 3 edge ends; every edge has two"
+        "byte 1, world 1: the lists have 3 edge ends; every edge has two"
     );
     assert_eq!(
         edge_message(&[3, 0, 255, 1]),
@@ -203,14 +203,14 @@ fn each_fault_of_edge_code_has_its_byte() {
     );
     assert_eq!(
         edge_message(&[5, 0, 0, 255, 0, 1]),
-        "byte 4, world 1: edge 0 stands here for the third time; every edge has two ends"
+        "byte 4, world 1: edge 0 is listed for the third time; every edge has two ends"
     );
     assert_eq!(edge_message(&[4, 0, 255, 0, 255]), "byte 1, world 1: vertex 3 has no edge");
     assert_eq!(
         edge_message(&[5, 0, 0, 255, 1, 1]),
         "byte 1, world 1: the world is not connected: vertex 2 cannot be reached from 1"
     );
-    // Two edge ends with as long a number as can be told.
+    // Two edge ends with the longest possible number.
     assert_eq!(
         edge_message(&[&[0, 0x1f, 30][..], &[1; 30]].concat()),
         "byte 3, world 1: \

@@ -5,11 +5,10 @@ use crate::embedded_graph::EmbeddedGraph;
 
 /// The worlds in one of the codes, with its header.
 ///
-/// `planar_code` is written with the bare header, and with `>>planar_code le<<` where a world has
-/// more than 255 vertices.
+/// `planar_code` gets the bare header, or `>>planar_code le<<` if a world has more than 255 vertices.
 ///
 /// # Errors
-/// Where `planar_code` cannot tell a world.
+/// Returns an error if `planar_code` cannot represent a world.
 pub fn write(worlds: &[EmbeddedGraph], code: PlantriCode) -> Result<Vec<u8>, PlantriWriteError> {
     match code {
         PlantriCode::Planar => write_planar_code(worlds),
@@ -84,7 +83,7 @@ fn push_edge_code(bytes: &mut Vec<u8>, graph: &EmbeddedGraph) {
     }
 }
 
-/// How many bytes hold every edge's number so that its first byte is not 255.
+/// The number of bytes for every edge's number, so that its first byte is not 255.
 fn bytes_of_edges(edges: usize) -> usize {
     (1..4).find(|&size| edges <= 255 << (8 * (size - 1))).unwrap_or(4)
 }

@@ -1,6 +1,6 @@
-//! World files, in TOML and in JSON of the same shape: an embedded graph told by neighbours
+//! World files, in TOML and in JSON of the same shape. The embedded graph is given by neighbours
 //! (`[clockwise]`), by edges (`[doors]`), or by a floor plan (`[floor]`, `[junctions]`,
-//! `[[hallways]]`), and where the robot starts in it (`[start]`). Sections 2.1 and 2.4.
+//! `[[hallways]]`), and the robot's start by `[start]`. Sections 2.1 and 2.4.
 
 mod error;
 mod read;

@@ -73,7 +73,7 @@ facing = "east"
 "#;
 
 #[test]
-fn vertices_stand_in_the_order_of_the_file() {
+fn vertices_are_in_the_order_of_the_file() {
     let world = read(TRIANGLE.as_bytes()).unwrap();
     assert_eq!(world.vertex_names, ["z", "a", "m"]);
     assert_eq!(world.start, Some(Dart(3)));
@@ -85,7 +85,7 @@ fn vertices_stand_in_the_order_of_the_file() {
 }
 
 #[test]
-fn a_file_of_doors_names_its_edges() {
+fn a_file_with_doors_names_its_edges() {
     let world = read(DOORS.as_bytes()).unwrap();
     assert_eq!(world.edge_names.as_deref().unwrap(), ["a", "b", "a", "c", "b", "c"]);
     assert_eq!(world.start, Some(Dart(2)));
@@ -129,7 +129,7 @@ fn a_floor_plan_gives_its_graph_and_keeps_its_geometry() {
 }
 
 #[test]
-fn a_file_without_text_is_told_so() {
+fn a_file_without_text_is_an_error() {
     assert_eq!(message(""), "the file is empty");
     assert_eq!(message(" \n"), "the file is empty");
     let error = read(b"name = \"a\"\nab\xff").unwrap_err();
@@ -137,7 +137,7 @@ fn a_file_without_text_is_told_so() {
 }
 
 #[test]
-fn broken_text_is_told_with_its_place() {
+fn an_error_of_syntax_has_its_place() {
     assert_eq!(
         message("name = \"a\"\n[clockwise\n"),
         "line 2, column 11: unclosed table, expected `]`"
@@ -206,7 +206,7 @@ fn values_of_the_wrong_kind_are_named() {
 
 #[test]
 fn names_have_few_characters() {
-    let names = "is no name; a name is made of A-Z, a-z, 0-9, _ and -";
+    let names = "is not a name; a name has only the characters A-Z, a-z, 0-9, _ and -";
     for (text, place, name) in [
         ("name = \"a b\"", "name", "a b"),
         ("[clockwise]\n\"a:b\" = []", "clockwise", "a:b"),
@@ -218,19 +218,19 @@ fn names_have_few_characters() {
 }
 
 #[test]
-fn a_world_is_told_in_one_way() {
+fn a_world_is_given_in_one_way() {
     assert_eq!(
         message("name = \"a\""),
-        "there is no world: one of [clockwise], [doors] and [floor] must stand in the file"
+        "there is no world; the file needs one of [clockwise], [doors] and [floor]"
     );
     assert_eq!(
         message("[doors]\n[junctions]"),
-        "there are both [doors] and [floor]; a world is told by one of them"
+        "there are both [doors] and [floor]; a world needs only one of them"
     );
 }
 
 #[test]
-fn lists_that_are_no_embedded_graph_are_told_with_their_vertex() {
+fn an_error_in_lists_has_their_vertex() {
     for (text, expected) in [
         (
             "[clockwise]\na = [\"b\"]\nb = []",
@@ -265,7 +265,7 @@ fn lists_that_are_no_embedded_graph_are_told_with_their_vertex() {
 }
 
 #[test]
-fn a_start_that_is_not_there_is_told_with_its_key() {
+fn an_error_in_a_start_has_its_key() {
     assert_eq!(
         message(&TRIANGLE.replace("facing = \"z\"", "facing = \"a\"")),
         "start.facing: vertex `a` has no neighbour `a`; it has m, z"
@@ -281,7 +281,7 @@ fn a_start_that_is_not_there_is_told_with_its_key() {
 }
 
 #[test]
-fn a_wrong_floor_plan_is_told_with_its_key() {
+fn an_error_in_a_floor_plan_has_its_key() {
     for (text, instead, expected) in [
         (
             "1.6",
@@ -311,7 +311,7 @@ fn a_wrong_floor_plan_is_told_with_its_key() {
 }
 
 #[test]
-fn any_character_can_stand_in_about() {
+fn about_can_have_any_character() {
     let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
     let all: String = ('\0'..='\u{ff}').chain("\u{feff}\u{2028}\u{1f600}".chars()).collect();
     reads_back(&NamedWorld::numbered("", &all, graph.clone(), None));
@@ -384,7 +384,7 @@ proptest! {
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deep_nesting_is_rejected() {
     for open in ["[", "{\"a\":"] {
         let deep = open.repeat(100_000);
         assert!(read(deep.as_bytes()).is_err());
@@ -394,7 +394,7 @@ fn deep_nesting_is_refused() {
 }
 
 #[test]
-fn a_world_is_written_the_same_whoever_made_it() {
+fn a_discovered_world_is_written_with_generated_names() {
     let graph = EmbeddedGraph::from_edge_lists(&[("q", vec!["x", "x"])]).unwrap();
     let world = NamedWorld::discovered("loop", "", &graph, Dart(1));
     assert_eq!(

@@ -1,11 +1,11 @@
-//! Writing a world file: one line a vertex, in the order of the world; reading it gives the same
-//! world again.
+//! Writing a world file: one line per vertex, in the order of the world. Reading it gives the same
+//! world.
 
 use serde_json::{Map, Value, json};
 
 use crate::{embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld};
 
-/// The world as a JSON value of the shape of a world file, to be printed or to stand in a report.
+/// The world as a JSON value of the shape of a world file, for printing or reports.
 #[must_use]
 pub fn to_json(world: &NamedWorld) -> Value {
     let mut file = Map::new();
@@ -49,8 +49,8 @@ fn toml_entries(table: &Value) -> String {
     entries.map(|(key, value)| toml_entry(key, value)).collect()
 }
 
-/// One line. JSON lets the character DEL stand in a text as it is, TOML does not; nothing else that
-/// JSON writes in a list, a text or a number means another thing in TOML.
+/// One line. JSON allows the character DEL in a text, TOML does not; everything else that JSON writes in
+/// a list, a text or a number means the same in TOML.
 fn toml_entry(key: &str, value: &Value) -> String {
     format!("{key} = {}\n", inline(value).replace('\x7f', "\\u007f"))
 }
@@ -73,15 +73,15 @@ pub fn to_json_text(world: &NamedWorld) -> String {
     format!("{{\n{}\n}}\n", entries.join(",\n"))
 }
 
-/// A key with a value that has a line for each of its parts.
+/// A key with a value, one line for each part of the value.
 fn block(key: &str, open: char, lines: impl Iterator<Item = String>, close: char) -> String {
     let lines: Vec<String> = lines.map(|line| format!("    {line}")).collect();
     let key = json!(key);
     format!("  {key}: {open}\n{}\n  {close}", lines.join(",\n"))
 }
 
-/// A value in one line, with a space behind each comma and colon: the same in JSON and TOML, but
-/// for tables, which stand only in JSON.
+/// A value in one line, with a space after each comma and colon. It is the same in JSON and TOML,
+/// except for tables, which are only in JSON.
 fn inline(value: &Value) -> String {
     match value {
         Value::Array(items) => {
