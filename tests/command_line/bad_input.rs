@@ -35,29 +35,33 @@ fn a_file_that_is_no_world_is_refused_with_its_place() {
         (
             "key.toml",
             b"colour = 1\n[clockwise]\na = [\"b\"]\nb = [\"a\"]\n",
-            ": colour: unknown key; expected one of: name, about, clockwise, doors",
+            ": line 1, column 1: colour: unknown key; expected one of: name, about, clockwise, doors",
         ),
         (
             "one-sided.toml",
             b"[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\"]\nc = [\"b\"]\n",
-            ": clockwise.a: vertex `a` lists the neighbour `c`, which does not list `a` back",
+            ": line 2, column 1: clockwise.a: vertex `a` lists the neighbour `c`, which does not list `a` back",
         ),
         (
             "three.toml",
             b"[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]\n",
-            ": doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+            ": line 1, column 2: doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
         ),
         (
             "pieces.toml",
             b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]\n",
-            ": clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+            ": line 1, column 2: clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
         ),
         (
             "facing.toml",
             b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\"\nfacing = \"z\"\n",
-            ": start.facing: vertex `a` has no neighbour `z`; it has b",
+            ": line 6, column 10: start.facing: vertex `a` has no neighbour `z`; it has b",
         ),
-        ("nothing.toml", b"name = \"x\"\n", ": there is no world: one of [clockwise], [doors]"),
+        (
+            "nothing.toml",
+            b"name = \"x\"\n",
+            ": there is no world; the file needs one of [clockwise], [doors]",
+        ),
         ("caf\u{e9} \u{2603}.toml", b" ", ": the file is empty"),
     ];
     let worst = folder.join("worst.toml");

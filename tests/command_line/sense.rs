@@ -232,29 +232,29 @@ fn refusal(changed: &str, from: &str, to: &str) -> String {
 #[test]
 fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
     let cases = [
-        ("camera_height = 0.9", "", "camera: the key `camera_height` is missing"),
+        ("camera_height = 0.9", "", "line 1, column 2: camera: the key `camera_height` is missing"),
         (
             "camera_height = 0.9",
             "camera_height = 90",
-            "camera.camera_height: 90 is out of range; a height above the floor in metres lies \
+            "line 8, column 17: camera.camera_height: 90 is out of range; a height above the floor in metres lies \
              between 0.01 and 10",
         ),
         (
             "mirror_radius = 0.05",
             "mirror_radius = -1",
-            "camera.mirror_radius: -1 is out of range; the radius of a mirror in metres lies between \
+            "line 6, column 17: camera.mirror_radius: -1 is out of range; the radius of a mirror in metres lies between \
              0.001 and 1",
         ),
         (
             "image = [640, 480]",
             "image = [640, 480000]",
-            "camera.image: 480000 is out of range; the side of an image in pixels lies between 16 \
+            "line 3, column 15: camera.image[1]: 480000 is out of range; the side of an image in pixels lies between 16 \
              and 16384",
         ),
         (
             "seen_from = \"below\"",
             "seen_from = \"aside\"",
-            "camera.seen_from: expected \"below\" or \"above\", found another text",
+            "line 11, column 13: camera.seen_from: expected \"below\" or \"above\", found another text",
         ),
     ];
     for (from, to, message) in cases {
@@ -269,15 +269,23 @@ fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
 #[test]
 fn colours_that_were_never_learned_are_refused_with_what_can_be() {
     let cases = [
-        ("version = 1", "version = 2", "this is version 2 of colour files; only version 1 is read"),
+        (
+            "version = 1",
+            "version = 2",
+            "line 2, column 11: version: this is version 2 of colour files; only version 1 can be read",
+        ),
         ("version = 1", "", "the key `version` is missing"),
         (
             "width = 0.05",
             "width = 5.0",
-            "stripe.width: the width in metres is 5; it can be from 0.005 to 0.5",
+            "line 6, column 9: stripe.width: 5 is out of range; the width in metres lies between 0.005 and 0.5",
         ),
-        ("[priors]", "[prior]", "prior: unknown key; expected one of: "),
-        ("floor = [\n", "floor = [\n  [40, 0, 0, 1],\n", "histograms.floor[0]: the value is 40; "),
+        ("[priors]", "[prior]", "line 11, column 2: prior: unknown key; expected one of: "),
+        (
+            "floor = [\n",
+            "floor = [\n  [40, 0, 0, 1],\n",
+            "line 27, column 4: histograms.floor[0][0]: 40 is out of range; the value ",
+        ),
         ("[histograms]", "[histograms", "line "),
     ];
     for (from, to, message) in cases {

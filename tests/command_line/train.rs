@@ -330,7 +330,7 @@ fn what_cannot_be_learned_from_is_refused_with_its_file() {
             );
             let camera = set.path("camera.toml");
             format!(
-                "{camera}: camera.camera_height: 90 is out of range; a height above the floor in \
+                "{camera}: line 8, column 17: camera.camera_height: 90 is out of range; a height above the floor in \
                  metres lies between 0.01 and 10"
             )
         }),

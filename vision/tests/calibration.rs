@@ -42,74 +42,82 @@ fn an_error_in_a_calibration_has_its_place() {
         (
             "\"below\"",
             "\"beneath\"",
-            "camera.seen_from: expected \"below\" or \"above\", found another text",
+            "line 12, column 13: camera.seen_from: expected \"below\" or \"above\", found another text",
         ),
         (
             "\"spherical-mirror\"",
             "\"mirror\"",
-            "camera.kind: expected \"spherical-mirror\" or \"ocamcalib\" or \"mei\", found another text",
+            "line 3, column 8: camera.kind: expected \"spherical-mirror\" or \"ocamcalib\" or \"mei\", found another text",
         ),
-        ("kind = \"spherical-mirror\"", "", "camera: the key `kind` is missing"),
+        ("kind = \"spherical-mirror\"", "", "line 2, column 2: camera: the key `kind` is missing"),
         (
             "focal = 1272.8 ",
             "focus = 1272.8",
-            "camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim",
+            "line 6, column 1: camera.focus: unknown key; expected one of: kind, image, ahead, seen_from, mask, centre, focal, mirror_radius, mirror_distance, camera_height, rim",
         ),
-        ("focal = 1272.8 ", "", "camera: the key `focal` is missing"),
-        ("focal = 1272.8 ", "focal = \"long\"", "camera.focal: expected a number, found a text"),
+        ("focal = 1272.8 ", "", "line 2, column 2: camera: the key `focal` is missing"),
+        (
+            "focal = 1272.8 ",
+            "focal = \"long\"",
+            "line 6, column 9: camera.focal: expected a number, found a text",
+        ),
         (
             "focal = 1272.8 ",
             "focal = -3",
-            "camera.focal: -3 is out of range; a focal length in pixels lies between 1 and 1000000",
+            "line 6, column 9: camera.focal: -3 is out of range; a focal length in pixels lies between 1 and 1000000",
         ),
         (
             "focal = 1272.8 ",
             "focal = nan",
-            "camera.focal: NaN is out of range; a focal length in pixels lies between 1 and 1000000",
+            "line 6, column 9: camera.focal: NaN is out of range; a focal length in pixels lies between 1 and 1000000",
         ),
         ("focal = 1272.8 ", "focal = 1272.8 # much\nfocal = 2", "line 7, column 1: duplicate key"),
         (
             "[640.0, 480.0]",
             "[640.0, 960.0]",
-            "camera.centre: 960 is out of range; the centre of the mirror, in the image, lies between 0 and 959",
+            "line 5, column 18: camera.centre[1]: 960 is out of range; the centre of the mirror, in the image, lies between 0 and 959",
         ),
         (
             "[640.0, 480.0]",
             "[640.0]",
-            "camera.centre: expected a list of two numbers, found a list",
+            "line 5, column 10: camera.centre: expected a list of two numbers, found a list of another length",
         ),
         (
             "[1280, 960]",
             "[1280, 960.5]",
-            "camera.image: expected a list of two whole numbers, found fractions",
+            "line 4, column 16: camera.image[1]: expected a whole number, found a decimal number",
         ),
         (
             "[1280, 960]",
             "[1280, 99999]",
-            "camera.image: 99999 is out of range; the side of an image in pixels lies between 16 and 16384",
+            "line 4, column 16: camera.image[1]: 99999 is out of range; the side of an image in pixels lies between 16 and 16384",
         ),
         (
             "= 0.15 ",
             "= 0.04",
-            "camera.mirror_distance: 0.04 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10",
+            "line 8, column 19: camera.mirror_distance: 0.04 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10",
         ),
         (
             "= 0.90 ",
             "= 90",
-            "camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10",
+            "line 9, column 17: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10",
         ),
         (
             "rim = 450.0",
             "rim = 460.0",
-            "camera.rim: 460 pixels do not go with focal, mirror_radius and mirror_distance, by which the rim is at 450.0; they must agree within 2 %",
+            "line 10, column 7: camera.rim: 460 pixels do not agree with focal, mirror_radius and mirror_distance, which give a rim of 450.0; they must agree within 2 %",
         ),
         (
             "ahead = 90.0",
             "ahead = 1e3",
-            "camera.ahead: 1000 is out of range; an angle in degrees lies between -360 and 360",
+            "line 11, column 9: camera.ahead: 1000 is out of range; an angle in degrees lies between -360 and 360",
         ),
-        ("[camera]", "[[camera]]", "camera: expected a table, found a list"),
-        ("[camera]", "colour = 1\n[camera]", "colour: unknown key; expected one of: camera"),
+        ("[camera]", "[[camera]]", "line 2, column 1: camera: expected a table, found a list"),
+        (
+            "[camera]",
+            "colour = 1\n[camera]",
+            "line 2, column 1: colour: unknown key; expected one of: camera",
+        ),
         ("[camera]", "[camera", "line 2, column 8: "),
     ];
     for (from, to, message) in cases {
@@ -119,8 +127,8 @@ fn an_error_in_a_calibration_has_its_place() {
     let far = changed(&changed(&toml, "rim = 450.0", ""), "focal = 1272.8", "focal = 2.5");
     assert_eq!(
         read(far.as_bytes(), b"").unwrap_err().to_string(),
-        "camera.mirror_distance: by focal, mirror_radius and mirror_distance the rim is at \
-         0.88 pixels; it lies between 1 and 1000000"
+        "line 8, column 19: camera.mirror_distance: focal, mirror_radius and mirror_distance give a rim \
+         of 0.88 pixels; it must be between 1 and 1000000"
     );
     assert!(read(changed(&toml, "rim = 450.0", "rim = 458.9").as_bytes(), b"").is_ok());
     assert!(read(changed(&toml, "rim = 450.0", "").as_bytes(), b"").is_ok());
@@ -134,13 +142,12 @@ fn an_error_in_a_calibration_has_its_place() {
 fn an_error_in_a_file_that_a_calibration_names_has_both_names() {
     let toml = changed(&text("superscout.toml"), "[camera]", "[camera]\nmask = \"m.png\"");
     let gone = calibration::read(toml.as_bytes(), &mut |_| Err(io::ErrorKind::NotFound.into()));
-    let message = "camera.mask: m.png: cannot be read: entity not found";
+    let message = "line 3, column 8: camera.mask: m.png: cannot be read: entity not found";
     assert_eq!(gone.unwrap_err().to_string(), message);
     let small = Mask::new("m.png", [640, 480], vec![true; 640 * 480]).to_png().unwrap();
-    let message =
-        "camera.mask: m.png: the mask is 640 by 480 pixels, the camera's images are 1280 by 960";
+    let message = "line 3, column 8: camera.mask: m.png: the mask is 640 by 480 pixels, the camera's images are 1280 by 960";
     assert_eq!(read(toml.as_bytes(), &small).unwrap_err().to_string(), message);
-    let message = "camera.mask: m.png: this is not a PNG image: ";
+    let message = "line 3, column 8: camera.mask: m.png: this is not a PNG image: ";
     assert!(read(toml.as_bytes(), b"GIF89a").unwrap_err().to_string().starts_with(message));
     let half = Mask::new("m.png", [1280, 960], vec![true; 1280 * 960]).to_png().unwrap();
     assert!(read(toml.as_bytes(), &half[..half.len() / 2]).is_err());
@@ -152,7 +159,10 @@ fn an_error_in_ocamcalibs_file_has_its_line() {
     let refusal = |from: &str, to: &str| {
         let named = changed(&results, from, to);
         let message = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
-        message.strip_prefix("camera.file: calib_results.txt: ").unwrap().to_owned()
+        message
+            .strip_prefix("line 3, column 8: camera.file: calib_results.txt: ")
+            .unwrap()
+            .to_owned()
     };
     let cases = [
         ("-2.553753e+02", "?", "line 3: expected a number, found `?`"),
@@ -200,15 +210,15 @@ fn an_error_in_ocamcalibs_file_has_its_line() {
         assert_eq!(refusal(from, to), message, "{to}");
     }
     let short = results.split_once("#image size").unwrap().0;
-    let message = "camera.file: calib_results.txt: the file ends before the height and the width of the image";
+    let message = "line 3, column 8: camera.file: calib_results.txt: the file ends before the height and the width of the image";
     assert_eq!(read(toml.as_bytes(), short.as_bytes()).unwrap_err().to_string(), message);
     let other = changed(&toml, "[camera]", "[camera]\nimage = [640, 480]");
-    let message = "camera.image: 640 by 480 pixels do not go with the file, which is for images of 1280 by 960";
+    let message = "line 2, column 9: camera.image: 640 by 480 pixels do not agree with the file, which is for images of 1280 by 960";
     assert_eq!(read(other.as_bytes(), results.as_bytes()).unwrap_err().to_string(), message);
-    let message = "camera.file: calib_results.txt: this is not UTF-8 text";
+    let message = "line 3, column 8: camera.file: calib_results.txt: this is not UTF-8 text";
     assert_eq!(read(toml.as_bytes(), b"\xff").unwrap_err().to_string(), message);
     let other = changed(&toml, "[camera]", "[camera]\nrim = 450");
-    let message = "camera.rim: unknown key; expected one of: kind, image, ahead, seen_from, mask, file, viewpoint_height";
+    let message = "line 2, column 1: camera.rim: unknown key; expected one of: kind, image, ahead, seen_from, mask, file, viewpoint_height";
     assert_eq!(read(other.as_bytes(), results.as_bytes()).unwrap_err().to_string(), message);
 }
 
@@ -218,7 +228,7 @@ fn an_error_in_a_file_of_the_unified_model_has_its_line_or_key() {
     let refusal = |from: &str, to: &str| {
         let named = changed(&yaml, from, to);
         let message = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
-        message.strip_prefix("camera.file: camodocal.yaml: ").unwrap().to_owned()
+        message.strip_prefix("line 3, column 8: camera.file: camodocal.yaml: ").unwrap().to_owned()
     };
     let cases = [
         ("MEI", "PINHOLE", "`model_type` is `PINHOLE`, not `MEI`"),
@@ -257,7 +267,7 @@ fn an_error_in_a_file_of_the_unified_model_has_its_line_or_key() {
         if message.starts_with("the file does not") {
             let named = changed(&yaml, from, to);
             let found = read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string();
-            assert_eq!(found, format!("camera.file: {message}"));
+            assert_eq!(found, format!("line 3, column 8: camera.file: {message}"));
         } else {
             let found = refusal(from, to);
             assert!(found.starts_with(message) && !found.contains('\n'), "{to}: {found}");
@@ -265,8 +275,7 @@ fn an_error_in_a_file_of_the_unified_model_has_its_line_or_key() {
     }
     let (toml, yaml) = (text("omnidir.toml"), text("omnidir.yml"));
     let named = changed(&yaml, "2.7131395400000002e-01,", "2.7131395400000002e-01, 0.,");
-    let message =
-        "camera.file: omnidir.yml: `distortion_coefficients.data` has 5 numbers; it must have 4";
+    let message = "line 3, column 8: camera.file: omnidir.yml: `distortion_coefficients.data` has 5 numbers; it must have 4";
     assert_eq!(read(toml.as_bytes(), named.as_bytes()).unwrap_err().to_string(), message);
 }
 

@@ -188,23 +188,23 @@ fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
     for (mapping, message) in [
         (
             "[run]\ntopic = \"/r\"",
-            "line 2, column 9: the log has no topic \"/r\"; it has: /camera/image/compressed, /odom,",
+            "line 2, column 9: run.topic: the log has no topic \"/r\"; it has: /camera/image/compressed, /odom,",
         ),
         (
             "[run]\ntopic = \"/odom\"",
-            "line 2, column 9: messages of type \"geometry_msgs/PoseStamped\" do not carry run",
+            "line 2, column 9: run.topic: messages of type \"geometry_msgs/PoseStamped\" do not carry run",
         ),
         (
             "[door]\ntopic = \"/junction\"",
-            "line 2, column 9: for messages of type \"lab_msgs/Junction\" the key `door` must tell a path",
+            "line 2, column 9: door.topic: for messages of type \"lab_msgs/Junction\" the key `door` must tell a path",
         ),
         (
             "[door]\ntopic = \"/junction\"\ndoor = \"arrow\"",
-            "line 3, column 8: \"arrow\" does not lead to a number in a lab_msgs/Junction",
+            "line 3, column 8: door.door: \"arrow\" does not lead to a number in a lab_msgs/Junction",
         ),
         (
             "[odometry]\ntopic = \"/odom\"\nquaternion = \"pose.position\"",
-            "line 3, column 14: \"pose.position\" does not lead to a quaternion in a geometry_msgs/PoseStamped",
+            "line 3, column 14: odometry.quaternion: \"pose.position\" does not lead to a quaternion in a geometry_msgs/PoseStamped",
         ),
     ] {
         let mapping = TopicMap::read(mapping.as_bytes()).unwrap();

@@ -158,16 +158,16 @@ fn an_error_of_syntax_has_its_place() {
 fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("[clokwise]\na = [\"b\"]"),
-        "clokwise: unknown key; expected one of: \
+        "line 1, column 2: clokwise: unknown key; expected one of: \
          name, about, clockwise, doors, floor, junctions, hallways, start"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
-        "start.from: unknown key; expected one of: at, facing"
+        "line 5, column 1: start.from: unknown key; expected one of: at, facing"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\""),
-        "start: the key `facing` is missing"
+        "line 4, column 2: start: the key `facing` is missing"
     );
     assert_eq!(
         message("{\"a\\nb\": 1}"),
@@ -177,30 +177,36 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
     assert_eq!(
         message(&PLAN.replace("to = \"corner\"\n\n[start]", "[start]")),
-        "hallways[1]: the key `to` is missing"
+        "line 15, column 1: hallways[1]: the key `to` is missing"
     );
 }
 
 #[test]
 fn values_of_the_wrong_kind_are_named() {
     for (text, expected) in [
-        ("name = 3", "name: expected a name, found a number"),
-        ("about = []\n[doors]", "about: expected a text, found a list"),
-        ("clockwise = []", "clockwise: expected a table, found a list"),
-        ("[clockwise]\na = \"b\"", "clockwise.a: expected a list of names, found a text"),
-        ("[clockwise]\na = [true]", "clockwise.a: expected a name, found true or false"),
-        ("{\"doors\": {\"a\": [null]}}", "doors.a: expected a name, found null"),
-        ("doors = 1979-05-27", "doors: expected a table, found a date"),
+        ("name = 3", "line 1, column 8: name: expected a name, found a whole number"),
+        ("about = []\n[doors]", "line 1, column 9: about: expected a text, found a list"),
+        ("clockwise = []", "line 1, column 13: clockwise: expected a table, found a list"),
+        (
+            "[clockwise]\na = \"b\"",
+            "line 2, column 5: clockwise.a: expected a list of names, found a text",
+        ),
+        (
+            "[clockwise]\na = [true]",
+            "line 2, column 6: clockwise.a[0]: expected a name, found true or false",
+        ),
+        ("{\"doors\": {\"a\": [null]}}", "doors.a[0]: expected a name, found null"),
+        ("doors = 1979-05-27", "line 1, column 9: doors: expected a table, found a date"),
     ] {
         assert_eq!(message(text), expected);
     }
     assert_eq!(
         message(&PLAN.replace("[4.0, 0.0]", "[4.0]")),
-        "junctions.east: expected a list of two numbers, x and y, found a list of another length"
+        "line 9, column 8: junctions.east: expected a list of two numbers, x and y, found a list of another length"
     );
     assert_eq!(
         message(&PLAN.replace("[4.0, 0.0]", "[4.0, \"0\"]")),
-        "junctions.east: expected a number, found a text"
+        "line 9, column 14: junctions.east[1]: expected a number, found a text"
     );
 }
 
@@ -208,10 +214,10 @@ fn values_of_the_wrong_kind_are_named() {
 fn names_have_few_characters() {
     let names = "is not a name; a name has only the characters A-Z, a-z, 0-9, _ and -";
     for (text, place, name) in [
-        ("name = \"a b\"", "name", "a b"),
-        ("[clockwise]\n\"a:b\" = []", "clockwise", "a:b"),
-        ("[clockwise]\na = [\"\"]", "clockwise.a", ""),
-        ("[doors]\na = [\"\\u00e9\\n\"]", "doors.a", "é\\n"),
+        ("name = \"a b\"", "line 1, column 8: name", "a b"),
+        ("[clockwise]\n\"a:b\" = []", "line 2, column 1: clockwise.a:b", "a:b"),
+        ("[clockwise]\na = [\"\"]", "line 2, column 6: clockwise.a[0]", ""),
+        ("[doors]\na = [\"\\u00e9\\n\"]", "line 2, column 6: doors.a[0]", "é\\n"),
     ] {
         assert_eq!(message(text), format!("{place}: `{name}` {names}"));
     }
@@ -234,31 +240,31 @@ fn an_error_in_lists_has_their_vertex() {
     for (text, expected) in [
         (
             "[clockwise]\na = [\"b\"]\nb = []",
-            "clockwise.a: vertex `a` lists the neighbour `b`, which does not list `a` back",
+            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `b`, which does not list `a` back",
         ),
         (
             "[clockwise]\na = [\"q\"]",
-            "clockwise.a: vertex `a` lists the neighbour `q`, which is no vertex",
+            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `q`, which is no vertex",
         ),
         (
             "[clockwise]\na = [\"b\", \"b\"]\nb = [\"a\", \"a\"]",
-            "clockwise.a: vertex `a` lists the neighbour `b` twice; \
+            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `b` twice; \
              parallel edges need edge names, in [doors]",
         ),
         (
             "[clockwise]\na = [\"a\"]",
-            "clockwise.a: vertex `a` lists itself; loops need edge names, in [doors]",
+            "line 2, column 1: clockwise.a: vertex `a` lists itself; loops need edge names, in [doors]",
         ),
         (
             "[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]",
-            "doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+            "line 1, column 2: doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
         ),
         (
             "[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]",
-            "clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+            "line 1, column 2: clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
         ),
-        ("[clockwise]", "clockwise: there is no edge; a world has at least one"),
-        ("[doors]\na = []", "doors: there is no edge; a world has at least one"),
+        ("[clockwise]", "line 1, column 2: clockwise: there is no edge; a world has at least one"),
+        ("[doors]\na = []", "line 1, column 2: doors: there is no edge; a world has at least one"),
     ] {
         assert_eq!(message(text), expected);
     }
@@ -268,15 +274,15 @@ fn an_error_in_lists_has_their_vertex() {
 fn an_error_in_a_start_has_its_key() {
     assert_eq!(
         message(&TRIANGLE.replace("facing = \"z\"", "facing = \"a\"")),
-        "start.facing: vertex `a` has no neighbour `a`; it has m, z"
+        "line 11, column 10: start.facing: vertex `a` has no neighbour `a`; it has m, z"
     );
     assert_eq!(
         message(&TRIANGLE.replace("at = \"a\"", "at = \"q\"")),
-        "start.at: there is no vertex `q`"
+        "line 10, column 6: start.at: there is no vertex `q`"
     );
     assert_eq!(
         message(&DOORS.replace("a:2", "a")),
-        "start.facing: edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
+        "line 7, column 10: start.facing: edge `a` is a loop; write `a:1` or `a:2` for one of its ends"
     );
 }
 
@@ -286,24 +292,28 @@ fn an_error_in_a_floor_plan_has_its_key() {
         (
             "1.6",
             "nan",
-            "floor.hallway_width: the hallway width is NaN; it must be a positive number of metres",
+            "line 4, column 1: floor.hallway_width: the hallway width is NaN; it must be a positive number of metres",
         ),
         (
             "[4.0, 0.0]",
             "[inf, 0.0]",
-            "junctions.east: junction `east` is at (inf, 0); both must be finite numbers of metres",
+            "line 9, column 1: junctions.east: junction `east` is at (inf, 0); both must be finite numbers of metres",
         ),
         (
             "[4.0, 0.0]",
             "[3.0, 0.0]",
-            "junctions: junctions `corner` and `east` are 3.00 m apart; \
+            "line 6, column 2: junctions: junctions `corner` and `east` are 3.00 m apart; \
              it must be two hallway widths, 3.20 m",
         ),
-        ("from = \"east\"", "from = \"q\"", "hallways[1]: there is no junction `q`"),
+        (
+            "from = \"east\"",
+            "from = \"q\"",
+            "line 15, column 1: hallways[1]: there is no junction `q`",
+        ),
         (
             "[4.0, 0.0]",
             "[4.0, 1.0]",
-            "hallways: hallway `east` - `corner` runs neither north-south nor east-west",
+            "line 11, column 1: hallways: hallway `east` - `corner` runs neither north-south nor east-west",
         ),
     ] {
         assert_eq!(message(&PLAN.replace(text, instead)), expected);

@@ -36,31 +36,35 @@ fn a_mapping_is_written_as_it_was_read() {
 #[test]
 fn what_is_wrong_is_told_with_its_line_and_column() {
     for (text, message) in [
-        ("", "no topic is told to carry anything"),
+        ("", "the file is empty"),
+        ("# nothing", "no topic is mapped"),
         ("[image", "line 1, column 7: "),
-        ("image = 1", "line 1, column 9: expected a table"),
+        ("image = 1", "line 1, column 9: image: expected a table"),
         (
             "[pictures]\ntopic = \"a\"",
-            "line 1, column 2: unknown key; expected one of: image, odometry, motion",
+            "line 1, column 2: pictures: unknown key; expected one of: image, odometry, motion",
         ),
-        ("[image]\ntopic = 1", "line 2, column 9: expected the name of a topic"),
-        ("[image]", "line 1, column 2: the key `topic` is missing"),
+        ("[image]\ntopic = 1", "line 2, column 9: image.topic: expected the name of a topic"),
+        ("[image]", "line 1, column 2: image: the key `topic` is missing"),
         (
             "[image]\ntopic = \"a\"\n  x = \"b\"",
-            "line 3, column 3: unknown key; expected one of: topic",
+            "line 3, column 3: image.x: unknown key; expected one of: topic",
         ),
         (
             "[odometry]\ntopic = \"a\"\nlength = \"feet\"",
-            "line 3, column 10: expected \"metres\" or \"inches\"",
+            "line 3, column 10: odometry.length: expected \"metres\" or \"inches\"",
         ),
         (
             "[door]\ntopic = \"a\"\nlength = \"metres\"",
-            "line 3, column 1: unknown key; expected one of: topic, move, door",
+            "line 3, column 1: door.length: unknown key; expected one of: topic, move, door",
         ),
-        ("[motion]\ntopic = \"a\"\nturn = 3", "line 3, column 8: expected the path of a field"),
+        (
+            "[motion]\ntopic = \"a\"\nturn = 3",
+            "line 3, column 8: motion.turn: expected the path of a field",
+        ),
         (
             "[odometry]\ntopic = \"a\"\nheading = \"h\"\nquaternion = \"q\"",
-            "line 4, column 14: either `heading` or `quaternion` tells where the robot looks, not both",
+            "line 4, column 14: odometry.quaternion: either `heading` or `quaternion` tells where the robot looks, not both",
         ),
     ] {
         let found = wrong(text);
