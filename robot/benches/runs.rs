@@ -8,9 +8,9 @@ use divan::Bencher;
 use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 use toposlam_robot::{
     evaluation::{LearnedSensors, plans, random_plan::random_plan_with, run_sampler::starts_of},
-    explorer::Told,
+    record::NoSensor,
     recording::Recording,
-    run::{Ending, Run, offline, run},
+    run::{Run, RunOutcome, offline, run},
     simulator::{BuildingLook, Effects, LOOKS, SimulationConfig},
 };
 use toposlam_vision::camera::Camera;
@@ -37,7 +37,7 @@ fn shape_6() -> (Arc<FloorPlan>, Dart) {
 
 #[track_caller]
 fn right(run: &Run) {
-    assert_eq!(run.ending(), Ending::Right);
+    assert_eq!(run.outcome(), RunOutcome::Right);
 }
 
 /// A whole run without pictures.
@@ -46,7 +46,7 @@ fn by_scene(bencher: Bencher, junctions: usize) {
     let (plan, facing) = random(junctions);
     bencher.bench(|| {
         let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-        right(&run(&plan, facing, robot, Told, (), &mut (), DARTS).0);
+        right(&run(&plan, facing, robot, NoSensor, (), DARTS));
     });
 }
 
@@ -61,7 +61,7 @@ fn shape_6_with_images(bencher: Bencher) {
             look,
             &Effects::plain(),
         );
-        right(&run(&plan, facing, robot, eyes.sensor(look), (), &mut (), DARTS).0);
+        right(&run(&plan, facing, robot, eyes.sensor(look), (), DARTS));
     });
 }
 
@@ -73,12 +73,11 @@ fn shape_6_off_line(bencher: Bencher) {
     let effects = Effects { jpeg_loss: 10.0, ..Effects::plain() };
     let robot =
         SimulationConfig::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
-    let eye = eyes.sensor(look);
-    let (done, _, recording) = run(&plan, facing, robot, eye, Recording::default(), &mut (), DARTS);
-    right(&done);
+    let mut recording = Recording::default();
+    right(&run(&plan, facing, robot, eyes.sensor(look), &mut recording, DARTS));
     bencher
         .with_inputs(|| eyes.sensor(look))
-        .bench_local_values(|eye| offline(&recording, eye, DARTS).unwrap());
+        .bench_local_values(|sensor| offline(&recording, sensor, DARTS).unwrap());
 }
 
 fn eyes() -> (LearnedSensors, &'static BuildingLook) {

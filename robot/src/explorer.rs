@@ -1,129 +1,24 @@
-//! A robot as a world: Algorithm 1 asks for doors, and Algorithm 2 takes the robot through them.
+//! A robot as a world: Algorithm 1 chooses doors, and Algorithm 2 drives the robot through them.
 //! Sections 4.3 and 5.
 
 use thiserror::Error;
 use toposlam_model::{
     driving::{
-        algorithm2::{Lost, PathExecution, PathState, Standing, Step},
-        odometry::Odometry,
+        algorithm2::{Lost, PathExecution, Standing, Step},
         scene::Scene,
     },
+    mapping::{Exploration, Journey, MappingError, MappingEvent, Nearest, map_world},
     percept::{Door, Percept},
     world::World,
 };
-use toposlam_vision::{
-    image_file::{ImageFile, ImageFileError},
-    sensing::{Sensor, WrongSize},
-};
 
 use crate::{
-    robot::{Picture, Robot, RobotError},
-    simulator::ToldScene,
+    record::{
+        Arrival, Event, EventId, EventKind, Frame, FrameSensor, MapRecord, RunEnd, RunEnding,
+        RunObserver, SensingError, nanoseconds,
+    },
+    robot::{Robot, RobotError, Sample},
 };
-
-/// What makes a scene of what a camera gives.
-pub trait Eye<V> {
-    /// The scene.
-    ///
-    /// # Errors
-    /// Where the picture cannot be read.
-    fn scene(&mut self, view: &V) -> Result<Scene, Unreadable>;
-}
-
-/// A picture that cannot be read.
-#[derive(Debug, Error)]
-pub enum Unreadable {
-    /// It is no image.
-    #[error(transparent)]
-    Image(#[from] ImageFileError),
-    /// It is of another camera.
-    #[error(transparent)]
-    Size(#[from] WrongSize),
-    /// There is nothing to look at it with.
-    #[error("neither the camera nor the colours of the building are known")]
-    NoEyes,
-}
-
-/// The file of a photograph is decoded and sensed.
-impl Eye<Vec<u8>> for Sensor {
-    fn scene(&mut self, view: &Vec<u8>) -> Result<Scene, Unreadable> {
-        let image = ImageFile::open(view)?.image()?;
-        Ok(self.sense(&image)?)
-    }
-}
-
-/// A camera that tells scenes itself needs no eye.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Told;
-
-impl Eye<ToldScene> for Told {
-    fn scene(&mut self, view: &ToldScene) -> Result<Scene, Unreadable> {
-        Ok(view.scene.clone())
-    }
-}
-
-/// A round of Algorithm 2, as it came about.
-#[derive(Debug)]
-pub struct Round<'a, V> {
-    /// How many doors were taken before.
-    pub moves: u64,
-    /// The door that the robot is to take or has taken; `None` at the start.
-    pub door: Option<Door>,
-    /// The picture.
-    pub picture: &'a Picture<V>,
-    /// Where the robot was by odometry when it was taken.
-    pub odometry: Odometry,
-    /// What sensing told of it.
-    pub scene: &'a Scene,
-    /// What the robot is about after it.
-    pub state: PathState,
-    /// What came of it.
-    pub step: &'a Result<Step, Lost>,
-}
-
-/// Whoever watches a robot explore.
-pub trait Observer<R: Robot> {
-    /// A round of Algorithm 2.
-    fn round(&mut self, _robot: &R, _round: &Round<R::View>) {}
-
-    /// The robot sets out for a door of the junction at which it stands.
-    fn leaving(&mut self, _robot: &R, _door: Door) {}
-
-    /// The robot has come to a junction, by a door of the last one unless it is the first.
-    fn arrived(&mut self, _robot: &R, _door: Option<Door>, _at: &Standing) {}
-
-    /// Whether the run is to end.
-    fn stop(&self) -> bool {
-        false
-    }
-}
-
-impl<R: Robot> Observer<R> for () {}
-
-/// Somebody watches, or nobody.
-impl<R: Robot, O: Observer<R>> Observer<R> for Option<O> {
-    fn round(&mut self, robot: &R, round: &Round<R::View>) {
-        if let Some(observer) = self {
-            observer.round(robot, round);
-        }
-    }
-
-    fn leaving(&mut self, robot: &R, door: Door) {
-        if let Some(observer) = self {
-            observer.leaving(robot, door);
-        }
-    }
-
-    fn arrived(&mut self, robot: &R, door: Option<Door>, at: &Standing) {
-        if let Some(observer) = self {
-            observer.arrived(robot, door, at);
-        }
-    }
-
-    fn stop(&self) -> bool {
-        self.as_ref().is_some_and(Observer::stop)
-    }
-}
 
 /// Why a robot cannot go on.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -171,24 +66,29 @@ fn by_door(door: Option<Door>) -> String {
     door.map_or_else(|| "at the start".to_owned(), |door| format!("by door {}", door.0))
 }
 
-/// A robot that explores.
+/// A robot that explores. Everything that happens goes to one observer.
 ///
 /// At its start it stands at the turning point of an L, its back to the facing hallway, and has put
 /// its marker down along it.
 // paper: hardware.capture
 #[derive(Clone, Debug)]
-pub struct Explorer<R: Robot, E, O = ()> {
+pub struct Explorer<R, S, O = ()> {
     robot: R,
-    eye: E,
+    sensor: S,
     observer: O,
     standing: Option<Standing>,
     moves: u64,
     door: Option<Door>,
-    /// What was last seen, and where by odometry.
-    last: Option<(R::View, Odometry)>,
+    /// The last frame that was used.
+    last: Option<Frame>,
+    /// The number of events so far.
+    events: u64,
+    /// The number of samples of the robot's track that were reported, and the time of the last.
+    samples: usize,
+    sampled: f64,
 }
 
-/// Why a picture cannot be used.
+/// Why a frame cannot be used.
 #[derive(Debug, Error)]
 enum Unusable {
     #[error("the camera gives no picture")]
@@ -198,21 +98,32 @@ enum Unusable {
     #[error("it is the same as before the robot moved")]
     Same,
     #[error(transparent)]
-    Unreadable(#[from] Unreadable),
+    NotSensed(#[from] SensingError),
     #[error(transparent)]
     Robot(RobotError),
 }
 
-/// So many pictures in a row that cannot be used are too many.
+/// The robot gives up after this many unusable frames in a row.
 const RETAKES: u32 = 6;
 
-impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
-    /// A robot with an eye, and somebody who watches.
-    pub fn new(robot: R, eye: E, observer: O) -> Self {
-        Self { robot, eye, observer, standing: None, moves: 0, door: None, last: None }
+impl<R: Robot, S: FrameSensor, O: RunObserver> Explorer<R, S, O> {
+    /// A robot, its sensing, and its observer.
+    pub fn new(robot: R, sensor: S, observer: O) -> Self {
+        Self {
+            robot,
+            sensor,
+            observer,
+            standing: None,
+            moves: 0,
+            door: None,
+            last: None,
+            events: 0,
+            samples: 0,
+            sampled: 0.0,
+        }
     }
 
-    /// The same robot, where it is known to stand.
+    /// The same robot, if it is already known where it stands.
     #[must_use]
     pub fn standing_at(mut self, standing: Standing) -> Self {
         self.standing = Some(standing);
@@ -224,9 +135,61 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         &self.robot
     }
 
-    /// The robot and whoever watched.
+    /// The robot and the observer.
     pub fn into_parts(self) -> (R, O) {
         (self.robot, self.observer)
+    }
+
+    /// Maps the building by Algorithm 1.
+    ///
+    /// # Errors
+    /// Returns an error if the run ended before the map was complete.
+    pub fn map(
+        &mut self,
+        exploration: &mut Exploration,
+    ) -> Result<(), MappingError<ExplorerError>> {
+        let mut observer = |explorer: &mut Self, journey: &Journey, event: MappingEvent| {
+            explorer.mapping_event(journey, event);
+        };
+        let result = map_world(self, &mut Nearest, exploration, &mut observer);
+        let ending = match &result {
+            Ok(()) => RunEnding::Mapped,
+            Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
+            Err(error) => RunEnding::GaveUp(error.to_string()),
+        };
+        self.emit(EventKind::End(RunEnd { moves: exploration.moves(), ending }));
+        result
+    }
+
+    fn mapping_event(&mut self, journey: &Journey, event: MappingEvent) {
+        self.observer.mapping(journey, event);
+        if matches!(event, MappingEvent::Moved { .. }) {
+            return;
+        }
+        self.emit(EventKind::Hypothesis { moves: journey.moves(), event });
+        if event.grows_map() {
+            self.emit(EventKind::Map(MapRecord::of(journey)));
+        }
+    }
+
+    /// Reports an event that happens now, after the motions that led to it.
+    fn emit(&mut self, kind: EventKind) {
+        let samples = self.robot.track().get(self.samples..).unwrap_or_default().to_vec();
+        self.samples += samples.len();
+        for Sample { speed, turning, reckoned } in samples {
+            // The wheels were commanded when they were last read.
+            let motion = EventKind::Motion { forward: speed, turn: turning };
+            self.emit_at(self.sampled, motion);
+            self.emit_at(reckoned.time, EventKind::Odometry(reckoned.odometry));
+            self.sampled = reckoned.time;
+        }
+        self.emit_at(self.robot.odometry().time, kind);
+    }
+
+    fn emit_at(&mut self, seconds: f64, kind: EventKind) {
+        self.events += 1;
+        let (id, time) = (EventId(self.events), nanoseconds(seconds));
+        self.observer.event(&Event { id, time, truth: self.robot.truth(), kind });
     }
 
     /// Drives a path to its end.
@@ -236,49 +199,43 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
             if self.observer.stop() {
                 return Err(ExplorerError::Stopped { moves });
             }
-            let odometry = self.robot.odometry().odometry;
-            let (picture, scene) = self.look()?;
-            let step = path.round(&scene, odometry);
-            let round = Round {
-                moves,
-                door,
-                picture: &picture,
-                odometry,
-                scene: &scene,
-                state: path.state(),
-                step: &step,
+            let (frame, scene) = self.look()?;
+            let step = path.round(&scene, frame.odometry);
+            self.last = Some(frame.clone());
+            self.emit(EventKind::Frame(Frame { scene: Some(scene), ..frame }));
+            let command = match step {
+                Ok(Step::Go(command)) => Some(command),
+                Ok(Step::Arrived(_)) | Err(_) => None,
             };
-            self.observer.round(&self.robot, &round);
-            self.last = Some((picture.view, odometry));
+            self.emit(EventKind::Command { state: path.state(), command });
             let command = match step.map_err(|lost| ExplorerError::Lost { moves, door, lost })? {
                 Step::Arrived(standing) => return Ok(standing),
                 Step::Go(command) => command,
             };
             if command.turn != 0.0 {
-                self.robot.turn(command.turn).map_err(|error| self.disobeyed(error))?;
+                self.robot.turn(command.turn).map_err(|error| self.robot_error(error))?;
             }
             if command.forward != 0.0 {
-                self.robot.forward(command.forward).map_err(|error| self.disobeyed(error))?;
+                self.robot.forward(command.forward).map_err(|error| self.robot_error(error))?;
             }
         }
     }
 
-    /// Why the run ends where the robot does not obey.
-    fn disobeyed(&self, error: RobotError) -> ExplorerError {
+    fn robot_error(&self, error: RobotError) -> ExplorerError {
         match error {
             RobotError::Stopped => ExplorerError::Stopped { moves: self.moves },
             error => error.into(),
         }
     }
 
-    /// A picture that can be used.
+    /// A frame that can be used, and its scene.
     // paper: alg2.4, alg2.5
-    fn look(&mut self) -> Result<(Picture<R::View>, Scene), ExplorerError> {
+    fn look(&mut self) -> Result<(Frame, Scene), ExplorerError> {
         let mut last = Unusable::Missing;
         for _ in 0..RETAKES {
-            match self.picture() {
+            match self.frame() {
                 Ok(seen) => return Ok(seen),
-                Err(Unusable::Robot(error)) => return Err(self.disobeyed(error)),
+                Err(Unusable::Robot(error)) => return Err(self.robot_error(error)),
                 Err(unusable) => last = unusable,
             }
         }
@@ -286,28 +243,26 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         Err(ExplorerError::NoPicture { moves, door, pictures: RETAKES, cause })
     }
 
-    /// A picture that was taken since the robot last moved, and its scene.
-    fn picture(&mut self) -> Result<(Picture<R::View>, Scene), Unusable> {
+    /// A frame that was taken since the robot last moved, and its scene.
+    fn frame(&mut self) -> Result<(Frame, Scene), Unusable> {
         let at = self.robot.odometry();
-        let picture = self.robot.capture().map_err(|error| match error {
+        let frame = self.robot.capture().map_err(|error| match error {
             RobotError::NoPicture => Unusable::Missing,
             RobotError::StalePicture { .. } => Unusable::Stale,
             error => Unusable::Robot(error),
         })?;
-        if picture.taken < at.time {
+        if frame.taken < at.time {
             return Err(Unusable::Stale);
         }
-        let same = |(view, odometry): &(R::View, Odometry)| {
-            *odometry != at.odometry && *view == picture.view
-        };
+        let same = |last: &Frame| last.odometry != at.odometry && last.same_data(&frame);
         if self.last.as_ref().is_some_and(same) {
             return Err(Unusable::Same);
         }
-        let scene = self.eye.scene(&picture.view)?;
-        Ok((picture, scene))
+        let scene = self.sensor.scene(&frame)?;
+        Ok((frame, scene))
     }
 
-    /// Where the robot stands; at the very start it finds out.
+    /// Where the robot stands. At the very start, it finds out.
     fn standing(&mut self) -> Result<Standing, ExplorerError> {
         if let Some(standing) = self.standing {
             return Ok(standing);
@@ -317,12 +272,17 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> Explorer<R, E, O> {
         if !standing.form.is_l() {
             return Err(ExplorerError::NotAnL { degree: standing.form.degree() });
         }
-        self.observer.arrived(&self.robot, None, &standing);
-        Ok(*self.standing.insert(standing))
+        self.arrive(standing);
+        Ok(standing)
+    }
+
+    fn arrive(&mut self, standing: Standing) {
+        self.standing = Some(standing);
+        self.emit(EventKind::Arrival(Arrival::new(self.moves, &standing)));
     }
 }
 
-impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
+impl<R: Robot, S: FrameSensor, O: RunObserver> World for Explorer<R, S, O> {
     type Error = ExplorerError;
 
     fn percept(&mut self) -> Result<Percept, ExplorerError> {
@@ -332,14 +292,14 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
     // paper: validation.traverse, validation.motion, drive.path
     fn traverse(&mut self, door: Door) -> Result<(), ExplorerError> {
         let from = self.standing()?;
-        self.observer.leaving(&self.robot, door);
         self.moves += 1;
         self.door = Some(door);
-        // Where the robot is, is not known before it has arrived.
+        // Until the robot arrives, it does not know where it is.
         self.standing = None;
+        let number = u32::try_from(self.moves).ok();
+        self.emit(EventKind::Door { number, door });
         let standing = self.drive(PathExecution::new(&[door], &from))?;
-        self.standing = Some(standing);
-        self.observer.arrived(&self.robot, Some(door), &standing);
+        self.arrive(standing);
         Ok(())
     }
 }
@@ -348,30 +308,33 @@ impl<R: Robot, E: Eye<R::View>, O: Observer<R>> World for Explorer<R, E, O> {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use toposlam_model::driving::scene::{CentreLine, JunctionView, Place};
+    use toposlam_model::driving::{
+        odometry::Odometry,
+        scene::{CentreLine, JunctionView, Place},
+    };
 
     use super::*;
-    use crate::robot::Reckoned;
+    use crate::{record::NoSensor, robot::Reckoned};
 
-    /// A robot at the turning point of an L, whose camera gives what the test says.
+    /// A robot at the turning point of an L.
     struct Still {
-        /// When each picture was taken, or that it does not come; the last again and again.
+        /// When each picture is taken; `None` if it does not come. The last repeats.
         pictures: Vec<Option<f64>>,
         asked: usize,
     }
 
     impl Robot for Still {
-        type View = ToldScene;
-
-        fn capture(&mut self) -> Result<Picture<ToldScene>, RobotError> {
+        fn capture(&mut self) -> Result<Frame, RobotError> {
             let taken = self.pictures[self.asked.min(self.pictures.len() - 1)];
             self.asked += 1;
             let line = |direction| CentreLine { through: [0.0; 2], direction };
             let doors = vec![line(PI), line(FRAC_PI_2)];
             let junction = JunctionView { doors, turning_point: [0.0; 2], confidence: 1.0 };
             let scene = Scene { place: Place::Junction(junction), marker: None };
-            let view = ToldScene { picture: self.asked as u64, scene };
-            taken.map(|taken| Picture { taken, view }).ok_or(RobotError::NoPicture)
+            let (id, scene) = (self.asked as u64, Some(scene));
+            taken
+                .map(|taken| Frame { id, taken, scene, ..Frame::default() })
+                .ok_or(RobotError::NoPicture)
         }
 
         fn turn(&mut self, _: f64) -> Result<(), RobotError> {
@@ -389,7 +352,7 @@ mod tests {
 
     fn percept(pictures: &[Option<f64>]) -> (Result<Percept, ExplorerError>, usize) {
         let robot = Still { pictures: pictures.to_vec(), asked: 0 };
-        let mut explorer = Explorer::new(robot, Told, ());
+        let mut explorer = Explorer::new(robot, NoSensor, ());
         let percept = explorer.percept();
         (percept, explorer.robot().asked)
     }

@@ -6,12 +6,13 @@
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
 pub mod conform;
-pub mod conformance;
 pub mod evaluation;
 pub mod explorer;
 pub mod fuzz;
+pub mod ground_truth_monitor;
 pub mod log;
 pub mod pose;
+pub mod record;
 pub mod recording;
 pub mod replay;
 pub mod robot;

@@ -1,95 +1,78 @@
-//! A run that is recorded, and a robot that answers with what was recorded: the off-line version.
-//! Section 6.
+//! A recording in memory, and a robot that plays it back: the off-line version. Section 6.
 
-use toposlam_model::driving::{
-    algorithm2::{Command, Step},
-    odometry::Odometry,
-};
+use toposlam_model::driving::algorithm2::Command;
 
 use crate::{
-    explorer::{Observer, Round},
-    robot::{Picture, Reckoned, Robot, RobotError},
+    record::{Event, EventKind, Frame, RunObserver},
+    robot::{Reckoned, Robot, RobotError},
 };
 
-/// All that a robot saw and did, picture by picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Recording<V> {
-    rounds: Vec<Recorded<V>>,
+/// The frames and the commands of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    rounds: Vec<(Frame, Command)>,
 }
 
-/// A picture that was used, and what the robot was told to do then.
-#[derive(Clone, Debug, PartialEq)]
-struct Recorded<V> {
-    picture: Picture<V>,
-    odometry: Odometry,
-    command: Command,
-}
-
-impl<V> Default for Recording<V> {
-    fn default() -> Self {
-        Self { rounds: Vec::new() }
-    }
-}
-
-impl<V> Recording<V> {
-    /// The number of pictures.
+impl Recording {
+    /// The number of frames.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rounds.len()
     }
 
-    /// Whether nothing was recorded.
+    /// Whether it has no frames.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rounds.is_empty()
     }
 
-    /// A robot that answers with what was recorded.
+    /// A robot that plays the recording back.
     #[must_use]
-    pub fn robot(&self) -> RecordedRobot<'_, V> {
+    pub fn robot(&self) -> RecordedRobot<'_> {
         RecordedRobot { rounds: &self.rounds, next: 0, turned: true, moved: true }
     }
 }
 
-/// Whoever records watches.
-impl<R: Robot> Observer<R> for Recording<R::View>
-where
-    R::View: Clone,
-{
-    fn round(&mut self, _: &R, round: &Round<R::View>) {
-        let command = match round.step {
-            Ok(Step::Go(command)) => *command,
-            Ok(Step::Arrived(_)) | Err(_) => Command::default(),
-        };
-        let picture = round.picture.clone();
-        self.rounds.push(Recorded { picture, odometry: round.odometry, command });
+impl RunObserver for Recording {
+    fn event(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Frame(frame) => {
+                self.rounds.push((frame.without_pixels(), Command::default()));
+            }
+            EventKind::Command { command: Some(command), .. } => {
+                if let Some((_, last)) = self.rounds.last_mut() {
+                    *last = *command;
+                }
+            }
+            _ => {}
+        }
     }
 }
 
-/// A robot that does not move: it answers with what was recorded, as long as it is asked for what was
-/// asked for then.
+/// A robot that does not move. It returns the recorded frames, as long as its commands are the recorded
+/// ones.
 #[derive(Clone, Debug)]
-pub struct RecordedRobot<'a, V> {
-    rounds: &'a [Recorded<V>],
-    /// The picture that comes next.
+pub struct RecordedRobot<'a> {
+    rounds: &'a [(Frame, Command)],
+    /// The index of the next frame.
     next: usize,
-    /// Whether what was asked for after the last one has been asked for.
+    /// Whether the commands after the last frame were repeated.
     turned: bool,
     moved: bool,
 }
 
-impl<V> RecordedRobot<'_, V> {
-    /// How many pictures were taken.
+impl RecordedRobot<'_> {
+    /// The number of frames that were taken.
     #[must_use]
     pub fn pictures(&self) -> usize {
         self.next
     }
 
     fn last(&self) -> Command {
-        self.next.checked_sub(1).map_or(Command::default(), |last| self.rounds[last].command)
+        self.next.checked_sub(1).map_or(Command::default(), |last| self.rounds[last].1)
     }
 
-    fn otherwise(&self, asked: String) -> RobotError {
+    fn not_recorded(&self, asked: String) -> RobotError {
         let recorded = match self.rounds.get(self.next) {
             None => "the end".to_owned(),
             Some(_) if !self.turned => format!("a turn by {:.4} rad", self.last().turn),
@@ -100,21 +83,21 @@ impl<V> RecordedRobot<'_, V> {
     }
 }
 
-impl<V: Clone + PartialEq> Robot for RecordedRobot<'_, V> {
-    type View = V;
-
-    fn capture(&mut self) -> Result<Picture<V>, RobotError> {
+impl Robot for RecordedRobot<'_> {
+    fn capture(&mut self) -> Result<Frame, RobotError> {
         let round = self.rounds.get(self.next).filter(|_| self.turned && self.moved);
-        let Some(round) = round else { return Err(self.otherwise("a picture".to_owned())) };
+        let Some((frame, command)) = round else {
+            return Err(self.not_recorded("a picture".to_owned()));
+        };
         self.next += 1;
-        self.turned = round.command.turn == 0.0;
-        self.moved = round.command.forward == 0.0;
-        Ok(round.picture.clone())
+        self.turned = command.turn == 0.0;
+        self.moved = command.forward == 0.0;
+        Ok(frame.without_pixels())
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
         if self.turned || self.last().turn.total_cmp(&angle).is_ne() {
-            return Err(self.otherwise(format!("a turn by {angle:.4} rad")));
+            return Err(self.not_recorded(format!("a turn by {angle:.4} rad")));
         }
         self.turned = true;
         Ok(())
@@ -122,60 +105,61 @@ impl<V: Clone + PartialEq> Robot for RecordedRobot<'_, V> {
 
     fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
         if !self.turned || self.moved || self.last().forward.total_cmp(&distance).is_ne() {
-            return Err(self.otherwise(format!("{distance:.4} m ahead")));
+            return Err(self.not_recorded(format!("{distance:.4} m ahead")));
         }
         self.moved = true;
         Ok(())
     }
 
-    /// Where the robot was when the next picture was taken; at the end, where it was at the last.
+    /// Where the robot was when the next frame was taken; at the end, where it was at the last.
     fn odometry(&self) -> Reckoned {
         let round = self.rounds.get(self.next).or(self.rounds.last());
-        round.map_or(Reckoned::default(), |round| Reckoned {
-            time: round.picture.taken,
-            odometry: round.odometry,
+        round.map_or(Reckoned::default(), |(frame, _)| Reckoned {
+            time: frame.taken,
+            odometry: frame.odometry,
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::driving::odometry::Odometry;
+
     use super::*;
 
-    fn recording() -> Recording<u8> {
-        let round = |taken, view, turn, forward| Recorded {
-            picture: Picture { taken, view },
-            odometry: Odometry { position: [taken, 0.0], heading: 0.0 },
-            command: Command { turn, forward },
+    fn recording() -> Recording {
+        let round = |id, taken, turn, forward| {
+            let odometry = Odometry { position: [taken, 0.0], heading: 0.0 };
+            (Frame { id, taken, odometry, ..Frame::default() }, Command { turn, forward })
         };
-        Recording { rounds: vec![round(0.0, 1, 0.5, 0.25), round(3.0, 2, 0.0, 0.0)] }
+        Recording { rounds: vec![round(1, 0.0, 0.5, 0.25), round(2, 3.0, 0.0, 0.0)] }
     }
 
     #[test]
-    fn it_answers_with_what_was_recorded_and_moves_as_it_did() {
+    fn a_recorded_robot_returns_the_recorded_frames_and_odometry() {
         let recording = recording();
         let mut robot = recording.robot();
-        assert_eq!(robot.capture().unwrap().view, 1);
+        assert_eq!(robot.capture().unwrap().id, 1);
         robot.turn(0.5).unwrap();
         robot.forward(0.25).unwrap();
         let reckoned = robot.odometry();
         assert_eq!((reckoned.time, reckoned.odometry.position[0]), (3.0, 3.0));
-        assert_eq!(robot.capture().unwrap().view, 2);
+        assert_eq!(robot.capture().unwrap().id, 2);
         assert_eq!(robot.pictures(), 2);
     }
 
     #[test]
-    fn whoever_asks_for_something_else_is_told_what_is_recorded() {
-        let told = |ask: fn(&mut RecordedRobot<u8>) -> Result<(), RobotError>| {
+    fn an_action_that_is_not_recorded_is_an_error_that_names_the_recorded_one() {
+        let error = |ask: fn(&mut RecordedRobot) -> Result<(), RobotError>| {
             let recording = recording();
             let mut robot = recording.robot();
             robot.capture().unwrap();
             ask(&mut robot).unwrap_err().to_string()
         };
         let is = "entry 2 of the recording is a turn by 0.5000 rad; what is asked for is ";
-        assert_eq!(told(|robot| robot.turn(0.4)), format!("{is}a turn by 0.4000 rad"));
-        assert_eq!(told(|robot| robot.forward(0.25)), format!("{is}0.2500 m ahead"));
-        assert_eq!(told(|robot| robot.capture().map(|_| ())), format!("{is}a picture"));
+        assert_eq!(error(|robot| robot.turn(0.4)), format!("{is}a turn by 0.4000 rad"));
+        assert_eq!(error(|robot| robot.forward(0.25)), format!("{is}0.2500 m ahead"));
+        assert_eq!(error(|robot| robot.capture().map(|_| ())), format!("{is}a picture"));
         let recording = recording();
         let mut robot = recording.robot();
         robot.capture().unwrap();

@@ -1,65 +1,36 @@
-//! The off-line version on a log: sensing, Algorithm 2 and Algorithm 1 on the recorded pictures, without
-//! a robot that moves, held against what the robot made of them. Section 6.
+//! The off-line version on a log: sensing, Algorithm 2 and Algorithm 1 run on the recorded frames,
+//! without a robot that moves, and their results are compared with the recorded ones. Section 6.
 
-use std::{cell::RefCell, fmt, rc::Rc};
+use std::{collections::HashMap, fmt};
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::{
-        algorithm2::{Command, Standing, Step},
-        odometry::Odometry,
-        scene::Scene,
-    },
-    mapping::{Exploration, MappingError, Nearest, map_world},
+    driving::{algorithm2::Command, odometry::Odometry, scene::Scene},
+    mapping::{Exploration, MappingError},
     percept::{Door, Percept, Sighting},
 };
-use toposlam_vision::{image_file::ImageFile, sensing::Sensor};
+use toposlam_vision::sensing::Sensor;
 
 use crate::{
-    explorer::{Explorer, ExplorerError, Eye, Observer, Round, Unreadable},
+    explorer::{Explorer, ExplorerError},
     log::{
-        entries::{Content, Entries, LoggedImage as Photograph},
+        entries::{Content, Entries},
         error::LogError,
-        messages,
+        map_of, messages,
         reader::Log,
         scene_of,
         topic_map::{Role, TopicMap, TopicMapError},
     },
-    robot::{Picture, Reckoned, Robot, RobotError},
+    record::{Event, EventKind, Frame, MapRecord, RunObserver},
+    robot::{Reckoned, Robot, RobotError},
 };
 
-/// What sensing is done on.
-#[derive(Clone, Debug, PartialEq)]
-pub enum View {
-    /// A recorded picture.
-    Photograph(Photograph),
-    /// The scene that was recorded, where there are no pictures; with the number of its message.
-    Scene(u64, Scene),
-}
-
-/// Senses recorded pictures, and takes recorded scenes as they are.
-#[derive(Clone, Debug)]
-pub struct Looker(pub Option<Sensor>);
-
-impl Eye<View> for Looker {
-    fn scene(&mut self, view: &View) -> Result<Scene, Unreadable> {
-        match (view, &mut self.0) {
-            (View::Scene(_, scene), _) => Ok(scene.clone()),
-            (View::Photograph(Photograph::Pixels(image)), Some(sensor)) => Ok(sensor.sense(image)?),
-            (View::Photograph(Photograph::File(bytes)), Some(sensor)) => {
-                Ok(sensor.sense(&ImageFile::open(bytes)?.image()?)?)
-            }
-            (View::Photograph(_), None) => Err(Unreadable::NoEyes),
-        }
-    }
-}
-
-/// How much of what was recorded comes out again.
+/// The number of recorded results that were reproduced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
-    /// So many are as recorded,
+    /// Those that were reproduced.
     pub agree: u64,
-    /// of so many.
+    /// All of them.
     pub of: u64,
 }
 
@@ -69,7 +40,7 @@ impl Agreement {
         self.agree += u64::from(agrees);
     }
 
-    /// Whether all are.
+    /// Whether all were reproduced.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self.agree == self.of
@@ -82,43 +53,50 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// What the off-line version makes of a log, and how that compares.
+/// The result of the off-line version on a log.
 #[derive(Debug)]
 pub struct Replay {
-    /// The map that it makes, and where it takes the robot to be.
+    /// The map, and the robot's pose in it.
     pub exploration: Exploration,
-    /// Why it did not come to its end.
+    /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
-    /// How many pictures there were until then.
-    pub pictures: u64,
-    /// Scenes as recorded.
-    pub scenes: Agreement,
-    /// Commands of Algorithm 2 as recorded.
-    pub commands: Agreement,
-    /// Percepts as recorded.
-    pub percepts: Agreement,
-    /// Doors as recorded.
-    pub doors: Agreement,
-    /// Whether the map is the last one recorded; `None` where none was.
-    pub map: Option<bool>,
-    /// Where something else than what was recorded came out first.
-    pub difference: Option<Difference>,
-    /// What was recorded took so long, in seconds.
+    /// How it compares with the recorded run.
+    pub comparison: Comparison,
+    /// How long the recorded run took, in seconds.
     pub recorded_seconds: f64,
 }
 
-/// Something else than what was recorded.
+/// How a replay compares with the recorded run.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// The number of frames that were used.
+    pub pictures: u64,
+    /// Scenes that were reproduced.
+    pub scenes: Agreement,
+    /// Commands of Algorithm 2.
+    pub commands: Agreement,
+    /// Percepts.
+    pub percepts: Agreement,
+    /// Doors.
+    pub doors: Agreement,
+    /// Whether the map is the last recorded one; `None` if none was recorded.
+    pub map: Option<bool>,
+    /// The first result that differs from the recorded one.
+    pub difference: Option<Difference>,
+}
+
+/// A result that differs from the recorded one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// At which picture, counted from 1.
+    /// The number of the picture, counted from 1.
     pub picture: u64,
     /// When it was taken, in seconds since the first message of the log.
     pub time: f64,
-    /// What is different.
+    /// What differs.
     pub what: &'static str,
-    /// As it was recorded.
+    /// The recorded result.
     pub recorded: String,
-    /// As it comes out.
+    /// The result of the replay.
     pub found: String,
 }
 
@@ -148,7 +126,7 @@ pub enum NotReplayed {
 /// Runs the off-line version on a log.
 ///
 /// # Errors
-/// Where the log cannot be read, or has nothing to replay.
+/// Returns an error if the log cannot be read, or has nothing to replay.
 // paper: exp.off-line
 pub fn replay(
     log: &Log,
@@ -157,94 +135,58 @@ pub fn replay(
     dart_bound: usize,
 ) -> Result<Replay, NotReplayed> {
     let has = |role| mapping.carrier(role).is_some();
-    let seen = if has(Role::Image) { Role::Image } else { Role::Scene };
-    if !has(seen) || !has(Role::Odometry) || !has(Role::Command) {
+    let frames = if has(Role::Image) { Role::Image } else { Role::Scene };
+    if !has(frames) || !has(Role::Odometry) || !has(Role::Command) {
         return Err(NotReplayed::Nothing);
     }
     let roles =
-        [seen, Role::Scene, Role::Odometry, Role::Command, Role::Percept, Role::Door, Role::Map];
+        [frames, Role::Scene, Role::Odometry, Role::Command, Role::Percept, Role::Door, Role::Map];
     let bound = mapping.only(&roles).bind(log)?;
-    let told = Rc::new(RefCell::new(Told::default()));
-    let mut robot = Replayed {
+    let start = log.start().unwrap_or(0);
+    let mut robot = ReplayedRobot {
         entries: log.entries(&bound),
-        seen,
-        begun: log.start().unwrap_or(0),
+        frames,
+        start,
         next: None,
         odometry: Odometry::default(),
-        told: told.clone(),
+        recorded: RecordedResults::default(),
         failure: None,
     };
     robot.advance();
-    let mut explorer = Explorer::new(robot, Looker(sensor), Comparison::new(told));
+    let mut explorer = Explorer::new(robot, sensor, Results::default());
     let mut exploration = Exploration::new(dart_bound);
-    let error = map_world(&mut explorer, &mut Nearest, &mut exploration, &mut ()).err();
-    let (mut robot, comparison) = explorer.into_parts();
-    // What comes after the last picture that was asked for is told, too.
+    let error = explorer.map(&mut exploration).err();
+    let (mut robot, results) = explorer.into_parts();
+    // The results after the last frame that was used are compared, too.
     while robot.failure.is_none() && robot.next.is_some() {
         robot.advance();
     }
     if let Some(failure) = robot.failure {
         return Err(failure);
     }
-    let told = comparison.told.borrow();
-    let map = told.map.as_ref().map(|recorded| *recorded == in_numbers(&exploration));
-    let length = log.end().unwrap_or(0).saturating_sub(log.start().unwrap_or(0));
-    let Comparison { pictures, scenes, commands, percepts, doors, difference, .. } = &comparison;
-    let made = |agreement: &Agreement, recorded: usize| Agreement {
-        // What was recorded and does not come out does not agree.
-        of: agreement.of.max(recorded as u64),
-        ..*agreement
-    };
-    Ok(Replay {
-        error,
-        pictures: *pictures,
-        scenes: *scenes,
-        commands: *commands,
-        percepts: made(percepts, told.percepts.len()),
-        doors: made(doors, told.doors.len()),
-        map,
-        difference: difference.clone(),
-        recorded_seconds: length as f64 / 1e9,
-        exploration,
-    })
+    let mut comparison = robot.recorded.compare(&results.0);
+    let map = MapRecord::of(exploration.journey());
+    comparison.map = robot.recorded.map.map(|recorded| recorded.same_map(&map));
+    let length = log.end().unwrap_or(0).saturating_sub(start);
+    Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, exploration })
 }
 
-/// A map as a log tells it.
-fn in_numbers(exploration: &Exploration) -> (Vec<u32>, Vec<i32>) {
-    crate::conform::in_numbers(exploration.map())
-}
-
-/// What a log tells of what its robot made of its pictures.
-#[derive(Debug, Default)]
-struct Told {
-    /// Of the present picture.
-    scene: Option<Scene>,
-    command: Option<Command>,
-    /// All so far.
-    percepts: Vec<Percept>,
-    doors: Vec<Door>,
-    map: Option<(Vec<u32>, Vec<i32>)>,
-}
-
-/// A robot that shows the recorded pictures in turn, whatever it is told to do.
-struct Replayed<'l> {
+/// A robot that returns the recorded frames one after the other, and collects the recorded results.
+struct ReplayedRobot<'l> {
     entries: Entries<'l>,
-    /// What stands for a picture.
-    seen: Role,
-    begun: u64,
-    /// The picture that comes next, and where the robot was.
-    next: Option<(Picture<View>, Odometry)>,
+    /// What frames are made of: images or scenes.
+    frames: Role,
+    start: u64,
+    next: Option<Frame>,
     odometry: Odometry,
-    told: Rc<RefCell<Told>>,
+    recorded: RecordedResults,
     failure: Option<NotReplayed>,
 }
 
-impl Replayed<'_> {
-    /// Reads on to the next picture; what stands before it is told of the one before.
+impl ReplayedRobot<'_> {
+    /// Reads to the next frame. Results before it belong to the frame before.
     fn advance(&mut self) {
-        self.next = None;
-        let mut told = self.told.borrow_mut();
-        (told.scene, told.command) = (None, None);
+        let last = self.next.take().map_or(0, |frame| frame.id);
         for entry in self.entries.by_ref() {
             let entry = match entry {
                 Ok(entry) => entry,
@@ -253,51 +195,48 @@ impl Replayed<'_> {
                     return;
                 }
             };
-            let taken = entry.stamp.nanoseconds().saturating_sub(self.begun) as f64 / 1e9;
+            let taken = entry.stamp.nanoseconds().saturating_sub(self.start) as f64 / 1e9;
+            let id = entry.number;
+            let frame = Frame { id, taken, odometry: self.odometry, ..Frame::default() };
             match entry.content {
-                Content::Image(picture) if self.seen == Role::Image => {
-                    let picture = Picture { taken, view: View::Photograph(picture) };
-                    self.next = Some((picture, self.odometry));
+                Content::Image(image) if self.frames == Role::Image => {
+                    self.next = Some(Frame { image: Some(image), ..frame });
                     return;
                 }
                 Content::Scene(scene) => {
-                    let message = entry.number;
                     let Some(scene) = scene_of(&scene) else {
-                        self.failure = Some(NotReplayed::Scene { message });
+                        self.failure = Some(NotReplayed::Scene { message: id });
                         return;
                     };
-                    if self.seen == Role::Scene {
-                        let picture = Picture { taken, view: View::Scene(message, scene) };
-                        self.next = Some((picture, self.odometry));
+                    if self.frames == Role::Scene {
+                        self.next = Some(Frame { scene: Some(scene), ..frame });
                         return;
                     }
-                    told.scene = Some(scene);
+                    self.recorded.scenes.insert(last, scene);
                 }
                 Content::Odometry(odometry) => self.odometry = odometry,
                 Content::Command(messages::Command { turn, forward, .. }) => {
-                    told.command = Some(Command { turn, forward });
+                    self.recorded.commands.insert(last, Command { turn, forward });
                 }
                 Content::Percept(percept) => {
                     let sighting = u32::try_from(percept.marker)
                         .map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door)));
-                    told.percepts.push(Percept { degree: percept.degree, sighting });
+                    self.recorded.percepts.push(Percept { degree: percept.degree, sighting });
                 }
-                Content::Door(door) => told.doors.push(Door(door.door)),
-                Content::Map(map) => told.map = Some((map.degrees, map.opposite)),
+                Content::Door(door) => self.recorded.doors.push(Door(door.door)),
+                Content::Map(map) => self.recorded.map = Some(map_of(&map)),
                 _ => {}
             }
         }
     }
 }
 
-impl Robot for Replayed<'_> {
-    type View = View;
-
-    fn capture(&mut self) -> Result<Picture<View>, RobotError> {
-        let next = self.next.take().filter(|_| self.failure.is_none());
-        let (picture, _) = next.ok_or(RobotError::EndOfLog)?;
+impl Robot for ReplayedRobot<'_> {
+    fn capture(&mut self) -> Result<Frame, RobotError> {
+        let frame = self.next.clone().filter(|_| self.failure.is_none());
+        let frame = frame.ok_or(RobotError::EndOfLog)?;
         self.advance();
-        Ok(picture)
+        Ok(frame)
     }
 
     fn turn(&mut self, _: f64) -> Result<(), RobotError> {
@@ -310,98 +249,99 @@ impl Robot for Replayed<'_> {
 
     fn odometry(&self) -> Reckoned {
         let next = self.next.as_ref();
-        next.map_or(Reckoned::default(), |(picture, odometry)| Reckoned {
-            time: picture.taken,
-            odometry: *odometry,
+        next.map_or(Reckoned::default(), |frame| Reckoned {
+            time: frame.taken,
+            odometry: frame.odometry,
         })
     }
 }
 
-/// Compares what comes out with what was recorded.
-struct Comparison {
-    told: Rc<RefCell<Told>>,
-    pictures: u64,
-    time: f64,
-    scenes: Agreement,
-    commands: Agreement,
-    percepts: Agreement,
-    doors: Agreement,
-    difference: Option<Difference>,
+/// The results of a replay: its events, without images.
+#[derive(Default)]
+struct Results(Vec<Event>);
+
+impl RunObserver for Results {
+    fn event(&mut self, event: &Event) {
+        let mut event = event.clone();
+        if let EventKind::Frame(frame) = &mut event.kind {
+            frame.image = None;
+        }
+        self.0.push(event);
+    }
 }
 
-/// A command differs by no more: odometry goes through a quaternion on its way into a log.
+/// The recorded results.
+#[derive(Default)]
+struct RecordedResults {
+    /// By the frame before.
+    scenes: HashMap<u64, Scene>,
+    commands: HashMap<u64, Command>,
+    percepts: Vec<Percept>,
+    doors: Vec<Door>,
+    map: Option<MapRecord>,
+}
+
+/// Commands may differ by this much: a log stores odometry as a quaternion.
 const SAME: f64 = 1e-6;
 
-impl Comparison {
-    fn new(told: Rc<RefCell<Told>>) -> Self {
-        let none = Agreement::default();
-        Self {
-            told,
-            pictures: 0,
-            time: 0.0,
-            scenes: none,
-            commands: none,
-            percepts: none,
-            doors: none,
-            difference: None,
+impl RecordedResults {
+    fn compare(&self, results: &[Event]) -> Comparison {
+        let mut to = Comparison::default();
+        let (mut id, mut time) = (0, 0.0);
+        for event in results {
+            match &event.kind {
+                EventKind::Frame(frame) => {
+                    to.pictures += 1;
+                    (id, time) = (frame.id, frame.taken);
+                    if let (Some(recorded), Some(found)) = (self.scenes.get(&id), &frame.scene) {
+                        let same = recorded == found;
+                        to.scenes.note(same);
+                        to.differs(same, time, "scene", recorded, found);
+                    }
+                }
+                EventKind::Command { command: Some(found), .. } => {
+                    if let Some(recorded) = self.commands.get(&id) {
+                        let same = (recorded.turn - found.turn).abs() <= SAME
+                            && (recorded.forward - found.forward).abs() <= SAME;
+                        to.commands.note(same);
+                        to.differs(same, time, "command", recorded, found);
+                    }
+                }
+                EventKind::Door { door: found, .. } => {
+                    let recorded = self.doors.get(to.doors.of as usize);
+                    let same = recorded == Some(found);
+                    to.doors.note(same);
+                    to.differs(same, time, "door", &recorded, found);
+                }
+                EventKind::Arrival(arrival) => {
+                    let recorded = self.percepts.get(to.percepts.of as usize);
+                    let same = recorded == Some(&arrival.percept);
+                    to.percepts.note(same);
+                    to.differs(same, time, "percept", &recorded, &arrival.percept);
+                }
+                _ => {}
+            }
         }
-    }
-
-    fn differs(&mut self, what: &'static str, recorded: &impl fmt::Debug, found: &impl fmt::Debug) {
-        let (picture, time) = (self.pictures, self.time);
-        self.difference.get_or_insert_with(|| Difference {
-            picture,
-            time,
-            what,
-            recorded: format!("{recorded:?}"),
-            found: format!("{found:?}"),
-        });
+        // Recorded results that were not reached do not agree.
+        to.percepts.of = to.percepts.of.max(self.percepts.len() as u64);
+        to.doors.of = to.doors.of.max(self.doors.len() as u64);
+        to
     }
 }
 
-impl Observer<Replayed<'_>> for Comparison {
-    fn round(&mut self, _: &Replayed, round: &Round<View>) {
-        self.pictures += 1;
-        self.time = round.picture.taken;
-        let told = self.told.clone();
-        let told = told.borrow();
-        if let Some(recorded) = &told.scene {
-            let same = recorded == round.scene;
-            self.scenes.note(same);
-            if !same {
-                self.differs("scene", recorded, round.scene);
-            }
-        }
-        if let (Some(recorded), Ok(Step::Go(found))) = (&told.command, round.step) {
-            let same = (recorded.turn - found.turn).abs() <= SAME
-                && (recorded.forward - found.forward).abs() <= SAME;
-            self.commands.note(same);
-            if !same {
-                self.differs("command", recorded, found);
-            }
-        }
-    }
-
-    fn leaving(&mut self, _: &Replayed, found: Door) {
-        let told = self.told.clone();
-        // The log may tell it after the next picture only: then it is not known yet.
-        let place = self.doors.of as usize;
-        let recorded = told.borrow().doors.get(place).copied();
-        let same = recorded == Some(found);
-        self.doors.note(same);
-        if !same {
-            self.differs("door", &recorded, &found);
-        }
-    }
-
-    fn arrived(&mut self, _: &Replayed, _: Option<Door>, at: &Standing) {
-        let told = self.told.clone();
-        let place = self.percepts.of as usize;
-        let recorded = told.borrow().percepts.get(place).copied();
-        let same = recorded == Some(at.percept);
-        self.percepts.note(same);
-        if !same {
-            self.differs("percept", &recorded, &at.percept);
+impl Comparison {
+    fn differs(
+        &mut self,
+        same: bool,
+        time: f64,
+        what: &'static str,
+        recorded: &impl fmt::Debug,
+        found: &impl fmt::Debug,
+    ) {
+        let picture = self.pictures;
+        if !same && self.difference.is_none() {
+            let (recorded, found) = (format!("{recorded:?}"), format!("{found:?}"));
+            self.difference = Some(Difference { picture, time, what, recorded, found });
         }
     }
 }
@@ -411,8 +351,8 @@ mod tests {
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},
-        explorer::Told as Teller,
-        log::{recorder::Recorder, shared_buffer::SharedBuffer},
+        log::recorder::Recorder,
+        record::NoSensor,
         run::run,
         simulator::SimulationConfig,
     };
@@ -422,14 +362,11 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
         setting.keeps_track = true;
-        let file = SharedBuffer::default();
-        let recorder = Recorder::new(file.clone(), &messages::Run::default(), None).unwrap();
-        let robot = setting.by_scene();
-        let mut story = recorder.clone();
-        let (run, robot, _) = run(&plan, facing, robot, Teller, recorder.clone(), &mut story, 200);
-        recorder.end(&robot, run.exploration.moves(), run.error.as_ref()).unwrap();
-        let bytes = file.0.borrow().clone();
-        (Log::of_bytes(bytes).unwrap(), run.exploration)
+        let mut log = Vec::new();
+        let mut recorder = Recorder::new(&mut log, &messages::Run::default(), None).unwrap();
+        let run = run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200);
+        recorder.finish().unwrap();
+        (Log::of_bytes(log).unwrap(), run.exploration)
     }
 
     // paper: exp.off-line
@@ -439,13 +376,14 @@ mod tests {
             let (log, exploration) = recorded(seed);
             let mapping = TopicMap::unambiguous(&log);
             let replay = replay(&log, &mapping, None, 200).unwrap();
-            assert_eq!((replay.error, replay.difference), (None, None));
+            let to = replay.comparison;
+            assert_eq!((replay.error, to.difference), (None, None));
             assert_eq!(replay.exploration.map(), exploration.map());
-            assert_eq!(replay.map, Some(true));
+            assert_eq!(to.map, Some(true));
             let moves = exploration.moves();
-            assert_eq!(replay.doors, Agreement { agree: moves, of: moves });
-            assert_eq!(replay.percepts, Agreement { agree: moves + 1, of: moves + 1 });
-            assert!(replay.commands.is_whole() && replay.commands.of > 20, "{:?}", replay.commands);
+            assert_eq!(to.doors, Agreement { agree: moves, of: moves });
+            assert_eq!(to.percepts, Agreement { agree: moves + 1, of: moves + 1 });
+            assert!(to.commands.is_whole() && to.commands.of > 20, "{:?}", to.commands);
         }
     }
 
@@ -455,7 +393,8 @@ mod tests {
         let mapping = TopicMap::unambiguous(&log);
         let replay = replay(&log, &mapping, None, 4).unwrap();
         assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
-        assert!(!replay.doors.is_whole() && replay.map == Some(false));
+        let to = replay.comparison;
+        assert!(!to.doors.is_whole() && to.map == Some(false));
     }
 
     #[test]

@@ -1,62 +1,56 @@
-//! All that a robot does for Algorithm 2: it takes a picture, it turns, it goes ahead. Sections 2.5
-//! and 4.
+//! What Algorithm 2 needs of a robot: it takes a frame, turns, and goes ahead. Sections 2.5 and 4.
 
 use thiserror::Error;
 use toposlam_model::driving::odometry::Odometry;
 
-/// A robot with a camera. What it is asked for may fail, be late, or come out differently: what came
-/// of a motion is what odometry says next.
+use crate::{pose::Pose, record::Frame};
+
+/// A robot with a camera. An action may fail, be late, or be inexact; odometry reports its result.
 pub trait Robot {
-    /// What its camera gives.
-    type View: PartialEq;
-
-    /// Takes a picture.
+    /// Takes a frame.
     ///
     /// # Errors
-    /// [`RobotError::NoPicture`] where none came; others where the robot cannot go on.
+    /// Returns [`RobotError::NoPicture`] or [`RobotError::StalePicture`] if the next attempt may succeed,
+    /// another error if the robot cannot go on.
     // paper: hardware.capture
-    fn capture(&mut self) -> Result<Picture<Self::View>, RobotError>;
+    fn capture(&mut self) -> Result<Frame, RobotError>;
 
-    /// Turns on the spot by so many radians, counter-clockwise.
+    /// Turns on the spot, by an angle in radians counter-clockwise.
     ///
     /// # Errors
-    /// Where the robot cannot go on.
+    /// Returns an error if the robot cannot go on.
     fn turn(&mut self, angle: f64) -> Result<(), RobotError>;
 
-    /// Goes straight ahead by so many metres.
+    /// Goes straight ahead, by a distance in metres.
     ///
     /// # Errors
-    /// Where the robot cannot go on.
+    /// Returns an error if the robot cannot go on.
     fn forward(&mut self, distance: f64) -> Result<(), RobotError>;
 
     /// Where the robot is by its wheels, and when.
     fn odometry(&self) -> Reckoned;
 
-    /// What the wheels were told and what odometry said then, from the beginning; empty where nobody
-    /// keeps it.
+    /// The commands of the wheels and the odometry after each, from the beginning; empty if the robot
+    /// does not record them.
     fn track(&self) -> &[Sample] {
         &[]
     }
+
+    /// The true pose; known in a simulation only.
+    fn truth(&self) -> Option<Pose> {
+        None
+    }
 }
 
-/// What the wheels were told, and what came of it.
+/// A command of the wheels, and the odometry after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Metres a second ahead.
     pub speed: f64,
     /// Radians a second, counter-clockwise.
     pub turning: f64,
-    /// What odometry said after it.
+    /// The odometry after it.
     pub reckoned: Reckoned,
-}
-
-/// A picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture<V> {
-    /// When it was taken, in seconds since the robot was switched on.
-    pub taken: f64,
-    /// What it shows.
-    pub view: V,
 }
 
 /// Where the robot is by its wheels, at some time.

@@ -4,21 +4,19 @@
 use thiserror::Error;
 use toposlam_model::{
     check::{Algorithm1, Flaw, judge},
-    driving::algorithm2::Standing,
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     isomorphism::Candidate,
-    mapping::{self, Exploration, MappingError, Nearest, map_world},
-    percept::Door,
+    mapping::{Exploration, MappingError, Nearest, map_world},
     world::{GraphWorld, State},
 };
 
 use crate::{
-    conformance::{Divergence, Specification},
-    explorer::{Explorer, ExplorerError, Eye, Observer, Round},
+    explorer::{Explorer, ExplorerError},
+    ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
+    record::{FrameSensor, RunObserver},
     recording::Recording,
-    robot::Robot,
-    simulator::{SimulatedCamera, SimulatedRobot},
+    simulator::SimulatedRobot,
 };
 
 /// How a whole run ended, and what the specification says of it.
@@ -31,7 +29,7 @@ pub struct Run<'p> {
     /// What is wrong with its map or its pose, if it ended in good order.
     pub flaw: Option<Flaw>,
     /// Every arrival, judged.
-    pub specification: Specification<'p>,
+    pub monitor: GroundTruthMonitor<'p>,
     /// How many moves Algorithm 1 makes in the plan's embedded graph.
     pub explore_moves: u64,
     /// Seconds of the simulated time.
@@ -42,7 +40,7 @@ pub struct Run<'p> {
 
 /// How a run ended, in a word.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum Ending {
+pub enum RunOutcome {
     /// The map is right, the pose true, and each move as specified.
     #[error("the map is right")]
     Right,
@@ -57,8 +55,8 @@ pub enum Ending {
 impl Run<'_> {
     /// Where the robot first did something else than the specification.
     #[must_use]
-    pub fn divergence(&self) -> Option<Divergence> {
-        self.specification.divergence()
+    pub fn divergence(&self) -> Option<TruthDivergence> {
+        self.monitor.divergence()
     }
 
     /// Whether the map is isomorphic to the plan, start to start.
@@ -76,53 +74,45 @@ impl Run<'_> {
 
     /// How it ended.
     #[must_use]
-    pub fn ending(&self) -> Ending {
+    pub fn outcome(&self) -> RunOutcome {
         match (&self.error, &self.flaw, self.divergence()) {
-            (Some(error), ..) => Ending::GaveUp(error.clone()),
-            (None, Some(flaw), Some(divergence)) => Ending::Wrong(format!("{flaw}; {divergence}")),
-            (None, Some(flaw), None) => Ending::Wrong(flaw.to_string()),
-            (None, None, Some(divergence)) => Ending::Wrong(divergence.to_string()),
+            (Some(error), ..) => RunOutcome::GaveUp(error.clone()),
+            (None, Some(flaw), Some(divergence)) => {
+                RunOutcome::Wrong(format!("{flaw}; {divergence}"))
+            }
+            (None, Some(flaw), None) => RunOutcome::Wrong(flaw.to_string()),
+            (None, None, Some(divergence)) => RunOutcome::Wrong(divergence.to_string()),
             (None, None, None) if self.exploration.moves() != self.explore_moves => {
                 let (moves, explore) = (self.exploration.moves(), self.explore_moves);
-                Ending::Wrong(format!("it took {moves} moves instead of {explore}"))
+                RunOutcome::Wrong(format!("it took {moves} moves instead of {explore}"))
             }
-            (None, None, None) => Ending::Right,
+            (None, None, None) => RunOutcome::Right,
         }
     }
 }
 
 /// A simulated robot that stands at a dart's junction maps its building.
-///
-/// `story` is told what Algorithm 1 does, `observer` what the robot does.
 // paper: exp.simulated
-pub fn run<'p, C, E, O, S>(
+pub fn run<'p>(
     plan: &'p FloorPlan,
     facing: Dart,
-    robot: SimulatedRobot<C>,
-    eye: E,
-    observer: O,
-    story: &mut S,
+    robot: SimulatedRobot,
+    sensor: impl FrameSensor,
+    observer: impl RunObserver,
     dart_bound: usize,
-) -> (Run<'p>, SimulatedRobot<C>, O)
-where
-    C: SimulatedCamera,
-    E: Eye<C::View>,
-    O: Observer<SimulatedRobot<C>>,
-    S: mapping::Observer<Explorer<SimulatedRobot<C>, E, Judged<'p, O>>>,
-{
-    let judged = Judged { specification: Specification::new(plan, facing), observer };
-    let mut explorer = Explorer::new(robot, eye, judged);
+) -> Run<'p> {
+    let monitor = GroundTruthMonitor::new(plan, facing);
+    let mut explorer = Explorer::new(robot, sensor, (monitor, observer));
     let mut exploration = Exploration::new(dart_bound);
-    let error = map_world(&mut explorer, &mut Nearest, &mut exploration, story).err();
-    let (robot, Judged { specification, observer }) = explorer.into_parts();
+    let error = explorer.map(&mut exploration).err();
+    let (robot, (monitor, _)) = explorer.into_parts();
     let flaw = match error {
         Some(_) => None,
-        None => flaw(plan, facing, &exploration, specification.reached()),
+        None => flaw(plan, facing, &exploration, monitor.reached()),
     };
     let explore_moves = explored(plan, facing, dart_bound);
     let (seconds, pictures) = (robot.time(), robot.pictures());
-    let run = Run { exploration, error, flaw, specification, explore_moves, seconds, pictures };
-    (run, robot, observer)
+    Run { exploration, error, flaw, monitor, explore_moves, seconds, pictures }
 }
 
 /// What is wrong with the map, or with where the robot takes itself to be.
@@ -150,49 +140,20 @@ pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
     exploration.moves()
 }
 
-/// Judges each arrival, and lets somebody else watch, too.
-pub struct Judged<'p, O> {
-    pub(crate) specification: Specification<'p>,
-    pub(crate) observer: O,
-}
-
-impl<C: SimulatedCamera, O: Observer<SimulatedRobot<C>>> Observer<SimulatedRobot<C>>
-    for Judged<'_, O>
-{
-    fn round(&mut self, robot: &SimulatedRobot<C>, round: &Round<C::View>) {
-        self.observer.round(robot, round);
-    }
-
-    fn leaving(&mut self, robot: &SimulatedRobot<C>, door: Door) {
-        self.observer.leaving(robot, door);
-    }
-
-    fn arrived(&mut self, robot: &SimulatedRobot<C>, door: Option<Door>, at: &Standing) {
-        let pose = robot.pose();
-        let seen = robot.odometry().odometry.seen(at.entry);
-        self.specification.judge(door, at, pose, pose.heading + seen);
-        self.observer.arrived(robot, door, at);
-    }
-
-    fn stop(&self) -> bool {
-        self.observer.stop()
-    }
-}
-
 /// The off-line version: Algorithm 1 on what was recorded, without a robot that moves. Its map is that
 /// of the recorded run, as far as that came.
 ///
 /// # Errors
 /// Where the recorded run ended early, and where what was recorded is not what is asked for.
 // paper: exp.off-line
-pub fn offline<V: Clone + PartialEq>(
-    recording: &Recording<V>,
-    eye: impl Eye<V>,
+pub fn offline(
+    recording: &Recording,
+    sensor: impl FrameSensor,
     dart_bound: usize,
 ) -> Result<Exploration, MappingError<ExplorerError>> {
-    let mut explorer = Explorer::new(recording.robot(), eye, ());
+    let mut explorer = Explorer::new(recording.robot(), sensor, ());
     let mut exploration = Exploration::new(dart_bound);
-    map_world(&mut explorer, &mut Nearest, &mut exploration, &mut ())?;
+    explorer.map(&mut exploration)?;
     Ok(exploration)
 }
 
@@ -201,7 +162,7 @@ mod tests {
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},
-        explorer::Told,
+        record::NoSensor,
         simulator::{FaultKind, RobotFault, SimulationConfig},
     };
 
@@ -217,10 +178,10 @@ mod tests {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
                 let robot =
                     SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
-                let (run, ..) = run(&plan, facing, robot, Told, (), &mut (), DARTS);
-                assert_eq!(run.ending(), Ending::Right, "{name} from {facing:?}");
+                let run = run(&plan, facing, robot, NoSensor, (), DARTS);
+                assert_eq!(run.outcome(), RunOutcome::Right, "{name} from {facing:?}");
                 assert!(run.isomorphic() && run.pose_true());
-                let arrivals = run.specification.arrivals().len() as u64;
+                let arrivals = run.monitor.arrivals().len() as u64;
                 assert_eq!(arrivals, run.explore_moves + 1, "{name} from {facing:?}");
             }
         }
@@ -232,10 +193,10 @@ mod tests {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let robot = SimulationConfig::at_start(plan.clone(), facing, 5).by_scene();
-        let (run, robot, recording) =
-            run(&plan, facing, robot, Told, Recording::default(), &mut (), DARTS);
-        assert_eq!(recording.len() as u64, robot.pictures());
-        let again = offline(&recording, Told, DARTS).unwrap();
+        let mut recording = Recording::default();
+        let run = run(&plan, facing, robot, NoSensor, &mut recording, DARTS);
+        assert_eq!(recording.len() as u64, run.pictures);
+        let again = offline(&recording, NoSensor, DARTS).unwrap();
         assert_eq!(again.map(), run.exploration.map());
         assert_eq!(again.moves(), run.exploration.moves());
     }
@@ -247,7 +208,7 @@ mod tests {
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         let told = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
-            run(&plan, facing, robot, Told, (), &mut (), DARTS).0.ending().to_string()
+            run(&plan, facing, robot, NoSensor, (), DARTS).outcome().to_string()
         };
         for (kind, why) in [
             (FaultKind::LightsOut, "7 pictures in a row do not tell where the robot is"),
@@ -265,7 +226,7 @@ mod tests {
         assert!(told(&setting).contains("the camera gives no picture"));
         for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
             setting.faults = vec![RobotFault::at(kind, 20)];
-            assert_eq!(told(&setting), Ending::Right.to_string(), "{}", kind.name());
+            assert_eq!(told(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
         }
     }
 }

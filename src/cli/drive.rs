@@ -1,9 +1,9 @@
 //! `toposlam drive --ros URI`: a live SuperScout maps where it is. Sections 2.5 and 6.
 
 #[cfg(feature = "ros1")]
-mod ending;
-#[cfg(feature = "ros1")]
 mod live;
+#[cfg(feature = "ros1")]
+mod result;
 
 use std::path::PathBuf;
 

@@ -27,6 +27,7 @@ mod replay;
 mod scene;
 mod sense;
 mod simulate;
+mod story_lines;
 mod text;
 mod train;
 mod walk_page;

@@ -6,7 +6,7 @@ use toposlam_model::marker::{self, Marker};
 use toposlam_robot::{
     conform::{Evidence, ExtractError},
     log::{
-        entries::{Content, LoggedImage},
+        entries::Content,
         messages::Run,
         reader::Log,
         topic_map::{Role, TopicMap, TopicMapError},
@@ -16,7 +16,6 @@ use toposlam_vision::{
     annotate,
     camera::{Camera, calibration},
     colour::ColourModel,
-    image_file::ImageFile,
     sensing::Sensor,
 };
 
@@ -150,19 +149,15 @@ impl OpenLog {
             }
         }
         let Some(Content::Image(picture)) = last else { return None };
-        let image = match (picture, annotated) {
-            (LoggedImage::File(bytes), Some(_)) => return Some(bytes),
-            (LoggedImage::File(bytes), None) => match &self.eyes {
-                None => return Some(bytes),
-                Some(_) => ImageFile::open(&bytes).ok()?.image().ok()?,
-            },
-            (LoggedImage::Pixels(image), _) => image,
-        };
+        if let (Some(file), true) = (picture.file(), annotated.is_some() || self.eyes.is_none()) {
+            return Some(file.to_vec());
+        }
+        let image = picture.pixels().ok()?;
         let drawn = match (&self.eyes, self.sensor()) {
             (Some((camera, _)), Some(mut sensor)) => {
-                annotate::over(&image, camera, &sensor.sense(&image).ok()?)
+                annotate::over(image, camera, &sensor.sense(image).ok()?)
             }
-            _ => image,
+            _ => image.clone(),
         };
         let mut bytes = Vec::new();
         drawn.write_with_encoder(image::codecs::jpeg::JpegEncoder::new(&mut bytes)).ok()?;

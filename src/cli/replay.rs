@@ -114,18 +114,18 @@ impl Arguments {
         Line {
             schema: 1,
             log: self.log.display().to_string(),
-            pictures: replay.pictures,
+            pictures: replay.comparison.pictures,
             moves: replay.exploration.moves(),
             vertices: map.vertex_count(),
             edges: edges(replay),
             complete: map.complete().is_some(),
             error: replay.error.as_ref().map(ToString::to_string),
-            scenes: both(replay.scenes),
-            commands: both(replay.commands),
-            percepts: both(replay.percepts),
-            doors: both(replay.doors),
-            map: replay.map,
-            difference: replay.difference.clone().map(|difference| Difference {
+            scenes: both(replay.comparison.scenes),
+            commands: both(replay.comparison.commands),
+            percepts: both(replay.comparison.percepts),
+            doors: both(replay.comparison.doors),
+            map: replay.comparison.map,
+            difference: replay.comparison.difference.clone().map(|difference| Difference {
                 picture: difference.picture,
                 time: difference.time,
                 what: difference.what,
@@ -144,7 +144,7 @@ impl Arguments {
             out,
             "{}: {} give {whole}: {}, {}, in {}",
             self.log.display(),
-            counted(replay.pictures as usize, "picture"),
+            counted(replay.comparison.pictures as usize, "picture"),
             vertices(map.vertex_count()),
             counted(edges(replay), "edge"),
             counted(replay.exploration.moves() as usize, "move")
@@ -153,20 +153,20 @@ impl Arguments {
             writeln!(out, "  it ends early: {error}")?;
         }
         let rows = [
-            ("scenes", replay.scenes),
-            ("commands", replay.commands),
-            ("percepts", replay.percepts),
-            ("doors", replay.doors),
+            ("scenes", replay.comparison.scenes),
+            ("commands", replay.comparison.commands),
+            ("percepts", replay.comparison.percepts),
+            ("doors", replay.comparison.doors),
         ];
         for (name, agreement) in rows.iter().filter(|(_, agreement)| agreement.of > 0) {
             writeln!(out, "  {name:<10} {agreement} as recorded")?;
         }
-        match replay.map {
+        match replay.comparison.map {
             Some(true) => writeln!(out, "  map        as recorded")?,
             Some(false) => writeln!(out, "  map        not as recorded")?,
             None => {}
         }
-        if let Some(difference) = &replay.difference {
+        if let Some(difference) = &replay.comparison.difference {
             writeln!(
                 out,
                 "  first difference at picture {}, {:.1} s: the {} was {}; it is {}",
@@ -196,8 +196,13 @@ fn edges(replay: &Replay) -> usize {
 }
 
 fn outcome(replay: &Replay) -> Outcome {
-    let agreements = [replay.scenes, replay.commands, replay.percepts, replay.doors];
-    let differs = replay.difference.is_some() || replay.map == Some(false);
+    let agreements = [
+        replay.comparison.scenes,
+        replay.comparison.commands,
+        replay.comparison.percepts,
+        replay.comparison.doors,
+    ];
+    let differs = replay.comparison.difference.is_some() || replay.comparison.map == Some(false);
     match &replay.error {
         _ if differs => Outcome::Violated,
         // The log ends too early, or the robot gave up, and does so again.

@@ -1,18 +1,16 @@
 //! `toposlam simulate PLAN`: a SuperScout that knows only its camera's pictures maps a floor plan.
 //! Sections 5 and 6.
 
-mod chronicle;
-mod ending;
 mod feasible;
 mod log;
 #[cfg(feature = "ros1")]
 mod node;
+mod result;
+mod run_capture;
 
 use std::{
-    cell::RefCell,
     io::{self, IsTerminal, Write},
     path::{Path, PathBuf},
-    rc::Rc,
     sync::Arc,
     time::Instant,
 };
@@ -23,15 +21,11 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     evaluation::LearnedSensors,
-    explorer::{Eye, Told},
-    log::recorder::Photograph,
-    run::{Run, offline, run},
-    simulator::{
-        Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedCamera, SimulatedRobot,
-        SimulationConfig,
-    },
+    recording::Recording,
+    run::{offline, run},
+    simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
 };
-use toposlam_vision::camera::Camera as Calibrated;
+use toposlam_vision::{camera::Camera, sensing::Sensor};
 
 use super::{
     Failure, Outcome,
@@ -39,11 +33,12 @@ use super::{
     explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::Progress,
+    story_lines::StoryLines,
     text::capital,
 };
-use chronicle::{Chronicle, Lines, Pictures, Shown, Telling, Watching};
-use ending::Ending;
 use log::Recorder;
+use result::SimulationResult;
+use run_capture::{Pictures, RunCapture};
 
 pub(super) use log::MAX_DARTS;
 
@@ -152,7 +147,7 @@ impl Arguments {
         if self.by_scene {
             let robot = simulation.setting.by_scene();
             let log = self.recorder(&simulation, None)?;
-            return self.simulate(&simulation, robot, || Told, Pictures::None, log, out);
+            return self.simulate(&simulation, robot, None, Pictures::None, log, out);
         }
         let camera = self.camera()?;
         let effects = self.appearance.effects(self.seed)?;
@@ -163,7 +158,7 @@ impl Arguments {
         if let Some(master) = &self.ros {
             return node::run(robot, master, self.speed, out);
         }
-        let eye = || eyes.sensor(self.appearance.look);
+        let sensor = eyes.sensor(self.appearance.look);
         let log =
             self.recorder(&simulation, Some((&camera, eyes.colours(self.appearance.look))))?;
         let pictures = match (&self.frames, &self.html) {
@@ -171,7 +166,7 @@ impl Arguments {
             (None, Some(_)) => Pictures::Small { camera },
             (None, None) => Pictures::None,
         };
-        self.simulate(&simulation, robot, eye, pictures, log, out)
+        self.simulate(&simulation, robot, Some(sensor), pictures, log, out)
     }
 
     fn check_places(&self) -> Result<(), Failure> {
@@ -192,17 +187,15 @@ impl Arguments {
         }
     }
 
-    fn camera(&self) -> Result<Calibrated, Failure> {
+    fn camera(&self) -> Result<Camera, Failure> {
         Ok(match (&self.calibration, self.size) {
             (Some(path), None) => input::read_camera(path)?,
             (Some(path), Some(size)) => input::read_camera(path)?.sized(size.pixels()),
-            (None, size) => {
-                Calibrated::superscout().sized(size.unwrap_or(ImageSize::Small).pixels())
-            }
+            (None, size) => Camera::superscout().sized(size.unwrap_or(ImageSize::Small).pixels()),
         })
     }
 
-    fn eyes(&self, camera: &Calibrated) -> Result<LearnedSensors, Failure> {
+    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, Failure> {
         let look = self.appearance.look;
         if let Some(path) = &self.colours {
             return Ok(LearnedSensors::with_colours(camera, look, input::read_colours(path)?));
@@ -213,43 +206,35 @@ impl Arguments {
         eyes.map_err(|error| Failure::at("--look", error))
     }
 
-    /// The run, what it leaves, and what is said of it.
-    fn simulate<C: SimulatedCamera, E: Eye<C::View>>(
+    /// Runs the simulation, prints its result and writes its files.
+    fn simulate(
         &self,
         simulation: &Simulation,
-        robot: SimulatedRobot<C>,
-        eye: impl Fn() -> E,
+        robot: SimulatedRobot,
+        sensor: Option<Sensor>,
         pictures: Pictures,
-        log: Option<Recorder>,
+        mut log: Option<Recorder>,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure>
-    where
-        C::View: Shown + Photograph,
-    {
+    ) -> Result<Outcome, Failure> {
         let Simulation { world, plan, facing, .. } = simulation;
-        let chronicle = Rc::new(RefCell::new(Chronicle::default()));
         let progress = Progress::endless("exploring", "pictures")?;
         // On a terminal the story shows how far the run is.
-        let told = !self.json && io::stdout().is_terminal();
-        let progress = if told { progress.hidden() } else { progress };
-        let watching = Watching::new(chronicle.clone(), pictures, progress, log.clone());
-        let shown: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
-        let mut lines = Lines::new(shown, chronicle.clone());
+        let hidden = !self.json && io::stdout().is_terminal();
+        let progress = if hidden { progress.hidden() } else { progress };
+        let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let detail = StoryDetail { every_hypothesis: false, doors: false };
-        let story = Story::new(&mut lines, world, *facing, detail);
-        let mut telling = Telling::new(story, chronicle.clone(), log.clone());
-        let (run, robot, watching) =
-            run(plan, *facing, robot, eye(), watching, &mut telling, self.max_darts);
-        let logged =
-            log.map_or(Ok(()), |log| log.end(&robot, run.exploration.moves(), run.error.as_ref()));
-        telling.finish()?;
-        drop(lines);
-        let recording = watching.finish()?;
+        let story = Story::new(StoryLines::new(terminal), world, *facing, detail);
+        let mut capture = RunCapture::new(story, progress, pictures);
+        let mut recording = Recording::default();
+        let observer = (&mut log, (&mut recording, &mut capture));
+        let run = run(plan, *facing, robot, sensor.clone(), observer, self.max_darts);
+        let logged = log.map_or(Ok(()), Recorder::finish);
+        let mut journal = capture.finish(&world.name, plan, *facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
-        let replayed = offline(&recording, eye(), self.max_darts);
+        let replayed = offline(&recording, sensor, self.max_darts);
         let compute_seconds = computed.elapsed().as_secs_f64();
-        let ending = Ending {
+        let result = SimulationResult {
             world,
             facing: *facing,
             seed: self.seed,
@@ -259,37 +244,28 @@ impl Arguments {
             wall_seconds: simulation.begun.elapsed().as_secs_f64(),
         };
         if self.json {
-            ending.tell_json(out)?;
+            result.print_json(out)?;
         } else {
-            ending.tell(out)?;
+            result.print(out)?;
         }
-        let chronicle = chronicle.take();
-        self.write(simulation, &run, &ending, chronicle)?;
-        Ok(ending.outcome())
+        journal.ending = capital(&result.in_words());
+        self.write_files(&journal, &result)?;
+        Ok(result.outcome())
     }
 
-    fn write(
-        &self,
-        simulation: &Simulation,
-        run: &Run,
-        ending: &Ending,
-        chronicle: Chronicle,
-    ) -> Result<(), Failure> {
+    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), Failure> {
         if let Some(path) = &self.map {
-            match ending.map() {
+            match result.map() {
                 Some(map) => output::write_world(path, &map)?,
                 None => eprintln!("the map is not complete, and is not written"),
             }
         }
-        let Simulation { world, plan, facing, .. } = simulation;
-        let journal: Journal =
-            chronicle.journal(&world.name, plan.clone(), *facing, run, capital(&ending.in_words()));
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
         if let Some(path) = &self.svg {
-            write(path, picture::run_svg(&journal))?;
+            write(path, picture::run_svg(journal))?;
         }
         if let Some(path) = &self.html {
-            write(path, page::run_page(&journal))?;
+            write(path, page::run_page(journal))?;
         }
         Ok(())
     }
@@ -301,7 +277,7 @@ impl Simulation {
         eyes: &LearnedSensors,
         appearance: &Appearance,
         effects: &Effects,
-    ) -> SimulatedRobot<toposlam_robot::simulator::RenderingCamera> {
+    ) -> SimulatedRobot {
         self.setting.with_images(eyes.rig(), appearance.look, effects)
     }
 }

@@ -1,65 +1,68 @@
-//! The journal of a run: a simulated robot, which is told scenes instead of seeing pictures, maps a
-//! floor plan.
+//! The journal of a run: a simulated robot maps a floor plan from simulated scenes, without images.
 
-use std::{cell::RefCell, fs, path::Path, rc::Rc, sync::Arc};
+use std::{fs, path::Path, sync::Arc};
 
 use toposlam::journal::{Call, Journal, Round};
 use toposlam_model::{
-    driving::{
-        algorithm2::{Standing, Step},
-        scene::Place,
-    },
+    driving::{algorithm2::PathState, scene::Place},
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
     mapping::{DEFAULT_DART_BOUND, Journey, MappingEvent},
-    percept::Door,
 };
 use toposlam_robot::{
-    explorer::{self, Observer, Told},
+    record::{Event, EventKind, NoSensor, RunObserver},
     run::run,
-    simulator::{SimulatedCamera, SimulatedRobot, SimulationConfig},
+    simulator::SimulationConfig,
 };
 
 /// Keeps what a robot does.
 struct Keeper {
-    journal: Rc<RefCell<Journal>>,
-    /// A few pictures, which come in turns: each stands for as many rounds as there are of them, and
-    /// then a round has none.
+    journal: Journal,
+    moves: u64,
+    /// A few pictures, which take turns: each stands for as many rounds as there are pictures, and then
+    /// a round has none.
     pictures: Vec<Vec<u8>>,
 }
 
-impl<C: SimulatedCamera> Observer<SimulatedRobot<C>> for Keeper {
-    fn round(&mut self, robot: &SimulatedRobot<C>, round: &explorer::Round<C::View>) {
-        let mut journal = self.journal.borrow_mut();
-        let number = journal.rounds.len();
-        let turn = number / self.pictures.len().max(1) % (self.pictures.len() + 1);
-        let kept = Round {
-            time: robot.time(),
-            pose: robot.pose(),
-            moves: round.moves,
-            state: round.state,
-            scene: in_words(&round.scene.place),
-            command: match round.step {
-                Ok(Step::Go(command)) => Some(*command),
-                _ => None,
-            },
-            picture: self.pictures.get(turn).cloned(),
-            story: journal.story.len(),
-            maps: journal.maps.len(),
-        };
-        journal.rounds.push(kept);
+impl RunObserver for Keeper {
+    fn event(&mut self, event: &Event) {
+        let journal = &mut self.journal;
+        let rounds = journal.rounds.len();
+        let pose = event.truth.unwrap();
+        match &event.kind {
+            EventKind::Frame(frame) => {
+                let turn = rounds / self.pictures.len().max(1) % (self.pictures.len() + 1);
+                journal.rounds.push(Round {
+                    time: event.time as f64 / 1e9,
+                    pose,
+                    moves: self.moves,
+                    state: PathState::Unknown,
+                    scene: in_words(&frame.scene.as_ref().unwrap().place),
+                    command: None,
+                    picture: self.pictures.get(turn).cloned(),
+                    story: journal.story.len(),
+                    maps: journal.maps.len(),
+                });
+            }
+            EventKind::Command { state, command } => {
+                let last = journal.rounds.last_mut().unwrap();
+                (last.state, last.command) = (*state, *command);
+            }
+            EventKind::Door { .. } => self.moves += 1,
+            EventKind::Arrival(arrival) => {
+                let percept = arrival.percept;
+                journal.calls.push(Call { rounds, pose, percept, conforms: true });
+            }
+            _ => {}
+        }
     }
 
-    fn arrived(&mut self, robot: &SimulatedRobot<C>, _: Option<Door>, at: &Standing) {
-        let mut journal = self.journal.borrow_mut();
-        let call = Call {
-            rounds: journal.rounds.len(),
-            pose: robot.pose(),
-            percept: at.percept,
-            conforms: true,
-        };
-        journal.calls.push(call);
+    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+        self.journal.story.push(format!("{event:?}"));
+        if event.grows_map() {
+            self.journal.maps.push(journey.map().clone());
+        }
     }
 }
 
@@ -89,7 +92,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
     let plan = Arc::new(world.plan.unwrap());
     let is_l = |dart: &Dart| plan.junction(plan.graph().vertex(*dart)).kind == JunctionKind::L;
     let facing = world.start.filter(is_l).or_else(|| plan.graph().darts().find(is_l)).unwrap();
-    let journal = Rc::new(RefCell::new(Journal {
+    let journal = Journal {
         name: world.name,
         plan: plan.clone(),
         facing,
@@ -98,25 +101,13 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         story: Vec::new(),
         maps: Vec::new(),
         ending: String::new(),
-    }));
-    let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-    let mut story = |_: &mut _, journey: &Journey, event: MappingEvent| {
-        let mut journal = journal.borrow_mut();
-        journal.story.push(format!("{event:?}"));
-        match event {
-            MappingEvent::Started { .. }
-            | MappingEvent::LoopClosed { .. }
-            | MappingEvent::VertexAdded { .. } => {
-                journal.maps.push(journey.map().clone());
-            }
-            _ => {}
-        }
     };
-    let keeper = Keeper { journal: journal.clone(), pictures };
-    let (run, ..) = run(&plan, facing, robot, Told, keeper, &mut story, DEFAULT_DART_BOUND);
-    let mut journal = journal.borrow().clone();
-    journal.ending = run.ending().to_string();
-    for (call, arrival) in journal.calls.iter_mut().zip(run.specification.arrivals()) {
+    let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
+    let mut keeper = Keeper { journal, moves: 0, pictures };
+    let run = run(&plan, facing, robot, NoSensor, &mut keeper, DEFAULT_DART_BOUND);
+    let mut journal = keeper.journal;
+    journal.ending = run.outcome().to_string();
+    for (call, arrival) in journal.calls.iter_mut().zip(run.monitor.arrivals()) {
         call.conforms = arrival.conforms();
     }
     journal

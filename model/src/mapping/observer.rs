@@ -70,6 +70,12 @@ pub enum MappingEvent {
 }
 
 impl MappingEvent {
+    /// Whether the map has grown.
+    #[must_use]
+    pub fn grows_map(&self) -> bool {
+        matches!(self, Self::Started { .. } | Self::LoopClosed { .. } | Self::VertexAdded { .. })
+    }
+
     /// What the robot did, if the event is something that it did.
     #[must_use]
     pub fn action(self) -> Option<Action> {

@@ -111,7 +111,7 @@ impl Ending {
 }
 
 /// A map as a log tells it.
-pub(crate) fn in_numbers(map: &PartialMap) -> (Vec<u32>, Vec<i32>) {
+fn in_numbers(map: &PartialMap) -> (Vec<u32>, Vec<i32>) {
     let degrees = map.vertices().map(|vertex| map.degree(vertex)).collect();
     let opposite = |dart: u32| {
         map.opposite(Dart(dart)).and_then(|other| i32::try_from(other.0).ok()).unwrap_or(-1)

@@ -7,22 +7,22 @@ use toposlam_model::driving::{
     odometry::Odometry,
     scene::{Scene, wrapped},
 };
-use toposlam_vision::{
-    image_file::ImageFile,
-    sensing::{Sensor, WrongSize},
-};
+use toposlam_vision::sensing::{Sensor, WrongSize};
 
 use super::{
     InferredEvents, RecordedEvents,
     events::{Ending, Event, Events, Head, Source},
 };
-use crate::log::{
-    entries::{Content, Entry, LoggedImage},
-    error::LogError,
-    messages,
-    reader::Log,
-    scene_of,
-    topic_map::{Role, TopicMap, TopicMapError},
+use crate::{
+    log::{
+        entries::{Content, Entry},
+        error::LogError,
+        messages,
+        reader::Log,
+        scene_of,
+        topic_map::{Role, TopicMap, TopicMapError},
+    },
+    record::CameraImage,
 };
 
 /// What events are made of.
@@ -212,7 +212,7 @@ struct Extraction<'w, W> {
     /// What was seen, and when the picture was taken.
     seen: Vec<(Source, u64, Scene)>,
     /// Pictures that have not been looked at.
-    waiting: Vec<(Source, u64, LoggedImage)>,
+    waiting: Vec<(Source, u64, CameraImage)>,
     run: Option<messages::Run>,
     /// When the last percept or door was.
     last: u64,
@@ -282,7 +282,7 @@ impl<W: Looking> Extraction<'_, W> {
         }
         let share = self.waiting.len().div_ceil(self.sensors.len());
         let shares = self.sensors.par_iter_mut().zip(self.waiting.par_chunks(share));
-        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, LoggedImage)])| {
+        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, CameraImage)])| {
             pictures.iter().map(|(_, _, picture)| sense(sensor, picture)).collect::<Vec<_>>()
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
@@ -303,14 +303,8 @@ impl<W: Looking> Extraction<'_, W> {
 }
 
 /// What a picture shows; `None` where it is no image.
-fn sense(sensor: &mut Sensor, picture: &LoggedImage) -> Option<Result<Scene, WrongSize>> {
-    match picture {
-        LoggedImage::Pixels(image) => Some(sensor.sense(image)),
-        LoggedImage::File(bytes) => {
-            let image = ImageFile::open(bytes).and_then(ImageFile::image).ok()?;
-            Some(sensor.sense(&image))
-        }
-    }
+fn sense(sensor: &mut Sensor, picture: &CameraImage) -> Option<Result<Scene, WrongSize>> {
+    Some(sensor.sense(picture.pixels().ok()?))
 }
 
 /// Where a robot was at a time, between the two readings nearest to it.

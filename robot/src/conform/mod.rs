@@ -15,7 +15,6 @@ mod shorten;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use consistency::in_numbers;
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Source};
 pub use extract::{Evidence, ExtractError, ExtractedRun, Looking, Seen, derived, extract};

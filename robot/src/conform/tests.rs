@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use toposlam_model::{
-    driving::{algorithm2::Standing, scene::Scene},
+    driving::{odometry::Odometry, scene::Scene},
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
@@ -18,14 +18,12 @@ use toposlam_model::{
 use super::*;
 use crate::{
     evaluation::{plans, random_plan::random_plan_with, run_sampler::starts_of},
-    explorer::{Observer, Round, Told},
     log::messages,
-    robot::{Reckoned, Robot},
+    record::{self, Arrival, EventKind, Frame, NoSensor, RunObserver},
+    robot::Reckoned,
     run::run,
-    simulator::{SimulatedRobot, SimulationConfig, ToldScene},
+    simulator::SimulationConfig,
 };
-
-type Simulated = SimulatedRobot<crate::simulator::SceneCamera>;
 
 const DARTS: usize = 400;
 
@@ -33,6 +31,8 @@ const DARTS: usize = 400;
 #[derive(Clone, Debug, Default)]
 struct Log {
     lines: Vec<(Reckoned, Line)>,
+    /// Of the last frame.
+    odometry: Odometry,
 }
 
 #[derive(Clone, Debug)]
@@ -43,10 +43,6 @@ enum Line {
 }
 
 impl Log {
-    fn put(&mut self, robot: &Simulated, line: Line) {
-        self.lines.push((robot.odometry(), line));
-    }
-
     fn moves(&self) -> u32 {
         self.lines.iter().filter(|(_, line)| matches!(line, Line::Door(_))).count() as u32
     }
@@ -84,41 +80,44 @@ fn source(message: usize, reckoned: &Reckoned) -> Source {
     Source { time, message: message as u64 + 1, offset: 0 }
 }
 
-impl Observer<Simulated> for Log {
-    fn round(&mut self, robot: &Simulated, round: &Round<ToldScene>) {
-        let scene = round.scene.clone();
+impl RunObserver for Log {
+    fn event(&mut self, event: &record::Event) {
+        let line = match &event.kind {
+            EventKind::Frame(Frame { scene: Some(scene), odometry, .. }) => {
+                self.odometry = *odometry;
+                Line::Scene(scene.clone())
+            }
+            EventKind::Door { door, .. } => {
+                let r#move = self.moves() + 1;
+                Line::Door(messages::Door { r#move, door: door.0, ..Default::default() })
+            }
+            EventKind::Arrival(Arrival { percept, form, entry, .. }) => {
+                let marker = match percept.sighting {
+                    Sighting::Pointing(door) => door.0.cast_signed(),
+                    _ => -1,
+                };
+                Line::Percept(messages::Percept {
+                    r#move: self.moves(),
+                    degree: percept.degree,
+                    marker,
+                    form: form.unwrap().0,
+                    entry: entry.unwrap(),
+                    ..Default::default()
+                })
+            }
+            _ => return,
+        };
         self.lines
-            .push((Reckoned { time: robot.time(), odometry: round.odometry }, Line::Scene(scene)));
-    }
-
-    fn leaving(&mut self, robot: &Simulated, door: Door) {
-        let r#move = self.moves() + 1;
-        let door = messages::Door { r#move, door: door.0, ..Default::default() };
-        self.put(robot, Line::Door(door));
-    }
-
-    fn arrived(&mut self, robot: &Simulated, _: Option<Door>, at: &Standing) {
-        let marker = match at.percept.sighting {
-            Sighting::Pointing(door) => door.0.cast_signed(),
-            _ => -1,
-        };
-        let percept = messages::Percept {
-            r#move: self.moves(),
-            degree: at.percept.degree,
-            marker,
-            form: at.form.0,
-            entry: at.entry,
-            ..Default::default()
-        };
-        self.put(robot, Line::Percept(percept));
+            .push((Reckoned { time: event.time as f64 / 1e9, odometry: self.odometry }, line));
     }
 }
 
 /// A good run.
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
-    let (run, _, log) = run(plan, facing, robot, Told, Log::default(), &mut (), DARTS);
-    assert_eq!(run.ending(), crate::run::Ending::Right);
+    let mut log = Log::default();
+    let run = run(plan, facing, robot, NoSensor, &mut log, DARTS);
+    assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
 }
 

@@ -13,8 +13,7 @@ use toposlam_model::{
 
 use super::{LearnedSensors, parallel::made_in_turn};
 use crate::{
-    explorer::Told,
-    run::{Ending, explored, run},
+    run::{RunOutcome, explored, run},
     simulator::{Effects, FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
 
@@ -55,7 +54,7 @@ pub struct JudgedRun {
     /// Which.
     pub case: RunCase,
     /// How it ended.
-    pub ending: Ending,
+    pub ending: RunOutcome,
     /// Moves that the robot made, those that Algorithm 1 makes in the plan's embedded graph.
     pub moves: [u64; 2],
     /// Seconds of simulated time.
@@ -75,7 +74,7 @@ impl JudgedRun {
     /// carried, unseen, to a place that looks and goes on alike cannot know.
     #[must_use]
     pub fn is_violation(&self) -> bool {
-        matches!(self.ending, Ending::Wrong(_)) && self.fault() != Some(FaultKind::Carried)
+        matches!(self.ending, RunOutcome::Wrong(_)) && self.fault() != Some(FaultKind::Carried)
     }
 }
 
@@ -148,18 +147,19 @@ fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
     let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
     // A robot that has gone astray would go on mapping what is not there.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
-    let run = match eyes {
-        None => run(&plan, marker, case.config.by_scene(), Told, (), &mut (), bound).0,
+    let (robot, sensor) = match eyes {
+        None => (case.config.by_scene(), None),
         Some(eyes) => {
             let look = eyes.look(case.number);
             let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
             let robot = case.config.with_images(eyes.rig(), look, &effects);
-            run(&plan, marker, robot, eyes.sensor(look), (), &mut (), bound).0
+            (robot, Some(eyes.sensor(look)))
         }
     };
+    let run = run(&plan, marker, robot, sensor, (), bound);
     JudgedRun {
         case,
-        ending: run.ending(),
+        ending: run.outcome(),
         moves: [run.exploration.moves(), run.explore_moves],
         seconds: run.seconds,
         pictures: run.pictures,

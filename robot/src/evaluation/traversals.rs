@@ -15,12 +15,11 @@ use toposlam_model::{
 
 use super::{LearnedSensors, parallel::made_in_turn, run_sampler::starts_of};
 use crate::{
-    conformance::{Divergence, Specification},
-    explorer::{Explorer, ExplorerError, Eye, Told},
+    explorer::{Explorer, ExplorerError},
+    ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     pose::Pose,
     robot::Robot,
-    run::Judged,
-    simulator::{Effects, SimulatedCamera, SimulatedRobot, SimulationConfig, start_pose},
+    simulator::{Effects, SimulationConfig, start_pose},
 };
 
 /// Before it takes the door the robot stands up to so far from the turning point, along its entry and
@@ -74,7 +73,7 @@ pub enum TraversalOutcome {
     /// The robot is where it should be, and perceives what it should.
     Right,
     /// It is not, or does not.
-    Wrong(Divergence),
+    Wrong(TruthDivergence),
     /// It gave up and said why.
     GaveUp(ExplorerError),
 }
@@ -149,35 +148,26 @@ impl TraversalSampler {
 
 /// A traversal, made.
 fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
-    match eyes {
-        None => {
-            let robot = case.config.by_scene();
-            made(case, robot, Told)
-        }
+    let (robot, sensor) = match eyes {
+        None => (case.config.by_scene(), None),
         Some(eyes) => {
             let look = eyes.look(case.number);
             let mut chance = Xoshiro256PlusPlus::seed_from_u64(case.config.seed);
-            let robot = case.config.with_images(eyes.rig(), look, &Effects::drawn(&mut chance));
-            made(case, robot, eyes.sensor(look))
+            let effects = Effects::drawn(&mut chance);
+            let robot = case.config.with_images(eyes.rig(), look, &effects);
+            (robot, Some(eyes.sensor(look)))
         }
-    }
-}
-
-fn made<C: SimulatedCamera>(
-    case: Traversal,
-    robot: SimulatedRobot<C>,
-    eye: impl Eye<C::View>,
-) -> JudgedTraversal {
+    };
     let plan = case.config.plan.clone();
-    let specification = Specification::at(&plan, case.config.marker, case.entry);
-    let standing = specification.standing(case.config.pose);
-    let mut explorer = Explorer::new(robot, eye, Judged { specification, observer: () });
+    let monitor = GroundTruthMonitor::at(&plan, case.config.marker, case.entry);
+    let standing = monitor.standing(case.config.pose);
+    let mut explorer = Explorer::new(robot, sensor, monitor);
     if let Some(standing) = standing {
         explorer = explorer.standing_at(standing);
     }
     let error = explorer.traverse(case.door).err();
-    let (robot, judged) = explorer.into_parts();
-    let outcome = match (error, judged.specification.divergence()) {
+    let (robot, monitor) = explorer.into_parts();
+    let outcome = match (error, monitor.divergence()) {
         (Some(error), _) => TraversalOutcome::GaveUp(error),
         (None, Some(divergence)) => TraversalOutcome::Wrong(divergence),
         (None, None) => TraversalOutcome::Right,

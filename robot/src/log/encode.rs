@@ -2,26 +2,22 @@
 
 use toposlam_model::{
     driving::{
-        algorithm2::{self, PathState, Standing},
+        algorithm2::{self, PathState},
         scene::{
             self, CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason,
             Unclear,
         },
     },
     embedded_graph::{Dart, Vertex},
-    mapping::{Journey, MappingEvent},
+    mapping::MappingEvent,
     percept::{Door, Sighting},
 };
 
-use super::messages::{Command, Hypothesis, Map, Percept, Scene, Stamp};
+use super::messages::{Command, End, Hypothesis, Map, Percept, Scene, Stamp};
+use crate::record::{Arrival, MapRecord, RunEnd, RunEnding};
 
 /// Stands for none.
 const NONE: i32 = -1;
-
-/// A time, in nanoseconds since the robot was switched on.
-pub(super) fn nanoseconds(seconds: f64) -> u64 {
-    (seconds * 1e9).round() as u64
-}
 
 /// A number of a dart, a door or a vertex.
 fn number(number: u32) -> i32 {
@@ -120,72 +116,87 @@ pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Comma
     Command { stamp, state: state.to_owned(), turn, forward }
 }
 
-/// Where the robot stands.
-pub(super) fn percept(stamp: Stamp, moves: u64, at: &Standing) -> Percept {
-    let marker = match at.percept.sighting {
+/// What the robot perceives after so many moves.
+pub(super) fn percept(stamp: Stamp, moves: u64, arrival: &Arrival) -> Percept {
+    let Arrival { percept, form, entry, .. } = arrival;
+    let marker = match percept.sighting {
         Sighting::Pointing(door) => number(door.0),
         _ => NONE,
     };
-    let degree = at.percept.degree;
-    Percept { stamp, r#move: count(moves), degree, marker, form: at.form.0, entry: at.entry }
+    Percept {
+        stamp,
+        r#move: count(moves),
+        degree: percept.degree,
+        marker,
+        form: form.map_or([false; 4], |form| form.0),
+        entry: entry.unwrap_or(f64::NAN),
+    }
 }
 
-/// A step of Algorithm 1; moves are told by [`Percept`].
-pub(super) fn hypothesis(
-    stamp: Stamp,
-    journey: &Journey,
-    event: MappingEvent,
-) -> Option<Hypothesis> {
-    let told = |step: &str, dart: Option<Dart>| Hypothesis {
+/// A step of Algorithm 1 after so many moves; a move has its [`Percept`] instead.
+pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Option<Hypothesis> {
+    let step = |step: &str, dart: Option<Dart>| Hypothesis {
         stamp,
-        r#move: count(journey.moves()),
+        r#move: count(moves),
         step: step.to_owned(),
         dart: dart.map_or(NONE, |Dart(dart)| number(dart)),
         other: NONE,
         ..Hypothesis::default()
     };
     Some(match event {
-        MappingEvent::Started { .. } => told("started", None),
+        MappingEvent::Started { .. } => step("started", None),
         MappingEvent::Arrived { edge, contradicted, hypotheses, .. } => Hypothesis {
             contradicted: count(contradicted as u64),
             hypotheses: count(hypotheses as u64),
-            ..told("arrived", Some(edge))
+            ..step("arrived", Some(edge))
         },
         MappingEvent::Rejected { hypothesis, followed, .. } => {
-            Hypothesis { followed, ..told("rejected", Some(hypothesis)) }
+            Hypothesis { followed, ..step("rejected", Some(hypothesis)) }
         }
         MappingEvent::Confirmed { hypothesis, followed } => {
-            Hypothesis { followed, ..told("confirmed", Some(hypothesis)) }
+            Hypothesis { followed, ..step("confirmed", Some(hypothesis)) }
         }
         MappingEvent::LoopClosed { edge, other: Dart(other) } => {
-            Hypothesis { other: number(other), ..told("loop-closed", Some(edge)) }
+            Hypothesis { other: number(other), ..step("loop-closed", Some(edge)) }
         }
         MappingEvent::VertexAdded { edge, vertex: Vertex(vertex) } => {
-            Hypothesis { other: number(vertex), ..told("vertex-added", Some(edge)) }
+            Hypothesis { other: number(vertex), ..step("vertex-added", Some(edge)) }
         }
         MappingEvent::Moved { .. } | MappingEvent::Movable(_) => return None,
     })
 }
 
-/// The map, where an event made it grow.
-pub(super) fn map(stamp: Stamp, journey: &Journey, event: MappingEvent) -> Option<Map> {
-    let grown = matches!(
-        event,
-        MappingEvent::Started { .. }
-            | MappingEvent::LoopClosed { .. }
-            | MappingEvent::VertexAdded { .. }
-    );
-    let map = journey.map();
-    let darts = map.vertices().flat_map(|vertex| map.darts_of(vertex));
-    grown.then(|| Map {
+/// A map.
+pub(super) fn map(stamp: Stamp, map: &MapRecord) -> Map {
+    let MapRecord { moves, degrees, opposite, robot } = map;
+    let opposite = opposite.iter().map(|dart| dart.map_or(NONE, |Dart(far)| number(far)));
+    Map {
         stamp,
-        r#move: count(journey.moves()),
-        degrees: map.vertices().map(|vertex| map.degree(vertex)).collect(),
-        opposite: darts
-            .map(|dart| map.opposite(dart).map_or(NONE, |Dart(far)| number(far)))
-            .collect(),
-        robot: journey.robot().0,
-    })
+        r#move: count(*moves),
+        degrees: degrees.clone(),
+        opposite: opposite.collect(),
+        robot: robot.0,
+    }
+}
+
+/// The map that a message has.
+pub(crate) fn map_of(map: &Map) -> MapRecord {
+    MapRecord {
+        moves: map.r#move.into(),
+        degrees: map.degrees.clone(),
+        opposite: map.opposite.iter().map(|&far| u32::try_from(far).ok().map(Dart)).collect(),
+        robot: Dart(map.robot),
+    }
+}
+
+/// The end of a run.
+pub(super) fn end(stamp: Stamp, end: &RunEnd) -> End {
+    let (ending, cause) = match &end.ending {
+        RunEnding::Mapped => ("mapped", ""),
+        RunEnding::Stopped => ("stopped", ""),
+        RunEnding::GaveUp(cause) => ("gave-up", cause.as_str()),
+    };
+    End { stamp, moves: count(end.moves), ending: ending.to_owned(), cause: cause.to_owned() }
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
-pub use super::image::LoggedImage;
 use super::{
     decode::decode,
     error::{LogError, LogErrorKind},
@@ -13,6 +12,7 @@ use super::{
     topic_map::{Bound, Carried, Part, Role},
     value::Value,
 };
+use crate::record::CameraImage;
 
 /// Something that a log tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub enum Content {
     /// The last entry of a log that is whole.
     End(End),
     /// What the camera sees.
-    Image(LoggedImage),
+    Image(CameraImage),
     /// Where the robot is by its wheels.
     Odometry(Odometry),
     /// What it is told to do: metres, and radians counter-clockwise, each second.

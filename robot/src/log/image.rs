@@ -3,22 +3,14 @@
 use image::RgbImage;
 
 use super::value::Value;
-
-/// A picture of a log.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LoggedImage {
-    /// The file of an image, JPEG or PNG.
-    File(Vec<u8>),
-    /// Its pixels.
-    Pixels(RgbImage),
-}
+use crate::record::CameraImage;
 
 /// The picture that a message is, or why it is none.
-pub(super) fn image_of(message: &Value<'_>) -> Result<LoggedImage, String> {
+pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     let data = message.at("data").and_then(|data| data.bytes());
     let data = data.ok_or("it has no bytes `data`")?;
     let Some(encoding) = message.at("encoding").and_then(|encoding| encoding.text()) else {
-        return Ok(LoggedImage::File(data.to_vec()));
+        return Ok(CameraImage::encoded(&*data));
     };
     let number = |name| {
         let found = message.at(name).and_then(|value| value.u64());
@@ -58,5 +50,5 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<LoggedImage, String> {
     let mut all = Vec::with_capacity((row / u64::from(bytes) * 3 * u64::from(height)) as usize);
     all.extend(colours);
     let made = RgbImage::from_raw(width, height, all);
-    Ok(LoggedImage::Pixels(made.ok_or("its size does not go with its pixels")?))
+    Ok(CameraImage::raw(made.ok_or("its size does not go with its pixels")?))
 }

@@ -13,8 +13,6 @@ pub mod message;
 pub mod messages;
 pub mod reader;
 pub mod recorder;
-#[cfg(test)]
-pub(crate) mod shared_buffer;
 mod source;
 pub mod standard;
 pub mod topic;
@@ -25,5 +23,5 @@ pub mod writer;
 
 pub use container::{Format, MOST_GROWTH};
 pub use encode::scene as scene_message;
-pub(crate) use encode::scene_of;
+pub(crate) use encode::{map_of, scene_of};
 pub use world_hash::world_hash;

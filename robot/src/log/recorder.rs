@@ -1,31 +1,18 @@
-//! A run is written as it goes: what the robot sees, does and perceives, and what Algorithm 1 makes of
-//! it. Sections 5 and 6.
+//! Writes the log of a run as it goes on. Sections 5 and 6.
 
-use std::{cell::RefCell, collections::BTreeMap, io::Write, rc::Rc};
+use std::{collections::BTreeMap, io::Write};
 
 use image::codecs::jpeg::JpegEncoder;
-use toposlam_model::{
-    driving::{
-        algorithm2::{Standing, Step},
-        scene,
-    },
-    mapping::{self, Journey, MappingError, MappingEvent},
-    percept::Door,
-};
-use toposlam_vision::{annotate, camera::Camera, image_file::ImageFile};
+use toposlam_vision::{annotate, camera::Camera};
 
 use super::{
     encode,
     message::Message,
-    messages::{self, End, ProjectMessage, Stamp},
+    messages::{self, ProjectMessage, Stamp},
     standard::{CompressedImage, Odometry, TFMessage, Twist},
     writer::{LogWriteError, LogWriter},
 };
-use crate::{
-    explorer::{ExplorerError, Observer, Round},
-    robot::{Reckoned, Robot, Sample},
-    simulator::ToldScene,
-};
+use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
 
 /// The topic of the pictures that were used, as the camera gave them.
 pub const IMAGE: &str = "/camera/image/compressed";
@@ -43,209 +30,128 @@ pub const NOTE: &str = "toposlam";
 /// The quality of annotated pictures.
 const QUALITY: u8 = 85;
 
-/// What a camera gives, as a log can hold it.
-pub trait Photograph {
-    /// The file of the photograph; `None` where it is none.
-    fn file(&self) -> Option<&[u8]>;
-}
-
-impl Photograph for Vec<u8> {
-    fn file(&self) -> Option<&[u8]> {
-        Some(self)
-    }
-}
-
-impl Photograph for ToldScene {
-    fn file(&self) -> Option<&[u8]> {
-        None
-    }
-}
-
-/// Writes a run. It watches the robot and the mapping; its clones write the same log.
+/// Writes the events of a run.
 ///
-/// An error ends the run, and is told at [`Recorder::end`]. Times are the robot's, and never go back:
-/// a message is written at the time when it came about, and its stamp is when that was so of which it
-/// tells (a picture's, when it was taken).
-pub struct Recorder<W: Write>(Rc<RefCell<Log<W>>>);
-
-impl<W: Write> Clone for Recorder<W> {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
+/// An error stops the run, and [`Recorder::finish`] returns it. Times are the robot's, and never go back.
+/// A message is written at the time of its event; its stamp is the time that it is about, for a picture
+/// the time when it was taken.
+pub struct Recorder<W: Write> {
+    out: LogWriter<W>,
+    /// The first error.
+    error: Option<LogWriteError>,
+    camera: Option<Camera>,
+    /// The time of the last event, in nanoseconds.
+    now: u64,
+    /// The number of moves begun.
+    moves: u64,
+    /// The last command of the wheels.
+    twist: Twist,
 }
 
 impl<W: Write> Recorder<W> {
-    /// Begins a log with its head; pictures are annotated where their camera is known.
+    /// Begins a log with its head. Pictures are also written annotated if their camera is known.
     ///
     /// # Errors
-    /// Where the file does not take it.
+    /// Returns an error if the file cannot be written.
     pub fn new(out: W, run: &messages::Run, camera: Option<Camera>) -> Result<Self, LogWriteError> {
         let mut out = LogWriter::new(out)?;
         out.note(NOTE, entries(run))?;
         out.write(messages::Run::TOPIC, 0, run)?;
         out.flush()?;
-        let told = Sample { speed: 0.0, turning: 0.0, reckoned: Reckoned::default() };
-        let log = Log { out: Some(out), error: None, camera, now: 0, moves: 0, samples: 0, told };
-        Ok(Self(Rc::new(RefCell::new(log))))
+        Ok(Self { out, error: None, camera, now: 0, moves: 0, twist: Twist::default() })
     }
 
-    /// Whether the log cannot be written.
-    #[must_use]
-    pub fn failed(&self) -> bool {
-        self.0.borrow().error.is_some()
-    }
-
-    /// Ends the log, after so many moves; an error is why the run ended before the map was complete.
-    /// Afterwards nothing is written any more.
+    /// Closes the log.
     ///
     /// # Errors
-    /// Where the log could not be written, now or before.
-    pub fn end<R: Robot>(
-        &self,
-        robot: &R,
-        moves: u64,
-        error: Option<&MappingError<ExplorerError>>,
-    ) -> Result<(), LogWriteError> {
-        let mut log = self.0.borrow_mut();
-        log.catch_up(robot);
-        let (ending, cause) = match error {
-            None => ("mapped", String::new()),
-            Some(MappingError::World(ExplorerError::Stopped { .. })) => ("stopped", String::new()),
-            Some(error) => ("gave-up", error.to_string()),
-        };
-        let (stamp, ending) = (log.stamp(), ending.to_owned());
-        log.tell(&End { stamp, moves: encode::count(moves), ending, cause });
-        match (log.error.take(), log.out.take()) {
-            (Some(error), _) => Err(error),
-            (None, Some(out)) => out.finish().map(|_| ()),
-            (None, None) => Ok(()),
-        }
-    }
-}
-
-impl<W: Write, R: Robot<View: Photograph>> Observer<R> for Recorder<W> {
-    fn round(&mut self, robot: &R, round: &Round<R::View>) {
-        let mut log = self.0.borrow_mut();
-        log.catch_up(robot);
-        let taken = Stamp::of(encode::nanoseconds(round.picture.taken));
-        if let Some(file) = round.picture.view.file() {
-            log.say(IMAGE, &CompressedImage::new(taken, file));
-            if let Some(annotated) = log.annotated(file, round.scene) {
-                log.say(ANNOTATED, &CompressedImage::new(taken, &annotated));
-            }
-        }
-        log.tell(&encode::scene(taken, round.scene));
-        if let Ok(Step::Go(command)) = round.step {
-            let stamp = log.stamp();
-            log.tell(&encode::command(stamp, round.state, *command));
+    /// Returns an error if the log could not be written, now or before.
+    pub fn finish(self) -> Result<(), LogWriteError> {
+        match self.error {
+            Some(error) => Err(error),
+            None => self.out.finish().map(|_| ()),
         }
     }
 
-    fn leaving(&mut self, robot: &R, door: Door) {
-        let mut log = self.0.borrow_mut();
-        log.catch_up(robot);
-        log.moves += 1;
-        let (stamp, moves) = (log.stamp(), encode::count(log.moves));
-        log.tell(&messages::Door { stamp, r#move: moves, door: door.0 });
-    }
-
-    fn arrived(&mut self, robot: &R, _: Option<Door>, at: &Standing) {
-        let mut log = self.0.borrow_mut();
-        log.catch_up(robot);
-        let percept = encode::percept(log.stamp(), log.moves, at);
-        log.tell(&percept);
-    }
-
-    fn stop(&self) -> bool {
-        self.failed()
-    }
-}
-
-impl<W: Write, X: ?Sized> mapping::Observer<X> for Recorder<W> {
-    fn event(&mut self, _: &mut X, journey: &Journey, event: MappingEvent) {
-        let mut log = self.0.borrow_mut();
-        let stamp = log.stamp();
-        if let Some(step) = encode::hypothesis(stamp, journey, event) {
-            log.tell(&step);
-        }
-        if let Some(map) = encode::map(stamp, journey, event) {
-            log.tell(&map);
-        }
-    }
-}
-
-/// What the clones share.
-struct Log<W: Write> {
-    /// Gone when the log has ended.
-    out: Option<LogWriter<W>>,
-    /// The first.
-    error: Option<LogWriteError>,
-    camera: Option<Camera>,
-    /// The robot's time, in nanoseconds.
-    now: u64,
-    /// How many moves were begun.
-    moves: u64,
-    /// So much of the robot's track is written,
-    samples: usize,
-    /// up to here.
-    told: Sample,
-}
-
-impl<W: Write> Log<W> {
     /// Writes a message now.
-    fn say<M: Message>(&mut self, topic: &str, message: &M) {
-        if let (None, Some(out)) = (&self.error, &mut self.out) {
-            self.error = out.write(topic, self.now, message).err();
+    fn write<M: Message>(&mut self, topic: &str, message: &M) {
+        if self.error.is_none() {
+            self.error = self.out.write(topic, self.now, message).err();
         }
     }
 
     /// Writes a message of the project now.
-    fn tell<M: ProjectMessage>(&mut self, message: &M) {
-        self.say(M::TOPIC, message);
+    fn write_own<M: ProjectMessage>(&mut self, message: &M) {
+        self.write(M::TOPIC, message);
     }
 
-    fn stamp(&self) -> Stamp {
-        Stamp::of(self.now)
-    }
-
-    /// It is as late as this.
-    fn at(&mut self, seconds: f64) {
-        self.now = self.now.max(encode::nanoseconds(seconds));
-    }
-
-    /// Writes what the wheels did since something was last written.
-    fn catch_up<R: Robot>(&mut self, robot: &R) {
-        let track = robot.track();
-        for sample in track.get(self.samples..).unwrap_or_default() {
-            self.sample(sample);
+    fn frame(&mut self, frame: &Frame) {
+        let taken = Stamp::of(nanoseconds(frame.taken));
+        if let Some(file) = frame.image.as_ref().and_then(|image| image.file()) {
+            self.write(IMAGE, &CompressedImage::new(taken, file));
+            if let Some(annotated) = self.annotated(frame) {
+                self.write(ANNOTATED, &CompressedImage::new(taken, &annotated));
+            }
         }
-        self.samples = track.len();
-        self.at(robot.odometry().time);
-    }
-
-    /// What the wheels were told is written at the time of the sample before, when they were told so; a
-    /// robot that stands is not told again to stand.
-    fn sample(&mut self, sample: &Sample) {
-        let twist = Twist::new(sample.speed, sample.turning);
-        self.at(self.told.reckoned.time);
-        if twist != Twist::default() || Twist::new(self.told.speed, self.told.turning) != twist {
-            self.say(CMD_VEL, &twist);
+        if let Some(scene) = &frame.scene {
+            self.write_own(&encode::scene(taken, scene));
         }
-        self.at(sample.reckoned.time);
-        let stamp = Stamp::of(encode::nanoseconds(sample.reckoned.time));
-        let odometry = Odometry::new(stamp, &sample.reckoned.odometry, twist);
-        self.say(ODOM, &odometry);
-        self.say(TF, &TFMessage { transforms: &[odometry.transform()] });
-        self.told = *sample;
     }
 
-    /// A picture with its scene drawn over it, as a JPEG file.
-    fn annotated(&self, file: &[u8], scene: &scene::Scene) -> Option<Vec<u8>> {
-        let image = ImageFile::open(file).ok()?.image().ok()?;
-        let drawn = annotate::over(&image, self.camera.as_ref()?, scene);
+    /// The image with the scene drawn over it, as a JPEG file.
+    fn annotated(&self, frame: &Frame) -> Option<Vec<u8>> {
+        let image = frame.image.as_ref()?.pixels().ok()?;
+        let drawn = annotate::over(image, self.camera.as_ref()?, frame.scene.as_ref()?);
         let mut bytes = Vec::new();
         drawn.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, QUALITY)).ok()?;
         Some(bytes)
+    }
+}
+
+impl<W: Write> RunObserver for Recorder<W> {
+    fn event(&mut self, event: &Event) {
+        self.now = self.now.max(event.time);
+        let stamp = Stamp::of(self.now);
+        match &event.kind {
+            EventKind::Frame(frame) => self.frame(frame),
+            EventKind::Command { state, command } => {
+                if let Some(command) = command {
+                    self.write_own(&encode::command(stamp, *state, *command));
+                }
+            }
+            EventKind::Door { door, .. } => {
+                self.moves += 1;
+                let r#move = encode::count(self.moves);
+                self.write_own(&messages::Door { stamp, r#move, door: door.0 });
+            }
+            EventKind::Arrival(arrival) => {
+                self.write_own(&encode::percept(stamp, self.moves, arrival));
+            }
+            EventKind::Hypothesis { moves, event } => {
+                if let Some(step) = encode::hypothesis(stamp, *moves, *event) {
+                    self.write_own(&step);
+                }
+            }
+            EventKind::Map(map) => self.write_own(&encode::map(stamp, map)),
+            EventKind::Motion { forward, turn } => {
+                let twist = Twist::new(*forward, *turn);
+                // A robot that stands is not commanded again to stand.
+                if twist != Twist::default() || self.twist != twist {
+                    self.write(CMD_VEL, &twist);
+                }
+                self.twist = twist;
+            }
+            EventKind::Odometry(odometry) => {
+                let stamp = Stamp::of(event.time);
+                let odometry = Odometry::new(stamp, odometry, self.twist);
+                self.write(ODOM, &odometry);
+                self.write(TF, &TFMessage { transforms: &[odometry.transform()] });
+            }
+            EventKind::End(end) => self.write_own(&encode::end(stamp, end)),
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.error.is_some()
     }
 }
 
@@ -270,37 +176,29 @@ mod tests {
     use std::io;
 
     use mcap::MessageStream;
+    use toposlam_model::mapping::MappingError;
 
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},
-        explorer::Told,
-        log::shared_buffer::SharedBuffer,
+        explorer::ExplorerError,
+        record::NoSensor,
         run::{Run, run},
         simulator::{FaultKind, RobotFault, SimulationConfig},
     };
 
-    /// A run on shape 6, where something may go wrong, and its log.
-    fn logged(fault: Option<RobotFault>, judge: impl Fn(&Run)) -> Vec<u8> {
+    /// A run on shape 6, perhaps with a fault, and its log.
+    fn logged(fault: Option<RobotFault>, check: impl Fn(&Run)) -> Vec<u8> {
         let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         (setting.keeps_track, setting.faults) = (true, fault.into_iter().collect());
-        let file = SharedBuffer::default();
+        let mut log = Vec::new();
         let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
-        let recorder = Recorder::new(file.clone(), &head, None).unwrap();
-        let (run, robot, _) = run(
-            &plan,
-            facing,
-            setting.by_scene(),
-            Told,
-            recorder.clone(),
-            &mut recorder.clone(),
-            200,
-        );
-        recorder.end(&robot, run.exploration.moves(), run.error.as_ref()).unwrap();
-        judge(&run);
-        file.0.borrow().clone()
+        let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
+        check(&run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200));
+        recorder.finish().unwrap();
+        log
     }
 
     /// Topic, time and body of each message.
@@ -385,12 +283,11 @@ mod tests {
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         setting.keeps_track = true;
-        let recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
-        let (run, robot, _) =
-            run(&plan, facing, setting.by_scene(), Told, recorder.clone(), &mut (), 200);
-        assert!(recorder.failed());
+        let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
+        let run = run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200);
+        assert!(recorder.stop());
         let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
         assert_eq!(run.error, stopped);
-        assert!(recorder.end(&robot, 1, run.error.as_ref()).is_err());
+        assert!(recorder.finish().is_err());
     }
 }

@@ -10,8 +10,9 @@ use super::{
     wheels::Wheels,
 };
 use crate::{
-    robot::{Picture, Reckoned, Robot, RobotError, Sample},
-    superscout::{Base, Drive},
+    record::{CameraImage, Frame},
+    robot::{Reckoned, Robot, RobotError, Sample},
+    superscout::{Base, Drive, Reading},
 };
 
 /// A robot behind the topics of ROS 1.
@@ -59,14 +60,16 @@ impl LiveRobot {
         self.asked
     }
 
-    fn picture(&mut self) -> Result<Picture<Vec<u8>>, RobotError> {
-        let ended = self.base.reading().time;
+    fn picture(&mut self) -> Result<Frame, RobotError> {
+        let Reading { time: ended, odometry } = self.base.reading();
+        let id = self.asked;
         let mut behind = None;
         let base = &self.base;
         let fresh = |photograph: Photograph| {
             let taken = base.seconds(photograph.stamp);
             behind = Some(ended - taken);
-            (taken > ended).then_some(Picture { taken, view: photograph.file })
+            let image = Some(CameraImage::encoded(photograph.file));
+            (taken > ended).then_some(Frame { id, taken, odometry, image, scene: None })
         };
         let picture = self.pictures.wait(base.patience(), base.stop(), fresh);
         picture.map_err(|error| match (error, behind) {
@@ -81,9 +84,7 @@ impl LiveRobot {
 const FIRST: Duration = Duration::from_secs(10);
 
 impl Robot for LiveRobot {
-    type View = Vec<u8>;
-
-    fn capture(&mut self) -> Result<Picture<Vec<u8>>, RobotError> {
+    fn capture(&mut self) -> Result<Frame, RobotError> {
         self.asked += 1;
         let picture = self.picture();
         match &picture {

@@ -15,8 +15,9 @@ use super::{
 };
 use crate::{
     log::recorder,
-    robot::{Picture, RobotError},
-    simulator::{SimulatedCamera, SimulatedRobot},
+    record::Frame,
+    robot::RobotError,
+    simulator::SimulatedRobot,
     superscout::{Base, WheelSpeeds},
 };
 
@@ -49,8 +50,8 @@ pub struct ServeSummary {
 ///
 /// # Errors
 /// Where there is no master, or the connection is closed.
-pub fn serve<C: SimulatedCamera<View = Vec<u8>>>(
-    robot: SimulatedRobot<C>,
+pub fn serve(
+    robot: SimulatedRobot,
     topics: &RobotTopics,
     speed: f64,
     stop: impl Fn() -> bool,
@@ -88,7 +89,7 @@ fn now() -> Nanoseconds {
 }
 
 /// A simulated robot and its topics.
-struct Scout<C: SimulatedCamera> {
+struct Scout {
     told: Subscription<WheelSpeeds>,
     odometry: Publisher,
     frames: Publisher,
@@ -98,12 +99,12 @@ struct Scout<C: SimulatedCamera> {
     /// It does not carry out the present motion.
     deaf: bool,
     /// A picture that is on its way, and when it comes.
-    exposed: Option<(f64, Picture<Vec<u8>>)>,
+    exposed: Option<(f64, Frame)>,
     next_picture: f64,
-    robot: SimulatedRobot<C>,
+    robot: SimulatedRobot,
 }
 
-impl<C: SimulatedCamera<View = Vec<u8>>> Scout<C> {
+impl Scout {
     /// What happens in one tick, of this number.
     fn tick(&mut self, number: u64) -> Result<(), RobotError> {
         if let Some(wheels) = self.told.take() {
@@ -147,7 +148,9 @@ impl<C: SimulatedCamera<View = Vec<u8>>> Scout<C> {
         if let Some((_, exposed)) = self.exposed.take_if(|(there, _)| *there <= time) {
             let number = self.robot.pictures() as u32;
             let stamp = self.stamp(exposed.taken);
-            self.pictures.say(&picture(number, stamp, &exposed.view))?;
+            if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
+                self.pictures.say(&picture(number, stamp, file))?;
+            }
         }
         if time >= self.next_picture {
             let takes = self.robot.picture_time();

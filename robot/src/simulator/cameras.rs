@@ -3,6 +3,7 @@
 
 use std::{
     f64::consts::{FRAC_PI_2, PI, TAU},
+    fmt::Debug,
     sync::Arc,
 };
 
@@ -27,22 +28,38 @@ use super::{
     renderer::exposed,
     rig::Rig,
 };
-use crate::pose::Pose;
-use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
+use crate::{
+    pose::Pose,
+    record::{CameraImage, Frame},
+    truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
+};
 
 /// A camera on a simulated robot.
-pub trait SimulatedCamera {
-    /// What it gives.
-    type View: Clone + PartialEq;
-
-    /// The picture of a number from a pose, so many stops overexposed.
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Self::View;
-
-    /// A picture whose bytes were damaged on the way; of this number.
-    fn corrupt(view: Self::View, number: u64) -> Self::View;
+pub trait SimulatedCamera: Debug + Send {
+    /// The frame of a number from a pose, overexposed by this many stops. The robot fills in time and
+    /// odometry.
+    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
 
     /// The lights go out.
     fn lights_out(&mut self);
+}
+
+/// A frame that was damaged on the way from the camera, of this number.
+pub(super) fn corrupt(frame: Frame, number: u64) -> Frame {
+    let unknown = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
+    let scene = frame.scene.and(Some(unknown));
+    let image = frame.image.as_ref().and_then(CameraImage::file).map(|file| {
+        let mut file = file.to_vec();
+        let mut chance = stream(number, StreamPurpose::Faults, file.len());
+        for _ in 0..=file.len() / DAMAGED {
+            let at = chance.random_range(0..file.len().max(1));
+            if let Some(byte) = file.get_mut(at) {
+                *byte = chance.random();
+            }
+        }
+        CameraImage::encoded(file)
+    });
+    Frame { image, scene, ..frame }
 }
 
 /// A camera that renders what it sees of a building, and gives the file of a photograph: JPEG, or PNG
@@ -104,40 +121,19 @@ impl RenderingCamera {
 }
 
 impl SimulatedCamera for RenderingCamera {
-    type View = Vec<u8>;
-
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Vec<u8> {
+    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
         let exposure = self.effects.exposure - self.less + stops;
         let effects = Effects { exposure, ..self.effects.clone() };
         let seed = self.seed.wrapping_add(number);
         let image = exposed(&self.rig, &self.building, pose, &effects, seed);
         self.adapt(&image);
-        file(&image, &effects)
-    }
-
-    fn corrupt(mut view: Vec<u8>, number: u64) -> Vec<u8> {
-        let mut chance = stream(number, StreamPurpose::Faults, view.len());
-        for _ in 0..=view.len() / DAMAGED {
-            let at = chance.random_range(0..view.len().max(1));
-            if let Some(byte) = view.get_mut(at) {
-                *byte = chance.random();
-            }
-        }
-        view
+        let image = CameraImage::encoded(file(&image, &effects));
+        Frame { id: number, image: Some(image), ..Frame::default() }
     }
 
     fn lights_out(&mut self) {
         self.effects.exposure += OUT;
     }
-}
-
-/// What a camera gives that tells scenes itself. No two are the same, as no two photographs are.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ToldScene {
-    /// The number of the picture that it stands for.
-    pub picture: u64,
-    /// What sensing tells of it.
-    pub scene: Scene,
 }
 
 /// A camera and sensing in one, without pictures: it tells scenes as often right, and as exactly, as
@@ -299,9 +295,7 @@ fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
 }
 
 impl SimulatedCamera for SceneCamera {
-    type View = ToldScene;
-
-    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> ToldScene {
+    fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
         let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
         let mut chance = Chance { numbers, noise: self.noise };
         // Sensing does not know the light of a picture that is burnt out.
@@ -313,12 +307,7 @@ impl SimulatedCamera for SceneCamera {
             },
             None => Scene { place: Place::Unknown(Reason::NoFloor), marker: None },
         };
-        ToldScene { picture: number, scene }
-    }
-
-    fn corrupt(view: ToldScene, _: u64) -> ToldScene {
-        let scene = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
-        ToldScene { scene, ..view }
+        Frame { id: number, scene: Some(scene), ..Frame::default() }
     }
 
     fn lights_out(&mut self) {
@@ -351,8 +340,9 @@ mod tests {
         let right = SceneClass::Junction(junction.form.unwrap());
         let count = |noise: f64| {
             let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
-            let told: Vec<_> =
-                (0..20_000).map(|n| SceneClass::of(&camera.picture(pose, n, 0.0).scene)).collect();
+            let told: Vec<_> = (0..20_000)
+                .map(|n| SceneClass::of(&camera.picture(pose, n, 0.0).scene.unwrap()))
+                .collect();
             let unknown = told.iter().filter(|&&class| class == SceneClass::Unknown).count();
             let wrong =
                 told.iter().filter(|&&class| class != SceneClass::Unknown && class != right);
@@ -398,8 +388,9 @@ mod tests {
             let effects = Effects { exposure, ..Effects::plain() };
             let building = Building::new(&plan, &LOOKS[0], None, &effects, 1);
             let mut camera = RenderingCamera::new(rig.clone(), building, effects, 1);
-            let file = (0..pictures).map(|n| camera.picture(pose, n, 0.0)).last().unwrap();
-            let image = image::load_from_memory(&file).unwrap().into_rgb8();
+            let frame = (0..pictures).map(|n| camera.picture(pose, n, 0.0)).last().unwrap();
+            let image = frame.image.unwrap();
+            let image = image.pixels().unwrap();
             image.pixels().filter(|pixel| pixel.0.contains(&255)).count()
         };
         let [first, last] = [1, 12].map(|pictures| burnt(3.0, pictures));

@@ -32,7 +32,7 @@ mod walls;
 
 pub use crate::pose::Pose;
 pub use building::Building;
-pub use cameras::{RenderingCamera, SceneCamera, SimulatedCamera, ToldScene};
+pub use cameras::{RenderingCamera, SceneCamera, SimulatedCamera};
 pub use config::{PICTURE_TIME, SimulationConfig, start_pose};
 pub use effects::{EffectScope, Effects, KNOBS, Knob, KnobError};
 pub use faults::{FAULTS, FaultError, FaultKind, RobotFault};

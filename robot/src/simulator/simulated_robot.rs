@@ -7,7 +7,7 @@ use toposlam_model::floor_plan::{Direction, FloorPlan, Rectangle};
 
 use super::{
     building::Building,
-    cameras::{RenderingCamera, SceneCamera, SimulatedCamera},
+    cameras::{RenderingCamera, SceneCamera, SimulatedCamera, corrupt},
     config::SimulationConfig,
     effects::Effects,
     faults::{FaultKind, RobotFault},
@@ -18,22 +18,23 @@ use super::{
 };
 use crate::{
     pose::Pose,
-    robot::{Picture, Reckoned, Robot, RobotError, Sample},
+    record::Frame,
+    robot::{Reckoned, Robot, RobotError, Sample},
     superscout::{Base, Drive},
 };
 
 /// A SuperScout in a simulated building.
-#[derive(Clone, Debug)]
-pub struct SimulatedRobot<C: SimulatedCamera> {
+#[derive(Debug)]
+pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
     base: SimulatedBase,
-    camera: C,
+    camera: Box<dyn SimulatedCamera>,
     /// How long a picture takes, in seconds.
     picture_time: f64,
     faults: Vec<RobotFault>,
     seed: u64,
     pictures: u64,
-    last: Option<Picture<C::View>>,
+    last: Option<Frame>,
 }
 
 /// How overexposed a picture is that is burnt out, in stops.
@@ -51,7 +52,7 @@ impl SimulationConfig {
         rig: &Arc<Rig>,
         look: &BuildingLook,
         effects: &Effects,
-    ) -> SimulatedRobot<RenderingCamera> {
+    ) -> SimulatedRobot {
         let building = Building::new(&self.plan, look, Some(self.marker), effects, self.seed);
         let camera = RenderingCamera::new(rig.clone(), building, effects.clone(), self.seed);
         SimulatedRobot::new(self, camera)
@@ -59,20 +60,21 @@ impl SimulationConfig {
 
     /// The robot with a camera that tells scenes itself.
     #[must_use]
-    pub fn by_scene(&self) -> SimulatedRobot<SceneCamera> {
+    pub fn by_scene(&self) -> SimulatedRobot {
         let marker = Some(self.marker);
         let camera = SceneCamera::new(self.plan.clone(), marker, self.noise, self.seed);
         SimulatedRobot::new(self, camera)
     }
 }
 
-impl<C: SimulatedCamera> SimulatedRobot<C> {
-    fn new(config: &SimulationConfig, camera: C) -> Self {
+impl SimulatedRobot {
+    fn new(config: &SimulationConfig, camera: impl SimulatedCamera + 'static) -> Self {
         let SimulationConfig { plan, pose, picture_time, faults, seed, .. } = config.clone();
         let mut base = SimulatedBase::new(&plan, pose, &config.motion_noise(), seed);
         if config.keeps_track {
             base.keep_track();
         }
+        let camera = Box::new(camera);
         Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
     }
 
@@ -95,7 +97,7 @@ impl<C: SimulatedCamera> SimulatedRobot<C> {
     }
 
     /// The picture of the next number, as it is now, unless it does not come.
-    pub(crate) fn expose(&mut self) -> Option<Picture<C::View>> {
+    pub(crate) fn expose(&mut self) -> Option<Frame> {
         self.pictures += 1;
         let number = self.pictures;
         let begin: Vec<RobotFault> =
@@ -106,21 +108,22 @@ impl<C: SimulatedCamera> SimulatedRobot<C> {
         let spoilt = |kind| self.faults.iter().any(|f| f.kind == kind && f.spoils(number));
         let taken = self.base.time();
         let stops = if spoilt(FaultKind::OverExposed) { BURNT_OUT } else { 0.0 };
-        let picture = match &self.last {
+        let odometry = self.base.reading().odometry;
+        let frame = match &self.last {
             Some(last) if spoilt(FaultKind::Late) => last.clone(),
-            Some(last) if spoilt(FaultKind::Frozen) => Picture { taken, view: last.view.clone() },
+            Some(last) if spoilt(FaultKind::Frozen) => Frame { taken, odometry, ..last.clone() },
             _ => {
-                let corrupt = spoilt(FaultKind::Corrupt);
-                let view = self.camera.picture(self.base.pose(), number, stops);
-                Picture { taken, view: if corrupt { C::corrupt(view, number) } else { view } }
+                let frame = self.camera.picture(self.base.pose(), number, stops);
+                let frame = Frame { taken, odometry, ..frame };
+                if spoilt(FaultKind::Corrupt) { corrupt(frame, number) } else { frame }
             }
         };
         let dropped = spoilt(FaultKind::Dropped);
         if dropped {
             return None;
         }
-        self.last = Some(picture.clone());
-        Some(picture)
+        self.last = Some(frame.clone());
+        Some(frame)
     }
 
     /// How long a picture takes, in seconds.
@@ -149,13 +152,11 @@ impl<C: SimulatedCamera> SimulatedRobot<C> {
     }
 }
 
-impl<C: SimulatedCamera> Robot for SimulatedRobot<C> {
-    type View = C::View;
-
-    fn capture(&mut self) -> Result<Picture<C::View>, RobotError> {
-        let picture = self.expose();
+impl Robot for SimulatedRobot {
+    fn capture(&mut self) -> Result<Frame, RobotError> {
+        let frame = self.expose();
         self.base.wait(self.picture_time);
-        picture.ok_or(RobotError::NoPicture)
+        frame.ok_or(RobotError::NoPicture)
     }
 
     fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
@@ -173,6 +174,10 @@ impl<C: SimulatedCamera> Robot for SimulatedRobot<C> {
 
     fn track(&self) -> &[Sample] {
         self.base.track()
+    }
+
+    fn truth(&self) -> Option<Pose> {
+        Some(self.pose())
     }
 }
 

@@ -4,11 +4,12 @@ use std::{collections::BTreeMap, io::Cursor};
 
 use mcap::{WriteOptions, records::MessageHeader};
 use toposlam_robot::log::{
-    entries::{Content, Entry, LoggedImage, UNTOLD},
+    entries::{Content, Entry, UNTOLD},
     messages::Stamp,
     reader::Log,
     topic_map::{Guess, Role, TopicMap, guess},
 };
+use toposlam_robot::record::CameraImage;
 
 /// A topic: its name, the type and the definition of its messages, and what these say, one a second.
 pub(crate) type Topic = (&'static str, &'static str, &'static str, Vec<Vec<u8>>);
@@ -123,7 +124,7 @@ fn what_is_usual_needs_no_mapping_file() {
         ]
     );
     let [image, odometry, motion, percept] = &entries(&log, &mapping)[..] else { panic!() };
-    assert_eq!(image.content, Content::Image(LoggedImage::File(b"JPEG".to_vec())));
+    assert_eq!(image.content, Content::Image(CameraImage::encoded(*b"JPEG")));
     assert_eq!((image.time, image.stamp), (1_000_000_000, Stamp { sec: 7, nanosec: 5 }));
     let Content::Odometry(at) = &odometry.content else { panic!() };
     assert_eq!(at.position, [1.0, 2.0]);
@@ -266,6 +267,7 @@ fn a_message_that_does_not_say_what_it_should_is_told_with_its_number() {
     assert!(wrong(raw("bayer", [2, 1], 6, &[0; 6]), mapping).contains("\"bayer\" cannot be read"));
     let log = Log::of_bytes(log_of(&[raw("bgr8", [2, 1], 8, &[1, 2, 3, 4, 5, 6, 0, 0])])).unwrap();
     let entries = entries(&log, &TopicMap::read(mapping.as_bytes()).unwrap());
-    let Content::Image(LoggedImage::Pixels(pixels)) = &entries[0].content else { panic!() };
+    let Content::Image(image) = &entries[0].content else { panic!() };
+    let pixels = image.pixels().unwrap();
     assert_eq!((pixels.dimensions(), &pixels.as_raw()[..]), ((2, 1), &[3, 2, 1, 6, 5, 4][..]));
 }

@@ -8,16 +8,15 @@ use std::{
 };
 
 use toposlam_model::{
-    driving::algorithm2::Standing,
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{self, Exploration, Journey, MappingEvent, Nearest, map_world},
-    percept::Door,
+    mapping::{Exploration, Journey, MappingEvent, Observer},
 };
 use toposlam_robot::{
-    explorer::{Explorer, Observer, Round},
+    explorer::Explorer,
     log::{messages, recorder, world_hash, writer::LogWriteError},
+    record::{Event, EventKind, RunObserver},
     robot::{Robot, RobotError},
     ros1::{LiveRobot, RobotTopics},
 };
@@ -27,11 +26,12 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{Arguments, Failure, MAX_DARTS, Outcome, ending::Ending};
+use super::{Arguments, Failure, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
     explore::story::{Story, StoryDetail},
     input, output,
     progress::Progress,
+    story_lines::StoryLines,
     text::quoted,
 };
 
@@ -82,44 +82,45 @@ impl Arguments {
         robot: LiveRobot,
         sensor: Sensor,
         world: Option<&(NamedWorld, Dart)>,
-        log: Option<Recorder>,
+        mut log: Option<Recorder>,
         progress: &Rc<Progress>,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
-        let mut lines = Lines(if self.json { None } else { Some(&mut *out) });
+        let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
+        let lines = StoryLines::new(terminal);
         let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = match world {
-            Some((world, facing)) => Story::new(&mut lines, world, *facing, detail),
-            None => Story::under(&mut lines, &format!("A robot at {}.", self.ros), detail),
+            Some((world, facing)) => Story::new(lines, world, *facing, detail),
+            None => Story::under(lines, &format!("A robot at {}.", self.ros), detail),
         };
-        let mut telling = Telling { story, log: log.clone() };
-        let watching = Watching { log: log.clone(), progress: progress.clone() };
-        let mut explorer = Explorer::new(robot, sensor, watching);
+        let mut narrator = Narrator { story, progress };
+        let mut explorer = Explorer::new(robot, sensor, (&mut log, &mut narrator));
         let mut exploration = Exploration::new(self.max_darts);
-        let error = map_world(&mut explorer, &mut Nearest, &mut exploration, &mut telling).err();
+        let error = explorer.map(&mut exploration).err();
         let (robot, _) = explorer.into_parts();
-        let logged = log.map_or(Ok(()), |log| log.end(&robot, exploration.moves(), error.as_ref()));
+        let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
         // It stands before anything else is said.
         drop(robot);
         progress.clear();
-        telling.story.finish()?;
+        narrator.story.finish()?;
         logged.map_err(|error| self.unwritten(&error))?;
         let name = world.map_or("", |(world, _)| &world.name);
         let error = error.as_ref();
-        let ending = Ending { world: name, exploration: &exploration, error, seconds, pictures };
+        let result =
+            DriveResult { world: name, exploration: &exploration, error, seconds, pictures };
         if self.json {
-            ending.tell_json(out)?;
+            result.print_json(out)?;
         } else {
-            ending.tell(out)?;
+            result.print(out)?;
         }
         if let Some(path) = &self.map {
-            match ending.map() {
+            match result.map() {
                 Some(map) => output::write_world(path, &map)?,
                 None => eprintln!("the map is not complete, and is not written"),
             }
         }
-        Ok(ending.outcome())
+        Ok(result.outcome())
     }
 
     /// The log, where one is wanted. What is not known of the world is left empty.
@@ -178,61 +179,24 @@ impl Arguments {
     }
 }
 
-/// Where the story goes: line by line, for a person who follows the run; or nowhere.
-struct Lines<'o>(Option<&'o mut dyn Write>);
+/// Tells the story of Algorithm 1, and shows progress.
+struct Narrator<'o, 'p> {
+    story: Story<StoryLines<'o>>,
+    progress: &'p Progress,
+}
 
-impl Write for Lines<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if let Some(out) = &mut self.0 {
-            out.write_all(bytes)?;
-            if bytes.ends_with(b"\n") {
-                out.flush()?;
-            }
+impl RunObserver for Narrator<'_, '_> {
+    fn event(&mut self, event: &Event) {
+        if matches!(event.kind, EventKind::Frame(_)) {
+            self.progress.part_done(1);
         }
-        Ok(bytes.len())
     }
 
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.as_mut().map_or(Ok(()), Write::flush)
-    }
-}
-
-/// Watches the robot.
-struct Watching {
-    log: Option<Recorder>,
-    progress: Rc<Progress>,
-}
-
-impl Observer<LiveRobot> for Watching {
-    fn round(&mut self, robot: &LiveRobot, round: &Round<Vec<u8>>) {
-        self.log.round(robot, round);
-        self.progress.part_done(1);
-    }
-
-    fn leaving(&mut self, robot: &LiveRobot, door: Door) {
-        self.log.leaving(robot, door);
-    }
-
-    fn arrived(&mut self, robot: &LiveRobot, door: Option<Door>, at: &Standing) {
-        self.log.arrived(robot, door, at);
+    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+        self.story.event(&mut (), journey, event);
     }
 
     fn stop(&self) -> bool {
-        self.progress.stop() || self.log.as_ref().is_some_and(Recorder::failed)
-    }
-}
-
-/// Tells the story of Algorithm 1, and logs it.
-struct Telling<'o, 'l> {
-    story: Story<'l, Lines<'o>>,
-    log: Option<Recorder>,
-}
-
-impl<W: ?Sized> mapping::Observer<W> for Telling<'_, '_> {
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
-        self.story.event(world, journey, event);
-        if let Some(log) = &mut self.log {
-            log.event(world, journey, event);
-        }
+        self.progress.stop()
     }
 }

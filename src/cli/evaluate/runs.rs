@@ -6,7 +6,7 @@ use std::{io::Write, time::Instant};
 use serde_json::json;
 use toposlam_robot::{
     evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
-    run::Ending,
+    run::RunOutcome,
     simulator::{FAULTS, FaultKind},
 };
 
@@ -96,7 +96,7 @@ impl EvaluateRunsArguments {
 
     /// Whether a run is not as it must be: without faults right, else not wrong without knowing it.
     fn violates(&self, run: &JudgedRun) -> bool {
-        if self.faults { run.is_violation() } else { run.ending != Ending::Right }
+        if self.faults { run.is_violation() } else { run.ending != RunOutcome::Right }
     }
 
     fn tell(
@@ -106,9 +106,9 @@ impl EvaluateRunsArguments {
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for run in
-            judged.iter().filter(|run| !self.faults || matches!(run.ending, Ending::Wrong(_)))
+            judged.iter().filter(|run| !self.faults || matches!(run.ending, RunOutcome::Wrong(_)))
         {
-            if run.ending != Ending::Right {
+            if run.ending != RunOutcome::Right {
                 failed(out, named(run), &run.ending)?;
             }
         }
@@ -149,8 +149,8 @@ impl EvaluateRunsArguments {
                 "fault": fault.map(|fault| fault.kind.name()),
                 "fault_picture": fault.map(|fault| fault.picture),
                 "moves": run.moves[0], "explore_moves": run.moves[1],
-                "right": run.ending == Ending::Right,
-                "gave_up": matches!(run.ending, Ending::GaveUp(_)),
+                "right": run.ending == RunOutcome::Right,
+                "gave_up": matches!(run.ending, RunOutcome::GaveUp(_)),
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
             });
@@ -172,9 +172,9 @@ impl EvaluateRunsArguments {
 fn tally<'r>(runs: impl Iterator<Item = &'r JudgedRun>) -> [usize; 3] {
     runs.fold([0; 3], |mut tally, run| {
         let ending = match run.ending {
-            Ending::Right => 0,
-            Ending::GaveUp(_) => 1,
-            Ending::Wrong(_) => 2,
+            RunOutcome::Right => 0,
+            RunOutcome::GaveUp(_) => 1,
+            RunOutcome::Wrong(_) => 2,
         };
         tally[ending] += 1;
         tally

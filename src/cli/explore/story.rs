@@ -27,8 +27,8 @@ pub(crate) struct StoryDetail {
 const TOLD: usize = 4;
 
 /// Tells a run as it goes.
-pub(crate) struct Story<'o, W> {
-    out: &'o mut W,
+pub(crate) struct Story<W> {
+    out: W,
     detail: StoryDetail,
     result: io::Result<()>,
     round: u64,
@@ -39,26 +39,26 @@ pub(crate) struct Story<'o, W> {
     moves: u64,
 }
 
-impl<'o, W: Write> Story<'o, W> {
-    pub(crate) fn new(
-        out: &'o mut W,
-        world: &NamedWorld,
-        facing: Dart,
-        detail: StoryDetail,
-    ) -> Self {
+impl<W: Write> Story<W> {
+    pub(crate) fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
         let (at, back) = (world.at_text(facing), world.facing_text(facing));
         let head = format!("{}, from {at} with its back to the door {back}.", world.name);
         Self::under(out, &head, detail)
     }
 
     /// The story of a run, under a head that says where it is.
-    pub(crate) fn under(out: &'o mut W, head: &str, detail: StoryDetail) -> Self {
+    pub(crate) fn under(mut out: W, head: &str, detail: StoryDetail) -> Self {
         let result = writeln!(out, "{head}");
         Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
     }
 
-    pub(crate) fn finish(self) -> io::Result<()> {
-        self.result
+    /// Where it is written.
+    pub(crate) fn out(&self) -> &W {
+        &self.out
+    }
+
+    pub(crate) fn finish(self) -> io::Result<W> {
+        self.result.map(|()| self.out)
     }
 
     fn tell(&mut self, journey: &Journey, event: MappingEvent) -> io::Result<()> {
@@ -183,7 +183,7 @@ impl<'o, W: Write> Story<'o, W> {
     }
 }
 
-impl<W: ?Sized, O: Write> Observer<W> for Story<'_, O> {
+impl<W: ?Sized, O: Write> Observer<W> for Story<O> {
     fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
         if self.result.is_ok() {
             self.result = self.tell(journey, event);

@@ -6,7 +6,7 @@ use std::io::Write;
 use toposlam_model::enumerate::Watch;
 use toposlam_robot::{
     ros1::{RobotTopics, ServeSummary, serve},
-    simulator::{RenderingCamera, SimulatedRobot},
+    simulator::SimulatedRobot,
 };
 
 use super::{Failure, Outcome};
@@ -14,7 +14,7 @@ use crate::cli::progress::Progress;
 
 /// Lets the robot be driven until Ctrl-C.
 pub(super) fn run(
-    robot: SimulatedRobot<RenderingCamera>,
+    robot: SimulatedRobot,
     master: &str,
     speed: f64,
     out: &mut dyn Write,

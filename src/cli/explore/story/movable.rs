@@ -7,7 +7,7 @@ use toposlam_model::mapping::{Journey, MovableEvent};
 
 use super::{Story, dart};
 
-impl<W: Write> Story<'_, W> {
+impl<W: Write> Story<W> {
     pub(super) fn tell_movable(
         &mut self,
         journey: &Journey,

@@ -13,7 +13,7 @@ use super::{Failure, Outcome};
 use crate::cli::{json::print_object, text::sentence};
 
 /// How a run ended.
-pub(super) struct Ending<'a> {
+pub(super) struct DriveResult<'a> {
     /// Where it was, where that is known.
     pub(super) world: &'a str,
     pub(super) exploration: &'a Exploration,
@@ -37,7 +37,7 @@ struct Line<'a> {
     frames: u64,
 }
 
-impl Ending<'_> {
+impl DriveResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
         match self.error {
             None => Outcome::Holds,
@@ -66,7 +66,7 @@ impl Ending<'_> {
         (map.dart_count() - map.unexplored_count() as usize) / 2
     }
 
-    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (moves, vertices) = (self.exploration.moves(), self.exploration.map().vertex_count());
         let ended = match self.error {
             None => format!("the map is complete, made in {moves} moves"),
@@ -79,7 +79,7 @@ impl Ending<'_> {
         Ok(())
     }
 
-    pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let ending = match (self.outcome(), self.error) {
             (Outcome::Holds, _) => "mapped",
             (_, Some(MappingError::World(ExplorerError::Stopped { .. }))) => "stopped",

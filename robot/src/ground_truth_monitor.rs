@@ -1,10 +1,10 @@
-//! The specification judges a robot: after each move, where it is and what it perceives there are
-//! held against the embedded graph of the floor plan. Section 2.1.
+//! Checks a robot against the embedded graph of its floor plan: after each move, where it is and what
+//! it perceives there. Section 2.1.
 
 use std::fmt;
 
 use toposlam_model::{
-    driving::{algorithm2::Standing, scene::wrapped},
+    driving::{algorithm2::Standing, odometry::Odometry, scene::wrapped},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     percept::{Door, Percept},
@@ -13,38 +13,42 @@ use toposlam_model::{
 
 use crate::{
     pose::Pose,
+    record::{Event, EventKind, RunObserver},
     truth::{JunctionTruth, angle},
 };
 
-/// A robot that stands at a junction is no farther from its turning point, in metres.
+/// A robot is at a junction up to this distance from its turning point, in metres.
 const THERE: f64 = 0.5;
 
-/// Follows a robot in the embedded graph of its floor plan.
+/// Follows a robot in the embedded graph of its floor plan, and checks each arrival at a junction.
 #[derive(Clone, Debug)]
-pub struct Specification<'p> {
+pub struct GroundTruthMonitor<'p> {
     plan: &'p FloorPlan,
     world: GraphWorld<'p>,
-    arrivals: Vec<Arrival>,
+    arrivals: Vec<CheckedArrival>,
+    /// The door that the robot has taken, and the odometry of the last frame.
+    door: Option<Door>,
+    odometry: Odometry,
 }
 
-/// A robot's coming to a junction, as it was and as it should have been.
+/// An arrival at a junction, and the expected one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Arrival {
-    /// By which door of the last junction; `None` at the start.
+pub struct CheckedArrival {
+    /// The door of the last junction; `None` at the start.
     pub door: Option<Door>,
-    /// Where the robot is by the specification: the dart by which it has come in.
+    /// The expected entry dart.
     pub expected: Dart,
-    /// Where it really is, by its entry door; `None` if at no junction.
+    /// The true entry dart; `None` if the robot is not at a junction.
     pub reached: Option<Dart>,
-    /// What it should perceive where it should be.
+    /// The expected percept.
     pub expected_percept: Percept,
-    /// What it perceives.
+    /// The robot's percept.
     pub perceived: Percept,
-    /// Where it is on the floor.
+    /// The robot's true pose.
     pub pose: Pose,
 }
 
-impl Arrival {
+impl CheckedArrival {
     /// Whether the robot is where it should be, and perceives what it should.
     #[must_use]
     pub fn conforms(&self) -> bool {
@@ -52,23 +56,23 @@ impl Arrival {
     }
 }
 
-/// Where a robot first did something else than the specification.
+/// The first arrival that is not as expected.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Divergence {
-    /// After how many moves.
+pub struct TruthDivergence {
+    /// The number of moves before it.
     pub moves: usize,
-    /// Where it was and what it perceived.
-    pub arrival: Arrival,
-    /// Where it should have been, and where it was, in words.
+    /// The arrival.
+    pub arrival: CheckedArrival,
+    /// The expected place and the reached one, in words.
     names: [String; 2],
 }
 
-impl fmt::Display for Divergence {
+impl fmt::Display for TruthDivergence {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let Self { moves, arrival, names: [expected, reached] } = self;
         write!(out, "after move {moves} ")?;
         if arrival.reached == Some(arrival.expected) {
-            let Arrival { expected_percept, perceived, .. } = arrival;
+            let CheckedArrival { expected_percept, perceived, .. } = arrival;
             write!(
                 out,
                 "at {reached} the robot perceived {perceived}; there are {expected_percept}"
@@ -79,34 +83,35 @@ impl fmt::Display for Divergence {
     }
 }
 
-impl<'p> Specification<'p> {
+impl<'p> GroundTruthMonitor<'p> {
     /// A robot that stands at the facing dart's junction, its back to the dart's hallway.
     #[must_use]
     pub fn new(plan: &'p FloorPlan, facing: Dart) -> Self {
         Self::at(plan, facing, facing)
     }
 
-    /// A robot that stands at the entry dart's junction, having come by it; the marker lies along the
-    /// facing dart.
+    /// A robot that came to the entry dart's junction by that dart; the marker lies along the facing
+    /// dart.
     #[must_use]
     pub fn at(plan: &'p FloorPlan, facing: Dart, entry: Dart) -> Self {
         let world = GraphWorld::new(plan.graph(), facing);
         let state = State { pose: entry, ..world.state() };
-        Self { plan, world: world.at(state), arrivals: Vec::new() }
+        let world = world.at(state);
+        Self { plan, world, arrivals: Vec::new(), door: None, odometry: Odometry::default() }
     }
 
-    /// Judges where a robot has come by a door, and what it knows of the junction; `entry` is the
-    /// direction of the plan in which it takes its entry door to be.
-    pub fn judge(&mut self, door: Option<Door>, at: &Standing, pose: Pose, entry: f64) {
-        // A door that is not there leads nowhere; where the robot is then differs.
+    /// Checks an arrival. `entry` is the direction in the plan of what the robot takes for its entry door.
+    fn check(&mut self, perceived: Percept, pose: Pose, entry: f64) {
+        let door = self.door.take();
+        // A door that does not exist leads nowhere; the robot is then somewhere else.
         let refused = door.is_some_and(|door| self.world.traverse(door).is_err());
         let reached = self.dart_at(pose, entry).filter(|_| !refused);
-        let arrival = Arrival {
+        let arrival = CheckedArrival {
             door,
             expected: self.world.pose(),
             reached,
             expected_percept: self.world.sensed(),
-            perceived: at.percept,
+            perceived,
             pose,
         };
         self.arrivals.push(arrival);
@@ -127,8 +132,8 @@ impl<'p> Specification<'p> {
         graph.darts_of(vertex).min_by(|one, other| turned(one).total_cmp(&turned(other)))
     }
 
-    /// What a robot would know that stands where it is by the specification, at a pose: `None` at no
-    /// junction that a robot knows.
+    /// What a robot at a pose knows if it is at the expected junction; `None` at a junction of a kind that
+    /// robots do not know.
     #[must_use]
     pub fn standing(&self, pose: Pose) -> Option<Standing> {
         let dart = self.world.pose();
@@ -140,13 +145,13 @@ impl<'p> Specification<'p> {
 
     /// Every arrival so far, the start first.
     #[must_use]
-    pub fn arrivals(&self) -> &[Arrival] {
+    pub fn arrivals(&self) -> &[CheckedArrival] {
         &self.arrivals
     }
 
-    /// The first arrival that is not as specified.
+    /// The first arrival that is not as expected.
     #[must_use]
-    pub fn divergence(&self) -> Option<Divergence> {
+    pub fn divergence(&self) -> Option<TruthDivergence> {
         let moves = self.arrivals.iter().position(|arrival| !arrival.conforms())?;
         let arrival = self.arrivals[moves].clone();
         let name = |dart: Dart| {
@@ -155,12 +160,28 @@ impl<'p> Specification<'p> {
             format!("{}, having come from {}", junction(dart), junction(graph.opposite(dart)))
         };
         let reached = arrival.reached.map_or_else(|| "no junction".to_owned(), name);
-        Some(Divergence { moves, names: [name(arrival.expected), reached], arrival })
+        Some(TruthDivergence { moves, names: [name(arrival.expected), reached], arrival })
     }
 
-    /// Where the robot really is, by its entry door.
+    /// The robot's true entry dart.
     #[must_use]
     pub fn reached(&self) -> Option<Dart> {
         self.arrivals.last()?.reached
+    }
+}
+
+/// Only events with the robot's true pose are checked.
+impl RunObserver for GroundTruthMonitor<'_> {
+    fn event(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Frame(frame) => self.odometry = frame.odometry,
+            EventKind::Door { door, .. } => self.door = Some(*door),
+            EventKind::Arrival(arrival) => {
+                if let (Some(pose), Some(entry)) = (event.truth, arrival.entry) {
+                    self.check(arrival.percept, pose, pose.heading + self.odometry.seen(entry));
+                }
+            }
+            _ => {}
+        }
     }
 }

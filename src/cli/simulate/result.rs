@@ -10,14 +10,14 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::ExplorerError,
-    run::{self, Run},
+    run::{Run, RunOutcome},
 };
 
 use super::{Failure, Outcome};
 use crate::cli::{json::print_object, text::sentence};
 
 /// How a run ended.
-pub(super) struct Ending<'a> {
+pub(super) struct SimulationResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) seed: u64,
@@ -53,16 +53,16 @@ struct Line {
     frames: u64,
 }
 
-impl Ending<'_> {
+impl SimulationResult<'_> {
     pub(super) fn outcome(&self) -> Outcome {
         let incomplete = matches!(
             self.run.error,
             Some(MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }))
         );
-        match self.run.ending() {
-            run::Ending::Right => Outcome::Holds,
+        match self.run.outcome() {
+            RunOutcome::Right => Outcome::Holds,
             _ if incomplete => Outcome::Incomplete,
-            run::Ending::GaveUp(_) | run::Ending::Wrong(_) => Outcome::Violated,
+            RunOutcome::GaveUp(_) | RunOutcome::Wrong(_) => Outcome::Violated,
         }
     }
 
@@ -78,8 +78,8 @@ impl Ending<'_> {
     /// In words.
     pub(super) fn in_words(&self) -> String {
         let moves = self.run.exploration.moves();
-        match self.run.ending() {
-            run::Ending::Right => {
+        match self.run.outcome() {
+            RunOutcome::Right => {
                 format!("the map is right, made in {moves} moves, as the specification makes them")
             }
             ending => ending.to_string(),
@@ -87,7 +87,7 @@ impl Ending<'_> {
     }
 
     // paper: exp.multiplicative
-    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
         let edges = self.world.graph.edge_count();
         writeln!(out, "\n{}", sentence(&self.in_words()))?;
@@ -117,7 +117,7 @@ impl Ending<'_> {
         Ok(())
     }
 
-    pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
         let divergence = run.divergence().map(|divergence| divergence.to_string());
         let line = Line {

@@ -1,0 +1,123 @@
+//! What happens in a run.
+
+use toposlam_model::{
+    driving::{
+        algorithm2::{Command, PathState, Standing},
+        odometry::Odometry,
+        visit::JunctionShape,
+    },
+    mapping::MappingEvent,
+    percept::{Door, Percept},
+};
+
+use super::{Frame, MapRecord};
+use crate::pose::Pose;
+
+/// The number of an event in a running robot, or of the log message that it came from; counted from 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EventId(pub u64);
+
+/// Something that happened in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Which event it is.
+    pub id: EventId,
+    /// When it happened, in nanoseconds since the robot was switched on, or by the clock of the log.
+    pub time: u64,
+    /// The robot's true pose, if it is known.
+    pub truth: Option<Pose>,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventKind {
+    /// The sensors gave something. A log has images and scenes in frames of their own.
+    Frame(Frame),
+    /// Algorithm 2 answered the last frame.
+    Command {
+        /// The state of Algorithm 2 afterwards.
+        state: PathState,
+        /// What the robot does; `None` if the path has ended.
+        command: Option<Command>,
+    },
+    /// The robot leaves a junction.
+    Door {
+        /// Which move begins, counted from 1, if known.
+        number: Option<u32>,
+        /// By which door.
+        door: Door,
+    },
+    /// The robot stands at a junction.
+    Arrival(Arrival),
+    /// The mapping algorithm made a step.
+    Hypothesis {
+        /// The number of moves made.
+        moves: u64,
+        /// The step.
+        event: MappingEvent,
+    },
+    /// The map has grown.
+    Map(MapRecord),
+    /// The wheels were commanded.
+    Motion {
+        /// Metres a second ahead.
+        forward: f64,
+        /// Radians a second, counter-clockwise.
+        turn: f64,
+    },
+    /// The wheels were read.
+    Odometry(Odometry),
+    /// The run ended.
+    End(RunEnd),
+}
+
+/// What the robot perceives at a junction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// The number of moves made, if known.
+    pub number: Option<u32>,
+    /// The percept.
+    pub percept: Percept,
+    /// The junction's shape, seen from the entry door, if known.
+    pub form: Option<JunctionShape>,
+    /// The direction of the entry door in the frame of odometry, in radians, if known.
+    pub entry: Option<f64>,
+}
+
+impl Arrival {
+    /// The arrival of a robot after so many moves.
+    #[must_use]
+    pub fn new(moves: u64, at: &Standing) -> Self {
+        let &Standing { form, percept, entry } = at;
+        let number = Some(u32::try_from(moves).unwrap_or(u32::MAX));
+        Self { number, percept, form: Some(form), entry: Some(entry) }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunEnd {
+    /// The number of moves made.
+    pub moves: u64,
+    /// How.
+    pub ending: RunEnding,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RunEnding {
+    /// The map is complete.
+    Mapped,
+    /// The user stopped the run, or its observer did.
+    Stopped,
+    /// The robot gave up, for this reason.
+    GaveUp(String),
+}
+
+/// Seconds since the robot was switched on, in nanoseconds.
+#[must_use]
+pub fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * 1e9).round() as u64
+}

@@ -1,0 +1,172 @@
+//! What is kept of a simulated run for its page and its picture: frames, arrivals, maps and the story.
+
+use std::{path::PathBuf, sync::Arc};
+
+use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
+use toposlam::journal::{Call, Journal, Round};
+use toposlam_model::{
+    driving::algorithm2::PathState,
+    embedded_graph::Dart,
+    enumerate::Watch,
+    floor_plan::FloorPlan,
+    mapping::{Journey, MappingEvent, Observer, PartialMap},
+};
+use toposlam_robot::{
+    pose::Pose,
+    record::{Event, EventKind, Frame, RunObserver},
+    run::Run,
+};
+use toposlam_vision::{annotate, camera::Camera};
+
+use super::{Failure, Story};
+use crate::cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines};
+
+/// Observes a simulated run, and keeps what its page and its picture show.
+pub(super) struct RunCapture<'o> {
+    story: Story<StoryLines<'o>>,
+    progress: Progress,
+    pictures: Pictures,
+    rounds: Vec<Round>,
+    /// The number of frames before each arrival.
+    arrivals: Vec<usize>,
+    maps: Vec<PartialMap>,
+    moves: u64,
+    /// The first picture that could not be written.
+    failure: Option<Failure>,
+}
+
+/// Which annotated pictures are kept.
+pub(super) enum Pictures {
+    /// None.
+    None,
+    /// Small ones.
+    Small { camera: Camera },
+    /// Small ones, and large ones in a folder.
+    Files { camera: Camera, folder: PathBuf },
+}
+
+/// The width of small pictures, in pixels.
+const SMALL: u32 = 400;
+/// The JPEG quality of small pictures.
+const QUALITY: u8 = 60;
+
+impl<'o> RunCapture<'o> {
+    pub(super) fn new(
+        story: Story<StoryLines<'o>>,
+        progress: Progress,
+        pictures: Pictures,
+    ) -> Self {
+        Self {
+            story,
+            progress,
+            pictures,
+            rounds: Vec::new(),
+            arrivals: Vec::new(),
+            maps: Vec::new(),
+            moves: 0,
+            failure: None,
+        }
+    }
+
+    /// What was kept, as a journal whose ending is still empty.
+    ///
+    /// # Errors
+    /// Returns an error if the story or a picture could not be written.
+    pub(super) fn finish(
+        self,
+        name: &str,
+        plan: &Arc<FloorPlan>,
+        facing: Dart,
+        run: &Run,
+    ) -> Result<Journal, Failure> {
+        self.progress.finish();
+        let story = self.story.finish()?.into_text();
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        let calls = self.arrivals.into_iter().zip(run.monitor.arrivals());
+        let calls = calls.map(|(rounds, arrival)| Call {
+            rounds,
+            pose: arrival.pose,
+            percept: arrival.perceived,
+            conforms: arrival.conforms(),
+        });
+        Ok(Journal {
+            name: name.to_owned(),
+            plan: plan.clone(),
+            facing,
+            rounds: self.rounds,
+            calls: calls.collect(),
+            story: story.lines().map(str::to_owned).collect(),
+            maps: self.maps,
+            ending: String::new(),
+        })
+    }
+
+    fn frame(&mut self, frame: &Frame, pose: Pose) {
+        self.progress.part_done(1);
+        let round = Round {
+            time: frame.taken,
+            pose,
+            moves: self.moves,
+            state: PathState::Unknown,
+            scene: frame.scene.as_ref().map(in_words).unwrap_or_default(),
+            command: None,
+            picture: self.picture(frame),
+            story: self.story.out().text().lines().count(),
+            maps: self.maps.len(),
+        };
+        self.rounds.push(round);
+    }
+
+    /// A small annotated picture. A large one is written first if there is a folder for it.
+    fn picture(&mut self, frame: &Frame) -> Option<Vec<u8>> {
+        let (camera, folder) = match &self.pictures {
+            Pictures::None => return None,
+            Pictures::Small { camera } => (camera, None),
+            Pictures::Files { camera, folder } => (camera, Some(folder)),
+        };
+        let image = frame.image.as_ref()?.pixels().ok()?;
+        let image = annotate::over(image, camera, frame.scene.as_ref()?);
+        if let (Some(folder), None) = (folder, &self.failure) {
+            let file = folder.join(format!("{:05}.jpg", self.rounds.len() + 1));
+            self.failure = picture_file::write(&file, &image).err();
+        }
+        let height = SMALL * image.height() / image.width().max(1);
+        let small = image::imageops::resize(&image, SMALL, height, FilterType::Triangle);
+        let mut bytes = Vec::new();
+        small.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, QUALITY)).ok()?;
+        Some(bytes)
+    }
+}
+
+impl RunObserver for RunCapture<'_> {
+    fn event(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Frame(frame) => {
+                if let Some(pose) = event.truth {
+                    self.frame(frame, pose);
+                }
+            }
+            EventKind::Command { state, command } => {
+                if let Some(last) = self.rounds.last_mut() {
+                    (last.state, last.command) = (*state, *command);
+                }
+            }
+            EventKind::Door { .. } => self.moves += 1,
+            EventKind::Arrival(_) => self.arrivals.push(self.rounds.len()),
+            _ => {}
+        }
+    }
+
+    fn mapping(&mut self, journey: &Journey, event: MappingEvent) {
+        self.story.event(&mut (), journey, event);
+        if event.grows_map() {
+            self.maps.push(journey.map().clone());
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.failure.is_some() || self.progress.stop()
+    }
+}
