@@ -20,6 +20,7 @@ mod geometry;
 mod growth;
 mod labels;
 mod layout;
+mod outlines;
 mod png;
 mod routes;
 mod run;

@@ -1,12 +1,9 @@
 //! SVG to PNG, with the font that is shipped, and no other.
 
-use std::sync::Arc;
-
 use resvg::{tiny_skia, usvg};
 use thiserror::Error;
 
-/// DejaVu Sans, reduced to Latin, Greek, Cyrillic and some symbols; its licence stands beside it.
-const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+use super::outlines::with_outlines;
 
 /// Pixels in a unit of a small picture.
 const PIXELS: f32 = 2.0;
@@ -40,15 +37,8 @@ pub enum PictureError {
 /// # Errors
 /// Where the text is no SVG, or the image would have no pixels.
 pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_data(FONT.to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-    let options = usvg::Options {
-        font_family: "DejaVu Sans".to_owned(),
-        fontdb: Arc::new(fonts),
-        ..usvg::Options::default()
-    };
-    let tree = usvg::Tree::from_str(svg, &options)?;
+    let outlined = with_outlines(svg).map_err(usvg::Error::ParsingFailed)?;
+    let tree = usvg::Tree::from_str(&outlined, &usvg::Options::default())?;
     let size = tree.size();
     let scale = scale(size.width().max(size.height()));
     let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));

@@ -9,6 +9,7 @@ pub mod error;
 mod from_value;
 mod image;
 mod merge;
+mod mcap_writer;
 pub mod message;
 pub mod messages;
 pub mod reader;

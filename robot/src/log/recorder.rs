@@ -55,7 +55,7 @@ impl<W: Write> Recorder<W> {
     /// Returns an error if the file cannot be written.
     pub fn new(out: W, run: &messages::Run, camera: Option<Camera>) -> Result<Self, LogWriteError> {
         let mut out = LogWriter::new(out)?;
-        out.note(NOTE, entries(run))?;
+        out.note(NOTE, &entries(run))?;
         out.write(messages::Run::TOPIC, 0, run)?;
         out.flush()?;
         Ok(Self { out, error: None, camera, now: 0, moves: 0, twist: Twist::default() })

@@ -10,14 +10,13 @@ use std::{
 };
 
 use byteorder::LittleEndian;
-use mcap::{
-    McapError, WriteOptions,
-    records::{MessageHeader, Metadata},
-    write::{NoSeek, Writer},
-};
+use cdr::Serializer;
 use thiserror::Error;
 
-use super::message::{Message, schema};
+use super::{
+    mcap_writer::{McapWriter, Schema},
+    message::{Message, schema},
+};
 
 /// The messages of a chunk are so long apart at most, in nanoseconds: ten seconds.
 pub const CHUNK_TIME: u64 = 10_000_000_000;
@@ -33,32 +32,20 @@ pub enum LogWriteError {
     /// The file does not take it.
     #[error(transparent)]
     File(#[from] io::Error),
-    /// It would be no log.
-    #[error(transparent)]
-    Log(McapError),
     /// A message cannot be told in CDR.
     #[error("{topic}: {cause}")]
     Message {
         /// The topic of the message.
         topic: String,
         /// What is wrong with it.
-        cause: cdr_encoding::Error,
+        cause: cdr::Error,
     },
-}
-
-impl From<McapError> for LogWriteError {
-    fn from(error: McapError) -> Self {
-        match error {
-            McapError::Io(error) => Self::File(error),
-            error => Self::Log(error),
-        }
-    }
 }
 
 /// A log that is being written. Dropped before it is finished, it still becomes a file that is whole;
 /// only a process that is killed leaves a part of one.
 pub struct LogWriter<W: Write> {
-    out: Writer<NoSeek<W>>,
+    out: McapWriter<W>,
     topics: BTreeMap<String, Topic>,
     /// The present message; its memory serves the next.
     body: Vec<u8>,
@@ -85,16 +72,7 @@ impl<W: Write> LogWriter<W> {
     /// # Errors
     /// Where the file does not take it.
     pub fn new(out: W) -> Result<Self, LogWriteError> {
-        let options = WriteOptions::new()
-            .profile("ros2")
-            .library("toposlam")
-            // Chunks are ended here, by two rules instead of one.
-            .chunk_size(None)
-            // A chunk is in the file whole or not at all.
-            .disable_seeking(true)
-            // On any machine the same.
-            .compression_threads(0);
-        let out = options.create(NoSeek::new(out))?;
+        let out = McapWriter::new(out, "ros2", "toposlam")?;
         Ok(Self { out, topics: BTreeMap::new(), body: Vec::new(), chunk: None })
     }
 
@@ -105,10 +83,10 @@ impl<W: Write> LogWriter<W> {
     pub fn note(
         &mut self,
         name: &str,
-        entries: BTreeMap<String, String>,
+        entries: &BTreeMap<String, String>,
     ) -> Result<(), LogWriteError> {
         self.chunk = None;
-        Ok(self.out.write_metadata(&Metadata { name: name.to_owned(), metadata: entries })?)
+        Ok(self.out.write_metadata(name, entries)?)
     }
 
     /// Writes a message, at a time in nanoseconds.
@@ -123,7 +101,8 @@ impl<W: Write> LogWriter<W> {
     ) -> Result<(), LogWriteError> {
         self.body.clear();
         self.body.extend(ENCAPSULATION);
-        cdr_encoding::to_writer::<M, LittleEndian, _>(&mut self.body, message)
+        message
+            .serialize(&mut Serializer::<_, LittleEndian>::new(&mut self.body))
             .map_err(|cause| LogWriteError::Message { topic: topic.to_owned(), cause })?;
         let bytes = self.body.len();
         if let Some(chunk) = self.chunk
@@ -131,9 +110,8 @@ impl<W: Write> LogWriter<W> {
         {
             self.flush()?;
         }
-        let (channel_id, sequence) = self.next_of::<M>(topic)?;
-        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
-        self.out.write_to_known_channel(&header, &self.body)?;
+        let (channel, sequence) = self.next_of::<M>(topic);
+        self.out.add_message(channel, sequence, time, &self.body);
         self.chunk.get_or_insert(Chunk { begun: time, bytes: 0 }).bytes += bytes;
         Ok(())
     }
@@ -152,24 +130,27 @@ impl<W: Write> LogWriter<W> {
     /// # Errors
     /// Where the file does not take it.
     pub fn finish(mut self) -> Result<W, LogWriteError> {
-        self.out.finish()?;
-        let mut out = self.out.into_inner().into_inner();
-        out.flush()?;
-        Ok(out)
+        let closed = || io::Error::other("the log is closed");
+        Ok(self.out.finish()?.ok_or_else(closed)?)
     }
 
     /// The channel of a topic, and the number of its next message.
-    fn next_of<M: Message>(&mut self, topic: &str) -> Result<(u16, u32), LogWriteError> {
+    fn next_of<M: Message>(&mut self, topic: &str) -> (u16, u32) {
         let known = if let Some(known) = self.topics.get_mut(topic) {
             known
         } else {
-            let schema = self.out.add_schema(M::TYPE, "ros2msg", schema::<M>().as_bytes())?;
-            let channel = self.out.add_channel(schema, topic, "cdr", &BTreeMap::new())?;
+            let schema = Schema {
+                name: M::TYPE,
+                encoding: "ros2msg",
+                text: schema::<M>(),
+                message_encoding: "cdr",
+            };
+            let channel = self.out.add_channel(topic, &schema);
             self.topics.entry(topic.to_owned()).or_insert(Topic { channel, sequence: 0 })
         };
         let sequence = known.sequence;
         known.sequence = sequence.wrapping_add(1);
-        Ok((known.channel, sequence))
+        (known.channel, sequence)
     }
 }
 
@@ -300,14 +281,14 @@ mod tests {
     fn a_full_disk_is_an_error_at_any_byte() {
         let fill = |bytes: usize| {
             let mut log = LogWriter::new(Full(bytes))?;
-            log.note("n", BTreeMap::new())?;
+            log.note("n", &BTreeMap::new())?;
             for time in 0..20 {
                 log.write(Door::TOPIC, time * SECOND, &Door::default())?;
             }
             log.finish()
         };
         let needed = written(|log| {
-            log.note("n", BTreeMap::new()).unwrap();
+            log.note("n", &BTreeMap::new()).unwrap();
             (0..20).for_each(|t| log.write(Door::TOPIC, t * SECOND, &Door::default()).unwrap());
         });
         for bytes in 0..needed.len() {

@@ -2,12 +2,19 @@
 
 use std::io::Read;
 
-use lz4_flex::frame::FrameDecoder;
+use lz4_flex::frame::FrameDecoder as Lz4Decoder;
+use ruzstd::decoding::FrameDecoder;
 
 use crate::log::error::LogErrorKind;
 
 /// How many times as long as it is in the file a chunk can be; what says more is not decompressed.
 pub const MOST_GROWTH: u64 = 1000;
+
+/// Every decoder of Zstandard supports a window of this many bytes.
+const USUAL_WINDOW: u64 = 8 << 20;
+/// A larger window is at most this many times as long as the compressed chunk: the decoder keeps it in
+/// memory twice.
+const MOST_WINDOW_GROWTH: u64 = 300;
 
 /// How a chunk is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,12 +74,13 @@ pub(super) fn decompress(
     let whole = match compression {
         Compression::None => bytes,
         Compression::Bz2 => read(bzip2::read::BzDecoder::new(&bytes[..]), size)?,
-        Compression::Lz4 => read(FrameDecoder::new(&bytes[..]), size)?,
+        Compression::Lz4 => read(Lz4Decoder::new(&bytes[..]), size)?,
         Compression::Zstd => {
-            // Into the memory where it stays: a window of its own would be as large as the frame says.
+            let mut decoder = FrameDecoder::new();
+            let window = size.min(compressed.saturating_mul(MOST_WINDOW_GROWTH));
+            decoder.set_max_window_size(window.max(USUAL_WINDOW));
             let mut whole = Vec::with_capacity(size as usize);
-            let mut decoder = zstd::bulk::Decompressor::new().map_err(|error| fails(&error))?;
-            decoder.decompress_to_buffer(&bytes, &mut whole).map_err(|error| fails(&error))?;
+            decoder.decode_all_to_vec(&bytes, &mut whole).map_err(|error| fails(&error))?;
             whole
         }
     };
