@@ -14,9 +14,9 @@ pub use conform::conform_page;
 pub use run::run_page;
 pub use walk::{WalkPage, page};
 
-/// How all pages look.
+/// The stylesheet of all pages.
 const PAGE_STYLE: &str = include_str!("browser/page.css");
-/// What the scripts of all pages begin with.
+/// The beginning of the scripts of all pages.
 const PAGE_SCRIPT: &str = include_str!("browser/page.js");
 
 /// The template with each `{{place}}` filled. What is put in is not searched for places again.

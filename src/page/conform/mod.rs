@@ -16,7 +16,6 @@ use super::{PAGE_STYLE, filled};
 use crate::{picture::escaped, report::LogReport};
 
 const PAGE: &str = include_str!("../browser/conform.html");
-const STYLE: [&str; 2] = [PAGE_STYLE, include_str!("../browser/conform.css")];
 const SCRIPT: &str = include_str!("../browser/conform.js");
 
 /// The page of these reports as an HTML document, in their order; of several, with what is said of them
@@ -28,7 +27,7 @@ pub fn conform_page(reports: &[LogReport]) -> String {
     filled(PAGE, |place| match place {
         "title" => escaped(&wording::title(reports)),
         "icon" => wording::icon(wording::worst(reports)),
-        "style" => STYLE.concat(),
+        "style" => PAGE_STYLE.to_owned(),
         "together" if !alone => summary::section(reports),
         "logs" => each(&numbered, |(report, number)| {
             log::section(report, *number, if alone { Level::First } else { Level::Second })

@@ -11,7 +11,6 @@ use crate::{
 };
 
 const PAGE: &str = include_str!("../browser/run.html");
-const STYLE: [&str; 2] = [PAGE_STYLE, include_str!("../browser/run.css")];
 /// In the order in which they build on each other; they share one scope.
 const SCRIPT: [&str; 3] =
     [PAGE_SCRIPT, include_str!("../browser/floor.js"), include_str!("../browser/run.js")];
@@ -23,7 +22,7 @@ pub fn run_page(journal: &Journal) -> String {
     filled(PAGE, |place| match place {
         "title" => escaped(&journal.name),
         "about" => escaped(&words::about(journal)),
-        "style" => STYLE.concat(),
+        "style" => PAGE_STYLE.to_owned(),
         "plan" => drawn.svg.clone(),
         "maps" => maps(journal),
         "data" => data::json(journal, &drawn),

@@ -27,7 +27,6 @@ pub struct WalkPage<'a> {
 }
 
 const PAGE: &str = include_str!("../browser/walk.html");
-const STYLE: [&str; 2] = [PAGE_STYLE, include_str!("../browser/walk.css")];
 /// In the order in which they build on each other; they share one scope.
 const SCRIPT: [&str; 5] = [
     PAGE_SCRIPT,
@@ -45,7 +44,7 @@ pub fn page(page: &WalkPage) -> String {
     filled(PAGE, |place| match place {
         "title" => escaped(page.title),
         "about" => escaped(page.about),
-        "style" => STYLE.concat(),
+        "style" => PAGE_STYLE.to_owned(),
         "name of A" => escaped(&page.worlds[0].name),
         "name of B" => escaped(&page.worlds[1].name),
         "marker of A" => escaped(&one.where_the_marker_is()),
