@@ -1,5 +1,5 @@
-(** What is proved, for every world. Each statement stands under the sentence that it says; its words are
-    defined in [Spec.v], [Algorithm1.v] and [MovableMarker.v]. The proofs are in the other files. *)
+(** The theorems, for every world. Each follows the sentence that it states. [Spec.v], [Algorithm1.v] and
+    [MovableMarker.v] define the terms; the proofs are in the other files. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1.
@@ -15,7 +15,7 @@ Unset Printing Implicit Defensive.
 
 (** * Walks *)
 
-(** The same doors never lead two poses of a world to one pose. Paper: 2.1. *)
+(** The same doors never lead two different poses of a world to the same pose. Paper: 2.1. *)
 Theorem walk_inj (G : embedded_graph) (doors : seq door) :
   injective (fun pose : G => walk pose doors).
 Proof. (* paper: motion.path *)
@@ -32,8 +32,8 @@ Qed.
 
 (** * Markers that do not suffice, and one that does *)
 
-(** Two starts are indistinguishable, every door sequence giving the same percepts, exactly if there is a
-    bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
+(** Two starts are indistinguishable, i.e. every door sequence gives the same percepts, exactly if there
+    is a bisimulation of their poses. Paper: 2.2; the proof about Figure 1. *)
 Theorem bisimilar_iff_indistinguishable (M : marker) (V W : start) :
   bisimilar M V W <-> indistinguishable M V W.
 Proof. exact: Bisimulation.bisimilar_iff_indistinguishable. Qed.
@@ -49,7 +49,7 @@ by move=> same; split; [apply: Bisimulation.bisimilar_same_history
                        | apply: Bisimulation.bisimilar_same_answers].
 Qed.
 
-(** Without a marker no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
+(** Without a marker, no robot maps both the cycle of 3 and the cycle of 4. Paper: 2.2. *)
 Theorem no_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps no_marker robot cycle_3 /\ maps no_marker robot cycle_4).
 Proof. (* paper: marker.none-insufficient, marker.none-cycles *)
@@ -77,8 +77,8 @@ have [simple_a simple_b] := Figures.smallest_simple.
 split=> //; [exact: Figures.smallest_not_isomorphic | exact: Figures.smallest_bisimilar].
 Qed.
 
-(** With one undirected immovable marker at the start vertex no robot maps both worlds of Figure 1, nor both
-    of the smaller pair. Paper: 2.2. *)
+(** With one undirected marker that stays at the start vertex, no robot maps both worlds of Figure 1, nor
+    both of the smaller pair. Paper: 2.2. *)
 Theorem undirected_marker_impossible (robot : strategy embedded_graph) :
   ~ (maps undirected robot figure_1a /\ maps undirected robot figure_1b) /\
   ~ (maps undirected robot smallest_a /\ maps undirected robot smallest_b).
@@ -86,14 +86,14 @@ Proof. (* paper: marker.undirected-insufficient *)
 exact: Impossible.undirected_marker_impossible.
 Qed.
 
-(** With a directional marker two starts are indistinguishable exactly if they are isomorphic, facing to
+(** With a directional marker, two starts are indistinguishable exactly if they are isomorphic, facing to
     facing. Paper: 2.3. *)
 Theorem directional_marker_separates (V W : start) :
   indistinguishable directional V W <-> isomorphic_starts V W.
 Proof. exact: Separates.indistinguishable_directional. Qed.
 
-(** Two starts that one robot maps, and tells where it began, are isomorphic, facing to facing, if they are
-    indistinguishable. Paper: 2.2. *)
+(** If one robot maps two indistinguishable starts, and knows where it began, then they are isomorphic,
+    facing to facing. Paper: 2.2. *)
 Theorem mapped_starts_are_told_apart (robot : strategy start) (M : marker) (V W : start) :
   maps_start M robot V -> maps_start M robot W -> indistinguishable M V W -> isomorphic_starts V W.
 Proof.
@@ -103,8 +103,8 @@ Qed.
 
 (** * Programs *)
 
-(** What is always so of a program is so of the robot that obeys it, choosing the defaults: it answers, and
-    until then takes only doors that there are. Paper: 2.1. *)
+(** If a property always holds for a program, it holds for the robot that runs the program with the
+    default choices: the robot answers, and until then takes only doors that exist. Paper: 2.1. *)
 Theorem obeying_always A (p : percept -> program A) (M : marker) (W : start) (Q : A -> W -> nat -> Prop) :
   always M (p (perceive M (facing W))) (facing W) Q ->
   let robot := obeying p in
@@ -119,15 +119,15 @@ Section Line4.
 
 Variables (W : start) (S : partial_map) (place : nat -> W) (pose : nat).
 
-(** At line 4 the known map is a part of the world, and the robot is where it believes to be: at first.
-    Paper: 2.3; Algorithm 1, lines 1 to 3. *)
+(** When Algorithm 1 first reaches line 4, the known map is a part of the world, and the robot is where it
+    believes to be. Paper: 2.3; Algorithm 1, lines 1 to 3. *)
 Theorem map_embeds_at_first : embeds (with_vertex [::] (degree (facing W))) (@turn W (facing W)).
 Proof. (* paper: alg1.2, alg1.3 *)
 exact: Correct.embeds_at_start.
 Qed.
 
-(** At line 4 the known map is a part of the world, and the robot is where it believes to be: after every
-    round, if before it. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
+(** If, at line 4, the known map is a part of the world and the robot is where it believes to be, then so
+    they are after the round. Paper: 2.3; Algorithm 1, lines 5 to 23. *)
 Theorem map_embeds_after_round :
   embeds S place -> pose < size S -> unexplored S != [::] ->
   always directional (explore any_path S pose) (place pose)
@@ -143,10 +143,10 @@ End Line4.
 
 Section Validation.
 
-(** The known map [S] is the part of the world that [place] says. The robot came to [t], and is turned by
-    [turned] since: by nothing if it has rejected no hypothesis yet, as it has not if [h] is at the marked
-    vertex, for then the percept at [t] decided. It follows a path from the hypothesis [h] to the marked
-    vertex. *)
+(** The known map [S] is a part of the world, given by [place]. The robot came to [t], and has turned by
+    [turned] since: not at all if it has rejected no hypothesis yet, which is so if [h] is at the marked
+    vertex, because then the percept at [t] decided. It follows a path from the hypothesis [h] to the
+    marked vertex. *)
 Variables (S : partial_map) (W : start) (place : nat -> W) (t : W).
 Variables (h : nat) (path : seq nat) (turned : door).
 Hypotheses (known : embeds S place) (h_known : h < size S) (path_leads : leads S (vertex S h) path 0).
@@ -156,8 +156,8 @@ Hypothesis not_contradicted : expected S h = perceive directional t.
 Let once :=
   Validation.follow_once known h_known path_leads turned_exists at_marker not_contradicted.
 
-(** A hypothesis that is confirmed is true: the robot did come in by the dart of the hypothesis; and it is
-    then where it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
+(** A confirmed hypothesis is true: the robot came in by the dart of the hypothesis, and it is then where
+    it believes to be. Paper: 2.3; Algorithm 1, lines 16 and 17. *)
 Theorem validation_sound :
   always directional (follow S (degree t) turned h path [::]) (turn t turned)
     (fun ended pose _ => forall believed, ended = Confirmed believed ->
@@ -167,7 +167,7 @@ apply: Always.always_weaken once.
 by case=> [believed|turned'] pose k // [placed _ -> _] _ [<-].
 Qed.
 
-(** A hypothesis that is true is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
+(** A true hypothesis is confirmed. Paper: 2.3; Algorithm 1, lines 12 to 17. *)
 Theorem validation_complete :
   place h = t ->
   always directional (follow S (degree t) turned h path [::]) (turn t turned)
@@ -177,8 +177,8 @@ move=> true_h; apply: Always.always_weaken once.
 by case=> [believed|turned'] pose k; [exists believed | case].
 Qed.
 
-(** After a hypothesis that is rejected the robot is where it was, turned by a door that it knows.
-    Paper: 2.3; Algorithm 1, lines 14 and 15. *)
+(** After a rejected hypothesis the robot is where it was, turned by a door that it knows. Paper: 2.3;
+    Algorithm 1, lines 14 and 15. *)
 Theorem rejection_returns :
   always directional (follow S (degree t) turned h path [::]) (turn t turned)
     (fun ended pose _ => forall turned', ended = Rejected turned' -> pose = turn t turned').
@@ -189,9 +189,9 @@ Qed.
 
 End Validation.
 
-(** Of hypotheses that the percept on arrival does not contradict, tried in any order and by any paths, the
-    true one is confirmed; if there is none, all are rejected, and the robot is where it was. Paper: 2.3;
-    Algorithm 1, lines 8 to 17. *)
+(** Of the hypotheses that the percept on arrival does not contradict, tried in any order and by any
+    paths, the true one is confirmed. If there is none, all are rejected, and the robot is where it was.
+    Paper: 2.3; Algorithm 1, lines 8 to 17. *)
 Theorem hypotheses_decided (S : partial_map) (W : start) (place : nat -> W) (t : W) (H : seq nat) :
   embeds S place -> {subset H <= unexplored S} ->
   (forall h, h \in H -> expected S h = perceive directional t) ->
@@ -207,10 +207,10 @@ have := Rounds.try_all_spec short known (erefl (size H)) sub fits (Walks.degree_
 by apply: Always.always_weaken => -[h believed|turned] pose k [_] [] => [? ? _ ->|].
 Qed.
 
-(** In every world and from every start Algorithm 1 ends, whatever edge it takes at line 5, whatever
-    hypothesis at line 9, and whatever paths through the known map at lines 6 and 10; its map is
-    isomorphic to the world, facing to facing, and the robot is where it believes to be. As many rounds
-    suffice as the world has edges. Paper: 2.3; Algorithm 1. *)
+(** In every world, from every start, Algorithm 1 ends, with any choice of an edge at line 5, of a
+    hypothesis at line 9, and of paths through the known map at lines 6 and 10. Its map is isomorphic to
+    the world, facing to facing, and the robot is where it believes to be. As many rounds suffice as the
+    world has edges. Paper: 2.3; Algorithm 1. *)
 Theorem algorithm1_correct (W : start) (bound : nat) :
   edges W <= bound ->
   always directional (algorithm1 any_path bound (perceive directional (facing W))) (facing W)
@@ -220,8 +220,9 @@ move=> enough; have short S path : size path < known_vertices S -> any_path S pa
 by apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pose k [].
 Qed.
 
-(** With paths that have fewer edges than there are known vertices, as shortest ones have, Algorithm 1 makes
-    at most m n + 2 m^2 (n - 1) moves, whatever else is chosen. Paper: 2.3; the cost of Algorithm 1. *)
+(** With paths that have fewer edges than there are known vertices, such as shortest paths, Algorithm 1
+    makes at most m n + 2 m^2 (n - 1) moves, with any other choices. Paper: 2.3; the cost of Algorithm 1.
+    *)
 Theorem algorithm1_cost (W : start) (bound : nat) :
   let m := edges W in
   let n := vertices W in
@@ -234,8 +235,8 @@ apply: Always.always_weaken (Correct.algorithm1_spec short enough) => answer pos
 by rewrite /Correct.cost -mulnn subn1; apply.
 Qed.
 
-(** One directional marker suffices: there is one robot that maps every world in which it is given one, and
-    knows nothing of that world before. Paper: 1 and 2.3. *)
+(** One directional marker suffices: there is one robot that maps every world with such a marker, without
+    any knowledge of that world. Paper: 1 and 2.3. *)
 Theorem directional_marker_suffices :
   exists robot : strategy start, forall W : start, maps_start directional robot W.
 Proof. (* paper: marker.directional-sufficient *)
@@ -255,9 +256,9 @@ exists robot => W dead_end; have [map answered iso] := Mapper.mapper_maps W.
 by exists map => //; apply/same.
 Qed.
 
-(** In two starts that are indistinguishable with one undirected marker, the poses that are alike form
-    classes of one size, in both worlds, which divides the degree of the marked vertex. Paper: beyond
-    2.2. *)
+(** In two starts that are indistinguishable with one undirected marker, all classes of poses that
+    perceive the same for ever have the same size, in both worlds, and this size divides the degree of the
+    marked vertex. Paper: beyond 2.2. *)
 Theorem class_sizes (V W : start) :
   indistinguishable undirected V W ->
   exists size, size %| degree (facing V) /\
@@ -269,10 +270,9 @@ exists size; split=> // X Y [->|->] [->|->] p; exists (Classes.class undirected 
   split=> /Classes.alikeP //.
 Qed.
 
-(** With one marker that can be picked up and dropped the mapping algorithm of Dudek, Jenkin, Milios and
-    Wilkes maps every world without loops and parallel edges, whatever is chosen; the robot is then where
-    it believes to be, with the marker in hand. Paper: 2.3; place validation, back-link
-    validation. *)
+(** With one marker that can be picked up and dropped, the mapping algorithm of Dudek, Jenkin, Milios and
+    Wilkes maps every world without loops and parallel edges, with any choices; the robot is then where it
+    believes to be, with the marker in hand. Paper: 2.3; place validation, back-link validation. *)
 Theorem movable_marker_maps_simple_worlds (W : start) (bound : nat) :
   simple W -> edges W <= bound ->
   let begin := Some (facing W) in

@@ -15,7 +15,8 @@ use crate::{
 declare! {
     doors_stay_in_their_range {
         "At a vertex of any degree, the door from one dart to another is below the degree and \
-         leads there, its inverse leads back, and it is the door that is seen from the one.",
+         leads to that dart; its inverse leads back; seen from the first dart, the second is \
+         behind this door.",
         paper "2.1",
         // The squares of 0 ... 31.
         exhaustive "two darts and a degree, each up to 15 or among the 16 highest \
@@ -25,8 +26,8 @@ declare! {
         kani "any numbers of 32 bits", unwind 9: doors::<_, 8>;
     }
     a_percept_can_be_turned_and_turned_back {
-        "The percept of a vertex, seen from another entry and from there again from the first, is \
-         the same percept, if what was seen does not lie on the edge of the entry.",
+        "A percept that is turned to another entry dart and back again is unchanged, unless what \
+         was seen lies on the edge of the entry.",
         paper "2.1",
         // The squares of 0 ... 31, for each of six sightings.
         exhaustive "an entry, a sighting and a degree, each up to 15 or among the 16 highest \
@@ -36,8 +37,8 @@ declare! {
         kani "any numbers of 32 bits", unwind 9: turned::<_, 8>;
     }
     every_door_leads_to_a_dart {
-        "Whatever number is taken as a door, at whatever pose, the dart behind it is one of the \
-         vertex's, so many places clockwise from the entry dart, counted modulo the degree.",
+        "Any number, taken as a door at any pose, leads to a dart of the same vertex: as many \
+         places clockwise from the entry dart, modulo the degree.",
         paper "2.1",
         // 2 2 + 10 4 + 74 6 + 706 8 poses.
         exhaustive "every start with up to 4 edges, every pose, doors up to 15 and the 16 highest \
@@ -49,9 +50,9 @@ declare! {
             behind::<_, 2, 2, 2>;
     }
     the_highest_numbers_fit {
-        "A graph is refused for its size exactly if it has no edge, or more than can be numbered; \
-         and to a graph that is not, a vertex can be added with as many darts, so that all numbers \
-         fit in 32 bits, and none is that which stands for none.",
+        "A graph is rejected for its size exactly if it has no edge, or more edges than can be \
+         numbered. Any other graph leaves room for a vertex with as many darts: all numbers fit in \
+         32 bits, and none is the one that stands for \"none\".",
         paper "2.1",
         exhaustive "two numbers within 256 of 0 or of the most darts", 261_121 cases:
             the_highest::<_, 2>;

@@ -18,8 +18,8 @@ use crate::{
 
 declare! {
     related_states_perceive_the_same_for_ever {
-        "Robots whose states are related by a relation that the verifier accepts perceive the \
-         same, whatever both do.",
+        "If the verifier accepts a relation, then robots in related states perceive the same, \
+         whatever both do.",
         paper "2.2",
         exhaustive "any two starts with up to 2 edges that a marker of any kind cannot tell apart, \
                     any related states, up to 3 actions", 70_256 cases:
@@ -35,9 +35,8 @@ declare! {
             verified::<_, 1, 3>;
     }
     an_altered_certificate_is_rejected {
-        "A certificate from which one pair is taken, in which one is altered, or to which one is \
-         added, or all of them with the marker elsewhere, is accepted exactly if it still is a \
-         bisimulation that relates the starts.",
+        "A certificate with one pair removed, altered or added, or with the marker elsewhere, is \
+         accepted exactly if it is still a bisimulation that relates the starts.",
         paper "2.2",
         // 922 pairs, each taken away, or altered or joined by an altered one in 30 + 30 + 25 + 36 ways;
         // and 128 certificates with the marker in 36 places.
@@ -48,7 +47,7 @@ declare! {
         sampled "starts with up to 5 edges": altered::<_, 1, 5>;
     }
     no_pair_of_the_certificate_of_figure_1_can_be_spared {
-        "The certificate of Figure 1 has 32 pairs; with any one taken away it is rejected.",
+        "The certificate of Figure 1 has 32 pairs; without any one of them it is rejected.",
         paper "2.2, Figure 1",
         exhaustive "every pair", 32 cases: spared::<_>;
     }

@@ -15,7 +15,7 @@ use crate::{
 declare! {
     isomorphic_starts_have_the_same_code {
         "A start and any relabelled copy of it have the same code, and become equal when their \
-         darts are numbered as a robot meets them.",
+         darts are numbered in the order in which a robot meets them.",
         paper "2.1",
         // 2 2! + 10 4! + 74 6!
         exhaustive "every start with up to 3 edges, every relabelling", 53_524 cases:
@@ -24,9 +24,8 @@ declare! {
         kani "every start with 2 edges, every relabelling", unwind 8: relabelled::<_, 2, 2, 4>;
     }
     starts_with_the_same_code_are_isomorphic {
-        "Two starts have the same code exactly if going on from facing to facing, opposite to \
-         opposite and clockwise to clockwise, pairs their darts one to one; and exactly then the \
-         verifier accepts that bijection.",
+        "Two starts have the same code exactly if there is a bijection of their darts that keeps \
+         facing, opposite and clockwise; and then the verifier accepts that bijection.",
         paper "2.1",
         // (2 2 + 10 4 + 74 6) squared
         exhaustive "any two starts with up to 3 edges, facing any dart", 238_144 cases:

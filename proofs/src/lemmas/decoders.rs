@@ -19,9 +19,9 @@ use crate::{
 
 declare! {
     every_world_is_read_as_it_was_written {
-        "Every world, written in any format that can tell it, reads as the same world: a world \
-         file in TOML or JSON, edge_code with its edges numbered in any order, planar_code with \
-         numbers of one byte or of two.",
+        "Every world, written in any format that can represent it, reads as the same world: a \
+         world file in TOML or JSON, edge_code with its edges numbered in any order, planar_code \
+         with numbers of one byte or of two.",
         paper "2.1",
         // For each start with m edges 2 m facing darts: 2 2 + 10 4 2 + 74 6 6 + 706 8 24 orders.
         exhaustive "every start with up to 4 edges, facing any dart, its edges in any \
@@ -31,8 +31,8 @@ declare! {
             written_and_read::<_, 1, 120>;
     }
     planar_code_is_an_error_or_worlds {
-        "Whatever bytes stand for planar_code, each world read of them is a simple one, and \
-         writing the worlds gives the bytes back; else there is an error.",
+        "Any bytes, read as planar_code, give an error or simple worlds; written again, the worlds \
+         give the same bytes.",
         paper "2.1",
         // The powers of 4 from 0 to 10.
         exhaustive "up to 10 bytes from 0 to 3", 1_398_101 cases: planar_code::<_, 10, 4>;
@@ -40,16 +40,16 @@ declare! {
         kani "any 5 bytes, read and not written", unwind 9: only_read::<_, 5, 0>;
     }
     wide_planar_code_is_an_error_or_worlds {
-        "Whatever bytes stand for planar_code with numbers of two bytes, each world read of them is \
-         a simple one, and the worlds written read as the same worlds; else there is an error.",
+        "Any bytes, read as planar_code with numbers of two bytes, give an error or simple worlds; \
+         written again, they read as the same worlds.",
         paper "2.1",
         // The powers of 3 from 0 to 11.
         exhaustive "up to 11 bytes from 0 to 2, after a header that tells the order", 265_720 cases:
             wide_planar_code::<_, 11, 3>;
     }
     edge_code_is_an_error_or_worlds {
-        "Whatever bytes stand for edge_code, each world read of them is one, and the worlds \
-         written read as the same worlds; else there is an error.",
+        "Any bytes, read as edge_code, give an error or worlds; written again, they read as the \
+         same worlds.",
         paper "2.1",
         // The powers of 7 from 0 to 7.
         exhaustive "up to 7 bytes: 0 to 5, and 255", 960_800 cases: edge_code::<_, 7, 6>;
@@ -58,8 +58,8 @@ declare! {
     }
     neighbour_lists_are_an_error_or_a_world {
         "Lists of neighbours are accepted exactly if each name stands for one vertex, each \
-         neighbour is another vertex, stands once, and has the vertex as neighbour, and all are \
-         connected; then the graph has them in this order.",
+         neighbour is another vertex, appears once, and has the vertex as its neighbour, and all \
+         vertices are connected; then the graph has the neighbours in this order.",
         paper "2.1",
         // 1 + 85 + 2 (85^2 + 85^3), as there are 85 lists.
         exhaustive "up to 3 lists of up to 3 of 4 names, the last perhaps with the first one's \
@@ -67,8 +67,8 @@ declare! {
             neighbour_lists::<_>;
     }
     edge_lists_are_an_error_or_a_world {
-        "Lists of edges are accepted exactly if each name stands for one vertex, each edge stands \
-         twice, and all are connected; then the graph has them in this order.",
+        "Lists of edges are accepted exactly if each name stands for one vertex, each edge appears \
+         twice, and all vertices are connected; then the graph has the edges in this order.",
         paper "2.1",
         // 1 + 40 + 2 (40^2 + 40^3), as there are 40 lists.
         exhaustive "up to 3 lists of up to 3 of 3 names, the last perhaps with the first one's \
@@ -76,8 +76,8 @@ declare! {
             edge_lists::<_>;
     }
     world_files_are_an_error_or_a_world {
-        "A world file is an error or a world, and the file written of it, in TOML or in JSON, \
-         reads as the same world and is written the same again.",
+        "A world file gives an error or a world; written again, in TOML or in JSON, it reads as \
+         the same world, and is written the same again.",
         paper "2.1",
         // 2 tables, 1 + 13 + 2 (13^2 + 13^3) lists, and 1 + 3 5 ways to tell a start or none.
         exhaustive "up to 3 lists of up to 2 of 3 names, the last perhaps with the first one's \

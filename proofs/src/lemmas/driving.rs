@@ -35,8 +35,8 @@ type Algorithm2 = PathExecution<'static>;
 
 declare! {
     no_command_exceeds_a_unit {
-        "Whatever scenes came before, a command turns the robot by an angle in (-pi, pi] and takes \
-         it ahead by at most 0.5 m, and by nothing that is too little to be done.",
+        "After any scenes, a command turns the robot by an angle in (-pi, pi] and moves it ahead \
+         by at most 0.5 m, and by nothing that is too small to be carried out.",
         paper "4.1, 4.2; Algorithm 2, lines 2, 12, 14, 19, 25, 29, 31",
         exhaustive "a path of 2 doors, up to 2 scenes of 8, carried out wholly, in part or not, then \
                     any of 1417 scenes", 851_617 cases:
@@ -44,8 +44,8 @@ declare! {
         sampled "up to 20 scenes before it": no_command_exceeds_a_unit::<_, Algorithm2, 20>;
     }
     the_first_picture_takes_the_first_door {
-        "At a junction that the robot knows, a picture of it takes the first door of the path and \
-         no other, and turns the robot to it, or ends a path without doors; no other picture does.",
+        "At a known junction, an image of it takes the first door of the path and no other, and \
+         turns the robot to it, or ends a path without doors; no other image does.",
         paper "4.2; Algorithm 2, lines 20 to 26",
         exhaustive "paths of up to 2 doors at every form, pictures of every form, turned by any \
                     multiple of 15 degrees", 6048 cases:
@@ -54,9 +54,8 @@ declare! {
             the_first_door::<_, Algorithm2, 4>;
     }
     doors_are_taken_in_the_order_of_the_path {
-        "No door of a path is taken twice and none is left out: each is taken at the junction where \
-         it is due, when two pictures agree on it, and the robot leaves by it when a picture shows \
-         the doors turned.",
+        "Each door of a path is taken once, in order, at its junction: when two images agree on \
+         the junction. The robot leaves by it when an image shows the doors turned.",
         paper "4.3; Algorithm 2, lines 20 to 26",
         exhaustive "every path of two doors, over 3.2 m of hallway each; a picture or a motion that \
                     goes wrong", 46_144 cases:
@@ -65,10 +64,10 @@ declare! {
             doors_in_order::<_, Algorithm2, 6, 1>;
     }
     driving_always_ends {
-        "Whatever scenes follow each other, and however little is carried out: of 17 rounds in a \
-         row one ends the path, takes a door or gets the robot ahead by 15 mm, and it never gets \
-         farther than the bound without a door. It gives up at the seventh picture in a row that \
-         tells nothing, and after three commands in a row of which nothing is carried out.",
+        "For any scenes, and however little is carried out: in 17 rounds in a row at least one \
+         ends the path, takes a door or moves the robot ahead by 15 mm, and the robot never goes \
+         farther than the bound without a door. It gives up at the seventh unknown scene in a row, \
+         and after three commands in a row of which nothing is carried out.",
         paper "4.3; Algorithm 2, lines 3 to 32",
         exhaustive "up to 1 scene of 8, carried out wholly, in part or not, then up to 3 such for \
                     ever; paths of up to 2 doors, 2 m from door to door", 1_081_800 cases:
@@ -76,8 +75,9 @@ declare! {
         sampled "up to 40 scenes, then up to 8 for ever": always_ends::<_, Algorithm2, 40, 8>;
     }
     driving_arrives_at_the_next_junction {
-        "Where no picture is a mistake and all is carried out, the robot arrives at the next \
-         junction, not at the one that it left, and knows its form, its degree and its entry door.",
+        "If no image is a mistake and every command is carried out, the robot arrives at the next \
+         junction, not at the one that it left, and knows its shape, its degree and its entry \
+         door.",
         paper "4.3; Algorithm 2",
         exhaustive "every door of every form to every form, over 3.2 and 4.1 m of hallway; three \
                     ranges of sight; two pictures that are unclear, unknown or of hallway or \
@@ -86,8 +86,8 @@ declare! {
         sampled "five such pictures": arrives::<_, Algorithm2, 5>;
     }
     one_mistake_makes_no_false_arrival {
-        "The robot arrives at the next junction with its true form, or gives up, unless two \
-         pictures were mistaken and agreed.",
+        "The robot arrives at the next junction with its true shape, or gives up, unless two \
+         images were mistaken and agreed.",
         paper "4.3; Algorithm 2",
         exhaustive "a door of every form to every form, over 3.2 m of hallway; three ranges of \
                     sight; two surprises, wrong pictures and motions in part or not at all among \

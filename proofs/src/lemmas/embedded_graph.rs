@@ -14,8 +14,8 @@ use crate::{
 
 declare! {
     opposite_is_checked {
-        "An array is refused as `opposite` exactly if it is no involution without fixed points, \
-         and the fault that is told is there.",
+        "An array is rejected as `opposite` exactly if it is not an involution without fixed \
+         points, and the reported fault is there.",
         paper "2.1",
         exhaustive "every array of up to 6 entries, each up to 6 or the highest \
                     number", 299_593 cases:
@@ -25,8 +25,8 @@ declare! {
         kani "every array of 6 numbers of 32 bits", unwind 9: opposite_is_checked::<_, 6, 6, 8>;
     }
     clockwise_is_checked {
-        "An array is refused as `clockwise` exactly if it is no permutation, and the fault that is \
-         told is there.",
+        "An array is rejected as `clockwise` exactly if it is not a permutation, and the reported \
+         fault is there.",
         paper "2.1",
         exhaustive "every array of up to 6 entries, each up to 6 or the highest \
                     number", 299_593 cases:
@@ -37,7 +37,7 @@ declare! {
     }
     arrays_are_accepted_exactly_if_they_are_a_graph {
         "Two arrays are accepted exactly if they are `opposite` and `clockwise` of a connected \
-         graph with an edge, and then the graph has them, under the numbers that are told.",
+         graph with an edge; then the graph has them, under the returned numbers.",
         paper "2.1",
         exhaustive "any two arrays of up to 4 entries, each up to 4 or the highest \
                     number", 2_418_025 cases:
@@ -45,9 +45,8 @@ declare! {
         kani "any two arrays of 4 numbers of 32 bits", unwind 9: arrays_are_accepted::<_, 4, 4, 8>;
     }
     permutations_are_accepted_exactly_if_connected {
-        "An involution without fixed points and a permutation are accepted exactly if each dart \
-         can be reached from each other, and then the graph has them, under the numbers that are \
-         told.",
+        "An involution without fixed points and a permutation are accepted exactly if every dart \
+         can be reached from every other; then the graph has them, under the returned numbers.",
         paper "2.1",
         // 2 + 3 4! + 15 6! + 105 8!
         exhaustive "every two such permutations of up to 8 darts", 4_244_474 cases:
@@ -57,8 +56,8 @@ declare! {
             permutations_are_accepted::<_, 2, 2, 4>;
     }
     darts_that_nothing_leads_out_of_are_all_darts {
-        "A set of darts, not empty, that holds with each dart its opposite and the next one \
-         clockwise is the set of all darts.",
+        "A non-empty set of darts that contains the opposite and the clockwise successor of each \
+         of its darts is the set of all darts.",
         paper "2.1",
         exhaustive "every such set in every start with up to 4 edges", 792 cases:
             closed_sets::<_, 1, 4>;

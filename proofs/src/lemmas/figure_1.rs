@@ -19,8 +19,8 @@ use crate::{
 
 declare! {
     the_worlds_of_figure_1_differ {
-        "No dart of the second world of Figure 1 makes it isomorphic, as a start, to the first: \
-         the two worlds are not isomorphic.",
+        "The two worlds of Figure 1 are not isomorphic: no dart of the second one, as its start, \
+         makes it isomorphic to the first.",
         paper "2.2, Figure 1",
         exhaustive "every dart", 16 cases: differ::<_>;
     }

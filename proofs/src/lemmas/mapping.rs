@@ -28,48 +28,47 @@ const LARGER_RUNS: &str = "starts with up to 20 edges, any choices";
 
 declare! {
     the_map_embeds_in_the_world {
-        "After each round the known map embeds in the world, dart for dart, with degrees, orders \
-         and edges kept, and the robot is where it believes to be.",
+        "After each round the known map embeds in the world: degrees, orders and edges are kept, \
+         dart for dart. The robot is where it believes to be.",
         paper "2.3; Algorithm 1, lines 18 to 23",
         exhaustive EVERY_RUN, RUNS cases:
             the_map_embeds::<_, 1, 4>;
         sampled LARGER_RUNS: the_map_embeds::<_, 1, 20>;
     }
     a_confirmed_hypothesis_is_true {
-        "A hypothesis that is confirmed is true: the edge explored leads to the dart of which it \
-         speaks.",
+        "A confirmed hypothesis is true: the explored edge leads to the dart of the hypothesis.",
         paper "2.3; Algorithm 1, lines 16 and 17",
         exhaustive EVERY_RUN, RUNS cases:
             confirmed_is_true::<_, 1, 4>;
         sampled LARGER_RUNS: confirmed_is_true::<_, 1, 20>;
     }
     the_true_hypothesis_is_never_rejected {
-        "If the edge explored leads to a known vertex, then the true hypothesis is not rejected, \
-         and the loop is closed there; if not, none is confirmed, and a vertex is added.",
+        "If the explored edge leads to a known vertex, the true hypothesis is not rejected, and \
+         the edge is closed there; otherwise no hypothesis is confirmed, and a vertex is added.",
         paper "2.3; Algorithm 1, lines 7 to 17",
         exhaustive EVERY_RUN, RUNS cases:
             true_is_not_rejected::<_, 1, 4>;
         sampled LARGER_RUNS: true_is_not_rejected::<_, 1, 20>;
     }
     each_round_explores_one_edge {
-        "A round takes from U the dart explored, and one more where it closes a loop; else it adds \
-         one less than the degree of the new vertex. There are as many rounds as edges, and then U \
-         is empty.",
+        "A round removes the explored dart from U. It removes one more if it closes an edge; \
+         otherwise it adds the degree of the new vertex minus one. There are as many rounds as \
+         edges, and then U is empty.",
         paper "2.3; Algorithm 1, lines 4 to 23",
         exhaustive EVERY_RUN, RUNS cases:
             one_edge_a_round::<_, 1, 4>;
         sampled LARGER_RUNS: one_edge_a_round::<_, 1, 20>;
     }
     a_round_costs_no_more_than_its_paths {
-        "With k known vertices and u other unexplored darts a round takes at most k + 2 u (k - 1) \
-         moves; and in round r, u is at most 2 m - 2 r + 1.",
+        "With k known vertices and u other unexplored darts, a round takes at most k + 2 u (k - 1) \
+         moves; in round r, u is at most 2 m - 2 r + 1.",
         paper "2.3, cost",
         exhaustive EVERY_RUN, RUNS cases:
             a_round_costs::<_, 1, 4>;
         sampled LARGER_RUNS: a_round_costs::<_, 1, 20>;
     }
     the_rounds_together_cost_the_bound {
-        "Added up over the rounds r = 1 ... m, n + 2 (2 m - 2 r + 1) (n - 1) is m n + 2 m^2 (n - \
+        "The sum of n + 2 (2 m - 2 r + 1) (n - 1) over the rounds r = 1 ... m is m n + 2 m^2 (n - \
          1).",
         paper "2.3, cost",
         exhaustive "m and n from 1 to 64", 4096 cases: the_sum::<_, 64>;
@@ -77,8 +76,8 @@ declare! {
         kani "m and n from 1 to 8", unwind 9: the_sum::<_, 8>;
     }
     algorithm_1_maps_the_world {
-        "Algorithm 1 ends, with a map isomorphic to the world as a start, the robot where it \
-         believes to be, after at most m n + 2 m^2 (n - 1) moves.",
+        "Algorithm 1 ends after at most m n + 2 m^2 (n - 1) moves. Its map is isomorphic to the \
+         world as a start, and the robot is where it believes to be.",
         paper "2.3",
         exhaustive EVERY_RUN, RUNS cases:
             the_theorem::<_, 1, 4>;

@@ -11,8 +11,8 @@ use crate::{
 declare! {
     the_way_back_retraces_the_path {
         "After doors d1 ... dk from a pose, the doors 0, -dk, ..., -d2 lead to the vertex where \
-         the path began, by the dart d1 places clockwise from the pose; and one more door, -d1, \
-         over the edge of the pose.",
+         the path began, with entry dart d1 places clockwise from the pose; one more door, -d1, \
+         leads over the edge of the pose.",
         paper "2.1; Algorithm 1, line 15",
         exhaustive "every start with up to 3 edges, every pose, every path of up to 4 \
                     moves", 213_132 cases:

@@ -14,8 +14,8 @@ use crate::{
 
 declare! {
     a_directional_sighting_tells_the_entry_dart {
-        "At the marked vertex a directional marker is seen along a door, and from any two \
-         different entry darts along different doors; nowhere else is it seen.",
+        "At the marked vertex, a directional marker is seen along a door, and along different \
+         doors from different entry darts; at no other vertex is it seen.",
         paper "2.3",
         // Each start with m edges, its facing dart, and 2 m times 2 m poses.
         exhaustive "every start with up to 4 edges, any two poses", 48_016 cases:
