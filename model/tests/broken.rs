@@ -11,7 +11,9 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
     isomorphism::code,
-    mapping::{Exploration, MappingError, Nearest, Observer, ValidationResult},
+    mapping::{
+        Exploration, MappingChoice, MappingError, Nearest, Observer, ValidationResult, step_with,
+    },
     marker::Directional,
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused},
@@ -59,7 +61,7 @@ impl Broken {
     }
 }
 
-impl OpenChoices for Broken {
+impl Broken {
     fn try_path<'g>(
         &self,
         exploration: &mut Exploration,
@@ -95,6 +97,26 @@ impl OpenChoices for Broken {
     }
 }
 
+impl OpenChoices for Broken {
+    fn step<'g>(
+        &self,
+        exploration: &mut Exploration,
+        choice: MappingChoice,
+        world: &mut GraphWorld<'g>,
+        observer: &mut impl Observer<GraphWorld<'g>>,
+    ) -> Result<(), MappingError<Refused>> {
+        step_with(
+            exploration,
+            choice,
+            world,
+            observer,
+            |exploration, hypothesis, world, observer| {
+                self.try_path(exploration, hypothesis, world, observer)
+            },
+        )
+    }
+}
+
 impl Algorithm for Broken {
     type Marker = Directional;
     type State = Exploration;
@@ -118,21 +140,8 @@ impl Algorithm for Broken {
         observer: &mut impl Observer<GraphWorld<'g>>,
     ) -> Result<(), MappingError<Refused>> {
         exploration.begin(world, observer)?;
-        while let Some(edge) = exploration.next_edge(&mut Nearest) {
-            exploration.explore(edge, world, observer)?;
-            let mut confirmed = None;
-            while let Some(hypothesis) = exploration.next_hypothesis(&mut Nearest) {
-                if self.try_path(exploration, hypothesis, world, observer)?
-                    == ValidationResult::Confirmed
-                {
-                    confirmed = Some(hypothesis);
-                    break;
-                }
-            }
-            match confirmed {
-                Some(hypothesis) => exploration.close_loop(hypothesis, world, observer),
-                None => exploration.add_place(world, observer)?,
-            }
+        while let Some(choice) = exploration.choose(&mut Nearest) {
+            self.step(exploration, choice, world, observer)?;
         }
         Ok(())
     }

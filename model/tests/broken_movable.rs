@@ -158,12 +158,12 @@ impl Algorithm for Broken {
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<(), MappingError<Refused>> {
         search.begin(world, observer)?;
-        while let Some(edge) = search.next_edge(&mut Nearest) {
+        while let Some(edge) = search.choose_edge(&mut Nearest) {
             search.carry_over(edge, world, observer)?;
             match self.validate_place(search, world, observer)? {
                 ReachedPlace::Known(vertex) => {
                     let dart = self.validate_back_link(edge, vertex, search, world, observer)?;
-                    search.close_loop(dart, world, observer);
+                    search.close_loop(dart, world, observer)?;
                 }
                 ReachedPlace::New => search.add_place(world, observer)?,
             }

@@ -12,7 +12,7 @@ use toposlam_model::{
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
-    mapping::{Exploration, MappingError, Observer},
+    mapping::{Exploration, InvalidStep, MappingChoice, MappingError, Observer, step},
     marker::Directional,
     world::{GraphWorld, Refused},
 };
@@ -228,6 +228,62 @@ impl Algorithm for Claimed {
 }
 
 impl OpenChoices for Claimed {}
+
+/// Algorithm 1, given choices that are off by one.
+struct OffByOne;
+
+impl Algorithm for OffByOne {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        "Algorithm 1, with choices off by one"
+    }
+
+    fn order(&self) -> CostOrder {
+        Algorithm1.order()
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        Algorithm1.move_bound(edges, vertices)
+    }
+
+    fn run<'g>(
+        &self,
+        world: &mut GraphWorld<'g>,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer<GraphWorld<'g>>,
+    ) -> Result<(), MappingError<Refused>> {
+        Algorithm1.run(world, exploration, observer)
+    }
+}
+
+impl OpenChoices for OffByOne {
+    fn step<'g>(
+        &self,
+        exploration: &mut Exploration,
+        choice: MappingChoice,
+        world: &mut GraphWorld<'g>,
+        observer: &mut impl Observer<GraphWorld<'g>>,
+    ) -> Result<(), MappingError<Refused>> {
+        let choice = match choice {
+            MappingChoice::Hypothesis(index) => MappingChoice::Hypothesis(index + 1),
+            edge @ MappingChoice::Edge(_) => edge,
+        };
+        step(exploration, choice, world, observer)
+    }
+}
+
+/// Choices that are not open are an error. They are not replaced by others, with less coverage.
+#[test]
+fn a_broken_enumeration_of_choices_fails() {
+    let choices = AllChoices { algorithm: OffByOne, budget: DEFAULT_STATE_BUDGET };
+    let tally = sweep(Class::Multigraph, 3, &choices);
+    let flaw = tally.failure.unwrap().flaw;
+    let invalid = InvalidStep::NoHypothesis { index: 1, left: 1 };
+    assert_eq!(flaw, Flaw::Error(MappingError::InvalidStep(invalid)));
+    assert_eq!(flaw.to_string(), "invalid step: hypothesis 1 does not exist, 1 left");
+}
 
 /// States are explored once, so the dearest run may be none that was followed to its end.
 #[test]

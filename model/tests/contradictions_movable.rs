@@ -5,7 +5,10 @@
 use proptest::prelude::*;
 use toposlam_model::{
     embedded_graph::{Dart, Vertex},
-    mapping::{Contradiction, MappingError, MarkerSearch, Nearest, map_with_movable_marker},
+    mapping::{
+        Contradiction, InvalidStep, MappingError, MarkerSearch, Nearest, explore_edge,
+        map_with_movable_marker,
+    },
     percept::{Door, Percept, Sighting},
     world::{MovableMarkerWorld, Refused, World},
 };
@@ -216,23 +219,33 @@ fn the_worlds_own_error_is_passed_on() {
     }
 }
 
-/// Steps out of order change nothing, and nothing is left of an earlier run.
+/// A step out of order is an error and changes nothing. Nothing is left of an earlier run.
 #[test]
-fn steps_out_of_order_do_nothing() {
+fn a_step_out_of_order_is_an_error() {
+    let error = |step| Err(MappingError::InvalidStep(step));
     let mut world = Script { percepts: &[lying(2), plain(1)], moves: 0 };
     let mut search = MarkerSearch::new(BOUND);
-    assert_eq!(search.next_edge(&mut Nearest), None);
+    assert_eq!(search.choose_edge(&mut Nearest), None);
     assert_eq!((search.next_candidate(), search.next_back_link()), (None, None));
-    search.carry_over(Dart(0), &mut world, &mut ()).unwrap();
-    search.go_back(&mut world, &mut ()).unwrap();
-    assert_eq!(search.look_for_marker(Vertex(0), &mut world, &mut ()), Ok(None));
-    search.return_to_marker(&mut world, &mut ()).unwrap();
-    search.travel_to(Vertex(3), &mut world, &mut ()).unwrap();
-    search.close_loop(Dart(0), &mut world, &mut ());
-    search.add_place(&mut world, &mut ()).unwrap();
+    let unexplored = InvalidStep::NotUnexplored(Dart(0));
+    assert_eq!(explore_edge(Dart(0), &mut search, &mut world, &mut ()), error(unexplored));
+    assert_eq!(search.carry_over(Dart(0), &mut world, &mut ()), error(unexplored));
+    assert_eq!(search.go_back(&mut world, &mut ()), error(InvalidStep::NoEdge));
+    let found = search.look_for_marker(Vertex(0), &mut world, &mut ());
+    assert_eq!(
+        found.unwrap_err(),
+        MappingError::InvalidStep(InvalidStep::UnknownVertex(Vertex(0)))
+    );
+    assert_eq!(search.return_to_marker(&mut world, &mut ()), error(InvalidStep::NoEdge));
+    let unknown = InvalidStep::UnknownVertex(Vertex(3));
+    assert_eq!(search.travel_to(Vertex(3), &mut world, &mut ()), error(unknown));
+    assert_eq!(search.close_loop(Dart(0), &mut world, &mut ()), Err(InvalidStep::NoEdge));
+    assert_eq!(search.add_place(&mut world, &mut ()), error(InvalidStep::NoEdge));
     assert_eq!((search.moves(), search.map().dart_count()), (0, 0));
     search.begin(&mut world, &mut ()).unwrap();
     search.carry_over(Dart(1), &mut world, &mut ()).unwrap();
+    let in_progress = InvalidStep::EdgeInProgress(Dart(1));
+    assert_eq!(search.carry_over(Dart(0), &mut world, &mut ()), error(in_progress));
     search.add_place(&mut world, &mut ()).unwrap();
     assert_eq!((search.moves(), search.map().dart_count(), search.robot()), (1, 3, Dart(2)));
     // A start that is refused leaves nothing of the run before.

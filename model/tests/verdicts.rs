@@ -7,7 +7,10 @@ use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Class,
     isomorphism::{Candidate, code},
-    mapping::{DEFAULT_DART_BOUND, Exploration, MappingError, Nearest, map_world},
+    mapping::{
+        DEFAULT_DART_BOUND, Exploration, InvalidStep, MappingChoice, MappingError, Nearest,
+        map_world, step,
+    },
     percept::Door,
     world::{GraphWorld, World},
 };
@@ -67,24 +70,30 @@ fn a_world_of_as_many_darts_as_the_bound_is_mapped_and_of_one_more_is_not() {
     assert_eq!(DEFAULT_DART_BOUND, 16_384);
 }
 
-/// Steps out of order change nothing, and nothing is left of an earlier run.
+/// A step out of order is an error and changes nothing. Nothing is left of an earlier run.
 #[test]
-fn steps_out_of_order_do_nothing() {
+fn a_step_out_of_order_is_an_error() {
+    let error = |step| Err(MappingError::InvalidStep(step));
+    let [edge, hypothesis] = [MappingChoice::Edge(Dart(0)), MappingChoice::Hypothesis(0)];
+    let no_hypothesis = InvalidStep::NoHypothesis { index: 0, left: 0 };
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
     let mut fresh = Exploration::new(6);
-    assert_eq!(fresh.next_edge(&mut Nearest), None);
-    assert_eq!(fresh.next_hypothesis(&mut Nearest), None);
-    fresh.explore(Dart(0), &mut world, &mut ()).unwrap();
-    fresh.close_loop(Dart(0), &mut world, &mut ());
-    fresh.add_place(&mut world, &mut ()).unwrap();
+    assert_eq!(fresh.choose(&mut Nearest), None);
+    let unexplored = InvalidStep::NotUnexplored(Dart(0));
+    assert_eq!(step(&mut fresh, edge, &mut world, &mut ()), error(unexplored));
+    assert_eq!(step(&mut fresh, hypothesis, &mut world, &mut ()), error(no_hypothesis));
+    assert_eq!(fresh.close_loop(Dart(0), &mut world, &mut ()), Err(InvalidStep::NoEdge));
+    assert_eq!(fresh.add_place(&mut world, &mut ()), error(InvalidStep::NoEdge));
     assert_eq!((fresh.moves(), fresh.map().dart_count()), (0, 0));
     assert_eq!(fresh.map().complete(), None);
     let (mut done, mut world) = mapped(&graph);
     let map = done.map().clone();
-    done.explore(Dart(0), &mut world, &mut ()).unwrap();
-    done.close_loop(Dart(1), &mut world, &mut ());
-    done.add_place(&mut world, &mut ()).unwrap();
+    assert_eq!(done.open_choices().next(), None);
+    assert_eq!(step(&mut done, edge, &mut world, &mut ()), error(unexplored));
+    assert_eq!(step(&mut done, hypothesis, &mut world, &mut ()), error(no_hypothesis));
+    assert_eq!(done.close_loop(Dart(1), &mut world, &mut ()), Err(InvalidStep::NoEdge));
+    assert_eq!(done.add_place(&mut world, &mut ()), error(InvalidStep::NoEdge));
     assert_eq!(done.map(), &map);
     // A start that is refused leaves nothing of the run before.
     world.traverse(Door(1)).unwrap();
@@ -93,24 +102,40 @@ fn steps_out_of_order_do_nothing() {
 }
 
 /// A loop is closed by another unexplored dart than the one that is being explored, or not at all.
+/// Meanwhile no other edge can be chosen.
 #[test]
 fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
     let graph = theta(["c", "b", "a"]);
     let mut world = GraphWorld::new(&graph, Dart(0));
     let mut exploration = Exploration::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
-    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
-    exploration.add_place(&mut world, &mut ()).unwrap();
+    step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
     let map = exploration.map().clone();
-    for explored in [Dart(0), Dart(3), Dart(4)] {
-        let (mut world, mut exploration) = (world.clone(), exploration.clone());
-        exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
-        exploration.close_loop(explored, &mut world, &mut ());
-        assert_eq!(exploration.map(), &map);
-        // Nor is the edge explored any more.
-        exploration.close_loop(Dart(1), &mut world, &mut ());
+    exploration.explore(Dart(4), &mut world, &mut ()).unwrap();
+    for (dart, invalid) in [
+        (Dart(0), InvalidStep::NotUnexplored(Dart(0))),
+        (Dart(3), InvalidStep::NotUnexplored(Dart(3))),
+        (Dart(6), InvalidStep::NotUnexplored(Dart(6))),
+        (Dart(4), InvalidStep::SameDart(Dart(4))),
+    ] {
+        assert_eq!(exploration.close_loop(dart, &mut world, &mut ()), Err(invalid));
         assert_eq!(exploration.map(), &map);
     }
+    for other in [1, 2, 4, 5] {
+        let chosen = MappingChoice::Edge(Dart(other));
+        let chosen = step(&mut exploration, chosen, &mut world, &mut ());
+        let in_progress = InvalidStep::EdgeInProgress(Dart(4));
+        assert_eq!(chosen, Err(MappingError::InvalidStep(in_progress)));
+    }
+    let left = exploration.hypotheses().len();
+    let chosen = MappingChoice::Hypothesis(left);
+    let none = InvalidStep::NoHypothesis { index: left, left };
+    let chosen = step(&mut exploration, chosen, &mut world, &mut ());
+    assert_eq!(chosen, Err(MappingError::InvalidStep(none)));
+    // All of that has changed nothing.
+    assert!(exploration.is_at_line_8());
+    exploration.close_loop(Dart(1), &mut world, &mut ()).unwrap();
+    assert_eq!(exploration.map().opposite(Dart(1)), Some(Dart(4)));
 }
 
 /// Whoever follows a path of his own tells the robot where it ended.
@@ -120,8 +145,7 @@ fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
     let mut world = GraphWorld::new(&graph, Dart(0));
     let mut exploration = Exploration::new(6);
     exploration.begin(&mut world, &mut ()).unwrap();
-    exploration.explore(Dart(0), &mut world, &mut ()).unwrap();
-    exploration.add_place(&mut world, &mut ()).unwrap();
+    step(&mut exploration, MappingChoice::Edge(Dart(0)), &mut world, &mut ()).unwrap();
     exploration.set_out();
     exploration.take(Door::BACK, &mut world, &mut ()).unwrap();
     exploration.arrive_at_marker(Dart(0));

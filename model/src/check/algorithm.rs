@@ -7,8 +7,8 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{
-        Exploration, Journey, MappingError, MarkerSearch, Nearest, Observer, ValidationResult,
-        map_with_movable_marker, map_world, try_path,
+        Exploration, Journey, MappingChoice, MappingError, MarkerSearch, Nearest, Observer,
+        map_with_movable_marker, map_world, step,
     },
     marker::{Directional, Marker, Movable},
     world::{GraphWorld, Refused},
@@ -125,20 +125,20 @@ impl fmt::Display for CostOrder {
     }
 }
 
-/// Algorithm 1, or a variant of it, whose open choices can be tried in every way.
+/// Algorithm 1, or a variant of it, whose open choices can be enumerated.
 pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
-    /// Lines 10 to 17 of it: follows the path of one hypothesis. All choices are tried with this.
+    /// One step of it, from one choice to the next.
     ///
     /// # Errors
-    /// Those of [`try_path`].
-    fn try_path<'g>(
+    /// Those of [`step`].
+    fn step<'g>(
         &self,
         exploration: &mut Exploration,
-        hypothesis: Dart,
+        choice: MappingChoice,
         world: &mut GraphWorld<'g>,
         observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<ValidationResult, MappingError<Refused>> {
-        try_path(exploration, hypothesis, world, observer)
+    ) -> Result<(), MappingError<Refused>> {
+        step(exploration, choice, world, observer)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Choices, Exploration, PartialMap, ValidationResult},
+    mapping::{Exploration, MappingChoice, PartialMap},
     world::GraphWorld,
 };
 
@@ -78,7 +78,14 @@ struct Futures {
     costs: Costs,
 }
 
+/// What can come after each state of a round: the hypotheses that are left.
+type Round = HashMap<Vec<Dart>, Futures>;
+
 impl Futures {
+    fn include_all(&mut self, (other, moves): (Self, u64)) {
+        self.include(&other, moves);
+    }
+
     fn include(&mut self, other: &Self, moves: u64) {
         self.runs = self.runs.saturating_add(other.runs);
         self.costs.include(&other.costs, moves);
@@ -96,24 +103,6 @@ struct Search<'w, A, W> {
     /// For each state at line 4 what can come after it, and where the robot truly was.
     known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
     candidate: Candidate,
-}
-
-/// Takes this edge.
-struct ThisEdge(Dart);
-
-/// Takes the hypothesis at this place.
-struct ThisHypothesis(usize);
-
-impl Choices for ThisEdge {
-    fn next_edge(&mut self, _: &PartialMap, _: Dart, _: Dart) -> Dart {
-        self.0
-    }
-}
-
-impl Choices for ThisHypothesis {
-    fn next_hypothesis(&mut self, _: &PartialMap, _: &[Dart]) -> usize {
-        self.0
-    }
 }
 
 impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
@@ -145,13 +134,8 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
             judge(self.algorithm, exploration, self.facing, world, &mut self.candidate)?;
             futures.include(&Futures { runs: 1, costs: Costs::nothing() }, 0);
         }
-        for edge in map.unexplored() {
-            let (mut world, mut next) = (world.clone(), exploration.clone());
-            if let Some(edge) = next.next_edge(&mut ThisEdge(edge)) {
-                next.explore(edge, &mut world, &mut ())?;
-                let after = self.line_8(&world, &next, &mut HashMap::new())?;
-                futures.include(&after, next.moves() - exploration.moves());
-            }
+        for choice in exploration.open_choices() {
+            futures.include_all(self.after(choice, world, exploration, &mut HashMap::new())?);
         }
         self.known.insert(state, (futures.clone(), world.pose()));
         Ok(futures)
@@ -162,35 +146,47 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
         &mut self,
         world: &GraphWorld,
         exploration: &Exploration,
-        known: &mut HashMap<Vec<Dart>, Futures>,
+        round: &mut Round,
     ) -> Result<Futures, Flaw> {
-        if let Some(known) = known.get(exploration.hypotheses()) {
+        if let Some(known) = round.get(exploration.hypotheses()) {
             return Ok(known.clone());
         }
         if !self.begin() {
             return Ok(Futures::default());
         }
         let mut futures = Futures::default();
-        if exploration.hypotheses().is_empty() {
-            let (mut world, mut next) = (world.clone(), exploration.clone());
-            next.add_place(&mut world, &mut ())?;
-            futures = self.line_4(&world, &next)?;
+        for choice in exploration.open_choices() {
+            futures.include_all(self.after(choice, world, exploration, round)?);
         }
-        for place in 0..exploration.hypotheses().len() {
-            let (mut world, mut next) = (world.clone(), exploration.clone());
-            if let Some(hypothesis) = next.next_hypothesis(&mut ThisHypothesis(place)) {
-                let after =
-                    match self.algorithm.try_path(&mut next, hypothesis, &mut world, &mut ())? {
-                        ValidationResult::Confirmed => {
-                            next.close_loop(hypothesis, &mut world, &mut ());
-                            self.line_4(&world, &next)?
-                        }
-                        ValidationResult::Rejected => self.line_8(&world, &next, known)?,
-                    };
-                futures.include(&after, next.moves() - exploration.moves());
-            }
-        }
-        known.insert(exploration.hypotheses().to_vec(), futures.clone());
+        round.insert(exploration.hypotheses().to_vec(), futures.clone());
         Ok(futures)
+    }
+
+    /// What can come after a choice, and the moves of its step.
+    fn after(
+        &mut self,
+        choice: MappingChoice,
+        world: &GraphWorld,
+        exploration: &Exploration,
+        round: &mut Round,
+    ) -> Result<(Futures, u64), Flaw> {
+        let (mut world, mut next) = (world.clone(), exploration.clone());
+        self.algorithm.step(&mut next, choice, &mut world, &mut ())?;
+        let moves = next.moves() - exploration.moves();
+        let futures = if next.is_at_line_8() {
+            self.line_8(&world, &next, round)?
+        } else if next.map().vertex_count() == exploration.map().vertex_count() {
+            self.line_4(&world, &next)?
+        } else if let Some(known) = round.get(&[][..]) {
+            known.clone()
+        } else if self.begin() {
+            // The state at line 8 in which no hypothesis was left.
+            let futures = self.line_4(&world, &next)?;
+            round.insert(Vec::new(), futures.clone());
+            futures
+        } else {
+            Futures::default()
+        };
+        Ok((futures, moves))
     }
 }

@@ -3,7 +3,7 @@
 //! The numbers are those of the printed lines. The state, and the small steps that are taken here,
 //! are [`Exploration`]'s.
 
-use super::{Choices, Exploration, MappingError, MappingEvent, Observer};
+use super::{Choices, Exploration, MappingChoice, MappingError, MappingEvent, Observer};
 use crate::{embedded_graph::Dart, world::World};
 
 /// How the trial of a hypothesis ended.
@@ -16,14 +16,13 @@ pub enum ValidationResult {
 }
 
 /// Maps a world. At its start the robot stands at the marked vertex, with its back to the facing
-/// door. Afterwards `exploration` holds the map, where the robot is in it and how many moves it
-/// made; [`Exploration::map`] is then [complete](super::PartialMap::complete).
+/// door. Afterwards `exploration` holds the map, the robot's pose in it and the number of moves;
+/// [`Exploration::map`] is then [complete](super::PartialMap::complete).
 ///
 /// # Errors
-/// The world's own; a contradiction, where no world could be so; or more known darts than the
-/// bound of the exploration. The exploration then tells how far it came.
-// paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21, alg1.return, alg1.terminates
-// paper: alg1.every-world
+/// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
+/// darts become known than the exploration's bound. The exploration then holds what is known so far.
+// paper: alg1.return, alg1.terminates, alg1.every-world
 pub fn map_world<W: World>(
     world: &mut W,
     choices: &mut impl Choices,
@@ -32,27 +31,66 @@ pub fn map_world<W: World>(
 ) -> Result<(), MappingError<W::Error>> {
     // 1, 2, 3: the marker lies at v0; S is v0; U is its edges.
     exploration.begin(world, observer)?;
-    // 4, 5: while U is not empty, remove an unexplored edge e from it.
-    while let Some(edge) = exploration.next_edge(choices) {
-        // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
-        exploration.explore(edge, world, observer)?;
-        let mut confirmed = None;
-        // 8, 9: while H is not empty, remove a hypothesis from it.
-        while let Some(hypothesis) = exploration.next_hypothesis(choices) {
-            // 10 to 17: exit the loop when one is confirmed.
-            if try_path(exploration, hypothesis, world, observer)? == ValidationResult::Confirmed {
-                confirmed = Some(hypothesis);
-                break;
-            }
-        }
-        match confirmed {
-            // 18, 19, 20: a loop was closed.
-            Some(hypothesis) => exploration.close_loop(hypothesis, world, observer),
-            // 21, 22, 23: vu is a new place.
-            None => exploration.add_place(world, observer)?,
-        }
+    // 4 to 23, from one choice to the next.
+    while let Some(choice) = exploration.choose(choices) {
+        step(exploration, choice, world, observer)?;
     }
     // S is the map.
+    Ok(())
+}
+
+/// Lines 4 to 23, from one choice to the next: the step machine of Algorithm 1. The run waits for an
+/// edge at line 4 and for a hypothesis at line 8.
+///
+/// # Errors
+/// See [`map_world`].
+pub fn step<W: World>(
+    exploration: &mut Exploration,
+    choice: MappingChoice,
+    world: &mut W,
+    observer: &mut impl Observer<W>,
+) -> Result<(), MappingError<W::Error>> {
+    step_with(exploration, choice, world, observer, try_path)
+}
+
+/// [`step`], with another way to try a hypothesis: so the tests break it.
+///
+/// # Errors
+/// See [`map_world`].
+// paper: alg1.4, alg1.8, alg1.17, alg1.18, alg1.21
+#[inline]
+pub fn step_with<W: World, O: Observer<W>>(
+    exploration: &mut Exploration,
+    choice: MappingChoice,
+    world: &mut W,
+    observer: &mut O,
+    try_path: impl FnOnce(
+        &mut Exploration,
+        Dart,
+        &mut W,
+        &mut O,
+    ) -> Result<ValidationResult, MappingError<W::Error>>,
+) -> Result<(), MappingError<W::Error>> {
+    match choice {
+        // 4, 5: U is not empty; remove the unexplored edge e from it.
+        MappingChoice::Edge(edge) => {
+            // 6, 7: follow e to its unknown end vu; H is the hypotheses about it.
+            exploration.explore(edge, world, observer)?;
+        }
+        // 8, 9: H is not empty; remove a hypothesis from it.
+        MappingChoice::Hypothesis(index) => {
+            let hypothesis = exploration.remove_hypothesis(index)?;
+            // 10 to 17: if it is confirmed, no other is tried.
+            if try_path(exploration, hypothesis, world, observer)? == ValidationResult::Confirmed {
+                // 18, 19, 20: a loop was closed.
+                exploration.close_loop(hypothesis, world, observer)?;
+            }
+        }
+    }
+    // 21, 22, 23: H is empty, and no hypothesis was confirmed: vu is a new place.
+    if exploration.is_at_line_8() && exploration.hypotheses().is_empty() {
+        exploration.add_place(world, observer)?;
+    }
     Ok(())
 }
 

@@ -1,29 +1,38 @@
-//! What Algorithm 1 leaves open: which unexplored edge next (line 5), which hypothesis next
-//! (line 9). Mapping with a movable marker leaves open the former alone.
+//! The choices that Algorithm 1 leaves open: the next unexplored edge (line 5) and the next
+//! hypothesis (line 9). Mapping with a movable marker leaves only the former open.
 
 use super::partial_map::PartialMap;
 use crate::embedded_graph::Dart;
 
-/// Resolves what Algorithm 1 leaves open. Each method is told what the default is, and answers it if
-/// it is not written; an answer that is not among what is there to choose counts as the default.
+/// One open choice, made. A mapping algorithm takes one step for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MappingChoice {
+    /// Line 5: the unexplored dart to explore next.
+    Edge(Dart),
+    /// Line 9: the index of the hypothesis to try next, among those that are left.
+    Hypothesis(usize),
+}
+
+/// Makes the open choices. The default implementation of a method makes the default choice. A choice
+/// that is not open ends the run with [`InvalidStep`](super::InvalidStep).
 pub trait Choices {
-    /// Line 5: one of the unexplored darts of the map. The robot has come in by the dart `robot`;
-    /// the default is the `nearest`.
+    /// Line 5: returns one of the map's unexplored darts. The robot came in by the dart `robot`. The
+    /// default is `nearest`.
     fn next_edge(&mut self, map: &PartialMap, robot: Dart, nearest: Dart) -> Dart {
         let _ = (map, robot);
         nearest
     }
 
-    /// Line 9: the place in `hypotheses` (never empty) of the one to follow next. They stand from
-    /// the farthest to the nearest; the default is the last.
+    /// Line 9: returns the index in `hypotheses` (never empty) of the one to try next. They are
+    /// ordered from the farthest to the nearest. The default is the last.
     fn next_hypothesis(&mut self, map: &PartialMap, hypotheses: &[Dart]) -> usize {
         let _ = map;
         hypotheses.len() - 1
     }
 }
 
-/// The default: everything by the fewest hops; then the vertex discovered first; then the lowest
-/// index. So every run of everyone is the same run.
+/// The default choices: the fewest hops; then the vertex discovered first; then the lowest index. So
+/// a run is reproducible.
 // paper: cost.cycle, cost.chain
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Nearest;
@@ -40,7 +49,7 @@ mod tests {
     use crate::{
         any_graph::{Class, any_graph},
         embedded_graph::{EmbeddedGraph, Vertex},
-        mapping::{Exploration, Journey, MappingEvent, map_world},
+        mapping::{Exploration, InvalidStep, Journey, MappingError, MappingEvent, map_world},
         world::GraphWorld,
     };
 
@@ -89,12 +98,18 @@ mod tests {
         story
     }
 
-    /// Chooses what is not there.
-    struct Elsewhere;
+    /// Chooses an edge or a hypothesis that is not there.
+    enum Elsewhere {
+        Edge,
+        Hypothesis,
+    }
 
     impl Choices for Elsewhere {
-        fn next_edge(&mut self, map: &PartialMap, _: Dart, _: Dart) -> Dart {
-            Dart(map.dart_count() as u32)
+        fn next_edge(&mut self, map: &PartialMap, _: Dart, nearest: Dart) -> Dart {
+            match self {
+                Self::Edge => Dart(map.dart_count() as u32),
+                Self::Hypothesis => nearest,
+            }
         }
 
         fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
@@ -111,8 +126,28 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_choice_of_what_is_not_there_is_the_default(graph in any_graph(Class::Multigraph, 40)) {
-            prop_assert_eq!(story(&graph, &mut Elsewhere), story(&graph, &mut Nearest));
+        fn a_choice_that_is_not_open_is_an_error(graph in any_graph(Class::Multigraph, 40)) {
+            let error = |choices: &mut dyn FnMut(&mut Exploration, &mut GraphWorld) -> _| {
+                let mut exploration = Exploration::new(graph.dart_count());
+                choices(&mut exploration, &mut GraphWorld::new(&graph, Dart(0)))
+            };
+            let degree = graph.degree_around(Dart(0));
+            let no_edge = error(&mut |exploration, world| {
+                map_world(world, &mut Elsewhere::Edge, exploration, &mut ())
+            });
+            let invalid = InvalidStep::NotUnexplored(Dart(degree));
+            prop_assert_eq!(no_edge, Err(MappingError::InvalidStep(invalid)));
+            // Without a hypothesis there is nothing to choose.
+            let mut tried = false;
+            for event in story(&graph, &mut Nearest) {
+                tried |= matches!(event, MappingEvent::Arrived { hypotheses: 1.., .. });
+            }
+            let no_hypothesis = error(&mut |exploration, world| {
+                map_world(world, &mut Elsewhere::Hypothesis, exploration, &mut ())
+            });
+            let is_invalid =
+                matches!(no_hypothesis, Err(MappingError::InvalidStep(InvalidStep::NoHypothesis { .. })));
+            prop_assert_eq!(is_invalid, tried);
         }
 
         // paper: alg1.5, alg1.9

@@ -5,7 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use crate::{
-    embedded_graph::Vertex,
+    embedded_graph::{Dart, Vertex},
     percept::{Percept, Sighting},
 };
 
@@ -18,6 +18,9 @@ pub enum MappingError<E> {
     /// What was perceived cannot be so in any world.
     #[error("the world contradicts itself: {0}")]
     Contradiction(Contradiction),
+    /// A step was not valid in the state of the run, or a choice was not open.
+    #[error("invalid step: {0}")]
+    InvalidStep(InvalidStep),
     /// More darts are known than the bound allows.
     #[error("more than {bound} darts (edge ends) are known and there is no end in sight")]
     Bound {
@@ -30,6 +33,41 @@ impl<E> From<Contradiction> for MappingError<E> {
     fn from(contradiction: Contradiction) -> Self {
         Self::Contradiction(contradiction)
     }
+}
+
+impl<E> From<InvalidStep> for MappingError<E> {
+    fn from(step: InvalidStep) -> Self {
+        Self::InvalidStep(step)
+    }
+}
+
+/// A step that is not valid in the state of the run, or a choice that is not open. Vertices and darts
+/// are those of the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum InvalidStep {
+    /// The dart to explore, or to close a loop with, is not an unexplored one.
+    #[error("dart {} of the map is not unexplored", .0.0)]
+    NotUnexplored(Dart),
+    /// A loop cannot be closed by the dart that is being explored.
+    #[error("dart {} of the map cannot be both ends of an edge", .0.0)]
+    SameDart(Dart),
+    /// No hypothesis has this index.
+    #[error("hypothesis {index} does not exist, {left} left")]
+    NoHypothesis {
+        /// The index.
+        index: usize,
+        /// The number of hypotheses that are left.
+        left: usize,
+    },
+    /// An edge is chosen while another is being explored.
+    #[error("dart {} of the map is still being explored", .0.0)]
+    EdgeInProgress(Dart),
+    /// No edge is being explored.
+    #[error("no edge is being explored")]
+    NoEdge,
+    /// The vertex is not in the map.
+    #[error("the map has no vertex v{}", .0.0)]
+    UnknownVertex(Vertex),
 }
 
 /// A percept that cannot be, after all that was perceived before. Vertices and darts are those of

@@ -1,13 +1,13 @@
-//! The state of Algorithm 1, and the small steps of which it is made. Section 2.3.
+//! The state of Algorithm 1, and the small steps that it consists of. Section 2.3.
 //!
-//! A plain value: whoever wants to try every way clones it, at line 4 or at line 8, together with
-//! the world. All memory is kept from run to run.
+//! It is a plain value. To try every choice, clone it together with the world where the run waits
+//! for one: at line 4 or at line 8. Memory is reused from run to run.
 
 use std::{cmp::Reverse, mem};
 
 use super::{
-    Choices, Contradiction, Journey, MappingError, MappingEvent, Observer, PartialMap,
-    journey::NOWHERE, partial_map::START, tree::BreadthFirstTree,
+    Choices, Contradiction, InvalidStep, Journey, MappingChoice, MappingError, MappingEvent,
+    Observer, PartialMap, journey::NOWHERE, partial_map::START, tree::BreadthFirstTree,
 };
 use crate::{
     embedded_graph::Dart,
@@ -128,20 +128,42 @@ impl Exploration {
         Ok(())
     }
 
-    /// Lines 4 and 5: the edge to explore next, as chosen; `None` if all is explored.
+    /// Whether the run waits at line 8, for a hypothesis, and not at line 4, for an edge.
+    #[must_use]
+    pub fn is_at_line_8(&self) -> bool {
+        self.journey.edge.is_some()
+    }
+
+    /// All choices of which the run waits for one. There is none when the map is complete.
+    pub fn open_choices(&self) -> impl DoubleEndedIterator<Item = MappingChoice> + use<> {
+        let edges =
+            if self.is_at_line_8() { Vec::new() } else { self.map().unexplored().collect() };
+        let hypotheses = 0..if self.is_at_line_8() { self.hypotheses.len() } else { 0 };
+        let edges = edges.into_iter().map(MappingChoice::Edge);
+        edges.chain(hypotheses.map(MappingChoice::Hypothesis))
+    }
+
+    /// Lines 4 and 8: the choice to go on with; `None` when the map is complete.
     // paper: alg1.5
-    pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
-        self.journey.next_edge(choices)
+    #[inline]
+    pub fn choose(&mut self, choices: &mut impl Choices) -> Option<MappingChoice> {
+        if !self.is_at_line_8() {
+            return self.journey.choose_edge(choices).map(MappingChoice::Edge);
+        }
+        if self.hypotheses.is_empty() {
+            return None;
+        }
+        let chosen = choices.next_hypothesis(self.journey.map(), &self.hypotheses);
+        Some(MappingChoice::Hypothesis(chosen))
     }
 
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
     /// to its unknown end, and raises the hypotheses about that: each unexplored dart by which the
-    /// robot may have come in, but those that its percept contradicts at once. An edge that is
-    /// explored already is left alone.
+    /// robot may have come in, except those that its percept contradicts at once.
     ///
     /// # Errors
-    /// The world's own; where a known place is not as it was, or the marker appears where it cannot
-    /// be.
+    /// Returns an error if the world does, if a known place is not as it was, if the marker appears
+    /// where it cannot be, or if the edge is not unexplored.
     // paper: alg1.6, alg1.7
     pub fn explore<W: World>(
         &mut self,
@@ -149,9 +171,6 @@ impl Exploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        if !self.map().is_unexplored(edge) {
-            return Ok(());
-        }
         self.set_out();
         self.journey.explore(edge, PartialMap::expected, world, observer)?;
         let percept = self.journey.arrival;
@@ -197,14 +216,17 @@ impl Exploration {
         Ok(())
     }
 
-    /// Lines 8 and 9: removes the hypothesis chosen next from H; `None` when H is empty.
+    /// Line 9: removes a hypothesis from H.
+    ///
+    /// # Errors
+    /// Returns an error if H has no hypothesis of this index.
     // paper: alg1.8, alg1.9
-    pub fn next_hypothesis(&mut self, choices: &mut impl Choices) -> Option<Dart> {
-        if self.hypotheses.is_empty() {
-            return None;
+    pub fn remove_hypothesis(&mut self, index: usize) -> Result<Dart, InvalidStep> {
+        let left = self.hypotheses.len();
+        if index >= left {
+            return Err(InvalidStep::NoHypothesis { index, left });
         }
-        let chosen = choices.next_hypothesis(self.journey.map(), &self.hypotheses);
-        Some(self.hypotheses.remove(chosen.min(self.hypotheses.len() - 1)))
+        Ok(self.hypotheses.remove(index))
     }
 
     /// Line 10, one step at a time: the door towards the marker for a robot that came in by the
@@ -281,26 +303,30 @@ impl Exploration {
         self.here = Here { percept, entry: Door::BACK };
     }
 
-    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis. Where no edge is being
-    /// explored, or the hypothesis is no other unexplored dart, nothing happens.
+    /// Lines 18 to 20: the edge leads to the known vertex of the hypothesis.
+    ///
+    /// # Errors
+    /// Returns an error if no edge is being explored, or the hypothesis is not another unexplored
+    /// dart.
     // paper: alg1.18, alg1.19, alg1.20
     pub fn close_loop<W: ?Sized>(
         &mut self,
         hypothesis: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
-    ) {
-        let Some(edge) = self.journey.close_loop(hypothesis, world, observer) else { return };
+    ) -> Result<(), InvalidStep> {
+        let edge = self.journey.close_loop(hypothesis, world, observer)?;
         self.to_marker_is_current &=
             self.to_marker.stays_with(self.journey.map(), edge, hypothesis);
         self.hypotheses.clear();
+        Ok(())
     }
 
     /// Lines 21 to 23: the edge leads to a new vertex, whose other edges are unexplored. The robot
-    /// is still there. Where no edge is being explored, nothing happens.
+    /// is still there.
     ///
     /// # Errors
-    /// The bound.
+    /// Returns an error if no edge is being explored, or at the bound.
     // paper: alg1.21, alg1.22, alg1.23
     pub fn add_place<W: World>(
         &mut self,
@@ -309,7 +335,7 @@ impl Exploration {
     ) -> Result<(), MappingError<W::Error>> {
         // The robot may have come back by another dart than it first came in by.
         let entry = self.here.entry;
-        let Some(vertex) = self.journey.add_place(entry, world, observer)? else { return Ok(()) };
+        let vertex = self.journey.add_place(entry, world, observer)?;
         if self.to_marker_is_current {
             self.to_marker.add_leaf(self.journey.map(), vertex);
         }

@@ -4,7 +4,7 @@
 use std::mem;
 
 use super::{
-    Choices, Contradiction, FACING, MappingError, MappingEvent, Observer, PartialMap,
+    Choices, Contradiction, FACING, InvalidStep, MappingError, MappingEvent, Observer, PartialMap,
     tree::BreadthFirstTree,
 };
 use crate::{
@@ -82,6 +82,7 @@ impl Journey {
         self.map.clear();
         self.robot = FACING;
         self.edge = None;
+        self.from_robot.clear();
     }
 
     /// S is the start vertex, and U is its edges.
@@ -97,21 +98,38 @@ impl Journey {
         Ok(start)
     }
 
-    /// The edge to explore next, as chosen; `None` if all is explored.
-    pub(super) fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+    /// Makes the choice of line 5; `None` if everything is explored.
+    pub(super) fn choose_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
         if self.map.unexplored_is_empty() {
             return None;
         }
         self.from_robot.plant(&self.map, self.map.vertex(self.robot));
         let nearest = self.from_robot.nearest_unexplored(&self.map)?;
-        let chosen = choices.next_edge(&self.map, self.robot, nearest);
-        Some(if self.map.is_unexplored(chosen) { chosen } else { nearest })
+        Some(choices.next_edge(&self.map, self.robot, nearest))
     }
 
     /// Goes through the known map to the known end of an unexplored edge, and follows it to its
     /// unknown end.
     #[inline]
     pub(super) fn explore<W: World>(
+        &mut self,
+        edge: Dart,
+        expected: impl Fn(&PartialMap, Dart) -> Percept,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        if let Some(explored) = self.edge {
+            return Err(InvalidStep::EdgeInProgress(explored).into());
+        }
+        if !self.map.is_unexplored(edge) {
+            return Err(InvalidStep::NotUnexplored(edge).into());
+        }
+        self.go_over(edge, expected, world, observer)
+    }
+
+    /// Goes to the known end of the edge that is being explored or is to be, and over it.
+    #[inline]
+    pub(super) fn go_over<W: World>(
         &mut self,
         edge: Dart,
         expected: impl Fn(&PartialMap, Dart) -> Percept,
@@ -133,7 +151,7 @@ impl Journey {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let way = self.way_to(target);
+        let way = self.way_to(target)?;
         for &dart in &way {
             let Some((next, perceived)) = self.leave_by(dart, world, observer)? else {
                 break;
@@ -144,17 +162,15 @@ impl Journey {
         Ok(())
     }
 
-    /// The darts by which the robot leaves the vertices on a shortest way to a known one; none if
-    /// it is not known.
-    pub(super) fn way_to(&mut self, target: Vertex) -> Vec<Dart> {
-        let mut way = mem::take(&mut self.way);
+    /// The darts by which the robot leaves the vertices on a shortest way to a known one.
+    pub(super) fn way_to(&mut self, target: Vertex) -> Result<Vec<Dart>, InvalidStep> {
         if target.at() >= self.map.vertex_count() {
-            way.clear();
-            return way;
+            return Err(InvalidStep::UnknownVertex(target));
         }
+        let mut way = mem::take(&mut self.way);
         self.from_robot.plant_unless_rooted(&self.map, self.map.vertex(self.robot));
         self.from_robot.path_from_root(&self.map, target, &mut way);
-        way
+        Ok(way)
     }
 
     /// Leaves by an explored dart of the map, and answers the pose behind it and what the robot
@@ -210,40 +226,47 @@ impl Journey {
         }
     }
 
-    /// The edge that is being explored leads to a known vertex, by another unexplored dart; answers
-    /// its known end. Where no edge is being explored, or the dart is no other unexplored one,
-    /// nothing happens.
+    /// The edge that is being explored leads to a known vertex, by another unexplored dart. Returns
+    /// its known end.
     pub(super) fn close_loop<W: ?Sized>(
         &mut self,
         other: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
-    ) -> Option<Dart> {
-        let possible = |edge: &Dart| *edge != other && self.map.is_unexplored(other);
-        let edge = self.edge.take().filter(possible)?;
+    ) -> Result<Dart, InvalidStep> {
+        let edge = self.edge.ok_or(InvalidStep::NoEdge)?;
+        if edge == other {
+            return Err(InvalidStep::SameDart(edge));
+        }
+        if !self.map.is_unexplored(other) {
+            return Err(InvalidStep::NotUnexplored(other));
+        }
+        self.edge = None;
+        self.from_robot.clear();
         self.map.join(edge, other);
         observer.event(world, self, MappingEvent::LoopClosed { edge, other });
-        Some(edge)
+        Ok(edge)
     }
 
     /// The edge that is being explored leads to a new vertex, whose other edges are unexplored. The
     /// robot is still there; counted from the dart by which it first came in, it has now come in by
-    /// the door `entry`. Where no edge is being explored, nothing happens.
+    /// the door `entry`.
     pub(super) fn add_place<W: World>(
         &mut self,
         entry: Door,
         world: &mut W,
         observer: &mut impl Observer<W>,
-    ) -> Result<Option<Vertex>, MappingError<W::Error>> {
-        let Some(edge) = self.edge else { return Ok(None) };
+    ) -> Result<Vertex, MappingError<W::Error>> {
+        let edge = self.edge.ok_or(InvalidStep::NoEdge)?;
         self.check_bound(self.arrival.degree)?;
         self.edge = None;
+        self.from_robot.clear();
         let vertex = self.map.add_vertex(self.arrival.degree);
         let first = self.map.first_dart(vertex);
         self.map.join(edge, first);
         self.robot = Dart(first.0 + entry.0);
         observer.event(world, self, MappingEvent::VertexAdded { edge, vertex });
-        Ok(Some(vertex))
+        Ok(vertex)
     }
 
     fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {

@@ -1,8 +1,8 @@
 //! The state of the movable marker algorithm, and the small steps of which it is made. Section 2.3.
 
 use super::{
-    Choices, Contradiction, Journey, MappingError, MappingEvent, MovableEvent, Observer,
-    PartialMap, ValidationResult,
+    Choices, Contradiction, InvalidStep, Journey, MappingError, MappingEvent, MovableEvent,
+    Observer, PartialMap, ValidationResult,
 };
 use crate::{
     embedded_graph::{Dart, Vertex},
@@ -96,26 +96,23 @@ impl MarkerSearch {
         self.pick_up(world, observer)
     }
 
-    /// The edge to explore next, as chosen; `None` if all is explored.
-    pub fn next_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
-        self.journey.next_edge(choices)
+    /// The edge to explore next, as chosen; `None` if everything is explored.
+    pub fn choose_edge(&mut self, choices: &mut impl Choices) -> Option<Dart> {
+        self.journey.choose_edge(choices)
     }
 
     /// Carries the marker through the known map to the known end of an unexplored edge, and over it
-    /// to its unknown end; and raises the candidates: the known vertices that this may be. An edge
-    /// that is explored already is left alone.
+    /// to its unknown end; and raises the candidates: the known vertices that this may be.
     ///
     /// # Errors
-    /// The world's own; where a known place is not as it was, or there is a second marker.
+    /// Returns an error if the world does, if a known place is not as it was, if there is a second
+    /// marker, or if the edge is not unexplored.
     pub fn carry_over<W: MovableMarkerWorld>(
         &mut self,
         edge: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        if !self.map().is_unexplored(edge) {
-            return Ok(());
-        }
         self.journey.explore(edge, PartialMap::unmarked, world, observer)?;
         let percept = self.journey.arrival;
         if percept.sighting != Sighting::Nothing {
@@ -200,17 +197,17 @@ impl MarkerSearch {
         Ok(())
     }
 
-    /// Goes back from the unknown end of the edge to the known one. Where no edge is being explored,
-    /// nothing happens.
+    /// Goes back from the unknown end of the edge to the known one.
     ///
     /// # Errors
-    /// The world's own; where the known end is not as it was.
+    /// Returns an error if the world does, if the known end is not as it was, or if no edge is being
+    /// explored.
     pub fn go_back<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let Some(edge) = self.journey.edge else { return Ok(()) };
+        let edge = self.journey.edge.ok_or(InvalidStep::NoEdge)?;
         let perceived = self.journey.go(Door::BACK, world, observer)?;
         self.journey.arrive(edge, self.map().unmarked(edge), perceived)?;
         Ok(())
@@ -227,7 +224,7 @@ impl MarkerSearch {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Option<Vertex>, MappingError<W::Error>> {
-        let way = self.journey.way_to(candidate);
+        let way = self.journey.way_to(candidate)?;
         for &dart in &way {
             let Some((next, perceived)) = self.journey.leave_by(dart, world, observer)? else {
                 break;
@@ -249,19 +246,20 @@ impl MarkerSearch {
     }
 
     /// Goes through the known map to the known end of the edge, and over it to the unknown end,
-    /// where the marker was left. Where no edge is being explored, nothing happens.
+    /// where the marker was left.
     ///
     /// # Errors
-    /// The world's own; where a place is not as it was.
+    /// Returns an error if the world does, if a place is not as it was, or if no edge is being
+    /// explored.
     pub fn return_to_marker<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let Some(edge) = self.journey.edge else { return Ok(()) };
+        let edge = self.journey.edge.ok_or(InvalidStep::NoEdge)?;
         self.report(MovableEvent::NotFound, world, observer);
         let expected = marked(self.journey.arrival);
-        self.journey.explore(edge, PartialMap::unmarked, world, observer)?;
+        self.journey.go_over(edge, PartialMap::unmarked, world, observer)?;
         let perceived = self.journey.arrival;
         if perceived != expected {
             return Err(Contradiction::WayBack { expected, perceived }.into());
@@ -326,22 +324,24 @@ impl MarkerSearch {
         }
     }
 
-    /// The edge leads to a known vertex, by this unexplored dart of it. Where no edge is being
-    /// explored, or the dart is no other unexplored one, nothing happens.
+    /// The edge leads to a known vertex, by this unexplored dart of it.
+    ///
+    /// # Errors
+    /// Returns an error if no edge is being explored, or the dart is not another unexplored one.
     pub fn close_loop<W: ?Sized>(
         &mut self,
         back_link: Dart,
         world: &mut W,
         observer: &mut impl Observer<W>,
-    ) {
-        self.journey.close_loop(back_link, world, observer);
+    ) -> Result<(), InvalidStep> {
+        self.journey.close_loop(back_link, world, observer)?;
+        Ok(())
     }
 
-    /// The edge leads to a new vertex, whose other edges are unexplored. The robot is there. Where
-    /// no edge is being explored, nothing happens.
+    /// The edge leads to a new vertex, whose other edges are unexplored. The robot is there.
     ///
     /// # Errors
-    /// The bound.
+    /// Returns an error if no edge is being explored, or at the bound.
     pub fn add_place<W: World>(
         &mut self,
         world: &mut W,

@@ -12,14 +12,14 @@ mod observer;
 mod partial_map;
 mod tree;
 
-pub use algorithm1::{ValidationResult, map_world, try_path};
-pub use choices::{Choices, Nearest};
-pub use contradiction::{Contradiction, MappingError};
+pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
+pub use choices::{Choices, MappingChoice, Nearest};
+pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
 pub use journey::Journey;
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{
-    ReachedPlace, map_with_movable_marker, validate_back_link, validate_place,
+    ReachedPlace, explore_edge, map_with_movable_marker, validate_back_link, validate_place,
 };
 pub use observer::{MappingEvent, MovableEvent, Observer};
 pub use partial_map::{FACING, PartialMap};

@@ -22,16 +22,16 @@ pub enum ReachedPlace {
 }
 
 /// Maps a world without loops and parallel edges. At its start the robot stands where the marker
-/// lies, with its back to the facing door. Afterwards `search` holds the map, where the robot is in
-/// it and how many moves it made, and the robot carries the marker;
-/// [`MarkerSearch::map`] is then [complete](super::PartialMap::complete).
+/// lies, with its back to the facing door. Afterwards `search` holds the map, the robot's pose in it
+/// and the number of moves, and the robot carries the marker; [`MarkerSearch::map`] is then
+/// [complete](super::PartialMap::complete).
 ///
 /// With loops or parallel edges one movable marker does not suffice: the map is then wrong, or the
 /// run ends with an error.
 ///
 /// # Errors
-/// The world's own; a contradiction, where no such world could be so; or more known darts than the
-/// bound of the search. The search then tells how far it came.
+/// Returns an error if the world does, if it contradicts itself, if a choice is not open, or if more
+/// darts become known than the search's bound. The search then holds what is known so far.
 pub fn map_with_movable_marker<W: MovableMarkerWorld>(
     world: &mut W,
     choices: &mut impl Choices,
@@ -41,20 +41,35 @@ pub fn map_with_movable_marker<W: MovableMarkerWorld>(
     // The robot picks the marker up at v0; S is v0; U is its edges.
     search.begin(world, observer)?;
     // While U is not empty, remove an unexplored edge e = (vk, vu) from it.
-    while let Some(edge) = search.next_edge(choices) {
-        // Carry the marker through S to the known end vk, and over e to the unknown end vu.
-        search.carry_over(edge, world, observer)?;
-        match validate_place(search, world, observer)? {
-            // vu is a known vertex: a loop was closed.
-            ReachedPlace::Known(vertex) => {
-                let back_link = validate_back_link(edge, vertex, search, world, observer)?;
-                search.close_loop(back_link, world, observer);
-            }
-            // vu is a new place.
-            ReachedPlace::New => search.add_place(world, observer)?,
-        }
+    while let Some(edge) = search.choose_edge(choices) {
+        explore_edge(edge, search, world, observer)?;
     }
     // S is the map.
+    Ok(())
+}
+
+/// From one choice to the next: the step machine of the movable marker algorithm. The run waits for
+/// an edge.
+///
+/// # Errors
+/// See [`map_with_movable_marker`].
+pub fn explore_edge<W: MovableMarkerWorld>(
+    edge: Dart,
+    search: &mut MarkerSearch,
+    world: &mut W,
+    observer: &mut impl Observer<W>,
+) -> Result<(), MappingError<W::Error>> {
+    // Carry the marker through S to the known end vk, and over e to the unknown end vu.
+    search.carry_over(edge, world, observer)?;
+    match validate_place(search, world, observer)? {
+        // vu is a known vertex: a loop was closed.
+        ReachedPlace::Known(vertex) => {
+            let back_link = validate_back_link(edge, vertex, search, world, observer)?;
+            search.close_loop(back_link, world, observer)?;
+        }
+        // vu is a new place.
+        ReachedPlace::New => search.add_place(world, observer)?,
+    }
     Ok(())
 }
 

@@ -35,6 +35,11 @@ impl BreadthFirstTree {
         self.reached.push(root);
     }
 
+    /// Forgets the tree: it no longer fits the map.
+    pub(super) fn clear(&mut self) {
+        self.reached.clear();
+    }
+
     /// Begins a new tree, unless this is one of the map, from that root.
     pub(super) fn plant_unless_rooted(&mut self, map: &PartialMap, root: Vertex) {
         if self.reached.first() != Some(&root) || self.hops.len() != map.vertex_count() {

@@ -1,10 +1,7 @@
 //! A trace against Algorithm 1: were the doors taken those that it takes, or ones that it may take?
 //! Section 2.3.
 
-use std::{
-    collections::{HashSet, VecDeque},
-    fmt, mem,
-};
+use std::{collections::HashSet, fmt, mem};
 
 use thiserror::Error;
 
@@ -12,8 +9,8 @@ use super::{AlgorithmCoverage, Trace};
 use crate::{
     embedded_graph::Dart,
     mapping::{
-        Choices, Contradiction, Exploration, MappingError, Nearest, Observer, PartialMap,
-        ValidationResult, map_world, try_path,
+        Contradiction, Exploration, InvalidStep, MappingChoice, MappingError, Nearest, Observer,
+        PartialMap, map_world, step,
     },
     percept::{Door, Percept},
     world::World,
@@ -31,7 +28,7 @@ pub struct Followed {
     /// The cases that it went through.
     pub coverage: AlgorithmCoverage,
     /// The choices that are not the default ones.
-    script: Option<Script>,
+    script: Option<Vec<MappingChoice>>,
 }
 
 /// Whose choices a trace shows, as far as it goes.
@@ -97,6 +94,8 @@ pub enum Purpose {
     Done,
     /// What is perceived cannot be.
     Contradicted(Contradiction),
+    /// The step is not valid: the enumeration of choices is wrong.
+    InvalidStep(InvalidStep),
     /// More darts are known than the bound allows.
     Bound,
 }
@@ -112,6 +111,7 @@ impl fmt::Display for Purpose {
             }
             Self::Done => write!(out, "line 4: the map is complete"),
             Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
+            Self::InvalidStep(step) => write!(out, "{step}"),
             Self::Bound => write!(out, "more darts are known than the bound allows"),
         }
     }
@@ -233,30 +233,14 @@ impl Followed {
         let mut exploration = Exploration::new(bound);
         let mut world = TraceWorld { trace, moves: 0 };
         // It ends as it was found to end.
-        let _ = match self.script.clone() {
+        let _ = match &self.script {
             None => map_world(&mut world, &mut Nearest, &mut exploration, observer),
-            Some(mut script) => map_world(&mut world, &mut script, &mut exploration, observer),
+            Some(script) => exploration.begin(&mut world, observer).and_then(|()| {
+                let mut choices = script.iter();
+                choices.try_for_each(|&choice| step(&mut exploration, choice, &mut world, observer))
+            }),
         };
         exploration
-    }
-}
-
-/// What was chosen, in order.
-#[derive(Clone, Debug, Default)]
-struct Script {
-    edges: VecDeque<Dart>,
-    hypotheses: VecDeque<Dart>,
-}
-
-impl Choices for Script {
-    fn next_edge(&mut self, _: &PartialMap, _: Dart, nearest: Dart) -> Dart {
-        self.edges.pop_front().unwrap_or(nearest)
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, hypotheses: &[Dart]) -> usize {
-        let chosen = self.hypotheses.pop_front();
-        let place = chosen.and_then(|dart| hypotheses.iter().position(|&one| one == dart));
-        place.unwrap_or(hypotheses.len() - 1)
     }
 }
 
@@ -265,9 +249,26 @@ impl Choices for Script {
 struct Way<'t> {
     exploration: Exploration,
     world: TraceWorld<'t>,
-    script: Script,
-    /// Whether it stands at line 8, not at line 4.
-    within_round: bool,
+    /// The choices made so far.
+    script: Vec<MappingChoice>,
+}
+
+impl Way<'_> {
+    /// What a choice is for.
+    fn purpose(&self, choice: MappingChoice) -> Purpose {
+        let map = self.exploration.map();
+        let named = |dart| (map.vertex(dart).0, map.index(dart));
+        match choice {
+            MappingChoice::Edge(edge) => {
+                let (vertex, index) = named(edge);
+                Purpose::Explore { vertex, index }
+            }
+            MappingChoice::Hypothesis(place) => {
+                let (vertex, index) = named(self.exploration.hypotheses()[place]);
+                Purpose::Try { vertex, index }
+            }
+        }
+    }
 }
 
 /// What tells ways apart that have come equally far: the map and the robot in it, and H.
@@ -277,14 +278,14 @@ type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
 struct Search {
     claim: Claim,
     /// The choices of the first way that goes along with all of a trace, but is not at its end there.
-    part: Option<Script>,
+    part: Option<Vec<MappingChoice>>,
     seen: HashSet<Known>,
     /// The first event that none of the ways would have that came farthest,
     farthest: usize,
     /// what they would have instead,
     allowed: Vec<Allowed>,
     /// and the choices of the first of them.
-    script: Script,
+    script: Vec<MappingChoice>,
 }
 
 impl Default for Search {
@@ -295,18 +296,18 @@ impl Default for Search {
             seen: HashSet::new(),
             farthest: 0,
             allowed: Vec::new(),
-            script: Script::default(),
+            script: Vec::new(),
         }
     }
 }
 
 impl Search {
     /// A way that goes along with the whole trace.
-    fn run(&mut self, trace: &Trace, bound: usize) -> Option<(Reached, Script)> {
+    fn run(&mut self, trace: &Trace, bound: usize) -> Option<(Reached, Vec<MappingChoice>)> {
         let mut exploration = Exploration::new(bound);
         let mut world = TraceWorld { trace, moves: 0 };
         let begun = exploration.begin(&mut world, &mut ());
-        let way = Way { exploration, world, script: Script::default(), within_round: false };
+        let way = Way { exploration, world, script: Vec::new() };
         if let Err(error) = begun {
             self.ended(&way, &error, Purpose::Done);
             return None;
@@ -315,7 +316,7 @@ impl Search {
         while let Some(way) = ways.pop() {
             let known = (
                 way.world.moves,
-                way.within_round,
+                way.exploration.is_at_line_8(),
                 way.exploration.map().clone(),
                 way.exploration.robot(),
                 way.exploration.hypotheses().to_vec(),
@@ -323,12 +324,15 @@ impl Search {
             if !self.seen.insert(known) {
                 continue;
             }
-            let next = if way.within_round { Ok(self.line_8(&way)) } else { self.line_4(&way) };
-            match next {
-                // The first choice is tried first.
-                Ok(next) => ways.extend(next.into_iter().rev()),
-                Err(whole) => return Some((Reached::Mapped, whole)),
+            if way.exploration.map().unexplored_is_empty() {
+                if way.world.moves == trace.doors().len() {
+                    return Some((Reached::Mapped, way.script));
+                }
+                let done = Allowed { door: None, purpose: Purpose::Done };
+                self.departed(2 * way.world.moves + 1, done, &way.script);
             }
+            // The first choice is tried first.
+            ways.extend(self.next(&way).into_iter().rev());
             if self.claim == Claim::Part && self.part.is_some() {
                 break;
             }
@@ -336,74 +340,34 @@ impl Search {
         self.part.take().map(|part| (Reached::EndOfTrace, part))
     }
 
-    /// Every choice at line 5 that leads along the trace; an error where the run ends with it.
-    fn line_4<'t>(&mut self, way: &Way<'t>) -> Result<Vec<Way<'t>>, Script> {
-        if way.exploration.map().unexplored_is_empty() {
-            if way.world.moves == way.world.trace.doors().len() {
-                return Err(way.script.clone());
-            }
-            let done = Allowed { door: None, purpose: Purpose::Done };
-            self.departed(2 * way.world.moves + 1, done, &way.script);
+    /// Every choice that leads along the trace.
+    fn next<'t>(&mut self, way: &Way<'t>) -> Vec<Way<'t>> {
+        let mut choices: Vec<_> = way.exploration.open_choices().collect();
+        let tries_hypotheses = way.exploration.is_at_line_8();
+        if tries_hypotheses {
+            // The default is the last.
+            choices.reverse();
         }
         let mut next = Vec::new();
-        for edge in way.exploration.map().unexplored() {
-            let mut way = way.clone();
-            way.script.edges.push_back(edge);
-            let _ = way.exploration.next_edge(&mut This(edge, 0));
-            match way.exploration.explore(edge, &mut way.world, &mut ()) {
-                Ok(()) => next.push(Way { within_round: true, ..way }),
-                Err(MappingError::World(TraceWorldError::End)) => {
-                    self.part.get_or_insert(way.script);
-                }
-                Err(error) => {
-                    let map = way.exploration.map();
-                    let (vertex, index) = (map.vertex(edge).0, map.index(edge));
-                    self.ended(&way, &error, Purpose::Explore { vertex, index });
-                }
-            }
-        }
-        Ok(next)
-    }
-
-    /// Every choice at line 9 that leads along the trace.
-    fn line_8<'t>(&mut self, way: &Way<'t>) -> Vec<Way<'t>> {
-        if way.exploration.hypotheses().is_empty() {
-            let mut way = Way { within_round: false, ..way.clone() };
-            if let Err(error) = way.exploration.add_place(&mut way.world, &mut ()) {
-                self.ended(&way, &error, Purpose::Bound);
-                return Vec::new();
-            }
-            return vec![way];
-        }
-        let mut next: Vec<Way<'t>> = Vec::new();
         let mut rejected = false;
-        // The default is the last.
-        for place in (0..way.exploration.hypotheses().len()).rev() {
+        for choice in choices {
+            let purpose = way.purpose(choice);
             let mut way = way.clone();
-            let Some(dart) = way.exploration.next_hypothesis(&mut This(Dart(0), place)) else {
-                continue;
-            };
-            way.script.hypotheses.push_back(dart);
-            match try_path(&mut way.exploration, dart, &mut way.world, &mut ()) {
-                Ok(ValidationResult::Confirmed) => {
-                    way.exploration.close_loop(dart, &mut way.world, &mut ());
-                    next.push(Way { within_round: false, ..way });
+            way.script.push(choice);
+            match step(&mut way.exploration, choice, &mut way.world, &mut ()) {
+                Ok(()) => {
+                    // Two that fall along the trace fall after the same moves, for the way back begins
+                    // with door 0, by which no shortest path goes on. They are alike: whichever is tried
+                    // later falls after the same moves again.
+                    let falls = tries_hypotheses && way.exploration.is_at_line_8();
+                    if !falls || !mem::replace(&mut rejected, true) {
+                        next.push(way);
+                    }
                 }
-                // Two that fall along the trace fall after the same moves, for the way back begins with
-                // door 0, by which no shortest path goes on. They are alike: whichever is tried later falls
-                // after the same moves again.
-                Ok(ValidationResult::Rejected) if !mem::replace(&mut rejected, true) => {
-                    next.push(way)
-                }
-                Ok(ValidationResult::Rejected) => {}
                 Err(MappingError::World(TraceWorldError::End)) => {
                     self.part.get_or_insert(way.script);
                 }
-                Err(error) => {
-                    let map = way.exploration.map();
-                    let (vertex, index) = (map.vertex(dart).0, map.index(dart));
-                    self.ended(&way, &error, Purpose::Try { vertex, index });
-                }
+                Err(error) => self.ended(&way, &error, purpose),
             }
         }
         next
@@ -421,17 +385,18 @@ impl Search {
             MappingError::Contradiction(contradiction) => {
                 (at_percept, None, Purpose::Contradicted(*contradiction))
             }
+            MappingError::InvalidStep(step) => (at_percept, None, Purpose::InvalidStep(*step)),
             MappingError::Bound { .. } => (at_percept, None, Purpose::Bound),
         };
         self.departed(event, Allowed { door, purpose }, &way.script);
     }
 
     /// Instead of an event of the trace a way would have had something else.
-    fn departed(&mut self, event: usize, allowed: Allowed, script: &Script) {
+    fn departed(&mut self, event: usize, allowed: Allowed, script: &[MappingChoice]) {
         if self.allowed.is_empty() || event > self.farthest {
             self.farthest = event;
             self.allowed.clear();
-            self.script = script.clone();
+            self.script = script.to_vec();
         }
         if event == self.farthest && !self.allowed.contains(&allowed) {
             self.allowed.push(allowed);
@@ -439,22 +404,9 @@ impl Search {
     }
 
     /// Where the ways ended that came farthest.
-    fn departure(self) -> (Reached, Script) {
+    fn departure(self) -> (Reached, Vec<MappingChoice>) {
         let departure = Departure { event: self.farthest, allowed: self.allowed };
         (Reached::Departure(departure), self.script)
-    }
-}
-
-/// Takes this edge, and the hypothesis at this place.
-struct This(Dart, usize);
-
-impl Choices for This {
-    fn next_edge(&mut self, _: &PartialMap, _: Dart, _: Dart) -> Dart {
-        self.0
-    }
-
-    fn next_hypothesis(&mut self, _: &PartialMap, _: &[Dart]) -> usize {
-        self.1
     }
 }
 
@@ -467,7 +419,7 @@ mod tests {
         any_graph::{Class, any_graph},
         embedded_graph::EmbeddedGraph,
         isomorphism::code,
-        mapping::{FACING, Journey, MappingEvent},
+        mapping::{Choices, FACING, Journey, MappingEvent},
         percept::Sighting,
         trace::{
             TraceEvent,
