@@ -7,8 +7,10 @@ use super::{
     error::{LogError, LogErrorKind},
     from_value::FromValue,
     image::image_of,
+    merge::{RawMessage, RawMessages},
     messages::{Command, Door, End, Hypothesis, Map, Percept, Run, Scene, Stamp},
-    reader::{Log, RawMessage, RawMessages},
+    reader::Log,
+    standard::Quaternion,
     topic_map::{Bound, Carried, Part, Role},
     value::Value,
 };
@@ -214,43 +216,11 @@ fn odometry(carried: &Carried, value: &Value<'_>) -> Result<Odometry, String> {
         None => number(carried, value, Part::Heading)? * carried.angle.in_radians(),
         Some(path) => {
             let part = |name| number_at(value, &format!("{path}.{name}"));
-            yaw([part("x")?, part("y")?, part("z")?, part("w")?])
+            Quaternion { x: part("x")?, y: part("y")?, z: part("z")?, w: part("w")? }
+                .heading()
                 .ok_or_else(|| format!("its `{path}` is no rotation"))?
         }
     };
     let length = carried.length.in_metres();
     Ok(Odometry { position: [x * length, y * length], heading: wrapped(heading) })
-}
-
-/// The turn about the vertical axis, counter-clockwise, of what looks along x and has y to its left
-/// (REP 103); `None` of what is no rotation.
-fn yaw([x, y, z, w]: [f64; 4]) -> Option<f64> {
-    let norm = x * x + y * y + z * z + w * w;
-    // Any length but none is taken: some writers do not keep it at 1.
-    (norm.is_finite() && norm > 1e-6)
-        .then(|| (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::{FRAC_PI_2, PI};
-
-    use super::*;
-
-    #[test]
-    fn a_robot_that_looks_to_its_left_has_turned_counter_clockwise() {
-        let turned =
-            |angle: f64| yaw([0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()]).unwrap();
-        for angle in [0.0, 1.0, FRAC_PI_2, 3.0, PI - 1e-9, -0.5, -3.0] {
-            assert!((turned(angle) - angle).abs() < 1e-9, "{angle}");
-        }
-        // The opposite quaternion is the same rotation, and so is one of another length.
-        let yaw_of = yaw([0.0, 0.0, -3.0, -3.0]).unwrap();
-        assert!((yaw_of - FRAC_PI_2).abs() < 1e-12);
-        // A robot on a slope looks to the same side.
-        let (sine, cosine) = 0.1_f64.sin_cos();
-        assert!(yaw([sine, 0.0, 0.0, cosine]).unwrap().abs() < 1e-12);
-        assert_eq!(yaw([0.0; 4]), None);
-        assert_eq!(yaw([f64::MAX; 4]), None);
-    }
 }

@@ -4,7 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
-use super::{container::MOST_GROWTH, decode::DecodeError};
+use super::decode::DecodeError;
 
 /// Why a log cannot be read, or not any further.
 #[derive(Debug, Error)]
@@ -45,13 +45,15 @@ pub enum LogErrorKind {
     Compression(String, &'static str),
     /// A chunk that would be larger than any.
     #[error(
-        "{compressed} compressed bytes say that they are {size}; {MOST_GROWTH} times as many can be read"
+        "{compressed} compressed bytes say that they are {size}; {most} times as many can be read"
     )]
     Growth {
         /// The bytes that are there.
         compressed: u64,
         /// The bytes that they say they are.
         size: u64,
+        /// The largest factor that is accepted.
+        most: u64,
     },
     /// A chunk cannot be decompressed.
     #[error("the chunk cannot be decompressed: {0}")]

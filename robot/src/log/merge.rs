@@ -65,8 +65,25 @@ struct Held {
     asked: u64,
 }
 
+impl Log {
+    /// The messages of some of its topics in the order of their times, messages of the same time in the
+    /// order of the file. Ends after the first error.
+    ///
+    /// Chunks that overlap in time are in memory together, up to 64 MiB; beyond that they are read again.
+    #[must_use]
+    pub fn read(&self, topics: &[usize]) -> RawMessages<'_> {
+        RawMessages::new(self, topics)
+    }
+
+    /// The messages of all topics.
+    #[must_use]
+    pub fn read_all(&self) -> RawMessages<'_> {
+        RawMessages::new(self, &(0..self.topics.len()).collect::<Vec<_>>())
+    }
+}
+
 impl<'l> RawMessages<'l> {
-    pub(super) fn new(log: &'l Log, topics: &[usize]) -> Self {
+    fn new(log: &'l Log, topics: &[usize]) -> Self {
         let mut ahead: Vec<usize> = (0..log.sections.len()).collect();
         let start = |section: usize| log.sections.get(section).and_then(|section| section.times);
         ahead.sort_by_key(|section| Reverse((start(*section).map(|[start, _]| start), *section)));

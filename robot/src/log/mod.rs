@@ -25,4 +25,5 @@ pub mod writer;
 pub use container::{Format, MOST_GROWTH};
 pub use encode::scene as scene_message;
 pub(crate) use encode::{map_of, scene_of};
+pub use merge::{RawMessage, RawMessages};
 pub use world_hash::world_hash;

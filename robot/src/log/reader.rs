@@ -2,7 +2,6 @@
 
 use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
 
-pub use super::merge::{RawMessage, RawMessages};
 use super::{
     container::{self, BAG_MAGIC, Format, MCAP_MAGIC, Record, Section},
     error::{LogError, LogErrorKind, Truncation},
@@ -138,22 +137,6 @@ impl Log {
     #[must_use]
     pub fn truncation(&self) -> Option<&Truncation> {
         self.truncation.as_ref()
-    }
-
-    /// The messages of some of its topics, in the order of their times; those of one time in the order of
-    /// the file. Ends after the first error.
-    ///
-    /// Chunks that overlap in time are in memory together, up to 64 MiB; where that is not enough, they
-    /// are read again.
-    #[must_use]
-    pub fn read(&self, topics: &[usize]) -> RawMessages<'_> {
-        RawMessages::new(self, topics)
-    }
-
-    /// The messages of all topics.
-    #[must_use]
-    pub fn read_all(&self) -> RawMessages<'_> {
-        RawMessages::new(self, &(0..self.topics.len()).collect::<Vec<_>>())
     }
 }
 

@@ -101,6 +101,17 @@ impl Quaternion {
         let (sine, cosine) = (angle / 2.0).sin_cos();
         Self { x: 0.0, y: 0.0, z: sine, w: cosine }
     }
+
+    /// The turn about the vertical axis, counter-clockwise, of a body with x ahead and y to its left
+    /// (REP 103). The length does not matter, since some writers do not keep it at 1; `None` if it is 0 or
+    /// not finite.
+    #[must_use]
+    pub fn heading(self) -> Option<f64> {
+        let Self { x, y, z, w } = self;
+        let norm = x * x + y * y + z * z + w * w;
+        (norm.is_finite() && norm > 1e-6)
+            .then(|| (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
+    }
 }
 
 /// How fast something moves and turns.
@@ -256,7 +267,7 @@ impl Message for TFMessage<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
+    use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
     use crate::log::message::schema;
@@ -267,6 +278,23 @@ mod tests {
         assert_eq!(format(&[0xff, 0xd8, 0xff, 0xe0]), "jpeg");
         assert_eq!(format(b"\x89PNG\r\n"), "png");
         assert_eq!((format(b""), format(b"GIF89a")), ("", ""));
+    }
+
+    #[test]
+    fn the_heading_is_the_turn_about_the_vertical_axis() {
+        for angle in [0.0, 1.0, FRAC_PI_2, 3.0, PI - 1e-9, -0.5, -3.0] {
+            assert!((Quaternion::turn(angle).heading().unwrap() - angle).abs() < 1e-9, "{angle}");
+        }
+        let heading = |x, y, z, w| Quaternion { x, y, z, w }.heading();
+        // The opposite quaternion is the same rotation, and so is one of another length.
+        for length in [-3.0, 0.5] {
+            assert!((heading(0.0, 0.0, length, length).unwrap() - FRAC_PI_2).abs() < 1e-12);
+        }
+        // On a slope the heading is the same.
+        let (sine, cosine) = 0.1_f64.sin_cos();
+        assert!(heading(sine, 0.0, 0.0, cosine).unwrap().abs() < 1e-12);
+        assert_eq!(heading(0.0, 0.0, 0.0, 0.0), None);
+        assert_eq!(heading(f64::MAX, 0.0, 0.0, 0.0), None);
     }
 
     #[test]

@@ -1,13 +1,19 @@
-//! The messages of ROS 1 that a SuperScout's nodes exchange, in the bytes in which they travel: each
-//! field after the other, the lesser byte first, before a text or a list how long it is.
+//! The messages of ROS 1 that a SuperScout's nodes exchange, and their encoding.
 //!
-//! Bytes from outside are read without trust: what is too short is none, and nothing is set aside for
-//! what a length claims before it is there.
+//! Bytes from outside are not trusted: a body that is too short or too long is rejected, and no memory
+//! is allocated for a length that the body does not have.
 
+use std::fmt;
+
+use roslibrust_serde_rosmsg::{from_slice_known_length, to_vec_skip_length};
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{DeserializeOwned, Visitor},
+};
 use toposlam_model::driving::odometry;
 
 use crate::{
-    log::standard::{BASE, CAMERA, ODOM},
+    log::standard::{BASE, CAMERA, ODOM, Quaternion},
     superscout::WheelSpeeds,
 };
 
@@ -113,156 +119,130 @@ pub(super) struct Photograph {
     pub(super) file: Vec<u8>,
 }
 
-/// The body of what the wheels are told.
-pub(super) fn twist(wheels: WheelSpeeds) -> Vec<u8> {
-    let mut out = Out::default();
-    out.twist(wheels);
-    out.0
+/// A header: number, seconds, nanoseconds and frame. `T` is a text.
+type Header<T> = (u32, u32, u32, T);
+/// A position and the quaternion of an orientation.
+type PoseNumbers = [f64; 7];
+/// A linear and an angular velocity.
+type TwistNumbers = [f64; 6];
+/// Zeros: not known.
+type Covariance = [[f64; 6]; 6];
+/// The fields of `nav_msgs/Odometry` in order.
+type OdometryFields<T> = (Header<T>, T, PoseNumbers, Covariance, TwistNumbers, Covariance);
+
+/// Bytes or a text, after their length; a text need not be UTF-8.
+struct Bytes(Vec<u8>);
+
+impl<'d> Deserialize<'d> for Bytes {
+    fn deserialize<D: Deserializer<'d>>(from: D) -> Result<Self, D::Error> {
+        struct Whole;
+        impl Visitor<'_> for Whole {
+            type Value = Bytes;
+
+            fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+                out.write_str("bytes")
+            }
+
+            fn visit_byte_buf<E>(self, bytes: Vec<u8>) -> Result<Bytes, E> {
+                Ok(Bytes(bytes))
+            }
+        }
+        from.deserialize_byte_buf(Whole)
+    }
 }
 
-/// What the wheels are told: how fast ahead, and to turn; `None` where it is no such message.
+impl Serialize for Bytes {
+    fn serialize<S: Serializer>(&self, into: S) -> Result<S::Ok, S::Error> {
+        into.serialize_bytes(&self.0)
+    }
+}
+
+/// The message that a body is; `None` if it is too short or too long. A length beyond the end of the
+/// body is an error before anything is allocated for it.
+fn read<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    from_slice_known_length(bytes, u32::try_from(bytes.len()).ok()?).ok()
+}
+
+/// The body of a message.
+fn write(message: &impl Serialize) -> Vec<u8> {
+    // Numbers, texts and lists of known length can always be written to memory.
+    to_vec_skip_length(message).unwrap_or_default()
+}
+
+/// The body of a command to the wheels.
+pub(super) fn twist(wheels: WheelSpeeds) -> Vec<u8> {
+    write(&twist_numbers(wheels))
+}
+
+/// The command to the wheels; `None` if it is no such message.
 pub(super) fn read_twist(bytes: &[u8]) -> Option<WheelSpeeds> {
-    let mut from = From(bytes);
-    let wheels = from.twist()?;
-    from.0.is_empty().then_some(wheels)
+    read(bytes).map(wheel_speeds)
 }
 
 /// The body of odometry.
 pub(super) fn odometry(number: u32, reckoning: &Reckoning) -> Vec<u8> {
-    let mut out = Out::default();
-    out.header(number, reckoning.stamp, ODOM);
-    out.text(BASE);
-    out.pose(&reckoning.at);
-    out.numbers(&[0.0; 36]);
-    out.twist(reckoning.wheels);
-    out.numbers(&[0.0; 36]);
-    out.0
+    let Reckoning { stamp, at, wheels } = reckoning;
+    let unknown = Covariance::default();
+    let message: OdometryFields<_> =
+        (header(number, *stamp, ODOM), BASE, pose(at), unknown, twist_numbers(*wheels), unknown);
+    write(&message)
 }
 
-/// What odometry tells; `None` where it is no such message, or tells no number.
+/// The odometry; `None` if it is no such message, or a number in it is not finite.
 pub(super) fn read_odometry(bytes: &[u8]) -> Option<Reckoning> {
-    let mut from = From(bytes);
-    let stamp = from.header()?;
-    from.text()?;
-    let [x, y, _, qx, qy, qz, qw] = from.numbers()?;
-    from.numbers::<36>()?;
-    let wheels = from.twist()?;
-    from.numbers::<36>()?;
-    let heading = f64::atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz));
-    let finite = [x, y, heading].iter().all(|number| number.is_finite());
+    let ((_, seconds, nanoseconds, _), _, pose, _, twist, _) =
+        read::<OdometryFields<Bytes>>(bytes)?;
+    let [x, y, _, qx, qy, qz, qw] = pose;
+    let heading = Quaternion { x: qx, y: qy, z: qz, w: qw }.heading()?;
     let at = odometry::Odometry { position: [x, y], heading };
-    (finite && from.0.is_empty()).then_some(Reckoning { stamp, at, wheels })
+    let (stamp, wheels) = (time(seconds, nanoseconds), wheel_speeds(twist));
+    (x.is_finite() && y.is_finite()).then_some(Reckoning { stamp, at, wheels })
 }
 
-/// The body of the robot's frame in that of odometry.
+/// The body of the transform from the frame of odometry to the robot.
 pub(super) fn frames(number: u32, reckoning: &Reckoning) -> Vec<u8> {
-    let mut out = Out::default();
-    out.length(1);
-    out.header(number, reckoning.stamp, ODOM);
-    out.text(BASE);
-    out.pose(&reckoning.at);
-    out.0
+    write(&vec![(header(number, reckoning.stamp, ODOM), BASE, pose(&reckoning.at))])
 }
 
 /// The body of a picture.
 pub(super) fn picture(number: u32, stamp: Nanoseconds, file: &[u8]) -> Vec<u8> {
-    let mut out = Out::default();
-    out.header(number, stamp, CAMERA);
-    out.text(if file.starts_with(b"\x89PNG") { "png" } else { "jpeg" });
-    out.length(file.len());
-    out.0.extend_from_slice(file);
-    out.0
+    let format = if file.starts_with(b"\x89PNG") { "png" } else { "jpeg" };
+    write(&(header(number, stamp, CAMERA), format, Bytes(file.to_vec())))
 }
 
-/// A picture; `None` where it is no such message.
+/// A picture; `None` if it is no such message.
 pub(super) fn read_picture(bytes: &[u8]) -> Option<Photograph> {
-    let mut from = From(bytes);
-    let stamp = from.header()?;
-    from.text()?;
-    let file = from.text()?;
-    from.0.is_empty().then(|| Photograph { stamp, file: file.to_vec() })
+    let ((_, seconds, nanoseconds, _), _, Bytes(file)) =
+        read::<(Header<Bytes>, Bytes, Bytes)>(bytes)?;
+    Some(Photograph { stamp: time(seconds, nanoseconds), file })
 }
 
-/// A body that is being written.
-#[derive(Default)]
-struct Out(Vec<u8>);
+fn header(number: u32, stamp: Nanoseconds, frame: &str) -> Header<&str> {
+    (number, (stamp / SECOND) as u32, (stamp % SECOND) as u32, frame)
+}
 
-impl Out {
-    fn length(&mut self, length: usize) {
-        self.0.extend((length as u32).to_le_bytes());
-    }
+fn time(seconds: u32, nanoseconds: u32) -> Nanoseconds {
+    u64::from(seconds) * SECOND + u64::from(nanoseconds)
+}
 
-    fn text(&mut self, text: &str) {
-        self.length(text.len());
-        self.0.extend(text.as_bytes());
-    }
+fn twist_numbers(wheels: WheelSpeeds) -> TwistNumbers {
+    [wheels.speed(), 0.0, 0.0, 0.0, 0.0, wheels.turn_rate()]
+}
 
-    fn numbers(&mut self, numbers: &[f64]) {
-        self.0.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-    }
-
-    fn header(&mut self, number: u32, stamp: Nanoseconds, frame: &str) {
-        self.0.extend(number.to_le_bytes());
-        self.0.extend(((stamp / SECOND) as u32).to_le_bytes());
-        self.0.extend(((stamp % SECOND) as u32).to_le_bytes());
-        self.text(frame);
-    }
-
-    fn twist(&mut self, wheels: WheelSpeeds) {
-        self.numbers(&[wheels.speed(), 0.0, 0.0, 0.0, 0.0, wheels.turn_rate()]);
-    }
-
-    /// A place on the floor, and the turn about up.
-    fn pose(&mut self, at: &odometry::Odometry) {
-        let (sine, cosine) = (at.heading / 2.0).sin_cos();
-        let [x, y] = at.position;
-        self.numbers(&[x, y, 0.0, 0.0, 0.0, sine, cosine]);
+/// Within the limits of a SuperScout; a stop if a number is not finite.
+fn wheel_speeds([speed, _, _, _, _, turning]: TwistNumbers) -> WheelSpeeds {
+    if speed.is_finite() && turning.is_finite() {
+        WheelSpeeds::of(speed, turning)
+    } else {
+        WheelSpeeds::STOP
     }
 }
 
-/// What is left of a body that is being read.
-struct From<'b>(&'b [u8]);
-
-impl<'b> From<'b> {
-    fn take(&mut self, length: usize) -> Option<&'b [u8]> {
-        let (taken, left) = self.0.split_at_checked(length)?;
-        self.0 = left;
-        Some(taken)
-    }
-
-    fn whole(&mut self) -> Option<u32> {
-        let (bytes, left) = self.0.split_first_chunk()?;
-        self.0 = left;
-        Some(u32::from_le_bytes(*bytes))
-    }
-
-    fn text(&mut self) -> Option<&'b [u8]> {
-        let length = self.whole()?;
-        self.take(length as usize)
-    }
-
-    fn numbers<const COUNT: usize>(&mut self) -> Option<[f64; COUNT]> {
-        let mut numbers = [0.0; COUNT];
-        for number in &mut numbers {
-            let (bytes, left) = self.0.split_first_chunk()?;
-            self.0 = left;
-            *number = f64::from_le_bytes(*bytes);
-        }
-        Some(numbers)
-    }
-
-    fn header(&mut self) -> Option<Nanoseconds> {
-        let [_, seconds, nanoseconds] = [self.whole()?, self.whole()?, self.whole()?];
-        self.text()?;
-        Some(u64::from(seconds) * SECOND + u64::from(nanoseconds))
-    }
-
-    /// Within the limits of a SuperScout; what is no number is taken for a stop.
-    fn twist(&mut self) -> Option<WheelSpeeds> {
-        let [speed, _, _, _, _, turning] = self.numbers()?;
-        let told = speed.is_finite() && turning.is_finite();
-        Some(if told { WheelSpeeds::of(speed, turning) } else { WheelSpeeds::STOP })
-    }
+/// A pose on the floor.
+fn pose(at: &odometry::Odometry) -> PoseNumbers {
+    let [x, y] = at.position;
+    let Quaternion { x: qx, y: qy, z: qz, w: qw } = Quaternion::turn(at.heading);
+    [x, y, 0.0, qx, qy, qz, qw]
 }
 
 #[cfg(test)]
@@ -313,8 +293,33 @@ mod tests {
         assert_eq!(read(&[0.0; 7]), None);
     }
 
+    /// As in a log: the length of a quaternion does not matter, and one of length 0 is no rotation.
     #[test]
-    fn odometry_that_tells_no_number_is_none() {
+    fn a_quaternion_of_any_length_is_the_same_heading() {
+        let read = |quaternion: [f64; 4]| {
+            let mut body = odometry(1, &reckoning());
+            // Behind the header (12 bytes and a text), the text `base_link`, and the position.
+            let at = 12 + (4 + ODOM.len()) + (4 + BASE.len()) + 24;
+            for (bytes, number) in body[at..].chunks_exact_mut(8).zip(quaternion) {
+                bytes.copy_from_slice(&number.to_le_bytes());
+            }
+            read_odometry(&body).map(|reckoning| reckoning.at.heading)
+        };
+        let quarter = std::f64::consts::FRAC_PI_2;
+        assert!((read([0.0, 0.0, 0.5, 0.5]).unwrap() - quarter).abs() < 1e-12);
+        assert_eq!(read([0.0; 4]), None);
+    }
+
+    #[test]
+    fn a_length_that_is_not_there_allocates_nothing() {
+        let mut body = picture(1, 5, b"file");
+        let at = body.len() - 8;
+        body[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+        assert_eq!(read_picture(&body), None);
+    }
+
+    #[test]
+    fn odometry_with_a_number_that_is_not_finite_is_rejected() {
         let at = odometry::Odometry { position: [f64::NAN, 0.0], heading: 0.0 };
         assert_eq!(read_odometry(&odometry(1, &Reckoning { at, ..reckoning() })), None);
     }

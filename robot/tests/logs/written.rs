@@ -7,7 +7,7 @@ use std::{
 };
 
 use mcap::{Compression, WriteOptions, Writer, records::MessageHeader};
-use toposlam_robot::log::reader::{Log, RawMessage};
+use toposlam_robot::log::{RawMessage, reader::Log};
 
 /// A message to be written: its topic, its time, its number.
 pub(crate) type Said = (u32, u64, u32);

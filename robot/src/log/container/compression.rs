@@ -69,7 +69,7 @@ pub(super) fn decompress(
         return Ok(bytes);
     }
     if size > compressed.saturating_mul(MOST_GROWTH) {
-        return Err(LogErrorKind::Growth { compressed, size });
+        return Err(LogErrorKind::Growth { compressed, size, most: MOST_GROWTH });
     }
     let whole = match compression {
         Compression::None => bytes,
