@@ -95,7 +95,10 @@ fn a_mapping_is_written_and_held_against_its_log() {
     let output = run(["info", "fuzz/corpus/bag/bz2", "--mapping", path]);
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
-    assert!(message.contains("mapping.toml: line 2, column 9: image.topic: the log has no topic"), "{message}");
+    assert!(
+        message.contains("mapping.toml: line 2, column 9: image.topic: the log has no topic"),
+        "{message}"
+    );
     fs::write(&mapping, "[image]\ntopic = \"/a\"\nsize = 3\n").unwrap();
     let output = run(["info", RUN, "--mapping", path]);
     let message = stderr(&output);

@@ -3,6 +3,11 @@
 //! World files, camera calibrations, colour files and topic maps are read through this module. Whatever
 //! is wrong with a value, the error names its line, its column and its key.
 
+#![expect(
+    clippy::missing_errors_doc,
+    reason = "each function returns an error if the value is not of its kind"
+)]
+
 use std::{borrow::Cow, collections::HashSet, fmt, marker::PhantomData, ops::RangeInclusive};
 
 use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
@@ -137,9 +142,6 @@ struct Key<'t> {
 
 impl<'t> Document<'t> {
     /// Parses TOML.
-    ///
-    /// # Errors
-    /// Returns an error if the bytes are not TOML.
     pub fn parse_toml(bytes: &'t [u8]) -> Result<Self, DocumentError> {
         let text = text_of(bytes)?;
         let wrong =
@@ -153,9 +155,6 @@ impl<'t> Document<'t> {
     }
 
     /// Parses JSON if the first character other than space is a brace, else TOML.
-    ///
-    /// # Errors
-    /// Returns an error if the bytes are neither.
     pub fn parse(bytes: &'t [u8]) -> Result<Self, DocumentError> {
         let text = text_of(bytes)?;
         if !text.trim_start().starts_with('{') {
@@ -306,21 +305,18 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// A table with these keys and no others.
-    ///
-    /// # Errors
-    /// Returns an error if it is no table or has another key.
     pub fn table(self, known: &[&str]) -> Result<DocumentTable<'d>, DocumentError> {
         let table = self.any_table()?;
         match table.entries().find(|entry| !known.contains(&entry.key)) {
-            Some(entry) => Err(entry.unknown_key(known)),
+            Some(entry) => {
+                let known = known.join(", ");
+                Err(DocumentErrorKind::UnknownKey { known }.at(entry.position()))
+            }
             None => Ok(table),
         }
     }
 
     /// A table with any keys.
-    ///
-    /// # Errors
-    /// Returns an error if it is no table.
     pub fn any_table(self) -> Result<DocumentTable<'d>, DocumentError> {
         match &self.node.content {
             Content::Table(entries) => Ok(DocumentTable { value: self, entries }),
@@ -329,9 +325,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// The items of a list; `expected` describes the list in errors.
-    ///
-    /// # Errors
-    /// Returns an error if it is no list.
     pub fn list(
         self,
         expected: &'static str,
@@ -344,24 +337,20 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// The items of a list of a fixed length; `expected` describes the list in errors.
-    ///
-    /// # Errors
-    /// Returns an error if it is no list or has another length.
     pub fn array<const LENGTH: usize>(
         self,
         expected: &'static str,
     ) -> Result<[Self; LENGTH], DocumentError> {
-        let items: Vec<_> = self.list(expected)?.collect();
-        items.try_into().map_err(|_| {
+        let mut items = self.list(expected)?;
+        if items.len() != LENGTH {
             let found = "a list of another length";
-            self.error(DocumentErrorKind::WrongKind { expected: expected.into(), found })
-        })
+            let expected = expected.into();
+            return Err(self.error(DocumentErrorKind::WrongKind { expected, found }));
+        }
+        Ok(std::array::from_fn(|_| items.next().unwrap_or(self)))
     }
 
     /// A text.
-    ///
-    /// # Errors
-    /// Returns an error if it is no text.
     pub fn text(self) -> Result<&'d str, DocumentError> {
         match &self.node.content {
             Content::Text(text) => Ok(text),
@@ -370,9 +359,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// What one of several words stands for.
-    ///
-    /// # Errors
-    /// Returns an error if it is none of the words.
     pub fn word<T: Copy>(self, words: &[(&str, T)]) -> Result<T, DocumentError> {
         let word = match &self.node.content {
             Content::Text(text) => words.iter().find(|(word, _)| word == text),
@@ -392,9 +378,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// A number.
-    ///
-    /// # Errors
-    /// Returns an error if it is no number.
     #[expect(clippy::cast_precision_loss, reason = "what is counted or measured is smaller")]
     pub fn number(self) -> Result<f64, DocumentError> {
         match self.node.content {
@@ -405,9 +388,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// A number in a range; `what` is its meaning, with its unit.
-    ///
-    /// # Errors
-    /// Returns an error if it is no number or out of range.
     pub fn number_in(
         self,
         what: &'static str,
@@ -422,9 +402,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// A whole number.
-    ///
-    /// # Errors
-    /// Returns an error if it is no whole number.
     pub fn whole(self) -> Result<i64, DocumentError> {
         match self.node.content {
             Content::Whole(number) => Ok(number),
@@ -433,9 +410,6 @@ impl<'d> DocumentValue<'d> {
     }
 
     /// A whole number in a range; `what` is its meaning.
-    ///
-    /// # Errors
-    /// Returns an error if it is no whole number or out of range.
     #[expect(clippy::cast_precision_loss, reason = "only for the message")]
     pub fn whole_in(
         self,
@@ -492,9 +466,6 @@ impl<'d> DocumentTable<'d> {
     }
 
     /// The value of a key.
-    ///
-    /// # Errors
-    /// Returns an error if it has none.
     pub fn need(&self, key: &'static str) -> Result<DocumentValue<'d>, DocumentError> {
         self.get(key).ok_or_else(|| self.value.error(DocumentErrorKind::MissingKey { key }))
     }
@@ -505,12 +476,6 @@ impl DocumentEntry<'_> {
     #[must_use]
     pub fn position(&self) -> TextPosition {
         self.value.document.position(self.value.node, self.at)
-    }
-
-    /// The error that other keys are expected here.
-    #[must_use]
-    pub fn unknown_key(&self, known: &[&str]) -> DocumentError {
-        DocumentErrorKind::UnknownKey { known: known.join(", ") }.at(self.position())
     }
 }
 

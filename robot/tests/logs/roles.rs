@@ -175,7 +175,7 @@ fn where_several_topics_could_carry_the_same_none_is_chosen() {
     );
     assert_eq!(
         TopicMap::from_log(&log).unwrap_err().to_string(),
-        "2 topics could carry odometry: /odom, /goal; a mapping file tells which does"
+        "2 topics could carry odometry: /odom, /goal; a mapping file must choose one"
     );
     assert_eq!(
         TopicMap::unambiguous(&log).to_toml(),
@@ -197,7 +197,7 @@ fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
         ),
         (
             "[door]\ntopic = \"/junction\"",
-            "line 2, column 9: door.topic: for messages of type \"lab_msgs/Junction\" the key `door` must tell a path",
+            "line 2, column 9: door.topic: for messages of type \"lab_msgs/Junction\" the key `door` must give a path",
         ),
         (
             "[door]\ntopic = \"/junction\"\ndoor = \"arrow\"",

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Angle, Carrier, Cause, Length, Part, Role, TopicMap, TopicMapError};
+use super::{Angle, Carrier, Length, Part, Role, TopicMap, TopicMapError, TopicMapErrorKind};
 use crate::log::{
     definition::{Count, Definition, FieldType},
     topic::Topic,
@@ -41,16 +41,16 @@ pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<Bound, TopicM
 }
 
 fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
-    let wrong = |cause: Cause| cause.at(carrier.place.clone());
+    let wrong = |cause: TopicMapErrorKind| cause.at(carrier.place.clone());
     let (index, topic) = named(&carrier.topic, topics).map_err(wrong)?;
     let definition = topic.definition.as_ref().map_err(|why| {
-        wrong(Cause::Undecodable { topic: carrier.topic.clone(), why: why.to_string() })
+        wrong(TopicMapErrorKind::Undecodable { topic: carrier.topic.clone(), why: why.to_string() })
     })?;
     let type_name = topic.short_type();
     let usual = role.usual(&type_name);
     let own = role.own() == Some(type_name.as_str()) && carrier.paths.is_empty();
     if usual.is_none() && role.parts().is_empty() {
-        return Err(wrong(Cause::WrongType { role, type_name }));
+        return Err(wrong(TopicMapErrorKind::WrongType { role, type_name }));
     }
     let mut paths = carrier.paths.clone();
     if !own {
@@ -64,7 +64,7 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
         }
         for part in needed(role, &paths) {
             if !paths.contains_key(&part) {
-                return Err(wrong(Cause::NoPath { part, type_name }));
+                return Err(wrong(TopicMapErrorKind::NoPath { part, type_name }));
             }
         }
     }
@@ -73,7 +73,9 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
         let expected = if *part == Part::Quaternion { "a quaternion" } else { "a number" };
         if !leads(definition, path, *part) {
             let (path, type_name) = (path.clone(), type_name.clone());
-            return Err(Cause::WrongPath { path, expected, type_name }.at(place.clone()));
+            return Err(
+                TopicMapErrorKind::WrongPath { path, expected, type_name }.at(place.clone())
+            );
         }
     }
     let (length, angle) = (carrier.length, carrier.angle);
@@ -92,18 +94,18 @@ fn needed(role: Role, paths: &BTreeMap<Part, String>) -> Vec<Part> {
     }
 }
 
-fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Cause> {
+fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), TopicMapErrorKind> {
     let mut found = topics.iter().enumerate().filter(|(_, topic)| topic.name == name);
     let Some(first) = found.next() else {
         const SHOWN: usize = 12;
         let names = topics.iter().take(SHOWN).map(|topic| topic.name.escape_debug().to_string());
         let more = (topics.len() > SHOWN).then(|| "...".to_owned());
         let known: Vec<_> = names.chain(more).collect();
-        return Err(Cause::NoTopic { topic: name.to_owned(), known: known.join(", ") });
+        return Err(TopicMapErrorKind::NoTopic { topic: name.to_owned(), known: known.join(", ") });
     };
     match found.next() {
         None => Ok(first),
-        Some(_) => Err(Cause::TwoTopics(name.to_owned())),
+        Some(_) => Err(TopicMapErrorKind::TwoTopics(name.to_owned())),
     }
 }
 

@@ -38,7 +38,7 @@ mod role;
 
 pub use bound::Bound;
 pub(super) use bound::Carried;
-pub use error::{Cause, TopicMapError};
+pub use error::{TopicMapError, TopicMapErrorKind};
 pub use guess::{Guess, guess};
 pub use role::{Angle, Length, Part, Role};
 
@@ -106,7 +106,7 @@ impl TopicMap {
         if let Some(Guess { role, topics }) = guesses.iter().find(|guess| guess.topics.len() > 1) {
             let names = topics.iter().filter_map(|topic| log.topics().get(*topic));
             let topics = names.map(|topic| topic.name.clone()).collect();
-            return Err(Cause::Several { role: *role, topics }.in_file());
+            return Err(TopicMapErrorKind::Several { role: *role, topics }.in_file());
         }
         Ok(Self::unambiguous(log))
     }

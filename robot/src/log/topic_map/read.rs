@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
-use super::{Angle, Carrier, Cause, Length, Part, Role, TopicMap, TopicMapError};
+use super::{Angle, Carrier, Length, Part, Role, TopicMap, TopicMapError, TopicMapErrorKind};
 
 pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
     let document = Document::parse_toml(bytes)?;
@@ -16,7 +16,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
         }
     }
     if carriers.is_empty() {
-        return Err(Cause::Empty.at(file.position()));
+        return Err(TopicMapErrorKind::Empty.at(file.position()));
     }
     Ok(TopicMap { carriers })
 }
@@ -46,7 +46,7 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
     }
     match carrier.places.get(&Part::Quaternion) {
         Some(place) if carrier.paths.contains_key(&Part::Heading) => {
-            Err(Cause::TwoHeadings.at(place.clone()))
+            Err(TopicMapErrorKind::TwoHeadings.at(place.clone()))
         }
         _ => Ok(carrier),
     }

@@ -64,7 +64,7 @@ fn what_is_wrong_is_told_with_its_line_and_column() {
         ),
         (
             "[odometry]\ntopic = \"a\"\nheading = \"h\"\nquaternion = \"q\"",
-            "line 4, column 14: odometry.quaternion: either `heading` or `quaternion` tells where the robot looks, not both",
+            "line 4, column 14: odometry.quaternion: there are both `heading` and `quaternion`; the file needs only one of them",
         ),
     ] {
         let found = wrong(text);
