@@ -47,7 +47,7 @@ pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
     let along = |axis: Axis| walls.iter().filter(move |wall| wall.along == axis);
     let mut corners: Vec<Corner> = Vec::new();
     for x_wall in along(Axis::X) {
-        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall, params)));
+        corners.extend(along(Axis::Y).filter_map(|y_wall| meeting(x_wall, y_wall, params.touch)));
     }
     for wall in walls {
         let ends = [(wall.to, -1.0), (wall.from, 1.0)];
@@ -57,11 +57,10 @@ pub fn corners(walls: &[WallSegment], params: &CornerParams) -> Vec<Corner> {
 }
 
 /// The corner of two walls, if their ends touch.
-fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, params: &CornerParams) -> Option<Corner> {
+fn meeting(x_wall: &WallSegment, y_wall: &WallSegment, touch: f64) -> Option<Corner> {
     let position = [y_wall.offset, x_wall.offset];
-    let touches = |wall: &WallSegment, at: f64| {
-        (wall.from - at).abs().min((wall.to - at).abs()) <= params.touch
-    };
+    let touches =
+        |wall: &WallSegment, at: f64| (wall.from - at).abs().min((wall.to - at).abs()) <= touch;
     if !touches(x_wall, position[0]) || !touches(y_wall, position[1]) {
         return None;
     }

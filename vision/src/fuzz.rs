@@ -14,8 +14,11 @@ use crate::{
     sensing::Sensor,
 };
 
-/// All targets by their names, which are also those of their folders in `fuzz/corpus/`.
-pub const TARGETS: &[(&str, fn(&[u8]))] =
+/// The name of a target, of its folder in `fuzz/corpus/`, and its body.
+pub type VisionFuzzTarget = (&'static str, fn(&[u8]));
+
+/// All targets.
+pub const TARGETS: &[VisionFuzzTarget] =
     &[("image", image), ("calibration", calibration), ("colours", colours)];
 
 /// The size of the images: the smallest with which hallways and junctions can be distinguished.

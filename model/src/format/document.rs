@@ -21,7 +21,7 @@ pub struct TextPosition {
     /// and for the document as a whole.
     pub line_column: Option<(usize, usize)>,
     /// The path of a key, such as `clockwise.a` or `hallways[0].from`. It may be empty.
-    pub key: String,
+    pub key: Box<str>,
 }
 
 impl TextPosition {
@@ -32,7 +32,7 @@ impl TextPosition {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
         let column = before[line_start..].chars().count() + 1;
-        Self { line_column: Some((line, column)), key: String::new() }
+        Self { line_column: Some((line, column)), key: Box::default() }
     }
 }
 
@@ -183,7 +183,7 @@ impl<'t> Document<'t> {
         let mut key = String::new();
         find(&self.root, node, &mut key);
         let position = at.map(|at| TextPosition::at_byte(self.text.as_bytes(), at));
-        TextPosition { key, ..position.unwrap_or_default() }
+        TextPosition { key: key.into(), ..position.unwrap_or_default() }
     }
 }
 
@@ -201,7 +201,7 @@ fn text_of(bytes: &[u8]) -> Result<&str, DocumentError> {
 }
 
 /// The keys of a table in the order of the document.
-fn table_content<'t>(table: DeTable<'t>) -> Result<Content<'t>, (usize, &'static str)> {
+fn table_content(table: DeTable<'_>) -> Result<Content<'_>, (usize, &'static str)> {
     let mut entries = Vec::with_capacity(table.len());
     for (key, value) in table {
         let at = key.span().start;
@@ -216,7 +216,7 @@ fn table_content<'t>(table: DeTable<'t>) -> Result<Content<'t>, (usize, &'static
 }
 
 #[expect(clippy::cast_precision_loss, reason = "no key takes a whole number as large")]
-fn node<'t>(value: toml::Spanned<DeValue<'t>>) -> Result<Node<'t>, (usize, &'static str)> {
+fn node(value: toml::Spanned<DeValue<'_>>) -> Result<Node<'_>, (usize, &'static str)> {
     let at = value.span().start;
     let content = match value.into_inner() {
         DeValue::Table(table) => table_content(table)?,

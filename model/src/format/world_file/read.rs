@@ -181,14 +181,14 @@ fn position_of_key(table: &DocumentTable<'_>, key: Option<&str>) -> TextPosition
 }
 
 /// The name of a world. It may be empty.
-fn world_name<'d>(value: DocumentValue<'d>) -> Result<&'d str, WorldFileError> {
+fn world_name(value: DocumentValue<'_>) -> Result<&str, WorldFileError> {
     match value.text() {
         Ok("") => Ok(""),
         _ => name(value),
     }
 }
 
-fn name<'d>(value: DocumentValue<'d>) -> Result<&'d str, WorldFileError> {
+fn name(value: DocumentValue<'_>) -> Result<&str, WorldFileError> {
     let text = value.text().map_err(|_| value.expected("a name"))?;
     if is_name(text) { Ok(text) } else { Err(not_a_name(text).at(value.position())) }
 }
