@@ -1,5 +1,5 @@
-//! The atlas in `worlds/atlas` is what the search finds, up to sizes that take seconds. The whole of
-//! it is made by the command that its README names.
+//! The atlas in `worlds/atlas` contains what the search finds, up to sizes that take seconds. The command
+//! in its README writes all of it.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -28,7 +28,7 @@ fn read(name: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join("worlds/atlas").join(name)).unwrap()
 }
 
-/// The cell of the atlas's table, without its links.
+/// A cell of the atlas's table, without its links.
 fn cell(table: &str, marker: &dyn Marker, class: Class) -> String {
     let start = format!("| {} |", marker.name());
     let row = table.lines().find(|line| line.starts_with(&start)).unwrap();
@@ -42,7 +42,7 @@ fn cell(table: &str, marker: &dyn Marker, class: Class) -> String {
 }
 
 #[test]
-fn the_atlas_is_what_the_search_finds() {
+fn the_atlas_contains_what_the_search_finds() {
     let table = read("README.md");
     let mut files = BTreeSet::from(["README.md".to_owned()]);
     // Each class with the size that is searched here, and that of the whole atlas.
@@ -83,6 +83,6 @@ fn the_atlas_is_what_the_search_finds() {
     let kept = fs::read_dir(Path::new(ROOT).join("worlds/atlas")).unwrap();
     let kept: BTreeSet<_> =
         kept.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    assert_eq!(kept, files, "the atlas holds the pairs and nothing else");
+    assert_eq!(kept, files, "the atlas contains the pairs and nothing else");
     assert_eq!(files.len(), 1 + 18 * 2 * 2);
 }

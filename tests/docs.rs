@@ -100,9 +100,9 @@ fn the_pictures_are_what_the_program_draws() {
     assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));
 }
 
-/// The times in that table are measured; its moves are those of the specification.
+/// The times in that table are measured. Its moves are those of the specification.
 #[test]
-fn what_mapping_costs_a_robot_is_what_the_specification_says() {
+fn the_moves_in_the_table_of_worlds_are_those_of_the_specification() {
     let text = read("worlds/README.md");
     let (_, table) = text.split_once("## What mapping costs a robot").unwrap();
     let (table, _) = table.split_once("\n## ").unwrap();
@@ -118,9 +118,9 @@ fn what_mapping_costs_a_robot_is_what_the_specification_says() {
         let folders = ["worlds/shapes", "worlds"];
         let files = folders.map(|folder| format!("{folder}/{name}.toml"));
         let file = files.iter().find(|file| Path::new(file).exists()).unwrap();
-        let told = toposlam(&["explore", file, "--start", start, "--json"]);
-        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-        assert_eq!(format!("{} : {}", told["moves"], told["edges"]), cost, "{name}");
+        let result = toposlam(&["explore", file, "--start", start, "--json"]);
+        let result: serde_json::Value = serde_json::from_str(&result).unwrap();
+        assert_eq!(format!("{} : {}", result["moves"], result["edges"]), cost, "{name}");
     }
 }
 

@@ -1,5 +1,5 @@
-//! The bodies of the fuzz targets on stable Rust: on every seed, and on a fixed number of mutations
-//! of the seeds, always the same ones; what fails is shrunk.
+//! The fuzz targets on stable Rust: every seed, and a fixed number of mutations of the seeds, always the
+//! same ones. A failing input is shrunk.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -28,26 +28,26 @@ use toposlam_robot::log::{
 };
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
 
-/// A body for a fuzzer, and where it is.
+/// A fuzz target.
 #[derive(Clone, Copy)]
-struct Target {
+struct FuzzTarget {
     name: &'static str,
     body: fn(&[u8]),
     /// The package of the body.
     package: &'static str,
 }
 
-/// Every body: of worlds and of choices, of sensing, and of logs.
-fn targets() -> Vec<Target> {
-    let proofs = toposlam_proofs::fuzz::TARGETS.iter().map(|target| Target {
+/// Every target: worlds and choices, sensing, logs.
+fn targets() -> Vec<FuzzTarget> {
+    let proofs = toposlam_proofs::fuzz::TARGETS.iter().map(|target| FuzzTarget {
         name: target.name,
         body: target.body,
         package: "toposlam_proofs",
     });
     let vision = toposlam_vision::fuzz::TARGETS.iter();
-    let vision = vision.map(|&(name, body)| Target { name, body, package: "toposlam_vision" });
+    let vision = vision.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_vision" });
     let robot = toposlam_robot::fuzz::TARGETS.iter();
-    let robot = robot.map(|&(name, body)| Target { name, body, package: "toposlam_robot" });
+    let robot = robot.map(|&(name, body)| FuzzTarget { name, body, package: "toposlam_robot" });
     proofs.chain(vision).chain(robot).collect()
 }
 
@@ -56,13 +56,13 @@ fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// What stands in a folder, in the order of the names.
+/// The names in a folder.
 fn names_in(folder: &str) -> BTreeSet<String> {
     let entries = fs::read_dir(repository(folder)).unwrap();
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// The seeds of a target, each with its name; what cargo-fuzz has added to them is named by its hash.
+/// The seeds of a target with their names, without the files that cargo-fuzz added (named by a hash).
 fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
     let folder = format!("fuzz/corpus/{target}");
     let is_hash = |name: &String| name.len() == 40 && name.bytes().all(|b| b.is_ascii_hexdigit());
@@ -70,7 +70,7 @@ fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
     names.map(|name| (name.clone(), fs::read(repository(&folder).join(name)).unwrap())).collect()
 }
 
-fn target(name: &str) -> Target {
+fn target(name: &str) -> FuzzTarget {
     targets().into_iter().find(|target| target.name == name).unwrap()
 }
 
@@ -102,7 +102,7 @@ enum Edit {
         bytes: usize,
         of: Index,
     },
-    /// Another number in place of one, where the file has any.
+    /// Replaces a number, if the file has one.
     Number {
         at: Index,
         number: String,
@@ -152,7 +152,7 @@ impl Edit {
     }
 }
 
-/// Where numbers stand in a text.
+/// The ranges of the numbers in a text.
 fn numbers_in(text: &[u8]) -> Vec<Range<usize>> {
     let is_part = |byte: &u8| byte.is_ascii_digit() || *byte == b'.';
     let mut numbers = Vec::new();
@@ -168,7 +168,7 @@ fn numbers_in(text: &[u8]) -> Vec<Range<usize>> {
 
 fn any_edit() -> impl Strategy<Value = Edit> {
     let at = any::<Index>;
-    // Small numbers, the bounds of a byte, and what stands in text.
+    // Small numbers, the bounds of a byte, and characters.
     let byte = || prop_oneof![0..6_u8, Just(255), Just(b'\n'), b' '..=b'~', any::<u8>()];
     prop_oneof![
         at().prop_map(|at| Edit::Truncate { at }),
@@ -186,7 +186,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
     ]
 }
 
-/// Numbers small and large, with and without a fraction, and what is none.
+/// Small and large numbers, with and without a fraction, and values that are not numbers.
 fn any_number() -> impl Strategy<Value = String> {
     prop_oneof![
         4 => (0..40_u32).prop_map(|number| number.to_string()),
@@ -198,9 +198,9 @@ fn any_number() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Runs a body on the seeds, and on so many mutations of them.
+/// Runs a target on its seeds and on a number of mutations of them.
 fn holds(name: &str, mutations: u32) {
-    let Target { body, .. } = target(name);
+    let FuzzTarget { body, .. } = target(name);
     let seeds = seeds(name);
     for (_, seed) in &seeds {
         body(seed);
@@ -306,7 +306,7 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
     let (_, list) = workflow.split_once("target: [").expect("the workflow lists the targets");
     let list = list.split_once(']').unwrap().0.split(", ").map(str::to_owned);
     assert_eq!(list.collect::<BTreeSet<_>>(), names);
-    for Target { name, package, .. } in targets {
+    for FuzzTarget { name, package, .. } in targets {
         let main = fs::read_to_string(repository(&format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
         assert!(main.contains(&format!("{package}::fuzz::{name}(bytes)")), "{name}: {main}");
         let seeds = seeds(name);
@@ -317,9 +317,9 @@ fn every_target_has_a_body_and_seeds_and_is_run() {
     }
 }
 
-/// A seed that is in error is called so, and no other.
+/// The name of a seed starts with `error-` exactly if the seed is invalid.
 #[test]
-fn seeds_are_what_they_are_called() {
+fn the_names_of_seeds_show_whether_they_are_valid() {
     let others = targets().into_iter().map(|target| target.name).filter(|name| *name != "mapping");
     for target in others {
         for (name, bytes) in seeds(target) {
@@ -344,14 +344,14 @@ fn seeds_are_what_they_are_called() {
                 "cdr_message" => is_message(Dialect::Ros2, &bytes),
                 "log_mapping" => TopicMap::read(&bytes).is_ok(),
                 "world_file" => world_file::read(&bytes).is_ok(),
-                _ => panic!("{target} is not known here"),
+                _ => panic!("unknown target {target}"),
             };
             assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
         }
     }
 }
 
-/// Whether bytes are a definition, and after a zero byte a message of it.
+/// Whether bytes are a definition, a zero byte and a message of that definition.
 fn is_message(dialect: Dialect, bytes: &[u8]) -> bool {
     let zero = bytes.iter().position(|&byte| byte == 0).unwrap();
     let text = std::str::from_utf8(&bytes[..zero]).unwrap();

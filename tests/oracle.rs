@@ -1,6 +1,5 @@
-//! The algorithms, and what a marker cannot tell apart, against second implementations in Python. That
-//! of Algorithm 1 shares nothing with it but the reading of the paper; the others, nothing but
-//! descriptions.
+//! The algorithms and the search for indistinguishable worlds, compared with second implementations in
+//! Python. The Python code shares no code with the Rust code, only the paper and descriptions.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -17,7 +16,7 @@ fn objects(command: &mut Command) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Whether Python is there to run a second implementation; says so if it is not.
+/// Whether Python can run a second implementation. Prints a message if not.
 fn python(program: &str) -> bool {
     let found = Command::new("python3").arg("--version").output().is_ok();
     if !found {
@@ -26,13 +25,13 @@ fn python(program: &str) -> bool {
     found
 }
 
-/// Every key that the oracle prints has the same value in what `check` prints.
+/// Asserts that every key that the oracle prints has the same value in the output of `check`.
 fn agree(oracle: &[&str], check: &[&str]) {
     let script = format!("tests/oracle/{}", oracle[0]);
     if !python(&script) {
         return;
     }
-    // -B: it leaves nothing behind.
+    // -B: no files are left behind.
     let oracle = objects(Command::new("python3").args(["-B", &script]).args(&oracle[1..]));
     let check = [&["check", "--json"], check].concat();
     let ours = objects(Command::new(env!("CARGO_BIN_EXE_toposlam")).args(check));
@@ -60,7 +59,7 @@ fn with_a_movable_marker_the_moves_are_the_same() {
     agree(&["movable_marker.py", "6"], &["--edges", "1..=6", "--marker", "movable"]);
 }
 
-/// What `counterexample` prints, as the oracle would print it: `KIND m placed_worlds ambiguous` and
+/// The output of `counterexample` in the format of the oracle: `KIND m placed_worlds ambiguous` and
 /// `KIND smallest M K`.
 fn counterexamples(class: &str, edges: &str) -> String {
     let lines = objects(Command::new(env!("CARGO_BIN_EXE_toposlam")).args([
@@ -71,9 +70,9 @@ fn counterexamples(class: &str, edges: &str) -> String {
         "--edges",
         edges,
     ]));
-    let told = lines.iter().map(|line| {
+    let found = lines.iter().map(|line| {
         let marker = line["marker"].as_str().unwrap();
-        let told = match line["smallest"]["worlds"].as_array() {
+        let found = match line["smallest"]["worlds"].as_array() {
             Some(worlds) => {
                 let size = |world: &Value| {
                     let world = world_file::read(world.to_string().as_bytes()).unwrap();
@@ -84,13 +83,13 @@ fn counterexamples(class: &str, edges: &str) -> String {
             None if line.get("smallest").is_some() => "smallest none".to_owned(),
             None => format!("{} {} {}", line["edges"], line["placed_worlds"], line["ambiguous"]),
         };
-        format!("{marker} {told}\n")
+        format!("{marker} {found}\n")
     });
-    told.collect()
+    found.collect()
 }
 
 #[test]
-fn the_same_worlds_are_counted_and_cannot_be_told_apart() {
+fn the_same_worlds_are_counted_and_indistinguishable() {
     let program = "tests/oracle/ambiguity.py";
     if !python(program) {
         return;

@@ -1,5 +1,5 @@
-//! The paper, traced: every citation is of a requirement, everything done is cited by code and by
-//! a test, and `toposlam paper` says so.
+//! The trace of the paper: every citation names a requirement, code and a test cite everything that is
+//! done, and `toposlam paper` reports it.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
@@ -27,7 +27,7 @@ fn lines_of(output: &Output) -> Vec<&str> {
 }
 
 #[test]
-fn every_citation_is_of_a_requirement() {
+fn every_citation_names_a_requirement() {
     let requirements = table();
     let unknown: Vec<_> = PaperTrace::new(&requirements, CITATIONS)
         .unknown
@@ -38,7 +38,7 @@ fn every_citation_is_of_a_requirement() {
 }
 
 #[test]
-fn everything_done_is_cited_by_code_and_by_a_test() {
+fn code_and_a_test_cite_everything_that_is_done() {
     let requirements = table();
     let trace = PaperTrace::new(&requirements, CITATIONS);
     let code = trace.rows.iter().filter(|row| row.lacks_code());
@@ -47,7 +47,7 @@ fn everything_done_is_cited_by_code_and_by_a_test() {
         .map(|row| format!("code lacks  // paper: {}", row.requirement.id))
         .chain(tests.map(|row| format!("tests lack  // paper: {}", row.requirement.id)))
         .collect();
-    assert!(lacking.is_empty(), "said to be done in tests/paper.toml, but\n{}", lacking.join("\n"));
+    assert!(lacking.is_empty(), "marked as done in tests/paper.toml, but\n{}", lacking.join("\n"));
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn every_line_of_both_algorithms_is_a_requirement() {
 }
 
 #[test]
-fn the_requirements_stand_in_the_order_of_the_sections() {
+fn the_requirements_are_in_the_order_of_the_sections() {
     let numbers = |section: &str| -> Vec<u8> {
         let parts = section.split('.');
         parts.map(|part| part.parse().unwrap()).collect()
@@ -72,7 +72,7 @@ fn the_requirements_stand_in_the_order_of_the_sections() {
 }
 
 #[test]
-fn the_embedded_citations_are_where_they_say() {
+fn the_embedded_citations_are_at_their_lines() {
     assert!(!CITATIONS.is_empty());
     for citation in CITATIONS {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(citation.file);
@@ -88,7 +88,7 @@ fn the_embedded_citations_are_where_they_say() {
 }
 
 #[test]
-fn an_unknown_id_and_a_missing_citation_are_noticed() {
+fn an_unknown_id_and_a_missing_citation_are_faults() {
     let done: Vec<_> = table()
         .into_iter()
         .filter(|requirement| requirement.id == "alg1.4" || requirement.id == "alg2.4")
@@ -130,7 +130,7 @@ fn an_open_requirement_need_not_be_cited() {
 }
 
 #[test]
-fn the_verb_answers_1_exactly_where_something_is_missing() {
+fn the_exit_code_is_1_exactly_if_something_is_missing() {
     let requirements = table();
     let holds = PaperTrace::new(&requirements, CITATIONS).holds();
     for arguments in [&[][..], &["--json"], &["--open"], &["--section", "4"]] {
@@ -140,21 +140,21 @@ fn the_verb_answers_1_exactly_where_something_is_missing() {
 }
 
 #[test]
-fn the_table_shows_every_requirement_within_100_columns() {
+fn the_table_lists_every_requirement_within_80_columns() {
     let output = toposlam_paper(&[]);
     let lines = lines_of(&output);
     for line in &lines {
-        assert!(line.chars().count() <= 100, "{line}");
+        assert!(line.chars().count() <= 80, "{line}");
         assert_eq!(line.trim_end(), *line);
     }
     for requirement in table() {
-        let shown = |line: &&&str| line.split_whitespace().next() == Some(&requirement.id);
-        assert_eq!(lines.iter().filter(shown).count(), 1, "{}", requirement.id);
+        let is_head = |line: &&&str| line.split_whitespace().next() == Some(&requirement.id);
+        assert_eq!(lines.iter().filter(is_head).count(), 1, "{}", requirement.id);
     }
 }
 
 #[test]
-fn json_is_one_object_a_line_and_the_totals_last() {
+fn the_json_is_one_object_a_line_with_the_totals_last() {
     let output = toposlam_paper(&["--json", "--section", "2"]);
     let objects: Vec<serde_json::Value> =
         lines_of(&output).iter().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -169,18 +169,18 @@ fn json_is_one_object_a_line_and_the_totals_last() {
 }
 
 #[test]
-fn a_section_that_the_paper_has_not_is_bad_usage() {
+fn an_unknown_section_is_bad_usage() {
     let output = toposlam_paper(&["--section", "9"]);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("`9`") && message.contains("2.3"), "{message}");
 }
 
-/// What the print has wrong is told where it stands, with what is right.
+/// An error in the printed paper is listed with its correction.
 #[test]
-fn a_slip_of_the_print_is_told() {
-    let slips: Vec<_> = table().into_iter().filter(|it| it.erratum.is_some()).collect();
-    assert_eq!(slips.iter().map(|it| it.id.as_str()).collect::<Vec<_>>(), ["fig1.step"]);
+fn an_erratum_is_listed() {
+    let errata: Vec<_> = table().into_iter().filter(|it| it.erratum.is_some()).collect();
+    assert_eq!(errata.iter().map(|it| it.id.as_str()).collect::<Vec<_>>(), ["fig1.step"]);
     let output = toposlam_paper(&["--section", "2.2"]);
     assert!(lines_of(&output).iter().any(|line| line.contains("erratum  The print gives")));
 }

@@ -1,4 +1,4 @@
-//! The picture and the page of a run, as a simulated robot makes it. Section 6, Figure 11.
+//! The picture and the page of a simulated run. Section 6, Figure 11.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -24,13 +24,13 @@ fn pictures() -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn the_picture_of_a_run_has_its_whole_way_and_every_call() {
+fn the_picture_of_a_run_shows_its_whole_path_and_every_call() {
     let journal = journal::journal("shape-6", Vec::new());
     assert_eq!(journal.ending, "the map is right");
     let svg = run_svg(&journal);
     let lists = svg.split(" points=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
     let points: Vec<_> = lists.map(|list| list.split(' ').count()).collect();
-    // Two pieces of the way share a point.
+    // Two pieces of the path share a point.
     assert_eq!(points.iter().sum::<usize>(), journal.rounds.len() + points.len() - 1);
     assert_eq!(svg.matches("class=\"call\"").count(), journal.calls.len());
     assert_eq!(svg.matches("class=\"call wrong\"").count(), 0);

@@ -1,6 +1,6 @@
 //! The walk page in a browser. Section 2.2, Figure 1: a random walk in its two worlds shows the same
-//! percepts in both as long as the marker does not point; with a directional marker a walk tells
-//! them apart.
+//! percepts in both as long as the marker does not point. With a directional marker a walk distinguishes
+//! them.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -26,7 +26,7 @@ fn write_page(marker: &str) -> PathBuf {
 }
 
 #[test]
-fn the_percepts_of_figure_1_stay_equal_until_the_marker_points() {
+fn the_percepts_of_figure_1_are_equal_until_the_marker_points() {
     let pages = [
         ("undirected", "alike"),
         ("undirected-edge", "apart"),
@@ -35,6 +35,6 @@ fn the_percepts_of_figure_1_stay_equal_until_the_marker_points() {
         ("two-distinct", "apart"),
         ("movable", "apart"),
     ]
-    .map(|(marker, told)| format!("{told}={}", write_page(marker).display()));
+    .map(|(marker, result)| format!("{result}={}", write_page(marker).display()));
     browser::open("walk_page.mjs", &pages);
 }

@@ -1,4 +1,4 @@
-//! `toposlam check`: an algorithm on every start of every world up to a size.
+//! `toposlam check`: an algorithm runs on every start of every world up to a size.
 
 mod edge_range;
 mod report;
@@ -27,54 +27,54 @@ use super::{
 use edge_range::EdgeRange;
 use report::{AlgorithmInfo, CheckReport, SizeResult};
 
-/// Run Algorithm 1 on every start of every world up to a size; is every map right?
+/// Run Algorithm 1 on every start of every world up to a size, and check every map
 ///
-/// Each map is proved right by a bijection between it and the world; the robot must be where it
-/// believes to be; and the moves must stay within m n + 2 m^2 (n - 1).
+/// For each start, a bijection proves that the map is isomorphic to the world, the robot is where it
+/// believes to be, and the number of moves is at most m n + 2 m^2 (n - 1), for m edges and n vertices.
 ///
-/// With --marker movable it is the algorithm with one movable marker instead, on worlds without
-/// loops and parallel edges; its moves must stay within 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7).
+/// With --marker movable, the algorithm for one movable marker is checked instead, on worlds without
+/// loops and parallel edges. Its bound is 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7) moves.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam check                                  every world with up to 6 edges
-  toposlam check --edges 8 --class planar --json  one size of one class, for a program
-  toposlam check --edges 7 --shard 1/4            a quarter of the work
-  toposlam check --edges 1..=4 --choices all      every resolution of what Algorithm 1 leaves open
-  toposlam check --from worlds/petersen.toml      every start of the worlds in a file
-  toposlam check --marker movable                 one marker that the robot carries and drops
+  toposlam check                              every world with up to 6 edges
+  toposlam check --edges 8 --class planar     one size of one class
+  toposlam check --edges 7 --shard 1/4        a quarter of the work
+  toposlam check --edges 1..=4 --choices all  every open choice
+  toposlam check --from worlds/petersen.toml  the worlds in a file
+  toposlam check --marker movable             a marker that the robot carries
 
-Ctrl-C ends a check early, and prints what was checked.
+Ctrl-C stops the check and prints the results so far.
 
-Exit codes: 0 every map is right, 1 one is wrong, 2 bad usage or input, 3 not all was checked.")]
+Exit codes: 0 every map is right, 1 a map is wrong, 2 bad usage or input, 3 not everything was \
+checked.")]
 pub(super) struct CheckArguments {
-    /// Numbers of edges: one, as in 6, or several, as in 1..=6
+    /// Number of edges, as in 6, or a range, as in 1..=6
     #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
     edges: EdgeRange,
 
-    /// Class of worlds: multigraph, simple, corridor or planar
-    /// [default: multigraph; with --marker movable: simple]
+    /// Class of worlds: multigraph, simple, corridor or planar [default: multigraph, or simple with
+    /// --marker movable]
     #[arg(long)]
     class: Option<Class>,
 
-    /// Marker with which the worlds are mapped: directional (by Algorithm 1) or movable
+    /// The robot's marker: directional (Algorithm 1) or movable
     #[arg(long, default_value = "directional")]
     marker: MappingMarker,
 
-    /// Runs of each start: default, or all that the open choices allow
+    /// Runs from each start: default, or all that the open choices of Algorithm 1 allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: ChoicesOption,
 
-    /// With --choices all: give up on a start that has more states
-    /// [default: 1000000]
+    /// With --choices all: skip a start that has more states [default: 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 
-    /// Check one of n disjoint shares, as in 2/4
+    /// Check one of N disjoint shares of the worlds, as in 2/4
     #[arg(long, default_value = "1/1", value_name = "I/N", allow_hyphen_values = true)]
     shard: Shard,
 
-    /// Check the worlds in a file (world file, planar_code, edge_code) instead
+    /// Check the worlds in a file (world file, planar_code or edge_code) instead
     #[arg(long, value_name = "FILE", conflicts_with_all = ["edges", "class", "shard"])]
     from: Option<PathBuf>,
 
@@ -82,7 +82,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "FILE")]
     worst: Option<PathBuf>,
 
-    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -121,7 +121,7 @@ impl CheckArguments {
         if let Some(worst) = &self.worst {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
-        let begun = Instant::now();
+        let start = Instant::now();
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
@@ -133,7 +133,7 @@ impl CheckArguments {
                 break;
             }
         }
-        let outcome = report.verdict(begun.elapsed())?;
+        let outcome = report.verdict(start.elapsed())?;
         if let Some(path) = &self.worst {
             write_worst(path, worst)?;
         }
@@ -183,7 +183,7 @@ impl Work {
         Ok(tally)
     }
 
-    /// Whether no world in it has a loop or parallel edges.
+    /// Whether no world has a loop or parallel edges.
     fn is_simple(&self) -> bool {
         match self {
             Self::Sweep(sweep) => sweep.class().is_simple(),
@@ -204,6 +204,6 @@ fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), Failure> {
         eprintln!("{} is not written: no start was mapped", path.display());
         return Ok(());
     };
-    let about = format!("The start that took the most moves, {moves}, in a check");
+    let about = format!("The start that took the most moves in a check: {moves}");
     output::write_world(path, &NamedWorld::discovered("worst", &about, &graph, facing))
 }

@@ -1,5 +1,5 @@
-//! `toposlam compare A B`: the same world, mirror images, or what differs; and can a robot with a
-//! marker tell them apart?
+//! `toposlam compare A B`: are two worlds isomorphic or mirror images, and can a robot with a marker
+//! distinguish them?
 
 mod joint_walk;
 mod robot_comparison;
@@ -16,45 +16,46 @@ use toposlam_model::{
 
 use super::{
     Failure, Outcome, input, marker_kinds,
-    text::{counted, vertices},
+    text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
 };
 use joint_walk::ActionList;
 use robot_comparison::RobotComparison;
 
-/// Compare two worlds: isomorphic, mirror images, or the first difference; and by which walk, if by
-/// any, a robot with a marker tells them apart
+/// Compare two worlds: are they isomorphic, and can a robot with a marker distinguish them?
+///
+/// Two worlds are isomorphic if a bijection of their darts (edge ends) preserves edges and clockwise
+/// orders. A mirror image has every order reversed; two worlds can be both. The starts do not matter for
+/// this.
+///
+/// The start in each file places the marker. The robot in A begins there. The robot in B begins at each
+/// pose that the marker cannot distinguish from its start, unless --start is given twice.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --marker undirected
-  toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --marker directional --walk 0,1,1
-  toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none --html cycles.html
+  toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
+  toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --walk 0,1,1
+  toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none
 
-Isomorphic means: a bijection of edge ends keeps edges and clockwise orders. A mirror image has
-every order reversed. Both can be so at once. The starts do not matter for this.
-
-The marker is placed once in each world, by its start. The robot in A begins there; the one in B
-begins in every way that the marker cannot tell from its start, unless --start is given twice.
-Where no walk tells the worlds apart, all pairs of states that the robots can be in are the proof:
-v:2~w:0 is the robot in A at v, having come in by the dart 2 places clockwise from the first that
-the file lists, and the one in B at w. With a movable marker, v:2@u is a marker that lies at u, and
-v:2+marker one that is carried.")]
+If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
+be in. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
+in the file, and the robot in B is at w. With a movable marker, v:2@u has the marker at u, and in \
+v:2+marker the robot carries it.")]
 pub(super) struct CompareArguments {
     /// A world file
     a: PathBuf,
     /// Another world file
     b: PathBuf,
 
-    /// Kind of marker [default: directional, where both worlds have a start]
+    /// Kind of marker [default: directional, if both worlds have a start]
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
 
-    /// Where the robot starts in A, instead of the file's [start]; given twice, then in B too
+    /// Where the robot starts in A; a second --start is for B [default: the starts in the files]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Vec<String>,
 
-    /// Walk in both worlds: door numbers, pick-up and drop, with commas between them
+    /// Print the percepts of a walk in both worlds: doors, pick-up and drop, separated by commas
     #[arg(long, value_name = "ACTIONS")]
     walk: Option<ActionList>,
 
@@ -67,11 +68,10 @@ pub(super) struct CompareArguments {
     json: bool,
 }
 
-/// Why robots cannot walk.
-const NO_START: &str = "there is no start to walk from; give --start twice, or --marker none";
+const NO_START: &str = "a world has no start; give --start twice, or --marker none";
 
-/// What holds of the two embedded graphs.
-struct Graphs<'w> {
+/// How the two embedded graphs compare.
+struct GraphComparison<'w> {
     worlds: [&'w NamedWorld; 2],
     same: Result<Bijection, Difference>,
     mirror: bool,
@@ -81,7 +81,7 @@ impl CompareArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let mut worlds = [input::read_world(&self.a)?, input::read_world(&self.b)?];
         if self.start.len() > 2 {
-            return Err(Failure::at("--start", "there are two worlds; give it twice at most"));
+            return Err(Failure::at("--start", "there are two worlds; give it at most twice"));
         }
         for (world, start) in worlds.iter_mut().zip(&self.start) {
             world.start = Some(input::start_of(world, Some(start))?);
@@ -102,7 +102,7 @@ impl CompareArguments {
                 None => return Err(Failure::at("--html", NO_START)),
             }
         }
-        let graphs = Graphs {
+        let graphs = GraphComparison {
             worlds,
             same: isomorphism(&worlds[0].graph, &worlds[1].graph),
             mirror: mirror_isomorphism(&worlds[0].graph, &worlds[1].graph).is_some(),
@@ -110,23 +110,25 @@ impl CompareArguments {
         if self.json {
             let mut line = graphs.json();
             line.extend(
-                robots.as_ref().map_or_else(robot_comparison::unknown, RobotComparison::json),
+                robots
+                    .as_ref()
+                    .map_or_else(robot_comparison::no_robots_json, RobotComparison::json),
             );
             line.extend(walk.as_ref().map(|walk| ("walked".to_owned(), walk.json())));
             writeln!(out, "{}", serde_json::Value::Object(line))?;
         } else {
-            graphs.tell(out)?;
+            graphs.print(out)?;
             if let Some(robots) = &robots {
-                robots.tell(out)?;
+                robots.print(out)?;
             }
             if let Some(walk) = &walk {
-                walk.tell(out)?;
+                walk.print(out)?;
             }
         }
         Ok(Outcome::Holds)
     }
 
-    /// The robots in the two worlds, where there is a marker, and starts that place it.
+    /// The robots in the two worlds. `None` if no marker is given and a world has no start.
     fn robots<'w>(
         &self,
         worlds: [&'w NamedWorld; 2],
@@ -140,8 +142,8 @@ impl CompareArguments {
                 if !marker.parts(&world.graph, Dart(0)).is_empty() =>
             {
                 let cause = format!(
-                    "there is no [start], by which the {} marker is placed; give --start twice, \
-                     first for A and then for B",
+                    "there is no [start] that places the {} marker; give --start twice, first for \
+                     A and then for B",
                     marker.name()
                 );
                 return Err(Failure::in_file(path, cause));
@@ -153,48 +155,47 @@ impl CompareArguments {
     }
 }
 
-impl Graphs<'_> {
+impl GraphComparison<'_> {
     fn json(&self) -> serde_json::Map<String, serde_json::Value> {
         let line = json!({
             "schema": 1,
             "isomorphic": self.same.is_ok(),
             "mirror": self.mirror,
-            "bijection": self.same.as_ref().ok().map(|bijection| self.pairs(bijection)),
+            "bijection": self.same.as_ref().ok().map(|same| self.pairs(same).collect::<Vec<_>>()),
             "difference": self.same.as_ref().err().map(ToString::to_string),
         });
         line.as_object().cloned().unwrap_or_default()
     }
 
-    fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         for (letter, world) in ["A", "B"].into_iter().zip(self.worlds) {
-            writeln!(
-                out,
+            let text = format!(
                 "{letter} is {}: {}, {}, {}, genus {}",
                 world.name,
                 vertices(world.graph.vertex_count()),
                 counted(world.graph.edge_count(), "edge"),
                 counted(world.graph.face_count(), "face"),
                 world.graph.genus(),
-            )?;
+            );
+            print_paragraph(out, &text)?;
         }
         match &self.same {
             Ok(bijection) => {
                 writeln!(out, "isomorphic, by this bijection from A to B:")?;
-                for [from, to] in self.pairs(bijection) {
-                    writeln!(out, "  {from} -> {to}")?;
-                }
+                let pairs = self.pairs(bijection).map(|[from, to]| format!("{from} -> {to}"));
+                print_columns(out, &pairs.collect::<Vec<_>>())?;
             }
-            Err(difference) => writeln!(out, "not isomorphic: {difference}")?,
+            Err(difference) => print_paragraph(out, &format!("not isomorphic: {difference}"))?,
         }
         let word = if self.mirror { "mirror images" } else { "not mirror images" };
         writeln!(out, "{word}")?;
         Ok(())
     }
 
-    /// Each edge end of the one world and where it goes in the other.
-    fn pairs(&self, bijection: &Bijection) -> Vec<[String; 2]> {
+    /// Each dart of A with its image in B.
+    fn pairs(&self, bijection: &Bijection) -> impl Iterator<Item = [String; 2]> {
         let [a, b] = self.worlds;
         let images = a.graph.darts().zip(bijection.images());
-        images.map(|(dart, &image): (Dart, _)| [a.start_text(dart), b.start_text(image)]).collect()
+        images.map(|(dart, &image): (Dart, _)| [a.start_text(dart), b.start_text(image)])
     }
 }

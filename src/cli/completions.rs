@@ -7,10 +7,10 @@ use clap_complete::Shell;
 
 use super::{Failure, Outcome};
 
-/// Print the completions of a shell
+/// Print shell completions
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  toposlam completions bash > ~/.local/share/bash-completion/completions/toposlam"
+    after_help = "Example:\n  toposlam completions bash > \\\n    ~/.local/share/bash-completion/completions/toposlam"
 )]
 pub(super) struct CompletionsArguments {
     /// The shell

@@ -1,4 +1,4 @@
-//! `toposlam counterexample`: the smallest worlds that a marker cannot tell apart.
+//! `toposlam counterexample`: the smallest worlds that a marker cannot distinguish.
 
 mod atlas;
 mod pairs;
@@ -17,27 +17,26 @@ use super::{Failure, Outcome, marker_kinds, output, progress::Progress, use_thre
 use pairs::WorldPairs;
 use report::SearchReport;
 
-/// The smallest worlds that a marker cannot tell apart, for each marker
+/// Find the smallest worlds that a marker cannot distinguish, for each kind of marker
 ///
-/// All worlds of the class with up to so many edges are searched, with the marker at every place.
-/// Two of them are a pair if no walk tells them apart; each find is confirmed by a relation between
-/// the states of the two worlds, which is verified.
+/// The search covers all worlds of the class up to a size, with the marker at every place. Two of them
+/// are a pair if no walk distinguishes them. A verified bisimulation confirms every reported pair.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam counterexample                                     every marker, simple worlds
-  toposlam counterexample --marker undirected --out pair      one marker; writes the two worlds
-  toposlam counterexample --marker undirected --html page.html  and a page to walk them
-  toposlam counterexample --class corridor --edges 9 --json   for a program
-  toposlam counterexample --marker directional --expect none  for CI: exit code 1 on a find
+  toposlam counterexample                       every marker, simple worlds
+  toposlam counterexample --marker undirected --html page.html
+                                                one marker, and a page to walk
+                                                the two worlds
+  toposlam counterexample --class corridor --edges 9 --json
+  toposlam counterexample --marker directional --expect none
+                                                for CI: exit code 1 on a pair
 
-Of a pair's two sizes the larger one counts first: the smallest pair is the one with the smallest
-larger world. A world is ambiguous if it is in any pair.
+The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.
 
-Exit codes: 0 the search is done, 1 with --expect none something was found, 2 bad usage,
-3 it was broken off.")]
+Exit codes: 0 the search is done, 1 --expect none and a pair was found, 2 bad usage, 3 interrupted.")]
 pub(super) struct CounterexampleArguments {
-    /// Kind of marker; may be given several times [default: every one]
+    /// Kind of marker; may be repeated [default: every kind]
     #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
     markers: Vec<&'static dyn Marker>,
 
@@ -45,25 +44,25 @@ pub(super) struct CounterexampleArguments {
     #[arg(long, default_value = "simple")]
     class: Class,
 
-    /// Search the worlds with 1 to N edges
-    /// [default: 6 for multigraph, 8 for simple and planar, 11 for corridor]
+    /// Search the worlds with 1 to N edges [default: 6 for multigraph, 8 for simple and planar, 11 for
+    /// corridor]
     #[arg(long, value_name = "N")]
     edges: Option<usize>,
 
-    /// Tell all pairs, not only the smallest
+    /// Report all pairs, not only the smallest
     #[arg(long)]
     all: bool,
 
-    /// Write the worlds that are told into a folder, as world files
+    /// Write the worlds of the reported pairs into a folder, as world files
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 
-    /// Write a page on which a person walks the smallest pair; for one marker
+    /// Write a page on which a person walks the smallest pair; needs one --marker
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
-    /// Make the atlas instead: the smallest pair of every marker in every class, as files, pictures
-    /// and a table; --edges limits it
+    /// Write the atlas instead: the smallest pair of every marker in every class, as world files,
+    /// pictures and a table
     #[arg(
         long,
         value_name = "FOLDER",
@@ -71,23 +70,23 @@ pub(super) struct CounterexampleArguments {
     )]
     atlas: Option<PathBuf>,
 
-    /// What is expected: none, no pair
+    /// The expected result: none (no pair)
     #[arg(long, hide_possible_values = true)]
     expect: Option<Expectation>,
 
-    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Print one JSON object for each number of edges, and one for what was found
+    /// Print one JSON object for each number of edges, and one for the smallest pair
     #[arg(long)]
     json: bool,
 }
 
-/// What somebody expects of a search.
+/// The expected result of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Expectation {
-    /// That no pair is found.
+    /// No pair.
     None,
 }
 
@@ -98,7 +97,7 @@ impl CounterexampleArguments {
             return atlas::write(folder, self.edges);
         }
         let edges = self.edges.unwrap_or_else(|| usual_size(self.class));
-        // Each once, in the order of the list.
+        // Each marker once, in the order of the list.
         let wanted =
             |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
         let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
@@ -113,7 +112,7 @@ impl CounterexampleArguments {
             if searches.len() != 1 {
                 return Err(Failure::at(
                     "--html",
-                    "a page shows one marker; name it with --marker",
+                    "a page shows one marker; choose it with --marker",
                 ));
             }
         }
@@ -128,7 +127,7 @@ impl CounterexampleArguments {
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(pairs::unfinished(&unfinished)),
+                Err(unfinished) => return Ok(pairs::report_unfinished(&unfinished)),
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
@@ -147,7 +146,7 @@ impl CounterexampleArguments {
     }
 }
 
-/// The number of edges up to which worlds are searched in a second or two.
+/// The number of edges up to which a search takes a second or two.
 fn usual_size(class: Class) -> usize {
     match class {
         Class::Multigraph => 6,

@@ -14,7 +14,7 @@ use toposlam_model::{format::dot, marker::Marker};
 
 use super::{Failure, Outcome, input, marker_kinds, output};
 
-/// Draw a world: its vertices with their doors in clockwise order, and its start
+/// Draw a world: the clockwise order of the doors at each vertex, and the start
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png"
@@ -22,27 +22,27 @@ use super::{Failure, Outcome, input, marker_kinds, output};
 pub(super) struct DrawArguments {
     /// The world file
     world: PathBuf,
-    /// Where the marker is placed, instead of the file's [start]
+    /// Where the robot and its marker start [default: the start in the file]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
     /// Kind of marker
     #[arg(long, value_name = "KIND", default_value = "directional", value_parser = marker_kinds())]
     marker: &'static dyn Marker,
-    /// The file to write, as its ending says: .svg, .png or .dot [default: standard output]
+    /// The file to write: .svg, .png or .dot [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// What goes to standard output: svg, png or dot
+    /// The format on standard output: svg, png or dot
     #[arg(long, default_value = "svg", hide_possible_values = true, conflicts_with = "out")]
     format: Format,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// A drawing that scales
+    /// A vector drawing
     Svg,
     /// An image
     Png,
-    /// A text that Graphviz draws
+    /// A Graphviz file
     Dot,
 }
 
@@ -68,7 +68,7 @@ impl DrawArguments {
         Ok(Outcome::Holds)
     }
 
-    /// What the ending of the file says, or else what was asked for.
+    /// The format that the file name or `--format` asks for.
     fn format(&self) -> Format {
         let ending = self.out.as_deref().and_then(Path::extension).and_then(OsStr::to_str);
         match ending {

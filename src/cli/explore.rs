@@ -1,4 +1,4 @@
-//! `toposlam explore WORLD`: an algorithm on one world, told as a story.
+//! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
 mod doors_writer;
 mod result;
@@ -29,12 +29,13 @@ use doors_writer::DoorsWriter;
 use result::ExploreResult;
 use story::{Story, StoryDetail};
 
-/// Run Algorithm 1 on one world: the map, the moves, the story of each hypothesis
+/// Run Algorithm 1 on one world and print its story: each door, percept and hypothesis, and the map
 ///
-/// The world is used only to answer what the robot perceives, and to prove the map right at the end.
+/// The robot gets only percepts from the world. At the end a bijection proves that the map is
+/// isomorphic to the world.
 ///
-/// With --marker movable it is the algorithm with one movable marker instead, in a world without
-/// loops and parallel edges: where the marker is dropped and looked for, and where it is found.
+/// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
+/// loops and parallel edges.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,41 +44,42 @@ Examples:
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --marker movable
 
-In the story, v2.1 is dart 1 of the map's vertex v2: the one that stands one place clockwise from
-the dart by which v2 was first entered.
+In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
+which the vertex was first entered. When the robot has followed an unexplored dart, each other \
+unexplored dart may be the other end of the same edge. A candidate is one that the percept does not \
+rule out. To test it, the robot follows the path that would lead from there to the marker.
 
-Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input,
-3 given up at --max-darts or --max-states.")]
+Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts or --max-states \
+was reached.")]
 pub(super) struct ExploreArguments {
-    /// A world file, or a file of plantri's with one world
+    /// A world file, or a plantri file with one world
     world: PathBuf,
 
-    /// Where the robot starts, and which door is behind it [default: the world's own start]
+    /// Where the robot starts, and which door is behind it [default: the start in the file]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
 
-    /// Marker with which the world is mapped: directional (by Algorithm 1) or movable
+    /// The robot's marker: directional (Algorithm 1) or movable
     #[arg(long, default_value = "directional")]
     marker: MappingMarker,
 
-    /// Also try every resolution of what Algorithm 1 leaves open: default or all
+    /// Runs: default, or all to also try every choice that Algorithm 1 leaves open
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: ChoicesOption,
 
-    /// With --choices all: give up when there are more states
-    /// [default: 1000000]
+    /// With --choices all: stop when there are more states [default: 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 
-    /// Give up when more edge ends are known
+    /// Stop when more darts (edge ends) are known
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
     max_darts: usize,
 
-    /// Tell everything that was rejected, not only the first few hypotheses of each round
+    /// Print every rejected candidate, not only the first few of each round
     #[arg(long, conflicts_with = "json")]
     full: bool,
 
-    /// Tell the doors taken, and where a marker was picked up or dropped
+    /// Print the doors taken, and each pick-up and drop of the marker
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
@@ -85,11 +87,11 @@ pub(super) struct ExploreArguments {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
 
-    /// Write a picture of the map, with the cost; a marker that is carried is not drawn
+    /// Write a picture of the map with the number of moves
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
 
-    /// Print one JSON object, with the doors taken, and pick-up and drop among them
+    /// Print one JSON object, with the doors taken and each pick-up and drop
     #[arg(long)]
     json: bool,
 }
@@ -141,7 +143,7 @@ impl ExploreArguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
-        let ending = ExploreResult {
+        let result = ExploreResult {
             world,
             facing,
             marker: self.marker,
@@ -152,29 +154,29 @@ impl ExploreArguments {
             ways: algorithm.other_runs(&world.graph, facing, &()).transpose(),
         };
         if self.json {
-            ending.tell_json(&mut out)?;
+            result.print_json(&mut out)?;
         } else {
-            ending.tell(&mut out)?;
+            result.print(&mut out)?;
         }
         out.flush()?;
-        match ending.map() {
-            Some(map) => self.write_map(&map, &ending)?,
+        match result.map() {
+            Some(map) => self.write_map(&map, &result)?,
             None if self.map.is_some() || self.svg.is_some() => {
-                eprintln!("the map is not complete, and is not written");
+                eprintln!("the map is not written: it is not complete");
             }
             None => {}
         }
-        Ok(ending.outcome())
+        Ok(result.outcome())
     }
 
-    fn write_map(&self, map: &NamedWorld, ending: &ExploreResult) -> Result<(), Failure> {
+    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), Failure> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }
         if let Some(path) = &self.svg {
-            let moves = ending.journey.moves();
-            // A marker that lies nowhere has no place in the picture.
-            let (start, hand) = if ending.carries {
+            let moves = result.journey.moves();
+            // A marker that the robot carries has no place in the picture.
+            let (start, hand) = if result.carries {
                 (None, "; the robot carries its marker")
             } else {
                 (map.start, "")

@@ -1,4 +1,4 @@
-//! What files hold: worlds, whatever their format; cameras; colours.
+//! Input files: worlds in any format, calibrations, colours.
 
 use std::{
     fs,
@@ -18,8 +18,8 @@ use toposlam_vision::{
 
 use super::Failure;
 
-/// The world of a world file (TOML or JSON), or the only one of a file in plantri's codes. Where the
-/// file does not name it, it has the file's name.
+/// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
+/// no name, the world gets the name of the file.
 pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
     let bytes = read(path)?;
     let mut world = match plantri_code(path, &bytes) {
@@ -27,7 +27,7 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
             Ok([graph]) => NamedWorld::numbered("", "", graph, None),
             Err(graphs) => {
-                let cause = format!("one world is needed here, and there are {}", graphs.len());
+                let cause = format!("expected one world, found {}", graphs.len());
                 return Err(Failure::in_file(path, cause));
             }
         },
@@ -40,25 +40,25 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
     Ok(world)
 }
 
-/// The colours of a building.
+/// Reads the colours of a building.
 pub(crate) fn read_colours(path: &Path) -> Result<ColourModel, Failure> {
     ColourModel::read(&read(path)?).map_err(|error| Failure::in_file(path, error))
 }
 
-/// The floor plan that a world is.
+/// The floor plan of a world.
 pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, Failure> {
-    let cause = "this world is no floor plan: there is no [floor] in it";
+    let cause = "this world is not a floor plan: it has no [floor]";
     world.plan.as_ref().ok_or_else(|| Failure::in_file(path, cause))
 }
 
-/// The camera of a calibration file. The files that it names are those beside it.
+/// Reads the camera of a calibration file. Paths in the file are relative to its folder.
 pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
     calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))
         .map_err(|error| Failure::in_file(path, error))
 }
 
-/// The start that the command line names, or else the world's own, or else its first dart.
+/// The start from the command line, or else from the world file, or else the first dart.
 pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, Failure> {
     match start {
         Some(text) => world.start_from_text(text).map_err(|error| Failure::at("--start", error)),
@@ -66,7 +66,7 @@ pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, 
     }
 }
 
-/// The embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
+/// Reads the embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
 pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, Failure> {
     let bytes = read(path)?;
     if let Some(code) = plantri_code(path, &bytes) {
@@ -83,14 +83,15 @@ fn read_plantri(
 ) -> Result<Vec<EmbeddedGraph>, Failure> {
     let graphs: Result<Vec<_>, _> = plantri::read_headerless(bytes, code).collect();
     match graphs {
-        Ok(graphs) if graphs.is_empty() => Err(Failure::in_file(path, "there is no world in it")),
+        Ok(graphs) if graphs.is_empty() => {
+            Err(Failure::in_file(path, "the file contains no world"))
+        }
         Ok(graphs) => Ok(graphs),
         Err(error) => Err(Failure::in_file(path, error)),
     }
 }
 
-/// Which of plantri's codes a file holds, by its header or else by its extension; `None` for a
-/// world file.
+/// The plantri code of a file, by its header or its extension. `None` for a world file.
 fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
     if bytes.starts_with(b">>edge_code") {
         return Some(plantri::PlantriCode::Edge);
@@ -105,7 +106,7 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
     }
 }
 
-/// The bytes of a file; `-` is standard input.
+/// Reads a file. `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! The verbs of the command line, and what they share: exit codes, failures, files written whole.
+//! The verbs of the command line, and what they share: exit codes, errors, files, text output.
 
 mod appearance;
 mod calibrate;
@@ -47,14 +47,14 @@ use toposlam_robot::simulator::MotionNoise;
 
 use outcome::{Failure, Outcome};
 
-/// Deterministic topological SLAM that can be trusted: an executable specification of embedded
-/// graphs, percepts and Algorithm 1, and a checker that runs it on every small world.
+/// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
+/// algorithm, and a checker that runs it on every small world
 #[derive(Parser)]
 #[command(
     name = "toposlam",
     version,
     max_term_width = 80,
-    after_help = "Example:\n  toposlam check        every start of every world with up to 6 edges"
+    after_help = "Example:\n  toposlam check  run the algorithm on every world with up to 6 edges"
 )]
 struct CommandLine {
     #[command(subcommand)]
@@ -83,34 +83,37 @@ enum Verb {
     Completions(completions::CompletionsArguments),
 }
 
-/// How what Algorithm 1 leaves open is resolved.
+/// How the open choices of Algorithm 1 are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ChoicesOption {
-    /// By the default choices.
+    /// By default
     Default,
-    /// In every way.
+    /// In every way
     All,
 }
 
-/// Which runs of a start are made.
+/// The runs from one start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RunChoices {
-    /// That of the default choices.
+    /// The run with the default choices.
     Default,
-    /// That, and every other resolution of what Algorithm 1 leaves open.
+    /// The runs with all choices.
     All {
-        /// How many states of one start may be explored.
+        /// The most states that may be explored.
         budget: u64,
     },
 }
 
 impl ChoicesOption {
-    /// The choice, with a budget of states, which only all choices have.
+    /// The runs, with the budget of `--max-states`.
+    ///
+    /// # Errors
+    /// Returns an error if there is a budget for the default choices.
     fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, Failure> {
         match (self, max_states) {
             (Self::Default, None) => Ok(RunChoices::Default),
             (Self::Default, Some(_)) => {
-                Err(Failure::at("--max-states", "this goes with --choices all"))
+                Err(Failure::at("--max-states", "this needs --choices all"))
             }
             (Self::All, budget) => {
                 Ok(RunChoices::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
@@ -119,40 +122,40 @@ impl ChoicesOption {
     }
 }
 
-/// Reads the name of a kind of marker; tells in `--help` and in refusals which there are.
+/// Parses the name of a kind of marker. `--help` and errors list all kinds.
 fn marker_kinds() -> impl TypedValueParser<Value = &'static dyn Marker> {
     let kinds = MARKERS.map(|marker| PossibleValue::new(marker.name()).help(marker.about()));
     PossibleValuesParser::new(kinds).try_map(|name| marker::named(&name))
 }
 
-/// Reads how many times as inexact as by default a simulated robot is.
+/// Parses the noise of a simulated robot, as a multiple of the default.
 fn noise(text: &str) -> Result<f64, String> {
     let most = MotionNoise::MOST;
     match text.parse() {
         Ok(times) if (0.0..=most).contains(&times) => Ok(times),
         Ok(times) if times > most => {
-            Err(format!("with more than {most} times the default a robot cannot find its way"))
+            Err(format!("with more than {most} times the default noise a robot cannot navigate"))
         }
         _ => Err(format!("write a number from 0 to {most}")),
     }
 }
 
-/// Works with so many threads, where somebody says so.
+/// Sets the number of threads, if one is given.
 fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
     pool.build_global().map_err(|error| Failure::at("--threads", error))
 }
 
-/// What a program says that was built without ROS 1.
+/// The error of `--ros` in a program without the feature `ros1`.
 #[cfg(not(feature = "ros1"))]
 fn without_ros() -> Failure {
-    let cause = "this program was built without ROS 1; build it with it: \
+    let cause = "this program was built without ROS 1; to add it, run \
                  cargo build --release --features ros1";
     Failure::at("--ros", cause)
 }
 
-/// Runs the verb that the command line names.
+/// Runs the verb on the command line.
 pub(crate) fn run() -> ExitCode {
     let arguments = CommandLine::parse();
     let mut out = io::stdout().lock();
@@ -175,7 +178,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Conform(verb)) => verb.run(&mut out),
         Some(Verb::Replay(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
-        None => help(&mut out),
+        None => print_help(&mut out),
     };
     match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {
         Ok(outcome) => outcome.into(),
@@ -183,8 +186,8 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// What `toposlam` alone prints: what it is, and its verbs.
-fn help(out: &mut dyn Write) -> Result<Outcome, Failure> {
+/// Prints the help of `toposlam` without a verb.
+fn print_help(out: &mut dyn Write) -> Result<Outcome, Failure> {
     write!(out, "{}", CommandLine::command().render_help())?;
     Ok(Outcome::Holds)
 }

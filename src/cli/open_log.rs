@@ -1,4 +1,4 @@
-//! A log, open: what its topics carry, and with which eyes its pictures are looked at.
+//! An open log, with the meaning of its topics and the sensor for its images.
 
 use std::path::{Path, PathBuf};
 
@@ -21,30 +21,30 @@ use toposlam_vision::{
 
 use super::{Failure, input};
 
-/// What a log does not tell itself.
+/// What the log itself may not contain.
 #[derive(clap::Args)]
 pub(super) struct LogOptions {
-    /// Which topics carry what [default: as their types tell; see `toposlam info`]
+    /// What each topic carries [default: by the message types; see `toposlam info`]
     #[arg(long, value_name = "FILE")]
     mapping: Option<PathBuf>,
-    /// The calibration of the camera, where pictures are looked at [default: as the log says]
+    /// The camera calibration, for images [default: the one in the log]
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// The colours of the building, where pictures are looked at [default: as the log says]
+    /// The colours of the building, for images [default: those in the log]
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
 }
 
-/// A log, open.
+/// An open log.
 pub(super) struct OpenLog {
     pub(super) log: Log,
     pub(super) mapping: TopicMap,
     mapping_path: Option<PathBuf>,
     pub(super) run: Option<Run>,
-    eyes: Option<(Camera, ColourModel)>,
+    sensing: Option<(Camera, ColourModel)>,
 }
 
-/// The topic of annotated pictures in logs of the project.
+/// The topic of annotated images in logs of this program.
 const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
 
 impl OpenLog {
@@ -56,24 +56,25 @@ impl OpenLog {
                 .map_err(|error| Failure::in_file(file, error))?,
         };
         let mapping_path = sources.mapping.clone();
-        let mut opened = Self { log, mapping, mapping_path, run: None, eyes: None };
+        let mut opened = Self { log, mapping, mapping_path, run: None, sensing: None };
         let bound = opened.mapping.bind(&opened.log);
         bound.map_err(|error| opened.wrong_mapping(path, &error))?;
         opened.run = head(path, &opened.log, &opened.mapping)?;
-        opened.eyes =
-            opened.eyes(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
+        opened.sensing =
+            opened.sensing(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
         Ok(opened)
     }
 
-    /// Of what events can be made.
+    /// The evidence from which events are inferred.
     ///
-    /// Where that is nothing because several topics could carry the same, this says so.
+    /// # Errors
+    /// Returns an error if there is none, for example because several topics could carry the same data.
     pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, Failure> {
         if let Some(evidence) = Evidence::of(&self.mapping) {
             return Ok(evidence);
         }
         if self.log.messages_total() == 0 {
-            return Err(Failure::in_file(path, "it is empty: there is no message in it"));
+            return Err(Failure::in_file(path, "the log is empty: it has no messages"));
         }
         if self.mapping_path.is_none() {
             TopicMap::from_log(&self.log).map_err(|error| Failure::in_file(path, error))?;
@@ -81,51 +82,51 @@ impl OpenLog {
         Err(Failure::in_file(path, ExtractError::NothingMapped))
     }
 
-    /// The camera and the colours: as they are given, or else as the log says.
-    fn eyes(
+    /// The camera and the colours: those that are given, or else those in the log.
+    fn sensing(
         &self,
         path: &Path,
         calibration: Option<&Path>,
         colours: Option<&Path>,
     ) -> Result<Option<(Camera, ColourModel)>, Failure> {
-        let told =
+        let recorded =
             |text: fn(&Run) -> &String| self.run.as_ref().map(text).filter(|text| !text.is_empty());
-        let camera = match (calibration, told(|run| &run.calibration)) {
-            (Some(path), _) => Some(input::read_camera(path)?),
-            (None, Some(text)) => {
-                let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-                let camera = calibration::read(text.as_bytes(), &mut { no_file });
-                Some(camera.map_err(|error| {
-                    Failure::in_file(path, format!("the calibration in it: {error}"))
-                })?)
-            }
-            (None, None) => None,
-        };
-        let colours = match (colours, told(|run| &run.colours)) {
+        let camera =
+            match (calibration, recorded(|run| &run.calibration)) {
+                (Some(path), _) => Some(input::read_camera(path)?),
+                (None, Some(text)) => {
+                    let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+                    let camera = calibration::read(text.as_bytes(), &mut { no_file });
+                    Some(camera.map_err(|error| {
+                        Failure::in_file(path, format!("its calibration: {error}"))
+                    })?)
+                }
+                (None, None) => None,
+            };
+        let colours = match (colours, recorded(|run| &run.colours)) {
             (Some(path), _) => Some(input::read_colours(path)?),
-            (None, Some(text)) => {
-                Some(ColourModel::read(text.as_bytes()).map_err(|error| {
-                    Failure::in_file(path, format!("the colours in it: {error}"))
-                })?)
-            }
+            (None, Some(text)) => Some(
+                ColourModel::read(text.as_bytes())
+                    .map_err(|error| Failure::in_file(path, format!("its colours: {error}")))?,
+            ),
             (None, None) => None,
         };
         Ok(camera.zip(colours))
     }
 
-    /// What makes scenes of its pictures.
+    /// The sensor that makes scenes of its images.
     pub(super) fn sensor(&self) -> Option<Sensor> {
-        self.eyes.as_ref().map(|(camera, colours)| Sensor::new(camera, colours))
+        self.sensing.as_ref().map(|(camera, colours)| Sensor::new(camera, colours))
     }
 
-    /// The kind of marker that the log says; directional, if it does not.
+    /// The kind of marker in the log. The default is directional.
     pub(super) fn marker(&self) -> Result<&'static dyn Marker, Failure> {
         let name = self.run.as_ref().map_or("", |run| &run.marker);
         let name = if name.is_empty() { "directional" } else { name };
         marker::named(name).map_err(|error| Failure::at("the log", error))
     }
 
-    /// A mapping that does not fit its log.
+    /// The error for a topic map that does not fit its log.
     pub(super) fn wrong_mapping(&self, log: &Path, error: &TopicMapError) -> Failure {
         match &self.mapping_path {
             Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
@@ -133,7 +134,7 @@ impl OpenLog {
         }
     }
 
-    /// The last picture up to a message, with its scene drawn over it where that is known.
+    /// The last image up to a message, with its scene drawn over it if it is known.
     pub(super) fn picture(&self, message: u64) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
         let mapping = match annotated {
@@ -149,11 +150,12 @@ impl OpenLog {
             }
         }
         let Some(Content::Image(picture)) = last else { return None };
-        if let (Some(file), true) = (picture.file(), annotated.is_some() || self.eyes.is_none()) {
+        if let (Some(file), true) = (picture.file(), annotated.is_some() || self.sensing.is_none())
+        {
             return Some(file.to_vec());
         }
         let image = picture.pixels().ok()?;
-        let drawn = match (&self.eyes, self.sensor()) {
+        let drawn = match (&self.sensing, self.sensor()) {
             (Some((camera, _)), Some(mut sensor)) => {
                 annotate::over(image, camera, &sensor.sense(image).ok()?)
             }
@@ -165,7 +167,7 @@ impl OpenLog {
     }
 }
 
-/// What a log says of itself at its beginning.
+/// The description of the run at the beginning of a log.
 fn head(path: &Path, log: &Log, mapping: &TopicMap) -> Result<Option<Run>, Failure> {
     let failed = |error| Failure::in_file(path, error);
     let Ok(bound) = mapping.only(&[Role::Run]).bind(log) else { return Ok(None) };

@@ -1,15 +1,15 @@
-//! How a verb ends: exit codes 0 to 3, and the one message of a failure.
+//! How a verb ends: exit codes 0 to 3, and the message of a failure.
 
 use std::{fmt::Display, io, path::Path, process::ExitCode};
 
-/// What a verb that did its work found.
+/// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// It holds, or it is done: exit code 0.
+    /// Everything holds, or the work is done: exit code 0.
     Holds,
-    /// It is violated: exit code 1.
+    /// Something is violated: exit code 1.
     Violated,
-    /// It could not be finished, and what was done holds: exit code 3.
+    /// The work is not finished, and everything so far holds: exit code 3.
     Incomplete,
 }
 
@@ -23,13 +23,13 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// Why a verb could not do its work: bad usage or bad input, exit code 2, unless said otherwise.
+/// Why a verb could not do its work.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// One message that names place and cause.
+    /// Bad usage or bad input, exit code 2. The message names the place and the cause.
     Input(String),
-    /// Standard output was closed by its reader: nothing to say, and nobody to say it to. Exit
-    /// code 3, for a check that nobody heard out does not hold.
+    /// The reader closed standard output: no message, exit code 3. A check whose report was not read to
+    /// the end does not hold.
     ReaderGone,
 }
 
@@ -44,7 +44,7 @@ impl Failure {
         Self::at(path.display(), cause)
     }
 
-    /// Prints the message and answers the exit code.
+    /// Prints the message and returns the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {

@@ -1,4 +1,4 @@
-//! Files are written whole or not at all; but for logs, which grow.
+//! Output files. They are written completely or not at all, except logs, which grow.
 
 use std::{
     ffi::{OsStr, OsString},
@@ -10,74 +10,80 @@ use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
 use super::Failure;
 
-/// Writes a file by way of a neighbour that then takes its name, so that nothing half-written is
-/// left behind.
+/// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
+/// renamed.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let Some(name) = path.file_name() else {
-        return Err(Failure::in_file(path, "this is not the name of a file"));
+        return Err(Failure::in_file(path, "this is not a file name"));
     };
-    // A device or a pipe is written to, not replaced.
+    // A device or a pipe is not replaced.
     if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
-        return fs::write(path, bytes).map_err(|error| unwritable(path, &error));
+        return fs::write(path, bytes).map_err(|error| not_writable(path, &error));
     }
     let mut partial_name = OsString::from(".");
     partial_name.push(name);
     partial_name.push(format!(".{}.partial", std::process::id()));
     let partial = path.with_file_name(partial_name);
     fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
-        // Best effort: the error that is reported is the one that matters.
+        // If this fails too, the first error is the one to report.
         let _ = fs::remove_file(&partial);
-        unwritable(path, &error)
+        not_writable(path, &error)
     })
 }
 
-/// A file that grows while somebody writes it, under its own name: what is written of a log is worth
-/// reading even where its writer was killed.
-pub(crate) fn grow(path: &Path) -> Result<fs::File, Failure> {
-    fs::File::create(path).map_err(|error| unwritable(path, &error))
+/// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
+/// killed.
+pub(crate) fn create_growing(path: &Path) -> Result<fs::File, Failure> {
+    fs::File::create(path).map_err(|error| not_writable(path, &error))
 }
 
-/// Makes the folder, if it is not there.
+/// Creates the folder if it does not exist.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder)
-        .map_err(|error| Failure::in_file(folder, format!("cannot be made a folder: {error}")))
+        .map_err(|error| Failure::in_file(folder, format!("the folder cannot be created: {error}")))
 }
 
-/// Refuses a path that cannot become a file, before long work begins: a folder, or in a folder that
-/// does not exist, or with an ending that is none of these.
-pub(crate) fn check_place(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+/// Checks that a file can be written to a path, before long work begins.
+///
+/// # Errors
+/// Returns an error if the path is a folder, if its folder does not exist, or if its extension is not in
+/// the list.
+pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if path.is_dir() {
-        return Err(Failure::in_file(path, "this is a folder; name a file"));
+        return Err(Failure::in_file(path, "this is a folder, not a file"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         return Err(Failure::in_file(path, format!("there is no folder {}", folder.display())));
     }
-    // A device has no ending.
+    // A device has no extension.
     let fits = path.exists() && !path.is_file()
-        || path.extension().and_then(OsStr::to_str).is_some_and(|found| endings.contains(&found));
+        || path
+            .extension()
+            .and_then(OsStr::to_str)
+            .is_some_and(|found| extensions.contains(&found));
     if fits {
         Ok(())
     } else {
-        let endings: Vec<_> = endings.iter().map(|ending| format!(".{ending}")).collect();
-        Err(Failure::in_file(path, format!("the name must end in {}", endings.join(" or "))))
+        let extensions: Vec<_> = extensions.iter().map(|name| format!(".{name}")).collect();
+        Err(Failure::in_file(path, format!("the name must end in {}", extensions.join(" or "))))
     }
 }
 
-/// The endings of plantri's `planar_code`, which can tell simple graphs only.
+/// The extensions of plantri's `planar_code`, which is for simple graphs only.
 const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
 
-/// Refuses a path as [`check_place`] does, for a world that may or may not be simple.
+/// Does [`check_place`] for a world that may or may not be simple.
 pub(crate) fn check_world_place(path: &Path, simple: bool) -> Result<(), Failure> {
-    let endings = ["toml", "json", "dot", "ec", "edge_code"];
+    let extensions = ["toml", "json", "dot", "ec", "edge_code"];
     if simple {
-        check_place(path, &[&endings[..], &PLANAR_CODE].concat())
+        check_place(path, &[&extensions[..], &PLANAR_CODE].concat())
     } else {
-        check_place(path, &endings)
+        check_place(path, &extensions)
     }
 }
 
-/// Writes a world as the ending of the name says: `.toml`, `.json`, Graphviz's `.dot`, plantri's
+/// Writes a world in the format of the file's extension: `.toml`, `.json`, Graphviz's `.dot`, plantri's
 /// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
 pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure> {
     let graph = std::slice::from_ref(&world.graph);
@@ -92,6 +98,6 @@ pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure
     write_whole(path, &bytes)
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Failure {
+fn not_writable(path: &Path, error: &io::Error) -> Failure {
     Failure::in_file(path, format!("cannot be written: {error}"))
 }

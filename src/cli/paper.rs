@@ -1,4 +1,4 @@
-//! `toposlam paper [--section N] [--open] [--json]`.
+//! `toposlam paper`: the requirements of the paper.
 
 use std::{
     collections::BTreeSet,
@@ -10,23 +10,25 @@ use toposlam::paper::{
     CITATIONS, Citation, PaperTrace, Status, TABLE, TracedRequirement, requirements,
 };
 
-use super::{Failure, Outcome, json::print_object, text::print_hanging};
+use super::{
+    Failure, Outcome,
+    json::print_object,
+    text::{print_hanging, print_indented},
+};
 
-/// Show every requirement of the paper: where it is implemented, where it is tested, what is open
+/// List every requirement of the paper: where it is implemented and tested, and what is open
 #[derive(clap::Args)]
-#[command(
-    after_help = "Exit code 1: a requirement is said to be done, and no code or no test cites it; or \
-                  something cites what is no requirement.\n\n\
-                  Example:\n  toposlam paper --section 2.3"
-)]
+#[command(after_help = "Example:\n  toposlam paper --section 2.3\n\n\
+                  Exit code 1: a requirement is marked as done but no code or no test cites it, or a \
+                  citation names an unknown requirement.")]
 pub(super) struct PaperArguments {
-    /// Only this section of the paper, and its parts
+    /// List only this section of the paper and its subsections
     #[arg(long, value_name = "N")]
     section: Option<String>,
-    /// Only what is open
+    /// List only open requirements
     #[arg(long)]
     open: bool,
-    /// One JSON object a line, the totals last
+    /// Print one JSON object a line, the totals last
     #[arg(long)]
     json: bool,
 }
@@ -42,7 +44,7 @@ impl PaperArguments {
             if rows.is_empty() {
                 let known: BTreeSet<_> = requirements.iter().map(|r| r.section.as_str()).collect();
                 let known = known.into_iter().collect::<Vec<_>>().join(", ");
-                let cause = format!("no requirement stands in `{section}`; sections: {known}");
+                let cause = format!("section `{section}` has no requirements; sections: {known}");
                 return Err(Failure::at("--section", cause));
             }
         }
@@ -84,7 +86,7 @@ struct TotalsLine {
     holds: bool,
 }
 
-/// The rows and then the totals, one JSON object a line.
+/// Prints the rows and then the totals, one JSON object a line.
 fn print_json(
     out: &mut dyn Write,
     rows: &[&TracedRequirement],
@@ -123,7 +125,7 @@ fn print_json(
     print_object(out, &totals)
 }
 
-/// The rows by section, for people, and then the totals.
+/// Prints the rows by section and then the totals.
 fn print_table(
     out: &mut dyn Write,
     rows: &[&TracedRequirement],
@@ -143,9 +145,9 @@ fn print_table(
     writeln!(out, "{all} requirements: {done} done, {open} open")?;
     let faults: Vec<_> = trace.faults().collect();
     if !faults.is_empty() {
-        writeln!(out, "\nThe table and the sources do not agree:")?;
+        writeln!(out, "\nThe table and the sources disagree:")?;
         for fault in faults {
-            writeln!(out, "  {fault}")?;
+            print_indented(out, "  ", 4, &fault)?;
         }
     }
     Ok(())
@@ -157,23 +159,22 @@ fn print_row(out: &mut dyn Write, row: &TracedRequirement, id_width: usize) -> i
     let line = line.unwrap_or_default();
     let head = format!("  {:id_width$}  {line:>2}  ", requirement.id);
     print_hanging(out, &head, &requirement.text)?;
-    let margin = " ".repeat(head.len());
     if let Some(erratum) = &requirement.erratum {
-        print_hanging(out, &format!("{margin}erratum  "), erratum)?;
+        print_hanging(out, "      erratum  ", erratum)?;
     }
     if let Status::Open { after } = &requirement.status {
-        print_hanging(out, &format!("{margin}open   after "), &after.join(", "))?;
+        print_hanging(out, "      open     after ", &after.join(", "))?;
     }
     let is_done = requirement.status == Status::Done;
     for (what, citations) in [("code ", &row.code), ("tests", &row.tests)] {
         if is_done || !citations.is_empty() {
-            print_hanging(out, &format!("{margin}{what}  "), &places(citations))?;
+            print_hanging(out, &format!("      {what}    "), &places(citations))?;
         }
     }
     Ok(())
 }
 
-/// The places of citations: each file once, with its lines.
+/// The places of citations: each file once with its lines.
 fn places(citations: &[Citation]) -> String {
     if citations.is_empty() {
         return "none".to_owned();

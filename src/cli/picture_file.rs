@@ -1,4 +1,4 @@
-//! Pictures of pixels, as files: PNG and JPEG.
+//! Image files: PNG and JPEG.
 
 use std::{ffi::OsStr, io::Cursor, path::Path};
 
@@ -7,8 +7,7 @@ use toposlam_vision::{image_file::ImageFile, sensing::WrongSize};
 
 use super::{Failure, input, output};
 
-/// The picture of a PNG or JPEG file that must be of this size; one of another size is refused before
-/// it takes any memory.
+/// Reads an image of an expected size. The size is checked before the image is decoded.
 pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure> {
     read_if(path, |found| {
         if found == expected {
@@ -19,7 +18,7 @@ pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure>
     })
 }
 
-/// The picture of a PNG or JPEG file whose size, width and height, is not refused.
+/// Reads an image if its size, width and height, fits. The size is checked before the image is decoded.
 pub(super) fn read_if(
     path: &Path,
     fits: impl FnOnce([u32; 2]) -> Result<(), Failure>,
@@ -31,12 +30,12 @@ pub(super) fn read_if(
     file.image().map_err(refused)
 }
 
-/// Writes a picture as the ending of its name says: `.jpg` and `.jpeg`, or else PNG.
+/// Writes an image as JPEG (`.jpg`, `.jpeg`) or else as PNG.
 pub(super) fn write(path: &Path, picture: &RgbImage) -> Result<(), Failure> {
     output::write_whole(path, &encoded(path, picture)?)
 }
 
-/// A picture as [`write`] writes it.
+/// The bytes that [`write`] writes.
 pub(super) fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, Failure> {
     let mut bytes = Cursor::new(Vec::new());
     let ending = path.extension().and_then(OsStr::to_str);

@@ -1,4 +1,4 @@
-//! Progress of long work on a terminal, and Ctrl-C.
+//! The progress bar of long work, and Ctrl-C.
 
 use std::{
     process,
@@ -13,22 +13,22 @@ use toposlam_model::enumerate::Watch;
 
 use super::Failure;
 
-/// Whether somebody wants the work to end.
+/// Set by the first Ctrl-C: the work stops soon.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Whether it ends in good order however often somebody wants it.
-static PATIENT: AtomicBool = AtomicBool::new(false);
+/// Whether a second Ctrl-C also waits for the work to stop.
+static ALWAYS_GRACEFUL: AtomicBool = AtomicBool::new(false);
 
-/// A bar on standard error, hidden where that is no terminal.
+/// A bar on standard error. It is hidden if that is not a terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    /// What the cases are called.
+    /// The noun for the cases.
     unit: &'static str,
     cases: AtomicU64,
 }
 
 impl Progress {
-    /// Shows a bar for some work, on cases that are called so.
+    /// Shows a bar for work on cases.
     pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, Failure> {
         watch_for_interrupt()?;
         let style = ProgressStyle::with_template(
@@ -39,7 +39,7 @@ impl Progress {
         Ok(Self { bar, unit, cases: AtomicU64::new(0) })
     }
 
-    /// The same for work whose end nobody knows.
+    /// Shows a bar for work of unknown length.
     pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, Failure> {
         let progress = Self::new(work, unit)?;
         let style = ProgressStyle::with_template("{prefix} {spinner}  {msg}  {elapsed} done")
@@ -47,27 +47,26 @@ impl Progress {
         Ok(Self { bar: progress.bar.with_style(style), ..progress })
     }
 
-    /// The same for work that is never to end at once, as it would leave a robot on its way; it ends
-    /// soon.
+    /// Also a second Ctrl-C waits for the work to stop: otherwise a robot would be left on its way.
     #[cfg(feature = "ros1")]
-    pub(crate) fn always_in_good_order(self) -> Self {
-        PATIENT.store(true, Ordering::Relaxed);
+    pub(crate) fn always_graceful(self) -> Self {
+        ALWAYS_GRACEFUL.store(true, Ordering::Relaxed);
         self
     }
 
-    /// Takes the bar away where somebody else still asks whether the work is to end.
+    /// Removes the bar. Others may still ask whether the work must stop.
     #[cfg(feature = "ros1")]
     pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
     }
 
-    /// The same without a bar, where the work tells of itself.
+    /// Shows no bar: the work prints its own progress.
     pub(crate) fn hidden(self) -> Self {
         self.bar.set_draw_target(ProgressDrawTarget::hidden());
         self
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn finish(self) {
         self.bar.finish_and_clear();
     }
@@ -95,13 +94,13 @@ impl Watch for Progress {
     }
 }
 
-/// The first Ctrl-C ends the work in good order, the second at once.
+/// The first Ctrl-C stops the work soon, the second one at once.
 fn watch_for_interrupt() -> Result<(), Failure> {
     static SET: Once = Once::new();
     let mut result = Ok(());
     SET.call_once(|| {
         result = ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) && !PATIENT.load(Ordering::Relaxed) {
+            if STOP.swap(true, Ordering::Relaxed) && !ALWAYS_GRACEFUL.load(Ordering::Relaxed) {
                 process::exit(3);
             }
         });

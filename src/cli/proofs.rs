@@ -1,5 +1,4 @@
-//! `toposlam proofs`: the lemmas on which the correctness of the mapping rests; check them, and look
-//! at single cases.
+//! `toposlam proofs`: lists and checks the lemmas behind the mapping algorithms, and prints single cases.
 
 mod case_view;
 mod check;
@@ -19,41 +18,39 @@ use check::{CheckEnd, check_lemma};
 use lemma_case::LemmaCase;
 use report::ProofsReport;
 
-/// List the lemmas on which the mapping rests; check them in every case within a bound
+/// List the lemmas behind the mapping algorithms, or check them in every case within a bound
 ///
-/// The list tells what each lemma says, where it is in the paper, and which engines check it; and so
-/// for the theorems that are proved in Coq, for every world. Those are checked by proofs/coq/check.
+/// The list shows each lemma, its place in the paper and the engines that check it. It also shows the
+/// theorems that Coq proves for every world; proofs/coq/check checks those.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam proofs              what each lemma says, and how it is checked
-  toposlam proofs --run all    check every lemma in every case within its bound
-  toposlam proofs --run the_way_back_retraces_the_path --choices 2,2,1,1,1,0,0,1,2,1,1,0
+  toposlam proofs            list the lemmas and how each one is checked
+  toposlam proofs --run all  check every lemma in every case within its bound
+  toposlam proofs --run the_way_back --choices 2,2,1,1,1,0,0,1,2,1,1,0
 
-The last makes one case again and shows it: its worlds, as world files, and its walks, step by step.
-A robot at v2:1 has come in by the dart 1 place clockwise from the first that the file lists at v2.
-A lemma that fails prints such a command for the case in which it does.
+The last one prints a single case: its worlds, as world files, and its walks, step by step. A robot at \
+v2:1 has entered v2 by the dart 1 place clockwise from the first one in the file. For a lemma that \
+fails, the report contains such a command.
 
-The name of a lemma may be shortened to a part of it that no other has.
+A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and prints the results so far.
 
-Ctrl-C ends a check early, and prints what was checked.
-
-Exit codes: 0 all that was run holds, 1 a lemma fails, 2 bad usage or input,
-3 not all was checked, or the lemma says nothing about the case that --choices makes.")]
+Exit codes: 0 everything holds, 1 a lemma fails, 2 bad usage or input, 3 not everything was checked, \
+or the lemma excludes the case of --choices.")]
 pub(super) struct ProofsArguments {
-    /// Check the lemma of this name, or all, in every case within its bound; may be repeated
+    /// Check the lemma of this name, or all lemmas; may be repeated
     #[arg(long, value_name = "NAME")]
     run: Vec<String>,
 
-    /// Make one case of the lemma again and show it: numbers with commas between them
+    /// Print the one case that these choices make: numbers, separated by commas
     #[arg(long, value_name = "NUMBERS", requires = "run", allow_hyphen_values = true)]
     choices: Option<CaseChoices>,
 
-    /// The bound within which --choices makes its case: exhaustive or sampled
+    /// The engine whose bound applies to --choices: exhaustive or sampled
     #[arg(long, default_value = "exhaustive", hide_possible_values = true, requires = "choices")]
     engine: Engine,
 
-    /// Print one JSON object a line; of a list and a check, the totals last
+    /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
 }
@@ -69,7 +66,7 @@ impl FromStr for CaseChoices {
         let words = text.split(',').map(str::trim).filter(|_| !text.trim().is_empty());
         let choice = |word: &str| {
             let refusal = |_: ParseIntError| {
-                format!("`{word}` is no choice; write numbers from 0 to 255, as in 2,0,1")
+                format!("`{word}` is not a choice; write numbers from 0 to 255, as in 2,0,1")
             };
             word.parse().map_err(refusal)
         };
@@ -77,12 +74,12 @@ impl FromStr for CaseChoices {
     }
 }
 
-/// Whose bound it is.
+/// An engine, with its bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Engine {
-    /// That of the check in every case
+    /// Every case within a bound
     Exhaustive,
-    /// That of the check in cases drawn at random
+    /// Random cases within a larger bound
     Sampled,
 }
 
@@ -107,25 +104,26 @@ impl ProofsArguments {
         theorems: &[Theorem],
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
-        if let Some(theorem) = theorems.iter().find(|it| self.run.iter().any(|n| n == it.name)) {
-            let Theorem { name, .. } = theorem;
-            let cause = "is proved in Coq, for every world; to check it, run proofs/coq/check";
+        let is_wanted = |theorem: &&Theorem| self.run.iter().any(|name| name == theorem.name);
+        if let Some(Theorem { name, .. }) = theorems.iter().find(is_wanted) {
+            let cause = "is proved in Coq, for every world; run proofs/coq/check to check it";
             return Err(Failure::at("--run", format!("{name} {cause}")));
         }
         match (&self.choices, self.run.as_slice()) {
             (Some(choices), [name]) if name != ALL => {
                 let CaseChoices(choices) = choices;
-                LemmaCase::new(named(lemmas, name)?, self.engine, choices)?.tell(self.json, out)
+                LemmaCase::new(find_lemma(lemmas, name)?, self.engine, choices)?
+                    .print(self.json, out)
             }
             (Some(_), _) => {
-                let cause = "these make a case of one lemma; name it with one --run";
+                let cause = "choices make a case of one lemma; choose it with one --run";
                 Err(Failure::at("--choices", cause))
             }
             (None, []) => {
                 listing::list(lemmas, theorems, self.json, out)?;
                 Ok(Outcome::Holds)
             }
-            (None, names) => self.check(&wanted(lemmas, names)?, out),
+            (None, names) => self.check(&find_lemmas(lemmas, names)?, out),
         }
     }
 
@@ -136,7 +134,7 @@ impl ProofsArguments {
             let progress = Progress::new(lemma.name, "cases")?;
             let checked = check_lemma(lemma, &progress)?;
             progress.finish();
-            let interrupted = matches!(checked.ending, CheckEnd::Interrupted { .. });
+            let interrupted = matches!(checked.end, CheckEnd::Interrupted { .. });
             report.lemma(lemma, checked)?;
             if interrupted {
                 break;
@@ -146,30 +144,30 @@ impl ProofsArguments {
     }
 }
 
-/// What --run says to name every lemma.
+/// The name for every lemma.
 const ALL: &str = "all";
 
-/// The lemmas of these names, or parts of names, each once.
-fn wanted<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, Failure> {
-    let mut wanted: Vec<&Lemma> = Vec::new();
+/// The lemmas of these names or parts of names, each once.
+fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, Failure> {
+    let mut selected: Vec<&Lemma> = Vec::new();
     for name in names {
-        let found = if name == ALL { lemmas.to_vec() } else { vec![named(lemmas, name)?] };
+        let found = if name == ALL { lemmas.to_vec() } else { vec![find_lemma(lemmas, name)?] };
         for lemma in found {
-            if wanted.iter().all(|known| known.name != lemma.name) {
-                wanted.push(lemma);
+            if selected.iter().all(|known| known.name != lemma.name) {
+                selected.push(lemma);
             }
         }
     }
-    Ok(wanted)
+    Ok(selected)
 }
 
-/// The lemma of this name, or else the only one that has it in its name.
-fn named<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
+/// The lemma of this name, or else the only one whose name contains it.
+fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
     if let Some(lemma) = lemmas.iter().find(|lemma| lemma.name == name) {
         return Ok(lemma);
     }
     if name.is_empty() {
-        return Err(Failure::at("--run", "the name of a lemma is missing"));
+        return Err(Failure::at("--run", "the name is empty"));
     }
     let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
@@ -181,7 +179,7 @@ fn named<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
     Err(Failure::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
-/// So many cases.
+/// A number of cases.
 fn cases(number: u64) -> String {
     format!("{} case{}", grouped(number.into()), if number == 1 { "" } else { "s" })
 }

@@ -1,6 +1,7 @@
 //! Text for people: numbers, sentences, wrapped lines and tables.
 
 use std::{
+    borrow::Cow,
     io::{self, IsTerminal, Write},
     sync::LazyLock,
 };
@@ -29,13 +30,29 @@ pub(super) fn print_indented(
     indent: usize,
     text: &str,
 ) -> io::Result<()> {
+    for line in wrapped(*WIDTH, head, indent, text) {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+/// Prints a command. A line that is too long continues after a backslash, as in a shell.
+pub(super) fn print_command(out: &mut dyn Write, head: &str, command: &str) -> io::Result<()> {
+    let lines = wrapped(*WIDTH - 2, head, head.chars().count() + 2, command);
+    writeln!(out, "{}", lines.join(" \\\n"))
+}
+
+fn wrapped(width: usize, head: &str, indent: usize, text: &str) -> Vec<String> {
+    if text.is_empty() {
+        return vec![head.to_owned()];
+    }
     let indent = " ".repeat(indent);
-    let options = Options::new(*WIDTH)
+    let options = Options::new(width)
         .initial_indent(head)
         .subsequent_indent(&indent)
         .break_words(false)
         .word_splitter(WordSplitter::NoHyphenation);
-    writeln!(out, "{}", textwrap::fill(text, options).trim_end())
+    textwrap::wrap(text, options).into_iter().map(Cow::into_owned).collect()
 }
 
 /// Prints a paragraph.

@@ -1,4 +1,4 @@
-//! Writes a page on which a person walks two worlds at once.
+//! A page on which a person walks two worlds at once.
 
 use std::path::Path;
 
@@ -15,15 +15,15 @@ use super::{
     text::{grouped, sentence},
 };
 
-/// Refuses a path that cannot become a page, before long work begins.
+/// Checks that a page can be written to a path, before long work begins.
 pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
     output::check_place(path, &["html", "htm"])
 }
 
-/// The most states of a world that a page can tell.
+/// The most states of a world on a page.
 const MOST_STATES: usize = 20_000;
 
-/// Writes the page of two worlds with a marker, whose robots begin in these poses.
+/// Writes the page of two worlds with a marker, with robots that start at these poses.
 pub(crate) fn write(
     path: &Path,
     worlds: [&NamedWorld; 2],
@@ -35,7 +35,7 @@ pub(crate) fn write(
         let states = state_count(&world.graph, marker);
         if states > MOST_STATES {
             let cause = format!(
-                "{} has {} states, and a page can tell {}",
+                "{} has {} states; a page can show at most {}",
                 world.name,
                 grouped(states as u128),
                 grouped(MOST_STATES as u128)
@@ -52,13 +52,13 @@ pub(crate) fn write(
     );
     let verdict = match comparison.walk(poses) {
         None => format!(
-            "{starts} no walk tells these worlds apart: whatever both robots do, both perceive the \
+            "{starts} no walk distinguishes these worlds: whatever both robots do, they perceive the \
              same"
         ),
         Some(walk) if walk.actions.is_empty() => format!("{starts} the first percepts differ"),
         Some(walk) => {
             let actions: Vec<_> = walk.actions.iter().map(ToString::to_string).collect();
-            format!("{starts} the walk {} tells these worlds apart", actions.join(", "))
+            format!("{starts} the walk {} distinguishes these worlds", actions.join(", "))
         }
     };
     let about = format!("{} {}", sentence(marker.about()), sentence(&verdict));

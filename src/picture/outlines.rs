@@ -41,8 +41,11 @@ fn outline(text: Node<'_, '_>, face: &Face<'_>) -> String {
     };
     let mut outline = Outline { path: String::new(), scale, x: 0.0, y: 0.0 };
     for chunk in chunks(text) {
-        let glyphs: Vec<_> =
-            chunk.words.chars().map(|letter| face.glyph_index(letter).unwrap_or_default()).collect();
+        let glyphs: Vec<_> = chunk
+            .words
+            .chars()
+            .map(|letter| face.glyph_index(letter).unwrap_or_default())
+            .collect();
         let advance = |glyph| f32::from(face.glyph_hor_advance(glyph).unwrap_or(0)) * scale;
         let width: f32 = glyphs.iter().map(|&glyph| advance(glyph)).sum();
         outline.x = chunk.x - before * width;

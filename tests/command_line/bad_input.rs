@@ -1,4 +1,4 @@
-//! Bad usage and bad input: one message that names file and place, exit code 2, nothing written.
+//! Bad usage and bad input: one message that names the file and the place, exit code 2, nothing written.
 
 use std::{fs, path::Path};
 
@@ -6,8 +6,8 @@ use super::{folder, names_in, run, stderr};
 
 const WORLD: &str = "worlds/shape-6.toml";
 
-/// Runs it and answers its one message.
-fn refusal(arguments: &[&str]) -> String {
+/// Runs the program and returns its error message.
+fn error_of(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
@@ -25,7 +25,7 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_file_that_is_no_world_is_refused_with_its_place() {
+fn a_file_that_is_not_a_world_is_an_error_with_its_place() {
     let folder = folder("bad_worlds");
     let files: [(&str, &[u8], &str); 11] = [
         ("empty.toml", b"", ": the file is empty"),
@@ -77,20 +77,20 @@ fn a_file_that_is_no_world_is_refused_with_its_place() {
             &["draw", file],
         ];
         for arguments in runs {
-            let refusal = refusal(arguments);
-            assert!(refusal.starts_with(&message), "{refusal}");
-            assert_eq!(refusal.lines().count(), 1, "{refusal}");
+            let error = error_of(arguments);
+            assert!(error.starts_with(&message), "{error}");
+            assert_eq!(error.lines().count(), 1, "{error}");
         }
         fs::remove_file(file).unwrap();
         assert_eq!(names_in(&folder), [""; 0]);
     }
     let missing = folder.join("missing.toml");
-    let refusal = refusal(&["explore", missing.to_str().unwrap()]);
-    assert!(refusal.contains("missing.toml: cannot be read: "), "{refusal}");
+    let error = error_of(&["explore", missing.to_str().unwrap()]);
+    assert!(error.contains("missing.toml: cannot be read: "), "{error}");
 }
 
 #[test]
-fn truncated_codes_are_refused_with_their_byte() {
+fn a_truncated_plantri_code_is_an_error_with_its_byte() {
     let folder = folder("bad_codes");
     let codes: [(&str, &[u8], &str); 3] = [
         (
@@ -107,14 +107,14 @@ fn truncated_codes_are_refused_with_their_byte() {
     ];
     for (name, bytes, cause) in codes {
         let file = write(&folder, name, bytes);
-        assert_eq!(refusal(&["check", "--from", &file]), format!("error: {file}{cause}\n"));
-        let world = refusal(&["explore", &file]);
+        assert_eq!(error_of(&["check", "--from", &file]), format!("error: {file}{cause}\n"));
+        let world = error_of(&["explore", &file]);
         assert_eq!(world, format!("error: {file}{cause}\n"));
     }
 }
 
 #[test]
-fn bad_arguments_are_refused_with_what_is_wanted() {
+fn a_bad_argument_is_an_error_that_names_what_is_expected() {
     let cases: [(&[&str], &str); 50] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
@@ -128,21 +128,21 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["check", "--class", "tree"], "there are multigraph, simple, corridor and planar"),
         (
             &["check", "--marker", "chalk"],
-            "`chalk` is no marker to map with; there are directional and movable",
+            "no algorithm maps with `chalk`; choose directional or movable",
         ),
-        (&["check", "--marker", "undirected"], "there are directional and movable"),
+        (&["check", "--marker", "undirected"], "choose directional or movable"),
         (
             &["check", "--marker", "movable", "--choices", "all"],
-            "--choices: all choices are those of Algorithm 1, which maps with the directional marker",
+            "--choices: `all` needs --marker directional: only Algorithm 1 has open choices",
         ),
         (
             &["check", "--marker", "movable", "--class", "multigraph"],
-            "--class: class multigraph has loops or parallel edges, and with these one movable \
-             marker does not suffice: no walk tells [v0 = e0 e0 e1 e1] from [v0 = e0 e1 e0 e1]",
+            "--class: class multigraph has loops or parallel edges, and one movable marker does not \
+             suffice for them: no walk distinguishes [v0 = e0 e0 e1 e1] and [v0 = e0 e1 e0 e1]",
         ),
         (
             &["check", "--marker", "movable", "--class", "multigraph"],
-            "(toposlam counterexample --marker movable --class multigraph)",
+            "(see toposlam counterexample --marker movable --class multigraph)",
         ),
         (
             &["check", "--marker", "movable", "--from", "worlds/theta-plane.toml"],
@@ -150,8 +150,8 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         ),
         (&["check", "--choices", "some"], "[possible values: default, all]"),
         (&["check", "--threads", "0"], "0 is not in 1..=1024"),
-        (&["check", "--max-states", "5"], "--max-states: this goes with --choices all"),
-        (&["explore", WORLD, "--max-states", "5"], "--max-states: this goes with --choices all"),
+        (&["check", "--max-states", "5"], "--max-states: this needs --choices all"),
+        (&["explore", WORLD, "--max-states", "5"], "--max-states: this needs --choices all"),
         (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
         (&["explore", WORLD, "--start", "corner"], "--start: `corner` is not a start"),
         (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),
@@ -171,7 +171,7 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         ),
         (
             &["compare", WORLD, WORLD, "--start", "sw:se", "--start", "sw:se", "--start", "sw:se"],
-            "--start: there are two worlds; give it twice at most",
+            "--start: there are two worlds; give it at most twice",
         ),
         (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is nothing that a robot can do"),
         (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
@@ -181,49 +181,53 @@ fn bad_arguments_are_refused_with_what_is_wanted() {
         (&["counterexample", "--expect", "some"], "[possible values: none]"),
         (
             &["counterexample", "--html", "page.html"],
-            "--html: a page shows one marker; name it with",
+            "--html: a page shows one marker; choose it with",
         ),
         (&["counterexample", "--atlas", "x", "--json"], "cannot be used with"),
         (&["proofs", "--choices", "1"], "--run <NAME>"),
         (
             &["proofs", "--run", "all", "--choices", "1"],
-            "--choices: these make a case of one lemma",
+            "--choices: choices make a case of one lemma",
         ),
         (
             &["proofs", "--run", "a", "--run", "b", "--choices", "1"],
-            "--choices: these make a case of one lemma; name it with one --run",
+            "--choices: choices make a case of one lemma; choose it with one",
         ),
-        (&["proofs", "--run", "all", "--choices", "0,300"], "`300` is no choice; write numbers"),
-        (&["proofs", "--run", "all", "--choices", "-1"], "`-1` is no choice; write numbers from 0"),
-        (&["proofs", "--run", "all", "--choices", "0,,1"], "`` is no choice; write numbers from 0"),
+        (&["proofs", "--run", "all", "--choices", "0,300"], "`300` is not a choice; write numbers"),
+        (
+            &["proofs", "--run", "all", "--choices", "-1"],
+            "`-1` is not a choice; write numbers from 0",
+        ),
+        (
+            &["proofs", "--run", "all", "--choices", "0,,1"],
+            "`` is not a choice; write numbers from 0",
+        ),
         (&["proofs", "--run", "all", "--engine", "sampled"], "--choices <NUMBERS>"),
         (&["proofs", "--run", "all", "--choices", "1", "--engine", "kani"], "[possible values: "),
         (&["chekc"], "a similar subcommand exists: 'check'"),
         (&["fly"], "unrecognized subcommand 'fly'"),
     ];
     for (arguments, cause) in cases {
-        let refusal = refusal(arguments);
-        assert!(refusal.contains(cause), "{arguments:?}: {refusal}");
+        let error = error_of(arguments);
+        assert!(error.contains(cause), "{arguments:?}: {error}");
     }
 }
 
 #[test]
-fn with_a_movable_marker_explore_refuses_what_check_refuses() {
+fn with_a_movable_marker_explore_and_check_reject_the_same_worlds() {
     const TORUS: &str = "worlds/theta-torus.toml";
-    let refused = |verb: &[&str]| refusal(&[verb, &["--marker", "movable"]].concat());
+    let refused = |verb: &[&str]| error_of(&[verb, &["--marker", "movable"]].concat());
     let message = refused(&["explore", TORUS]);
     assert!(message.starts_with(&format!("error: {TORUS}: world 1 has loops or parallel edges")));
     assert_eq!(message, refused(&["check", "--from", TORUS]));
     let message = refused(&["explore", WORLD, "--choices", "all"]);
     assert_eq!(message, refused(&["check", "--choices", "all"]));
-    let message = refusal(&["explore", WORLD, "--marker", "chalk"]);
-    assert!(
-        message.contains("`chalk` is no marker to map with; there are directional and movable")
-    );
+    let message = error_of(&["explore", WORLD, "--marker", "chalk"]);
+    assert!(message.contains("no algorithm maps with `chalk`; choose directional or movable"));
 }
 
 #[test]
-fn a_place_that_cannot_become_a_file_is_refused_before_the_work() {
+fn an_output_path_is_checked_before_the_work() {
     let folder = folder("bad_places");
     let (missing, itself) = (folder.join("no/such.svg"), folder.to_str().unwrap());
     let missing = missing.to_str().unwrap();
@@ -236,16 +240,16 @@ fn a_place_that_cannot_become_a_file_is_refused_before_the_work() {
         &["draw", WORLD, "--out"],
     ];
     for verb in verbs {
-        let refused = refusal(&[verb, &[missing]].concat());
+        let refused = error_of(&[verb, &[missing]].concat());
         assert!(refused.starts_with(&format!("error: {missing}: ")), "{refused}");
-        let refused = refusal(&[verb, &[itself]].concat());
+        let refused = error_of(&[verb, &[itself]].concat());
         assert!(refused.starts_with(&format!("error: {itself}: ")), "{refused}");
         assert_eq!(names_in(&folder), [""; 0]);
     }
 }
 
 #[test]
-fn no_bytes_make_it_panic() {
+fn no_input_causes_a_panic() {
     let folder = folder("nasty");
     let deep = "[".repeat(100_000);
     let nasty: [&[u8]; 12] = [
@@ -265,59 +269,62 @@ fn no_bytes_make_it_panic() {
     for bytes in nasty {
         for name in ["w.toml", "w.json", "w.pc", "w.ec"] {
             let file = write(&folder, name, bytes);
-            refusal(&["check", "--from", &file]);
-            refusal(&["explore", &file]);
+            error_of(&["check", "--from", &file]);
+            error_of(&["explore", &file]);
         }
     }
     let file = write(&folder, "w.json", format!("{{\"name\":{deep}").as_bytes());
-    refusal(&["explore", &file]);
+    error_of(&["explore", &file]);
 }
 
 #[test]
-fn a_marker_that_needs_a_start_is_refused_in_a_world_without_one() {
+fn a_marker_needs_a_start_in_each_world() {
     let folder = folder("no_start");
     let file = write(&folder, "path.toml", b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\n");
     let page = folder.join("page.html");
     let page = page.to_str().unwrap();
     for arguments in [[WORLD, &file], [&file, WORLD]] {
         let compared = [&["compare", "--html", page, "--marker", "undirected"], &arguments[..]];
-        let refused = refusal(&compared.concat());
-        let cause = "there is no [start], by which the undirected marker is placed; give --start";
+        let refused = error_of(&compared.concat());
+        let cause = "there is no [start] that places the undirected marker; give --start";
         assert!(refused.starts_with(&format!("error: {file}: {cause}")), "{refused}");
     }
-    let refused = refusal(&["compare", "--html", page, &file, WORLD]);
-    assert!(refused.starts_with("error: --html: there is no start to walk from"), "{refused}");
-    let refused = refusal(&["compare", "--walk", "0", &file, WORLD]);
-    assert!(refused.starts_with("error: --walk: there is no start to walk from"), "{refused}");
+    let refused = error_of(&["compare", "--html", page, &file, WORLD]);
+    assert!(refused.starts_with("error: --html: a world has no start"), "{refused}");
+    let refused = error_of(&["compare", "--walk", "0", &file, WORLD]);
+    assert!(refused.starts_with("error: --walk: a world has no start"), "{refused}");
     assert_eq!(names_in(&folder), ["path.toml"]);
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_refused_before_the_work() {
+fn an_output_folder_is_checked_before_the_work() {
     let folder = folder("no_folder");
     let file = write(&folder, "file", b"");
     let inside = format!("{file}/inside");
     for place in [&file, &inside] {
         for verb in [["--out", place], ["--atlas", place]] {
-            let refused = refusal(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
-            assert!(refused.starts_with(&format!("error: {place}: cannot be made")), "{refused}");
+            let refused = error_of(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
+            assert!(
+                refused.starts_with(&format!("error: {place}: the folder cannot be created")),
+                "{refused}"
+            );
         }
     }
 }
 
 #[cfg(not(feature = "ros1"))]
 #[test]
-fn without_ros_the_program_says_how_it_is_built_with_it() {
+fn without_ros_the_error_names_the_build_command() {
     let master = "http://127.0.0.1:11311";
     let drive = ["drive", "--ros", master, "--calibration", "c.toml", "--colours", "d.toml"];
     for arguments in [&drive[..], &["simulate", WORLD, "--ros", master]] {
-        let message = refusal(arguments);
+        let message = error_of(arguments);
         assert!(message.contains("cargo build --release --features ros1"), "{message}");
     }
 }
 
 #[test]
-fn a_robot_that_is_driven_by_somebody_else_makes_no_map() {
-    let message = refusal(&["simulate", WORLD, "--ros", "http://127.0.0.1:1", "--map", "x.toml"]);
+fn a_robot_that_another_program_drives_makes_no_map() {
+    let message = error_of(&["simulate", WORLD, "--ros", "http://127.0.0.1:1", "--map", "x.toml"]);
     assert!(message.contains("cannot be used with"), "{message}");
 }

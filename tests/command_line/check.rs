@@ -1,4 +1,4 @@
-//! `toposlam check`: the counts, the shares, files of worlds, the dearest start, and Ctrl-C.
+//! `toposlam check`: the counts, the shards, files of worlds, the worst start, and Ctrl-C.
 
 use std::fs;
 
@@ -43,18 +43,18 @@ fn with_a_movable_marker_every_simple_world_is_mapped() {
         assert_eq!((&line["class"], &line["marker"]), (&"simple".into(), &"movable".into()));
         assert_eq!(line["holds"], true);
     }
-    // That of four vertices and 32 moves, and not that with 36.
+    // From the start with four vertices and 32 moves, not from the one with 36 moves.
     assert_eq!(lines[5]["largest_ratio"], 4.0 / 3.0);
     for class in ["simple", "corridor", "planar"] {
         let table = said(["check", "--marker", "movable", "--class", class]);
         let title = format!("Place and back-link validation, movable marker, class {class}\n");
         assert!(table.starts_with(&title), "{table}");
-        assert!(table.contains("  most/(m n)\n") && table.contains("\nholds: "), "{table}");
+        assert!(table.contains("  max/(m n)\n") && table.contains("\nholds: "), "{table}");
     }
 }
 
 #[test]
-fn the_world_that_is_not_simple_is_named() {
+fn the_error_names_the_world_that_is_not_simple() {
     let folder = folder("check_movable");
     let graph_of = |name: &str| {
         let file = world_files().into_iter().find(|path| path.ends_with(name)).unwrap();
@@ -81,7 +81,7 @@ fn the_output_is_the_same_at_any_number_of_threads() {
 }
 
 #[test]
-fn every_class_is_checked_and_the_smaller_are_part_of_the_larger() {
+fn smaller_classes_are_parts_of_larger_ones() {
     let worlds = |class: &str| {
         let lines = objects(&said(["check", "--json", "--edges", "1..=6", "--class", class]));
         assert!(lines.iter().all(|line| line["class"] == class && line["holds"] == true));
@@ -113,12 +113,12 @@ fn an_empty_shard_never_holds() {
     assert_eq!(output.status.code(), Some(3));
     let lines = objects(&stdout(&output));
     assert_eq!((numbers(&lines, "starts"), &lines[0]["holds"]), (vec![0], &false.into()));
-    let told = stdout(&run(["check", "--edges", "1", "--shard", "5/5"]));
-    assert!(told.contains("incomplete: there was nothing to check"), "{told}");
+    let text = stdout(&run(["check", "--edges", "1", "--shard", "5/5"]));
+    assert!(text.contains("incomplete: there is nothing to check"), "{text}");
 }
 
 #[test]
-fn all_choices_are_states_and_runs() {
+fn all_choices_count_states_and_runs() {
     let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--choices", "all"]));
     assert_eq!(numbers(&lines, "states"), [4, 43, 725, 16471]);
     assert_eq!(numbers(&lines, "runs"), [3, 45, 1777, 502_371]);
@@ -126,7 +126,8 @@ fn all_choices_are_states_and_runs() {
     assert_eq!(numbers(&lines, "moves_most"), [1, 4, 11, 22]);
     let given_up = run(["check", "--edges", "4", "--choices", "all", "--max-states", "9"]);
     assert_eq!(given_up.status.code(), Some(3));
-    assert!(stdout(&given_up).contains("have more states than --max-states"));
+    let text = stdout(&given_up);
+    assert!(text.contains("have more states than --max-states"), "{text}");
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn worlds_in_plantris_codes_are_checked_by_size() {
 
 // paper: cost.moves
 #[test]
-fn the_dearest_start_costs_the_same_when_it_is_explored() {
+fn the_worst_start_costs_the_same_in_explore() {
     let folder = folder("check_worst");
     for ending in ["toml", "json"] {
         let file = folder.join(format!("worst.{ending}"));
@@ -176,7 +177,7 @@ fn the_dearest_start_costs_the_same_when_it_is_explored() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_check_prints_what_was_covered_and_does_not_hold() {
+fn an_interrupted_check_prints_its_results_and_does_not_hold() {
     use std::{
         io::{BufRead, BufReader, Read},
         process::{Command, Stdio},
@@ -186,7 +187,7 @@ fn an_interrupted_check_prints_what_was_covered_and_does_not_hold() {
     check.args(["check", "--json", "--edges", "3..=9"]);
     let mut check = check.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut out = BufReader::new(check.stdout.take().unwrap());
-    // Its first line shows that it is at work.
+    // The first line shows that the check is running.
     let mut text = String::new();
     out.read_line(&mut text).unwrap();
     let killed = Command::new("kill").args(["-INT", &check.id().to_string()]).status().unwrap();

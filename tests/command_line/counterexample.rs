@@ -35,17 +35,17 @@ fn a_line_for_each_size_and_one_for_the_smallest_pair() {
 }
 
 #[test]
-fn where_there_is_no_pair_none_is_told() {
+fn without_a_pair_the_smallest_is_null() {
     let (_, rest) = searched(&["--marker", "directional", "--edges", "5"]);
     assert_eq!((rest.len(), &rest[0]["smallest"]), (1, &Value::Null));
-    let told = said(["counterexample", "--marker", "directional", "--edges", "5"]);
-    assert!(told.ends_with("\nno pair up to 5 edges: a walk tells any two apart\n"), "{told}");
+    let text = said(["counterexample", "--marker", "directional", "--edges", "5"]);
+    assert!(text.ends_with("\nno pair up to 5 edges: a walk distinguishes any two\n"), "{text}");
 }
 
 #[test]
-fn all_markers_make_a_table() {
-    let told = said(["counterexample", "--edges", "7"]);
-    let rows: Vec<_> = told.lines().skip(3).map(|row| row.split_whitespace().next()).collect();
+fn several_markers_make_a_table() {
+    let text = said(["counterexample", "--edges", "7"]);
+    let rows: Vec<_> = text.lines().skip(3).map(|row| row.split_whitespace().next()).collect();
     let markers = [
         "none",
         "undirected",
@@ -57,21 +57,21 @@ fn all_markers_make_a_table() {
         "movable",
     ];
     assert_eq!(rows, markers.map(Some));
-    assert!(told.contains("undirected               2,177         10  6 and 6 edges\n"), "{told}");
+    assert!(text.contains("undirected               2,177         10  6 and 6 edges\n"), "{text}");
     let (sizes, rest) = searched(&["--edges", "3"]);
     assert_eq!((sizes.len(), rest.len()), (8 * 3, 8));
-    // Each marker once, however often it is named; the pairs after the table.
+    // A repeated marker counts once. The pairs are printed after the table.
     let twice = ["counterexample", "--edges", "4", "--marker", "none", "--marker", "none"];
     assert!(said(twice).starts_with("none marker: "));
-    let told = said(["counterexample", "--edges", "4", "--all"]);
-    let (table, pairs) = told.split_once("\nall pairs: 1\n").unwrap();
+    let text = said(["counterexample", "--edges", "4", "--all"]);
+    let (table, pairs) = text.split_once("\nAll pairs: 1\n").unwrap();
     assert_eq!(table.lines().count(), 3 + 8);
-    assert!(pairs.contains("none-simple-1 ~ none-simple-2: 3 and 4 edges"), "{told}");
+    assert!(pairs.contains("none-simple-1 ~ none-simple-2: 3 and 4 edges"), "{text}");
 }
 
-/// Each world as a file, and each pair is one: no walk tells its worlds apart, and they differ.
+/// Each world is in a file. No walk distinguishes the worlds of a pair, and they are not isomorphic.
 #[test]
-fn all_pairs_are_told_and_written_and_are_pairs() {
+fn all_pairs_are_reported_and_written_and_are_pairs() {
     let folder = folder("counterexample_all");
     let out = folder.join("new/deep");
     let arguments = ["--all", "--marker", "undirected", "--class", "multigraph", "--edges", "3"];
@@ -83,9 +83,10 @@ fn all_pairs_are_told_and_written_and_are_pairs() {
         rest[1..].iter().partition(|line| line.get("world").is_some());
     assert_eq!(worlds.len() as u64, ambiguous);
     for line in &worlds {
-        let told = world_file::read(line["world"].to_string().as_bytes()).unwrap();
-        assert_eq!(read_world(&out.join(format!("{}.toml", told.name))), told);
-        assert!(told.about.starts_with("No walk tells it from undirected-multigraph-"), "{told:?}");
+        let world = world_file::read(line["world"].to_string().as_bytes()).unwrap();
+        assert_eq!(read_world(&out.join(format!("{}.toml", world.name))), world);
+        let about = "No walk distinguishes it from undirected-multigraph-";
+        assert!(world.about.starts_with(about), "{world:?}");
     }
     let smallest = rest[0]["smallest"]["worlds"].as_array().unwrap();
     assert_eq!(pairs[0]["pair"]["worlds"], json!([smallest[0]["name"], smallest[1]["name"]]));
@@ -105,7 +106,7 @@ fn all_pairs_are_told_and_written_and_are_pairs() {
 }
 
 #[test]
-fn what_is_expected_decides_the_exit_code() {
+fn the_expectation_decides_the_exit_code() {
     let code = |marker, expect: &[&str]| {
         let arguments = [&["counterexample", "--edges", "4", "--marker", marker], expect].concat();
         run(arguments).status.code()
@@ -116,7 +117,7 @@ fn what_is_expected_decides_the_exit_code() {
 }
 
 #[test]
-fn the_number_of_threads_changes_nothing() {
+fn the_output_is_the_same_at_any_number_of_threads() {
     let searched = |threads| {
         let sizes = ["--class", "multigraph", "--edges", "4", "--all", "--json"];
         stdout(&run([&["counterexample", "--threads", threads], &sizes[..]].concat()))
@@ -127,7 +128,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn a_page_is_written_where_there_is_a_pair() {
+fn a_page_is_written_if_there_is_a_pair() {
     let folder = folder("counterexample_page");
     let page = folder.join("page.html");
     let written = ["--edges", "4", "--html", page.to_str().unwrap()];

@@ -14,7 +14,7 @@ fn without_a_file_the_svg_goes_to_standard_output() {
 }
 
 #[test]
-fn the_ending_of_the_file_says_what_is_written() {
+fn the_extension_of_the_file_decides_the_format() {
     let folder = folder("draw");
     let (svg, png) = (folder.join("w.svg"), folder.join("w.png"));
     assert_eq!(said(["draw", WORLD, "--out", svg.to_str().unwrap()]), "");

@@ -93,6 +93,6 @@ fn a_world_without_a_floor_is_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
         stderr(&output),
-        "error: worlds/petersen.toml: this world is no floor plan: there is no [floor] in it\n"
+        "error: worlds/petersen.toml: this world is not a floor plan: it has no [floor]\n"
     );
 }

@@ -17,8 +17,7 @@ use toposlam_model::{
 
 use super::{folder, objects, read_world, run, said, stdout, world_files};
 
-/// A run done again from its start: the robot and the marker where its doors, and what it does with
-/// the marker, lead.
+/// Repeats the actions of a run from its start.
 fn replay<'w, M: Marker>(
     world: &'w NamedWorld,
     marker: M,
@@ -43,7 +42,7 @@ fn is_isomorphic_start(map: &NamedWorld, world: &NamedWorld, start: Dart) -> boo
 
 // paper: world.interface, motion.door, cost.moves
 #[test]
-fn the_doors_of_a_run_can_be_taken_again_and_its_map_is_the_world() {
+fn the_doors_of_a_run_can_be_repeated_and_its_map_is_the_world() {
     for path in world_files() {
         let file = path.to_str().unwrap();
         let lines = objects(&said(["explore", "--json", file]));
@@ -64,38 +63,41 @@ fn the_doors_of_a_run_can_be_taken_again_and_its_map_is_the_world() {
 #[test]
 fn the_story_of_the_theta_graph_on_the_torus() {
     let story = "\
-theta-torus, from u with its back to the door a.
-It drops its marker at v0, where it senses 3 doors, marker along door 0.
+World theta-torus. The robot starts at u, with its back to the door of edge a.
+It puts its marker down here, at vertex v0 of the map. It senses 3 doors, marker
+along door 0.
 
-  1  behind v0.0, after 1 move: 3 doors
-     no other unexplored dart fits
-     so v0.0 leads to a new vertex, v1
-     known: 2 vertices, 1 edge; unexplored: 4 darts
+Round 1: the robot takes v0.0 (1 move) and senses 3 doors.
+  Possible other ends: 2 darts. The percept rules out 2: no candidate left.
+  So v0.0 leads to a new vertex, v1.
+  Known: 2 vertices, 1 edge. Unexplored: 4 darts.
 
-  2  behind v1.1, after 1 move: 3 doors, marker along door 2
-     1 of the 3 other unexplored darts may fit
-     v0.1? yes: the marker is here and points as it must
-     so v1.1 and v0.1 are one edge
-     known: 2 vertices, 2 edges; unexplored: 2 darts
+Round 2: the robot takes v1.1 (1 move) and senses 3 doors, marker along door 2.
+  Possible other ends: 3 darts. The percept rules out 2: 1 candidate left.
+  Candidate v0.1: confirmed, the marker is here and points as expected.
+  So v1.1 and v0.1 are the two ends of one edge.
+  Known: 2 vertices, 2 edges. Unexplored: 2 darts.
 
-  3  behind v0.2, after 1 move: 3 doors
-     1 of the 1 other unexplored dart may fit
-     v1.2? yes: its path leads to the marker, which points as it must (1 move)
-     so v0.2 and v1.2 are one edge
-     known: 2 vertices, 3 edges; unexplored: 0 darts
+Round 3: the robot takes v0.2 (1 move) and senses 3 doors.
+  Possible other ends: 1 dart. The percept rules out none: 1 candidate left.
+  Candidate v1.2: confirmed, its path leads to the marker, which points as
+    expected (1 move).
+  So v0.2 and v1.2 are the two ends of one edge.
+  Known: 2 vertices, 3 edges. Unexplored: 0 darts.
 
-The map has 2 vertices and 3 edges, and took 4 moves (at least 3, at most 24).
+The map is complete after 4 moves: 2 vertices, 3 edges. A run in this world
+takes at least 3 and at most 24 moves.
 It is isomorphic to the world:
   v0 = u, v1 = v
-The robot knows where it is: at v0, having come in by its dart 0.
+The robot is where it believes to be: at v0, entered by dart v0.0.
 ";
     assert_eq!(said(["explore", "worlds/theta-torus.toml"]), story);
 }
 
 #[test]
-fn an_absent_marker_is_told_where_it_decides() {
-    let told = said(["explore", "worlds/petersen.toml"]);
-    assert!(told.contains("fails at move 2: 3 doors, no marker instead of 3 doors, marker along"));
+fn the_story_mentions_an_absent_marker_if_it_decides() {
+    let story = flat(&said(["explore", "worlds/petersen.toml"]));
+    assert!(story.contains("at move 2 of its path: expected 3 doors, marker along"));
 }
 
 #[test]
@@ -112,7 +114,7 @@ fn the_start_can_be_chosen() {
 }
 
 #[test]
-fn the_map_is_written_in_the_format_that_its_name_says() {
+fn the_extension_of_the_map_decides_its_format() {
     let folder = folder("explore_map");
     let file = |name: &str| folder.join(name);
     let svg = file("map.svg");
@@ -133,13 +135,10 @@ fn the_map_is_written_in_the_format_that_its_name_says() {
 }
 
 #[test]
-fn too_small_a_bound_is_incomplete() {
+fn a_run_that_reaches_its_bound_is_incomplete() {
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3"]);
     assert_eq!(output.status.code(), Some(3));
-    assert!(stdout(&output).ends_with(
-        "After 1 move: more than 3 darts (edge ends) are known and there is no end in sight\n\
-         With --max-darts N the robot may go on.\n"
-    ));
+    assert!(stdout(&output).ends_with("Use --max-darts N to raise the bound.\n"));
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3", "--json"]);
     assert_eq!(output.status.code(), Some(3));
     let line = &objects(&stdout(&output))[0];
@@ -175,6 +174,11 @@ fn simple_world_files() -> Vec<PathBuf> {
     files
 }
 
+/// A text without line breaks.
+fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// The first number after each of these words.
 fn numbers_after(text: &str, words: &[&str]) -> Vec<u64> {
     let after = words.iter().flat_map(|word| text.split(word).skip(1));
@@ -184,7 +188,7 @@ fn numbers_after(text: &str, words: &[&str]) -> Vec<u64> {
 
 // paper: movable.place, movable.new, movable.known, movable.back-link
 #[test]
-fn a_run_with_a_movable_marker_can_be_done_again_and_ends_where_it_tells() {
+fn a_run_with_a_movable_marker_can_be_repeated_and_ends_at_its_pose() {
     for path in simple_world_files() {
         let file = path.to_str().unwrap();
         let lines = objects(&said(["explore", file, "--marker", "movable", "--json"]));
@@ -197,21 +201,23 @@ fn a_run_with_a_movable_marker_can_be_done_again_and_ends_where_it_tells() {
         let robot = replay(&world, Movable, start, &line["doors"]);
         assert!(robot.carries(), "{file}");
 
-        let story = said(["explore", file, "--marker", "movable", "--full", "--doors"]);
-        let pose = numbers_after(&story, &["where it is: at v", "having come in by its dart "]);
-        let [vertex, index] = pose[..] else { panic!("{story}") };
+        let story = flat(&said(["explore", file, "--marker", "movable", "--full", "--doors"]));
+        let (rounds, end) = story.split_once(" The map is complete after ").unwrap();
+        let pose = end.split("entered by dart v").nth(1).unwrap();
+        let pose: Vec<_> = numbers_after(&format!(".{pose}"), &["."]);
+        let [vertex, index, ..] = pose[..] else { panic!("{story}") };
         let map = world_file::read(line["map"].to_string().as_bytes()).unwrap();
         assert!(is_isomorphic_start(&map, &world, start), "{file}");
         let bijection = Bijection::of_starts((&map.graph, Dart(0)), (&world.graph, start));
-        let told = map.graph.dart(Vertex(vertex as u32), index as u32).unwrap();
-        assert_eq!(bijection.image(told), Some(robot.pose()), "{file}");
-        assert!(story.ends_with("\nIt carries its marker.\n"), "{story}");
+        let pose = map.graph.dart(Vertex(vertex as u32), index as u32).unwrap();
+        assert_eq!(bijection.image(pose), Some(robot.pose()), "{file}");
+        assert!(story.ends_with(" It carries its marker."), "{story}");
 
-        // Every move is told once, and so is every action.
-        let (rounds, _) = story.split_once("\nThe map has ").unwrap();
-        let told: u64 = numbers_after(rounds, &[", after ", " ("]).iter().sum();
-        assert_eq!(told, line["moves"], "{story}");
-        let doors = story.lines().filter_map(|line| line.strip_prefix("     doors: "));
+        // The story contains every move and every action once.
+        let moves: u64 = numbers_after(rounds, &[" ("]).iter().sum();
+        assert_eq!(moves, line["moves"], "{story}");
+        let doors =
+            rounds.split(" Doors: ").skip(1).map(|rest| rest.split_once(" Known:").unwrap().0);
         let doors: Vec<_> = doors.flat_map(|doors| doors.split(' ')).collect();
         let actions = line["doors"].as_array().unwrap().iter();
         assert!(actions.map(|action| action.to_string().replace('"', "")).eq(doors), "{file}");
@@ -221,87 +227,91 @@ fn a_run_with_a_movable_marker_can_be_done_again_and_ends_where_it_tells() {
 #[test]
 fn the_story_of_shape_6_with_a_movable_marker() {
     let story = "\
-shape-6, from corner with its back to the door tee.
-Its marker lies at v0, where it senses 2 doors, marker.
+World shape-6. The robot starts at corner, with its back to the door to tee.
+Its marker lies here, at vertex v0 of the map. It senses 2 doors, marker.
 It picks the marker up.
 
-  1  behind v0.0, after 1 move with the marker: 3 doors
-     no known vertex fits
-     so v0.0 leads to a new vertex, v1
-     known: 2 vertices, 1 edge; unexplored: 3 darts
+Round 1: the robot takes v0.0 with the marker (1 move) and senses 3 doors.
+  Candidates: none of the 1 known vertex.
+  So v0.0 leads to a new vertex, v1.
+  Known: 2 vertices, 1 edge. Unexplored: 3 darts.
 
-  2  behind v1.1, after 1 move with the marker: 2 doors
-     no known vertex fits
-     so v1.1 leads to a new vertex, v2
-     known: 3 vertices, 2 edges; unexplored: 3 darts
+Round 2: the robot takes v1.1 with the marker (1 move) and senses 2 doors.
+  Candidates: none of the 2 known vertices.
+  So v1.1 leads to a new vertex, v2.
+  Known: 3 vertices, 2 edges. Unexplored: 3 darts.
 
-  3  behind v2.1, after 1 move with the marker: 2 doors
-     1 of the 3 known vertices may fit
-     it drops the marker here and goes to look for it
-     v0? no: the marker is not here (3 moves)
-     the marker is at no known vertex
-     it goes back to the marker and picks it up (3 moves)
-     so v2.1 leads to a new vertex, v3
-     known: 4 vertices, 3 edges; unexplored: 3 darts
+Round 3: the robot takes v2.1 with the marker (1 move) and senses 2 doors.
+  Candidates: 1 of the 3 known vertices.
+  The robot drops the marker here and searches for it.
+  Candidate v0: rejected because the marker is not here (3 moves).
+  The marker is at no known vertex.
+  The robot returns to the marker (3 moves) and picks it up.
+  So v2.1 leads to a new vertex, v3.
+  Known: 4 vertices, 3 edges. Unexplored: 3 darts.
 
-  4  behind v3.1, after 1 move with the marker: 2 doors
-     1 of the 4 known vertices may fit
-     it drops the marker here and goes to look for it
-     v0? no: the marker is not here (4 moves)
-     the marker is at no known vertex
-     it goes back to the marker and picks it up (4 moves)
-     so v3.1 leads to a new vertex, v4
-     known: 5 vertices, 4 edges; unexplored: 3 darts
+Round 4: the robot takes v3.1 with the marker (1 move) and senses 2 doors.
+  Candidates: 1 of the 4 known vertices.
+  The robot drops the marker here and searches for it.
+  Candidate v0: rejected because the marker is not here (4 moves).
+  The marker is at no known vertex.
+  The robot returns to the marker (4 moves) and picks it up.
+  So v3.1 leads to a new vertex, v4.
+  Known: 5 vertices, 4 edges. Unexplored: 3 darts.
 
-  5  behind v4.1, after 1 move with the marker: 3 doors
-     1 of the 5 known vertices may fit
-     it drops the marker here and goes to look for it
-     v1? yes: the marker is here, where only v1.2 is unexplored (4 moves)
-     it picks the marker up
-     so v4.1 and v1.2 are one edge
-     known: 5 vertices, 5 edges; unexplored: 1 dart
+Round 5: the robot takes v4.1 with the marker (1 move) and senses 3 doors.
+  Candidates: 1 of the 5 known vertices.
+  The robot drops the marker here and searches for it.
+  Candidate v1: confirmed, the marker is here, and only v1.2 is unexplored (4
+    moves).
+  The robot picks the marker up.
+  So v4.1 and v1.2 are the two ends of one edge.
+  Known: 5 vertices, 5 edges. Unexplored: 1 dart.
 
-  6  behind v0.1, after 2 moves with the marker: 1 door
-     no known vertex fits
-     so v0.1 leads to a new vertex, v5
-     known: 6 vertices, 6 edges; unexplored: 0 darts
+Round 6: the robot takes v0.1 with the marker (2 moves) and senses 1 door.
+  Candidates: none of the 5 known vertices.
+  So v0.1 leads to a new vertex, v5.
+  Known: 6 vertices, 6 edges. Unexplored: 0 darts.
 
-The map has 6 vertices and 6 edges, and took 25 moves (at least 6, at most 74).
+The map is complete after 25 moves: 6 vertices, 6 edges. A run in this world
+takes at least 6 and at most 74 moves.
 It is isomorphic to the world:
   v0 = corner, v1 = tee, v2 = ne, v3 = se, v4 = sw, v5 = end
-The robot knows where it is: at v5, having come in by its dart 0.
+The robot is where it believes to be: at v5, entered by dart v5.0.
 It carries its marker.
 ";
     assert_eq!(said(["explore", "worlds/shape-6.toml", "--marker", "movable"]), story);
     // In the tetrahedron the marker shows by which of two darts a known vertex was entered.
     let back_link = "
-  3  behind v2.1, after 1 move with the marker: 3 doors
-     1 of the 3 known vertices may fit
-     it drops the marker here and goes to look for it
-     v0? yes: the marker is here, where 2 darts are unexplored (3 moves)
-     it picks the marker up
-     it carries the marker to v2 and drops it (2 moves)
-     v0.1? no: 3 doors, no marker (4 moves)
-     v0.2? yes: it leads to the marker (1 move)
-     it picks the marker up
-     so v2.1 and v0.2 are one edge
+Round 3: the robot takes v2.1 with the marker (1 move) and senses 3 doors.
+  Candidates: 1 of the 3 known vertices.
+  The robot drops the marker here and searches for it.
+  Candidate v0: confirmed, the marker is here, and 2 darts are unexplored (3
+    moves).
+  The robot picks the marker up.
+  The robot carries the marker to v2 (2 moves) and drops it.
+  Candidate v0.1: rejected because it leads to 3 doors, no marker (4 moves).
+  Candidate v0.2: confirmed, it leads to the marker (1 move).
+  The robot picks the marker up.
+  So v2.1 and v0.2 are the two ends of one edge.
 ";
     assert!(said(["explore", "worlds/k4-plane.toml", "--marker", "movable"]).contains(back_link));
 }
 
 #[test]
-fn only_some_of_the_places_without_the_marker_are_told_unless_all_are_wanted() {
+fn only_full_stories_contain_every_rejected_candidate() {
     let file = "worlds/building-25.toml";
-    let told = said(["explore", file, "--marker", "movable"]);
+    let story = said(["explore", file, "--marker", "movable"]);
     let full = said(["explore", file, "--marker", "movable", "--full"]);
-    let rejected = |story: &str| story.matches("? no: the marker is not here (").count();
-    let untold: u64 = numbers_after(&told, &["     ... and "]).iter().sum();
-    assert!(untold > 0 && !full.contains("... and "));
-    assert_eq!(rejected(&told) as u64 + untold, rejected(&full) as u64);
+    let rejected =
+        |story: &str| flat(story).matches(": rejected because the marker is not here (").count();
+    let omitted: u64 = numbers_after(&story, &["  ... and "]).iter().sum();
+    assert!(omitted > 0 && !full.contains("... and "));
+    assert_eq!(rejected(&story) as u64 + omitted, rejected(&full) as u64);
 }
 
 #[test]
-fn a_marker_that_is_carried_is_not_drawn() {
+fn a_carried_marker_is_not_drawn() {
     let svg = folder("explore_movable").join("map.svg");
     let drawn = |marker| {
         let svg = svg.to_str().unwrap();
@@ -316,11 +326,11 @@ fn a_marker_that_is_carried_is_not_drawn() {
 }
 
 #[test]
-fn too_small_a_bound_is_incomplete_with_a_movable_marker_too() {
+fn a_run_with_a_movable_marker_that_reaches_its_bound_is_incomplete() {
     let arguments = ["explore", "worlds/shape-6.toml", "--marker", "movable", "--max-darts"];
     let output = run([&arguments[..], &["4"]].concat());
     assert_eq!(output.status.code(), Some(3));
-    let last = "With --max-darts N the robot may go on.\n";
+    let last = "Use --max-darts N to raise the bound.\n";
     assert!(stdout(&output).ends_with(last), "{}", stdout(&output));
     assert_eq!(run([&arguments[..], &["12"]].concat()).status.code(), Some(0));
 }

@@ -1,8 +1,8 @@
-//! What is there for whoever asks: help, completions, the paper; and a reader who leaves early.
+//! Help, completions, the list of the paper, the width of the output, and a reader that stops early.
 
 use std::{io::Read, process::Stdio};
 
-use super::{run, said, stderr, toposlam};
+use super::{folder, run, said, stderr, stdout, toposlam};
 
 const VERBS: [(&str, &[&str]); 18] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
@@ -62,7 +62,51 @@ fn the_help_of_every_verb_has_its_flags_and_an_example_of_it() {
         assert!(help.contains("Example"), "{help}");
         assert!(help.contains(&format!("  toposlam {verb} ")), "{help}");
         assert!(flags.iter().all(|flag| help.contains(flag)), "{help}");
-        assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+    }
+}
+
+#[test]
+fn no_line_is_wider_than_80_columns() {
+    let folder = folder("width");
+    let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let [page, map] = ["page.html", "map.toml"].map(file);
+    let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
+    let runs: [&[&str]; 22] = [
+        &[],
+        &["check", "--edges", "1..=4"],
+        &["check", "--edges", "1..=4", "--choices", "all"],
+        &["check", "--marker", "movable", "--class", "corridor"],
+        &["check", "--from", "worlds/building-25.toml"],
+        &["explore", "worlds/building-25.toml", "--full", "--doors"],
+        &["explore", "worlds/building-25.toml", "--marker", "movable"],
+        &["explore", "worlds/shape-8.toml", "--choices", "all", "--map", &map],
+        &["explore", "worlds/shape-6.toml", "--max-darts", "3"],
+        &["compare", "worlds/figure-1a.toml", "worlds/figure-1b.toml", "--walk", "0,1,1"],
+        &["compare", "worlds/figure-1a.toml", "worlds/figure-1b.toml", "--marker", "undirected"],
+        &["compare", "worlds/cycle-3.toml", "worlds/cycle-4.toml", "--marker", "two-distinct"],
+        &["compare", "worlds/k4-plane.toml", "worlds/k4-plane.toml", "--html", &page],
+        &["counterexample", "--edges", "6"],
+        &["counterexample", "--edges", "4", "--all"],
+        &["counterexample", "--marker", "undirected", "--class", "corridor", "--edges", "7"],
+        &["counterexample", "--marker", "directional", "--edges", "5"],
+        &["paper"],
+        &["paper", "--open"],
+        &["proofs"],
+        &case,
+        &["proofs", "--run", "the_way_back"],
+    ];
+    for arguments in runs {
+        for line in stdout(&run(arguments)).lines() {
+            assert!(line.chars().count() <= 80, "{arguments:?}: {line}");
+        }
+    }
+    for (verb, _) in VERBS {
+        for help in ["-h", "--help"] {
+            for line in said([verb, help]).lines() {
+                assert!(line.chars().count() <= 80, "{verb}: {line}");
+            }
+        }
     }
 }
 
@@ -86,7 +130,7 @@ fn the_paper_is_listed() {
 }
 
 #[test]
-fn a_reader_who_leaves_early_is_no_panic() {
+fn a_reader_that_stops_early_causes_no_panic() {
     let verbs: [&[&str]; 6] = [
         &["explore", "worlds/building-25.toml", "--full"],
         &["explore", "worlds/building-25.toml", "--json"],
@@ -110,7 +154,7 @@ fn a_reader_who_leaves_early_is_no_panic() {
 }
 
 #[test]
-fn a_check_that_nobody_hears_does_not_hold() {
+fn a_check_without_a_reader_does_not_hold() {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     let status = toposlam().args(["check", "--json", "--edges", "1"]).stdout(writer).status();

@@ -1,4 +1,4 @@
-//! The command line, run as its users run it: what each verb prints and writes, and how it ends.
+//! The command line as a user runs it: output, files and exit code of each verb.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -31,7 +31,7 @@ use std::{
 use serde_json::Value;
 use toposlam_model::format::{named_world::NamedWorld, world_file};
 
-/// The program, not yet run.
+/// The program.
 fn toposlam() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
     command.current_dir(env!("CARGO_MANIFEST_DIR")).stdin(Stdio::null());
@@ -43,7 +43,7 @@ fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
     toposlam().args(arguments).output().unwrap()
 }
 
-/// What a run that must end well says.
+/// The standard output of a successful run.
 fn said<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
     let output = run(arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -58,7 +58,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// One JSON object a line, and nothing else.
+/// The JSON objects of an output, one a line.
 fn objects(text: &str) -> Vec<Value> {
     let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
     let objects: Vec<Value> = lines.collect();
@@ -66,7 +66,7 @@ fn objects(text: &str) -> Vec<Value> {
     objects
 }
 
-/// A fresh folder for a test of this name.
+/// An empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(name);
     let _ = fs::remove_dir_all(&folder);

@@ -1,5 +1,5 @@
-//! `toposlam proofs`: the list, a check, one case made again. Nothing here depends on which lemmas and
-//! theorems there are; how one that fails is told is tested beside the verb.
+//! `toposlam proofs`: the list, a check, a single case. Nothing here depends on the lemmas and theorems
+//! that exist. The report on a lemma that fails is tested beside the verb.
 
 use std::{fs, process::Output};
 
@@ -53,8 +53,8 @@ fn choices_text(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")
 }
 
-/// Refused, with one message.
-fn refusal(output: &Output) -> String {
+/// The message of an error.
+fn error_message(output: &Output) -> String {
     let message = stderr(output);
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(output.stdout.is_empty() && message.starts_with("error: "), "{message}");
@@ -65,8 +65,8 @@ fn refusal(output: &Output) -> String {
 fn every_lemma_is_listed_with_its_place_and_its_engines() {
     let (lines, proved, totals) = listed();
     let text = said(["proofs"]);
-    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
-    // As it was before it was broken into lines.
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    // Without line breaks.
     let flowing = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for (line, lemma) in lines.iter().zip(lemmas::all()) {
         assert_eq!(line["lemma"], lemma.name);
@@ -96,7 +96,7 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
     }
     assert_eq!(proved.len(), theorems::all().count());
     assert_eq!(totals["theorems"], proved.len());
-    assert!(flowing.contains("neither this program nor cargo test does it"), "{text}");
+    assert!(flowing.contains("neither this program nor cargo test runs it"), "{text}");
     let last = text.lines().last().unwrap();
     assert!(last.starts_with(&format!("{} lemma", lines.len())), "{last}");
     assert!(last.contains(&format!("; {} theorem", proved.len())), "{last}");
@@ -126,25 +126,26 @@ fn a_lemma_is_checked_in_every_case() {
 
 #[test]
 fn an_unknown_name_lists_those_that_exist() {
-    let message = refusal(&run(["proofs", "--run", "the_moon_is_round"]));
+    let message = error_message(&run(["proofs", "--run", "the_moon_is_round"]));
     let names: Vec<_> = lemmas::all().map(|lemma| lemma.name).collect();
     let cause = "--run: there is no lemma `the_moon_is_round`; there are:";
     assert_eq!(message, format!("error: {cause}\n  {}\n", names.join("\n  ")));
 }
 
 #[test]
-fn a_case_is_shown_as_a_world_and_a_walk_that_the_other_verbs_read() {
+fn the_other_verbs_read_the_world_of_a_case() {
     let folder = folder("proofs_case");
     let (lemma, choices) = case_with_a_walk();
     let case = ["proofs", "--run", lemma.name, "--choices", &choices_text(&choices)];
     let text = said(case);
     assert!(text.starts_with(&format!("{}\n  ", lemma.name)), "{text}");
-    assert!(text.contains(&format!("\n  again: toposlam {}\n", case.join(" "))), "{text}");
+    let joined = text.replace(" \\\n", " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(joined.contains(&format!(" again: toposlam {} ", case.join(" "))), "{text}");
     assert!(text.contains("\n  door   robot at  perceives\n  start  v"), "{text}");
     assert!(text.ends_with("\n\nholds: the lemma holds in this case\n"), "{text}");
     assert_eq!(text, said(case));
 
-    let (_, below) = text.split_once(" toposlam explore:\n\n").unwrap();
+    let (_, below) = text.split_once(" `toposlam explore`:\n\n").unwrap();
     let length = below.lines().position(|line| line.starts_with("facing = ")).unwrap() + 1;
     let world: String = below.split_inclusive('\n').take(length).collect();
     let file = folder.join("case.toml");
@@ -164,11 +165,11 @@ fn a_case_is_shown_as_a_world_and_a_walk_that_the_other_verbs_read() {
 }
 
 #[test]
-fn choices_that_make_no_case_are_refused_with_their_place() {
+fn choices_that_make_no_case_are_an_error() {
     let (lemma, choices) = case_with_a_walk();
     let refused = |choices: &[u8]| {
         let choices = choices_text(choices);
-        refusal(&run(["proofs", "--run", lemma.name, "--choices", &choices]))
+        error_message(&run(["proofs", "--run", lemma.name, "--choices", &choices]))
     };
     let length = choices.len();
     let place = format!("error: --choices: {}: ", lemma.name);
@@ -183,7 +184,7 @@ fn choices_that_make_no_case_are_refused_with_their_place() {
 }
 
 #[test]
-fn a_sampled_case_is_made_again_within_its_own_bound() {
+fn a_sampled_case_has_its_own_bound() {
     let sampled = |choices: &str, lemma: &Lemma| {
         run(["proofs", "--run", lemma.name, "--engine", "sampled", "--choices", choices])
     };
@@ -205,15 +206,15 @@ fn a_sampled_case_is_made_again_within_its_own_bound() {
         assert!(stderr(&output).contains("begins so has at least"), "{}", stderr(&output));
         choices.push(0);
     };
-    let again =
-        format!("  again: toposlam proofs --run {} --engine sampled --choices ", lemma.name);
-    assert!(text.contains(&format!("{again}{}\n", choices_text(&choices))), "{text}");
+    let again = format!(" again: toposlam proofs --run {} --engine sampled --choices ", lemma.name);
+    let joined = text.replace(" \\\n", " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(joined.contains(&format!("{again}{} ", choices_text(&choices))), "{text}");
 }
 
 #[test]
-fn the_case_of_the_help_is_one() {
+fn the_case_in_the_help_exists() {
     let help = said(["proofs", "--help"]);
     let mut examples = help.lines().filter_map(|line| line.strip_prefix("  toposlam "));
     let case = examples.find(|line| line.contains("--choices")).unwrap();
-    assert!(said(case.split(' ')).contains("as a file for toposlam draw"));
+    assert!(said(case.split(' ')).contains("as a file for `toposlam draw`"));
 }

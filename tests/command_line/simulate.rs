@@ -176,7 +176,7 @@ fn what_cannot_work_is_said_before_the_run() {
             "the start, courtyard, is a dead end; the marker is put down",
         ),
         (&[SHAPE_6, "--start", "tee:sw"], "the start, tee, is a T; the marker is put down at an L"),
-        (&["worlds/petersen.toml"], "this world is no floor plan"),
+        (&["worlds/petersen.toml"], "this world is not a floor plan"),
         (&[SHAPE_6, "--calibration", "missing.toml"], "missing.toml: cannot be read"),
         (&[SHAPE_6, "--calibration", &camera], "error: "),
         (

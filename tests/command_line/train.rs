@@ -400,7 +400,7 @@ fn what_cannot_be_asked_for_is_refused_with_what_can() {
     for (place, cause) in [
         (set.path("colours.json"), "the name must end in .toml"),
         (set.path("no/colours.toml"), "there is no folder "),
-        (set.path(""), "this is a folder; name a file"),
+        (set.path(""), "this is a folder, not a file"),
     ] {
         let mut arguments = set.train(&[]);
         let out = arguments.iter().position(|argument| argument == "--out").unwrap();

@@ -1,4 +1,4 @@
-//! Numbers of edges on the command line: `6`, `1..=6`, `1..7`.
+//! Numbers of edges as arguments: `6`, `1..=6`, `1..7`.
 
 use std::{ops::RangeInclusive, str::FromStr};
 

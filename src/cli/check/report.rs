@@ -1,4 +1,4 @@
-//! What a check prints: a row, or a JSON object, for each number of edges, and a verdict.
+//! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
 use std::{
     io::{self, Write},
@@ -14,9 +14,12 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{Failure, Outcome, RunChoices, text::grouped};
+use crate::cli::{
+    Failure, Outcome, RunChoices,
+    text::{grouped, print_hanging, print_paragraph},
+};
 
-/// Which algorithm is checked, with which marker.
+/// The algorithm that is checked, and its marker.
 #[derive(Clone, Copy)]
 pub(super) struct AlgorithmInfo {
     algorithm: &'static str,
@@ -32,18 +35,18 @@ impl AlgorithmInfo {
     }
 }
 
-/// What was checked of one number of edges.
+/// The result for one number of edges.
 pub(super) struct SizeResult<'a> {
     pub(super) edges: usize,
-    /// The class of the worlds, where they are not from a file.
+    /// The class of the worlds, unless they are from a file.
     pub(super) class: Class,
     pub(super) from: Option<&'a Path>,
-    /// The share of them.
+    /// The share of the worlds.
     pub(super) shard: Shard,
     pub(super) tally: &'a Tally,
 }
 
-/// Prints as it goes.
+/// Prints each result when it is there.
 pub(super) struct CheckReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
@@ -63,7 +66,7 @@ impl<'o> CheckReport<'o> {
         Self { out, json, subject, choice, header: false, total: Tally::default() }
     }
 
-    /// One number of edges.
+    /// Prints the result for one number of edges.
     pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), Failure> {
         if self.json {
             let line = Line::new(size, self.subject, self.choice);
@@ -87,23 +90,18 @@ impl<'o> CheckReport<'o> {
             shard => format!(", shard {shard}"),
         };
         let AlgorithmInfo { algorithm, marker, order } = self.subject;
-        writeln!(self.out, "{algorithm}, {marker} marker, {worlds}{share}\n")?;
-        write!(
+        print_paragraph(self.out, &format!("{algorithm}, {marker} marker, {worlds}{share}"))?;
+        writeln!(
             self.out,
-            "{:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>10}  {:>4}  {:>12}",
+            "\n{:>5}  {:>11}  {:>13}  {:>6}  {:>10}  {:>9}  {:>12}",
             "edges",
             "worlds",
             "starts",
-            "mapped",
             "failed",
             "mean moves",
-            "most",
-            format!("most/({order})"),
+            "max moves",
+            format!("max/({order})"),
         )?;
-        if self.choice != RunChoices::Default {
-            write!(self.out, "  {:>11}  {:>20}  {:>9}", "states", "runs", "moves")?;
-        }
-        writeln!(self.out)?;
         Ok(())
     }
 
@@ -112,74 +110,78 @@ impl<'o> CheckReport<'o> {
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
         }
-        write!(
+        writeln!(
             self.out,
-            "{edges:>5}  {:>11}  {:>12}  {:>12}  {:>6}  {:>10.1}  {:>4}  {:>12.3}",
+            "{edges:>5}  {:>11}  {:>13}  {:>6}  {:>10.1}  {:>9}  {:>12.3}",
             grouped(tally.worlds.into()),
             grouped(tally.starts.into()),
-            grouped(tally.mapped.into()),
             grouped(tally.failed().into()),
             tally.moves_total as f64 / tally.starts.max(1) as f64,
-            tally.moves_max(),
+            grouped(tally.moves_max().into()),
             tally.largest_ratio(edges, self.subject.order),
         )?;
         if self.choice != RunChoices::Default {
             let (least, most) = tally.extremes.unwrap_or_default();
-            let at_least = if tally.runs == u128::MAX || tally.gave_up > 0 { ">= " } else { "" };
-            write!(
-                self.out,
-                "  {:>11}  {:>20}  {:>9}",
+            let at_least =
+                if tally.runs == u128::MAX || tally.gave_up > 0 { "at least " } else { "" };
+            let all = format!(
+                "{} states, {at_least}{} runs of {} to {} moves",
                 grouped(tally.states.into()),
-                format!("{at_least}{}", grouped(tally.runs)),
-                format!("{least} to {most}"),
-            )?;
+                grouped(tally.runs),
+                grouped(least.into()),
+                grouped(most.into()),
+            );
+            print_hanging(self.out, "       all choices: ", &all)?;
         }
-        writeln!(self.out, "{}", if tally.interrupted { "  (interrupted)" } else { "" })?;
+        if tally.interrupted {
+            writeln!(self.out, "       interrupted")?;
+        }
         if let Some(failure) = &tally.failure {
             let step = step(failure).map_or(String::new(), |step| format!(" {step}"));
-            writeln!(self.out, "\nWrong{step}: {}", failure.flaw)?;
+            writeln!(self.out)?;
+            print_paragraph(self.out, &format!("Wrong{step}: {}", failure.flaw))?;
             let explore = format!("toposlam explore --marker {}", self.subject.marker);
-            writeln!(self.out, "The start, as a world file for `{explore}`:\n")?;
-            writeln!(self.out, "{}", world_file::to_toml(&failed_world(failure, self.subject)))?;
+            print_paragraph(self.out, &format!("The start, as a world file for `{explore}`:"))?;
+            writeln!(self.out, "\n{}", world_file::to_toml(&failed_world(failure, self.subject)))?;
         }
         Ok(())
     }
 
-    /// The last line, and the outcome. An empty check does not hold, nor one that was broken off.
+    /// Prints the verdict and returns the outcome. A check does not hold if it is empty or interrupted.
     pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
         let Tally { starts, mapped, gave_up, interrupted, .. } = self.total;
         let (outcome, verdict) = match () {
             () if mapped < starts => (Outcome::Violated, "violated"),
             () if interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if starts == 0 => (Outcome::Incomplete, "incomplete: there was nothing to check"),
+            () if starts == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
             () if gave_up > 0 => (Outcome::Incomplete, "incomplete"),
             () => (Outcome::Holds, "holds"),
         };
         if self.json {
             return Ok(outcome);
         }
-        write!(self.out, "\n{verdict}")?;
+        let mut verdict = verdict.to_owned();
         if starts > 0 {
             let (mapped, starts) = (grouped(mapped.into()), grouped(starts.into()));
-            write!(self.out, ": {mapped} of {starts} starts mapped right, ")?;
-            write!(self.out, "each map proved by a bijection")?;
+            verdict += &format!(": {mapped} of {starts} starts mapped correctly, ");
+            verdict += "each proved by a bijection";
         }
         if gave_up > 0 {
-            let gave_up = grouped(gave_up.into());
-            write!(self.out, "; {gave_up} have more states than --max-states")?;
+            verdict += &format!("; {} have more states than --max-states", grouped(gave_up.into()));
         }
         writeln!(self.out)?;
+        print_paragraph(self.out, &verdict)?;
         eprintln!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
         Ok(outcome)
     }
 }
 
-/// What `--json` prints for a number of edges.
+/// A line of `--json`, for one number of edges.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
     edges: usize,
-    /// None where the worlds are from a file.
+    /// `None` if the worlds are from a file.
     class: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     from: Option<String>,
@@ -202,7 +204,7 @@ struct Line<'a> {
     holds: bool,
 }
 
-/// With all choices: distinct states, runs, and the fewest and most moves of any run.
+/// With all choices: distinct states, runs, and the fewest and the most moves of a run.
 #[derive(Serialize)]
 struct EveryWayLine {
     states: u64,
@@ -266,7 +268,7 @@ fn failed_world(failure: &FailedStart, subject: AlgorithmInfo) -> NamedWorld {
     NamedWorld::discovered("failed", &about, &failure.graph, failure.facing)
 }
 
-/// The step at which it went wrong, where it is known.
+/// The step at which the run went wrong, if it is known.
 fn step(failure: &FailedStart) -> Option<String> {
     let step = failure.false_step.map(|step| step.to_string());
     step.or_else(|| failure.moves.map(|moves| format!("after {moves} moves")))
@@ -279,7 +281,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_beyond_64_bits_are_printed_whole() {
+    fn more_runs_than_64_bits_hold_are_printed_exactly() {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
         let (class, shard) = (Class::Simple, Shard::WHOLE);
         let size = SizeResult { edges: 1, class, from: None, shard, tally: &tally };

@@ -1,4 +1,4 @@
-//! A walk that somebody wants to see, in two worlds at once.
+//! One walk in two worlds at once.
 
 use std::{io::Write, str::FromStr};
 
@@ -13,9 +13,12 @@ use super::{
     Failure,
     robot_comparison::{RobotComparison, actions_json},
 };
-use crate::cli::{json::percept_json, text::print_rows};
+use crate::cli::{
+    json::percept_json,
+    text::{print_hanging, print_rows},
+};
 
-/// ActionList as the command line tells them.
+/// Actions, separated by commas.
 #[derive(Clone, Debug)]
 pub(super) struct ActionList(Vec<Action>);
 
@@ -28,22 +31,25 @@ impl FromStr for ActionList {
     }
 }
 
-/// A walk as it was walked: the percepts at the start and after each action.
+/// A walk with its percepts: at the start and after each action.
 pub(super) struct JointWalk<'w> {
     names: [&'w str; 2],
-    /// Where the robots began.
+    /// Where the robots start.
     starts: [String; 2],
     actions: Vec<Action>,
     percepts: Vec<[Percept; 2]>,
-    /// Why they did not go on, if only one of them could.
+    /// Why they stopped, if only one of them could go on.
     stopped: Option<String>,
 }
 
 impl<'w> RobotComparison<'w> {
-    /// Both robots do the same, as far as both can.
+    /// Both robots walk as far as both can.
+    ///
+    /// # Errors
+    /// Returns an error if neither robot can do an action.
     pub(super) fn walk(&self, ActionList(actions): &ActionList) -> Result<JointWalk<'w>, Failure> {
-        let mut robots = self.begun();
-        let mut walked = JointWalk {
+        let mut robots = self.placed_robots();
+        let mut walk = JointWalk {
             names: self.names(),
             starts: self.starts_text(),
             actions: Vec::new(),
@@ -57,16 +63,16 @@ impl<'w> RobotComparison<'w> {
                 [Err(error), Err(_)] => {
                     return Err(Failure::at(format!("--walk: action {number}"), error));
                 }
-                [Err(error), Ok(())] => walked.stopped = Some(format!("{error}, in A")),
-                [Ok(()), Err(error)] => walked.stopped = Some(format!("{error}, in B")),
+                [Err(error), Ok(())] => walk.stopped = Some(format!("{error}, in A")),
+                [Ok(()), Err(error)] => walk.stopped = Some(format!("{error}, in B")),
             }
-            if walked.stopped.is_some() {
+            if walk.stopped.is_some() {
                 break;
             }
-            walked.actions.push(action);
-            walked.percepts.push(robots.each_ref().map(PlacedRobot::sensed));
+            walk.actions.push(action);
+            walk.percepts.push(robots.each_ref().map(PlacedRobot::sensed));
         }
-        Ok(walked)
+        Ok(walk)
     }
 }
 
@@ -81,7 +87,7 @@ impl JointWalk<'_> {
         })
     }
 
-    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let heads: Vec<_> = self
             .names
             .iter()
@@ -93,14 +99,14 @@ impl JointWalk<'_> {
         let rows: Vec<_> = actions
             .zip(&self.percepts)
             .map(|(action, [one, other])| {
-                let differs = if one == other { "" } else { "  <- differs" };
-                [action, one.to_string(), format!("{other}{differs}")]
+                let differs = if one == other { "" } else { "<- differs" };
+                [action, one.to_string(), other.to_string(), differs.to_owned()]
             })
             .collect();
         writeln!(out)?;
-        print_rows(out, ["action", &heads[0], &heads[1]], &rows)?;
+        print_rows(out, ["action", &heads[0], &heads[1], ""], &rows)?;
         if let Some(why) = &self.stopped {
-            writeln!(out, "  they cannot go on together: {why}")?;
+            print_hanging(out, "  stopped: ", why)?;
         }
         Ok(())
     }

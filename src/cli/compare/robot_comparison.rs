@@ -1,6 +1,9 @@
-//! RobotComparison in two worlds with the same marker: can they tell the worlds apart?
+//! Robots with the same marker in two worlds: can they distinguish the worlds?
 
-use std::{io::Write, path::Path};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 use serde_json::{Map, Value, json};
 use toposlam_model::{
@@ -14,32 +17,34 @@ use toposlam_model::{
 use super::{Failure, walk_page};
 use crate::cli::{
     json::action_json,
-    text::{grouped, print_columns, print_paragraph},
+    text::{counted, grouped, print_columns, print_hanging, print_paragraph},
 };
 
-/// How many starts in B, and how many pairs of states, are told one by one.
+/// How many starts in B, and how many pairs of states, are printed.
 const PRINTED_STARTS: usize = 8;
 const PRINTED_PAIRS: usize = 400;
 
-/// RobotComparison in two worlds: one start in A, one or more in B.
+/// Robots in two worlds: one start in A, one or more in B.
 pub(super) struct RobotComparison<'w> {
     worlds: [&'w NamedWorld; 2],
     marker: &'static dyn Marker,
     comparison: Comparison<'w>,
     start: Dart,
-    /// Each start in B, with the walk that tells it from the one in A; `None` where none does.
+    /// Each start in B, with the walk that distinguishes it from the start in A, if there is one.
     others: Vec<(Dart, Option<Walk>)>,
-    /// From the first start in B from which no walk tells the worlds apart: why none does.
+    /// The bisimulation from the first start in B that no walk distinguishes.
     relation: Option<Relation>,
 }
 
-/// The most states that the robot and the marker may be in, in a world that is compared: each takes a
-/// hundred bytes and more.
+/// The most states of the robot and the marker in a world. Each state takes more than 100 bytes.
 const MOST_STATES: usize = 1 << 26;
 
 impl<'w> RobotComparison<'w> {
-    /// RobotComparison at the starts of the worlds; the one in B in every way that the marker cannot tell
-    /// from its start, unless `one_pose` is wanted.
+    /// Robots at the starts of the worlds. With `one_pose` the robot in B has one start, otherwise each
+    /// pose that the marker cannot distinguish from it.
+    ///
+    /// # Errors
+    /// Returns an error if a world has too many states.
     pub(super) fn new(
         worlds: [&'w NamedWorld; 2],
         marker: &'static dyn Marker,
@@ -50,9 +55,10 @@ impl<'w> RobotComparison<'w> {
             worlds.into_iter().find(|world| state_count(&world.graph, marker) > MOST_STATES)
         {
             let cause = format!(
-                "with the {} marker there are {} states, which are too many to compare",
+                "with the {} marker it has {} states; at most {} can be compared",
                 marker.name(),
                 grouped(state_count(&world.graph, marker) as u128),
+                grouped(MOST_STATES as u128),
             );
             return Err(Failure::at(&world.name, cause));
         }
@@ -63,27 +69,30 @@ impl<'w> RobotComparison<'w> {
             let starts = marker.starts(&b.graph, other);
             poses.extend(starts.into_iter().filter(|&pose| pose != other));
         }
-        let told_apart = |pose| (pose, comparison.walk([start, pose]));
-        let others: Vec<_> = poses.into_iter().map(told_apart).collect();
+        let with_walk = |pose| (pose, comparison.walk([start, pose]));
+        let others: Vec<_> = poses.into_iter().map(with_walk).collect();
         let mut robots = Self { worlds, marker, comparison, start, others, relation: None };
         robots.relation = robots.comparison.relation(robots.poses());
         robots.verify()?;
         Ok(robots)
     }
 
-    /// Holds what was found against the worlds, without regard to how it was found.
+    /// Verifies the walks and the relation in the worlds, independently of the search.
     fn verify(&self) -> Result<(), Failure> {
         let walks_hold = self.others.iter().all(|(pose, walk)| {
             let [one, other] = self.comparison.starts([self.start, *pose]);
             walk.as_ref().is_none_or(|walk| walk.verify(&one, &other))
         });
-        let [one, other] = self.begun();
+        let [one, other] = self.placed_robots();
         let relation_holds =
             self.relation.as_ref().is_none_or(|relation| relation.verify(&one, &other));
         if walks_hold && relation_holds {
             Ok(())
         } else {
-            Err(Failure::at("compare", "what was found is not confirmed: the search is at fault"))
+            Err(Failure::at(
+                "compare",
+                "the result is not confirmed: this is a fault of the search",
+            ))
         }
     }
 
@@ -92,19 +101,19 @@ impl<'w> RobotComparison<'w> {
         self.worlds.map(|world| world.name.as_str())
     }
 
-    /// The first start in B from which the worlds cannot be told apart, or else the first of all.
+    /// The start in A, and the first start in B that no walk distinguishes from it, or else the first.
     pub(super) fn poses(&self) -> [Dart; 2] {
-        let same = self.others.iter().find(|(_, walk)| walk.is_none());
-        let (pose, _) = same.or(self.others.first()).unwrap_or(&(Dart(0), None));
+        let indistinguishable = self.others.iter().find(|(_, walk)| walk.is_none());
+        let (pose, _) = indistinguishable.or(self.others.first()).unwrap_or(&(Dart(0), None));
         [self.start, *pose]
     }
 
     /// The two robots at those starts.
-    pub(super) fn begun(&self) -> [PlacedRobot<'w>; 2] {
+    pub(super) fn placed_robots(&self) -> [PlacedRobot<'w>; 2] {
         self.comparison.starts(self.poses())
     }
 
-    /// Writes the page on which a person walks with them.
+    /// Writes the page on which a person walks both worlds.
     pub(super) fn write_page(&self, path: &Path) -> Result<(), Failure> {
         walk_page::write(path, self.worlds, self.marker, &self.comparison, self.poses())
     }
@@ -137,58 +146,65 @@ impl<'w> RobotComparison<'w> {
             "relation_starts": relation.map(|_| self.starts_text()),
             "start": a.start_text(self.start),
             "starts": self.others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
-            "walks": self.others.iter().map(|(_, told)| walk(told)).collect::<Vec<_>>(),
+            "walks": self.others.iter().map(|(_, other)| walk(other)).collect::<Vec<_>>(),
         });
         line.as_object().cloned().unwrap_or_default()
     }
 
-    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let [a, b] = self.worlds;
         let start = a.start_text(self.start);
-        writeln!(out, "\n{} marker: {}", self.marker.name(), self.marker.about())?;
+        writeln!(out)?;
+        print_paragraph(out, &format!("{} marker: {}", self.marker.name(), self.marker.about()))?;
         if let Some(relation) = &self.relation {
-            let [_, other] = self.starts_text();
-            let pairs = grouped(relation.0.len() as u128);
-            let verdict = format!(
-                "No walk distinguishes the worlds from {start} in A and {other} in B. \
-                 The robots can be in {pairs} pairs of states:"
-            );
-            print_paragraph(out, &verdict)?;
-            let printed = relation.0.iter().take(PRINTED_PAIRS);
-            let pairs: Vec<_> = printed.map(|pair| self.pair_text(pair).join("~")).collect();
-            print_columns(out, &pairs)?;
-            if let Some(more) = relation.0.len().checked_sub(PRINTED_PAIRS + 1) {
-                writeln!(out, "  and {} more, which --json tells", more + 1)?;
-            }
-            return Ok(());
+            return Ok(self.print_relation(relation, out)?);
         }
         for (pose, walk) in self.others.iter().take(PRINTED_STARTS) {
             if let Some(Walk { actions, percepts: [one, other] }) = walk {
                 let actions: Vec<_> = actions.iter().map(ToString::to_string).collect();
                 let how = match actions.as_slice() {
-                    [] => "the first percepts tell".to_owned(),
-                    actions => format!("the walk {} tells", actions.join(",")),
+                    [] => "the first percepts distinguish".to_owned(),
+                    actions => format!("the walk {} distinguishes", actions.join(",")),
                 };
-                writeln!(
-                    out,
-                    "from {start} in A and {} in B {how} the worlds apart:\n  A: {one}\n  B: {other}",
-                    b.start_text(*pose),
-                )?;
+                let pose = b.start_text(*pose);
+                let text = format!("From {start} in A and {pose} in B {how} the worlds:");
+                print_paragraph(out, &text)?;
+                print_hanging(out, "  A: ", &one.to_string())?;
+                print_hanging(out, "  B: ", &other.to_string())?;
             }
         }
         match self.others.len().saturating_sub(PRINTED_STARTS) {
             0 => {}
-            more => writeln!(
-                out,
-                "from {more} more starts in B, too, a walk tells them apart; --json tells each"
-            )?,
+            more => {
+                let more = counted(more, "more start");
+                let text = format!("A walk also distinguishes them from {more} in B (see --json).");
+                print_paragraph(out, &text)?;
+            }
         }
         Ok(())
     }
+
+    /// Why no walk distinguishes the worlds.
+    fn print_relation(&self, relation: &Relation, out: &mut dyn Write) -> io::Result<()> {
+        let [start, other] = self.starts_text();
+        let count = grouped(relation.0.len() as u128);
+        let verdict = format!(
+            "No walk distinguishes the worlds from {start} in A and {other} in B. The robots can be \
+             in {count} pairs of states:"
+        );
+        print_paragraph(out, &verdict)?;
+        let printed = relation.0.iter().take(PRINTED_PAIRS);
+        let pairs: Vec<_> = printed.map(|pair| self.pair_text(pair).join("~")).collect();
+        print_columns(out, &pairs)?;
+        match relation.0.len().saturating_sub(PRINTED_PAIRS) {
+            0 => Ok(()),
+            more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
+        }
+    }
 }
 
-/// What is said of robots where there are none.
-pub(super) fn unknown() -> Map<String, Value> {
+/// The part of the object without robots.
+pub(super) fn no_robots_json() -> Map<String, Value> {
     let keys = ["marker", "distinguishable", "walk", "relation"];
     keys.into_iter().map(|key| (key.to_owned(), Value::Null)).collect()
 }

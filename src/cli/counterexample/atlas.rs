@@ -1,4 +1,4 @@
-//! The atlas: for each marker and class the smallest pair, as world files, pictures and a table.
+//! The atlas: the smallest pair for each marker and class, as world files, pictures and a table.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::cli::{
     text::{counted, sentence},
 };
 
-/// The sizes up to which the atlas searches a class, in about a minute altogether.
+/// The number of edges up to which the atlas searches a class. All searches take about a minute.
 fn full_size(class: Class) -> usize {
     match class {
         Class::Multigraph => 7,
@@ -32,13 +32,13 @@ struct Row {
     found: Vec<WorldPairs>,
 }
 
-/// Makes the atlas, of worlds with no more than so many edges where somebody says so.
+/// Writes the atlas. `edges` limits the sizes of the worlds.
 pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Failure> {
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows = Vec::new();
     output::make_folder(folder)?;
     for marker in MARKERS {
-        let mut found_of = Vec::new();
+        let mut found = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let search = AmbiguitySearch::new(class, edges, marker)
                 .map_err(|error| Failure::at("--edges", error))?;
@@ -48,11 +48,11 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(pairs::unfinished(&unfinished)),
+                Err(unfinished) => return Ok(pairs::report_unfinished(&unfinished)),
             };
-            found_of.push(WorldPairs::new(marker, class, &findings, false));
+            found.push(WorldPairs::new(marker, class, &findings, false));
         }
-        rows.push(Row { marker, found: found_of });
+        rows.push(Row { marker, found });
     }
     for Row { marker, found } in &rows {
         for found in found {
@@ -90,7 +90,7 @@ fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
         line(&format!("\n## {}\n", marker.name()));
         line(&format!("{}\n", sentence(marker.about())));
         if found.iter().all(|found| found.pairs().is_empty()) {
-            line("A walk tells any two of the worlds searched apart.");
+            line("No pair: a walk distinguishes any two of the searched worlds.");
             continue;
         }
         let mut header = true;
@@ -107,20 +107,20 @@ fn readme(rows: &[Row], sizes: [usize; 4], limit: &str) -> String {
 }
 
 const HEAD: &str = "\
-# Atlas of worlds that a marker cannot tell apart
+# Atlas of worlds that a marker cannot distinguish
 
-The smallest pair for each kind of marker in each class of worlds, or that there is none among all
-worlds of the class with up to so many edges, with the marker at every place. Of a pair's two sizes
-the larger one counts first. Each pair is confirmed by a relation between the states of the two
-worlds, which
+The table shows the smallest pair for each kind of marker in each class of worlds. The search covers all
+worlds of the class up to the given size, with the marker at every place. The smallest pair is the one
+whose larger world is smallest. A verified bisimulation confirms each pair; this command prints it, and
+with `--html` writes a page on which you can walk both worlds:
 
     toposlam compare worlds/atlas/undirected-simple-1.toml worlds/atlas/undirected-simple-2.toml --marker undirected
 
-shows, and with `--html` walks. This folder is made by
+This command makes the folder:
 
     toposlam counterexample --atlas worlds/atlas";
 
-/// The sizes of the pair, with its files.
+/// The sizes of the smallest pair, with links to its files.
 fn cell(found: &WorldPairs, edges: usize) -> String {
     match found.pairs().first() {
         None => format!("none up to {edges} edges"),

@@ -1,4 +1,4 @@
-//! What a search found, with names: the worlds that are told, and which of them are pairs.
+//! The pairs that a search found, and names for their worlds.
 
 use std::{collections::BTreeMap, path::Path, ptr};
 
@@ -11,11 +11,11 @@ use toposlam_model::{
 
 use crate::cli::{Failure, Outcome, output, walk_page};
 
-/// The worlds of the pairs that are told, each once.
+/// The reported pairs, and each of their worlds once.
 #[derive(Clone)]
 pub(super) struct WorldPairs {
     worlds: Vec<NamedWorld>,
-    /// The places of the two worlds of each pair, the smallest pair first.
+    /// The indices of the two worlds of each pair, the smallest pair first.
     pairs: Vec<[usize; 2]>,
     all: bool,
 }
@@ -39,7 +39,7 @@ impl WorldPairs {
             let other = pairs.iter().find(|pair| pair.contains(&place));
             let other = other.into_iter().flatten().find(|&&other| other != place);
             let about = format!(
-                "No walk tells it from {}; marker: {}",
+                "No walk distinguishes it from {}; marker: {}",
                 other.map_or_else(String::new, |&other| name(other)),
                 marker.name()
             );
@@ -49,12 +49,12 @@ impl WorldPairs {
         Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs, all }
     }
 
-    /// Whether these are all pairs.
+    /// Whether these are all pairs, and not only the smallest.
     pub(super) fn has_all(&self) -> bool {
         self.all
     }
 
-    /// The worlds that are told, each once, in the order in which they are in pairs.
+    /// The worlds, each once, in the order of the pairs.
     pub(super) fn worlds(&self) -> &[NamedWorld] {
         &self.worlds
     }
@@ -64,10 +64,10 @@ impl WorldPairs {
         self.pairs.iter().map(|pair| pair.map(|place| &self.worlds[place])).collect()
     }
 
-    /// Writes the page of the smallest pair; says so if there is none.
+    /// Writes the page of the smallest pair. Without a pair it prints a message and writes nothing.
     pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), Failure> {
         let Some(worlds @ [one, other]) = self.pairs().first().copied() else {
-            eprintln!("{} is not written: there is no pair to walk", path.display());
+            eprintln!("{} is not written: there is no pair", path.display());
             return Ok(());
         };
         let start = PlacedWorld::FACING;
@@ -76,7 +76,7 @@ impl WorldPairs {
         walk_page::write(path, worlds, marker, &comparison, poses)
     }
 
-    /// Writes each world as a file with its name.
+    /// Writes each world into a file that has its name.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         for world in &self.worlds {
             let path = folder.join(format!("{}.toml", world.name));
@@ -86,8 +86,8 @@ impl WorldPairs {
     }
 }
 
-/// How the verb ends where a search does not.
-pub(super) fn unfinished(unfinished: &Unfinished) -> Outcome {
+/// Prints why a search did not finish, and returns the outcome.
+pub(super) fn report_unfinished(unfinished: &Unfinished) -> Outcome {
     eprintln!("{unfinished}");
     match unfinished {
         Unfinished::Interrupted => Outcome::Incomplete,

@@ -1,4 +1,4 @@
-//! What a search prints: a table and the smallest pair, or JSON.
+//! The report of a search: a table and the smallest pair, or JSON.
 
 use std::io::Write;
 
@@ -11,18 +11,21 @@ use toposlam_model::{
 };
 
 use super::pairs::WorldPairs;
-use crate::cli::{Failure, text::grouped};
+use crate::cli::{
+    Failure,
+    text::{grouped, print_command, print_hanging, print_indented, print_paragraph},
+};
 
-/// Prints as it goes.
+/// Prints the result of each marker when it is there.
 pub(super) struct SearchReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
     class: Class,
     edges: usize,
-    /// How many markers there will be; the only one is told at length.
+    /// The number of markers. If there is one, the report on it is longer.
     markers: usize,
     header: bool,
-    /// What is told after the table.
+    /// Printed after the table.
     pairs: Vec<WorldPairs>,
 }
 
@@ -37,7 +40,7 @@ impl<'o> SearchReport<'o> {
         Self { out, json, class, edges, markers, header: false, pairs: Vec::new() }
     }
 
-    /// What was found for one marker.
+    /// Prints the result for one marker.
     pub(super) fn marker(
         &mut self,
         marker: &dyn Marker,
@@ -47,7 +50,7 @@ impl<'o> SearchReport<'o> {
         if self.json {
             self.objects(marker, findings, found)?;
         } else if self.markers == 1 {
-            self.at_length(marker, findings, found)?;
+            self.full_report(marker, findings, found)?;
         } else {
             self.row(marker, findings, found)?;
         }
@@ -72,7 +75,10 @@ impl<'o> SearchReport<'o> {
             });
             writeln!(self.out, "{line}")?;
         }
-        let pair = |pair: &[&NamedWorld; 2]| json!({ "edges": pair[1].graph.edge_count(), "worlds": pair.map(world_file::to_json) });
+        let pair = |pair: &[&NamedWorld; 2]| {
+            let edges = pair[1].graph.edge_count();
+            json!({ "edges": edges, "worlds": pair.map(world_file::to_json) })
+        };
         let pairs = found.pairs();
         let line = json!({
             "schema": 1,
@@ -112,10 +118,14 @@ impl<'o> SearchReport<'o> {
     ) -> Result<(), Failure> {
         if !std::mem::replace(&mut self.header, true) {
             let (class, edges) = (self.class, self.edges);
-            writeln!(self.out, "class {class}, 1 to {edges} edges\n")?;
+            let head = format!(
+                "Pairs of worlds that no walk distinguishes: class {class}, 1 to {edges} edges"
+            );
+            print_paragraph(self.out, &head)?;
+            writeln!(self.out)?;
             writeln!(
                 self.out,
-                "{:<15}  {:>13}  {:>9}  smallest pair that no walk tells apart",
+                "{:<15}  {:>13}  {:>9}  smallest pair",
                 "marker", "placed worlds", "ambiguous"
             )?;
         }
@@ -143,14 +153,14 @@ impl<'o> SearchReport<'o> {
         }
     }
 
-    /// Everything about one marker.
-    fn at_length(
+    /// The longer report on one marker.
+    fn full_report(
         &mut self,
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
     ) -> Result<(), Failure> {
-        writeln!(self.out, "{} marker: {}", marker.name(), marker.about())?;
+        print_paragraph(self.out, &format!("{} marker: {}", marker.name(), marker.about()))?;
         writeln!(self.out, "class {}, 1 to {} edges\n", self.class, self.edges)?;
         writeln!(self.out, "{:>5}  {:>13}  {:>9}", "edges", "placed worlds", "ambiguous")?;
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
@@ -162,53 +172,60 @@ impl<'o> SearchReport<'o> {
             )?;
         }
         let Some([one, other]) = found.pairs().first().copied() else {
-            writeln!(self.out, "\nno pair up to {} edges: a walk tells any two apart", self.edges)?;
+            writeln!(self.out)?;
+            let none = format!("no pair up to {} edges: a walk distinguishes any two", self.edges);
+            print_paragraph(self.out, &none)?;
             return Ok(());
         };
-        writeln!(
-            self.out,
-            "\nthe smallest pair that no walk tells apart: {}; what is behind each vertex's \
-             doors, clockwise:\n",
+        writeln!(self.out)?;
+        let smallest = format!(
+            "The smallest pair that no walk distinguishes: {}. For each vertex, the list shows where \
+             its doors lead, clockwise.",
             sizes(one, other)
-        )?;
-        self.tell_world(one)?;
-        self.tell_world(other)?;
-        writeln!(
-            self.out,
-            "\nto walk them: toposlam counterexample --marker {} --class {} --edges {} --html walk.html",
+        );
+        print_paragraph(self.out, &smallest)?;
+        writeln!(self.out)?;
+        self.print_world(one)?;
+        self.print_world(other)?;
+        let command = format!(
+            "toposlam counterexample --marker {} --class {} --edges {} --html walk.html",
             marker.name(),
             self.class,
             self.edges
-        )?;
+        );
+        writeln!(self.out, "\nTo walk them in a browser:")?;
+        print_command(self.out, "  ", &command)?;
         if found.has_all() {
-            self.tell_pairs(found)?;
+            self.print_pairs(found)?;
         }
         Ok(())
     }
 
     /// All pairs by name, and the worlds in them.
-    fn tell_pairs(&mut self, found: &WorldPairs) -> Result<(), Failure> {
+    fn print_pairs(&mut self, found: &WorldPairs) -> Result<(), Failure> {
         let pairs = found.pairs();
         let count = grouped(pairs.len() as u128);
-        writeln!(self.out, "\nall pairs: {count}\n")?;
+        writeln!(self.out, "\nAll pairs: {count}\n")?;
         for [one, other] in &pairs {
-            writeln!(self.out, "  {} ~ {}: {}", one.name, other.name, sizes(one, other))?;
+            let pair = format!("{} ~ {}: {}", one.name, other.name, sizes(one, other));
+            print_indented(self.out, "  ", 4, &pair)?;
         }
-        writeln!(self.out, "\nthe worlds in them:\n")?;
+        writeln!(self.out, "\nTheir worlds:\n")?;
         for world in found.worlds() {
-            self.tell_world(world)?;
+            self.print_world(world)?;
         }
         Ok(())
     }
 
-    /// A world in a line or two: its start and its orders.
-    fn tell_world(&mut self, world: &NamedWorld) -> Result<(), Failure> {
+    /// The start of a world, and the clockwise order at each of its vertices.
+    fn print_world(&mut self, world: &NamedWorld) -> Result<(), Failure> {
         let start = world.start.map(|dart| world.start_text(dart)).unwrap_or_default();
         writeln!(self.out, "  {}, start {start}", world.name)?;
         for vertex in world.graph.vertices() {
-            let listed: Vec<_> =
+            let doors: Vec<_> =
                 world.graph.darts_of(vertex).map(|dart| world.leads_to(dart)).collect();
-            writeln!(self.out, "    {}: {}", world.vertex_names[vertex.at()], listed.join(" "))?;
+            let name = &world.vertex_names[vertex.at()];
+            print_hanging(self.out, &format!("    {name}: "), &doors.join(" "))?;
         }
         Ok(())
     }
@@ -216,7 +233,7 @@ impl<'o> SearchReport<'o> {
     /// After the table, the pairs of all its rows.
     pub(super) fn end(&mut self) -> Result<(), Failure> {
         for found in std::mem::take(&mut self.pairs) {
-            self.tell_pairs(&found)?;
+            self.print_pairs(&found)?;
         }
         Ok(())
     }

@@ -56,7 +56,7 @@ impl Arguments {
             }
             None => None,
         };
-        let progress = Progress::endless("exploring", "pictures")?.always_in_good_order();
+        let progress = Progress::endless("exploring", "pictures")?.always_graceful();
         // On a terminal the story shows how far the run is.
         let told = !self.json && io::stdout().is_terminal();
         let progress = Rc::new(if told { progress.hidden() } else { progress });
@@ -91,7 +91,7 @@ impl Arguments {
         let detail = StoryDetail { every_hypothesis: false, doors: false };
         let story = match world {
             Some((world, facing)) => Story::new(lines, world, *facing, detail),
-            None => Story::under(lines, &format!("A robot at {}.", self.ros), detail),
+            None => Story::with_head(lines, &format!("A robot at {}.", self.ros), detail),
         };
         let mut narrator = Narrator { story, progress };
         let mut explorer = Explorer::new(robot, sensor, (&mut log, &mut narrator));
@@ -148,7 +148,7 @@ impl Arguments {
             colours: colours.to_toml(),
             command: self.command(),
         };
-        let recorder = Recorder::new(output::grow(path)?, &run, Some(camera.clone()));
+        let recorder = Recorder::new(output::create_growing(path)?, &run, Some(camera.clone()));
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 

@@ -1,5 +1,5 @@
-//! The doors of a run, and what is done with the marker, as the beginning of a JSON object that is
-//! written as they are taken.
+//! The doors of a run, and each pick-up and drop of the marker, as the beginning of a JSON object. They
+//! are written while the run goes on.
 
 use std::io::{self, Write};
 
@@ -7,7 +7,7 @@ use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 
 use crate::cli::json::action_json;
 
-/// Writes `{"schema":1,"doors":[...],`; the rest of the object is the caller's.
+/// Writes `{"schema":1,"doors":[...],`; the caller writes the rest of the object.
 pub(super) struct DoorsWriter<'o, W> {
     out: &'o mut W,
     taken: u64,

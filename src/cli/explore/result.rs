@@ -1,4 +1,4 @@
-//! How a run ended: its map, held against the world.
+//! The result of a run: its map, compared with the world.
 
 use std::io::{self, Write};
 
@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use super::{Failure, MappingMarker, Outcome};
-use crate::cli::text;
+use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
@@ -23,7 +23,7 @@ struct Rest {
     isomorphic: bool,
     map: Option<serde_json::Value>,
     start: String,
-    /// The marker, but the directional one.
+    /// The marker, unless it is the directional one.
     #[serde(skip_serializing_if = "Option::is_none")]
     marker: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,7 +41,7 @@ struct EveryWayRest {
     complete: bool,
 }
 
-/// How the run ended.
+/// The result of a run.
 pub(super) struct ExploreResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
@@ -49,11 +49,11 @@ pub(super) struct ExploreResult<'a> {
     pub(super) journey: &'a Journey,
     /// The most moves that the algorithm may make in this world.
     pub(super) move_bound: u64,
-    /// Whether the robot has its marker in hand.
+    /// Whether the robot carries its marker.
     pub(super) carries: bool,
     /// The bijection from the map to the world, or what is wrong.
     pub(super) result: Result<&'a Bijection, Flaw>,
-    /// All runs, where they were wanted.
+    /// All runs, with `--choices all`.
     pub(super) ways: Option<Result<EveryWay, Flaw>>,
 }
 
@@ -67,7 +67,7 @@ impl ExploreResult<'_> {
         }
     }
 
-    /// The map as a world, where it is complete.
+    /// The map as a world, if it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let (name, moves) = (&self.world.name, self.journey.moves());
         let about = format!("The map of {name}, made in {moves} moves");
@@ -85,8 +85,8 @@ impl ExploreResult<'_> {
         self.ways.as_ref().and_then(|ways| ways.as_ref().ok())
     }
 
-    /// The object whose beginning, with the doors, has been written during the run.
-    pub(super) fn tell_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    /// Prints the rest of the object that the run began with its doors.
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let map = self.journey.map();
         let rest = Rest {
             moves: self.journey.moves(),
@@ -109,73 +109,77 @@ impl ExploreResult<'_> {
         Ok(())
     }
 
-    pub(super) fn tell(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+        writeln!(out)?;
         match &self.result {
             Err(flaw) => {
-                let moves = text::counted(self.journey.moves() as usize, "move");
-                writeln!(out, "\nAfter {moves}: {flaw}")?;
+                let moves = counted(self.journey.moves() as usize, "move");
+                print_paragraph(out, &format!("After {moves}: {flaw}."))?;
                 if matches!(flaw, Flaw::Error(MappingError::Bound { .. })) {
-                    writeln!(out, "With --max-darts N the robot may go on.")?;
+                    print_paragraph(out, "Use --max-darts N to raise the bound.")?;
                 }
             }
-            Ok(bijection) => self.tell_map(bijection, out)?,
+            Ok(bijection) => self.print_map(bijection, out)?,
         }
         match &self.ways {
-            None => {}
-            Some(Err(flaw)) => writeln!(out, "\nWith other choices: {flaw}")?,
-            Some(Ok(EveryWay { states, runs, costs, complete })) => {
-                let least = |exact: bool| if exact { "" } else { "at least " };
-                writeln!(
-                    out,
-                    "\nWith all choices there are {}{states} states and {}{runs} runs.",
-                    least(*complete),
-                    least(*complete && *runs < u128::MAX),
-                )?;
-                let costs: Vec<_> = costs.iter().map(|cost| cost.to_string()).collect();
-                match (complete, costs.join(" ")) {
-                    (_, costs) if costs.is_empty() => writeln!(out, "None of them was finished.")?,
-                    (true, costs) => writeln!(out, "They take this many moves: {costs}.")?,
-                    (false, costs) => writeln!(out, "Those finished took as many moves: {costs}.")?,
-                }
+            None => Ok(()),
+            Some(Err(flaw)) => {
+                writeln!(out)?;
+                Ok(print_paragraph(out, &format!("With other choices: {flaw}."))?)
             }
+            Some(Ok(ways)) => Ok(print_ways(ways, out)?),
         }
-        Ok(())
     }
 
-    fn tell_map(&self, bijection: &Bijection, out: &mut dyn Write) -> Result<(), Failure> {
+    fn print_map(&self, bijection: &Bijection, out: &mut dyn Write) -> io::Result<()> {
         let Self { world, journey, move_bound, .. } = self;
-        let (edges, vertices) = (world.graph.edge_count(), world.graph.vertex_count());
-        writeln!(
-            out,
-            "\nThe map has {} and {}, and took {} moves (at least {edges}, at most {move_bound}).",
-            text::vertices(vertices),
-            text::counted(edges, "edge"),
-            journey.moves(),
-        )?;
-        writeln!(out, "It is isomorphic to the world:")?;
+        let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
+        let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
+        let moves = counted(journey.moves() as usize, "move");
+        let [least, most] = [edges as u128, (*move_bound).into()].map(grouped);
+        let complete = format!(
+            "The map is complete after {moves}: {size}. A run in this world takes at least {least} \
+             and at most {most} moves."
+        );
+        print_paragraph(out, &complete)?;
         let name = |vertex| {
             let first = journey.map().darts_of(vertex).next();
             let image = first.and_then(|dart| bijection.image(dart));
             image.map(|dart| world.at_text(dart)).unwrap_or_default()
         };
-        let names: Vec<_> = journey
-            .map()
-            .vertices()
-            .map(|vertex| format!("v{} = {}", vertex.0, name(vertex)))
-            .collect();
-        for line in names.chunks(6) {
-            writeln!(out, "  {}", line.join(", "))?;
-        }
+        let vertices = journey.map().vertices();
+        let names: Vec<_> = vertices.map(|v| format!("v{} = {}", v.0, name(v))).collect();
+        print_paragraph(out, "It is isomorphic to the world:")?;
+        print_hanging(out, "  ", &names.join(", "))?;
         let robot = journey.robot();
-        writeln!(
-            out,
-            "The robot knows where it is: at v{}, having come in by its dart {}.",
-            journey.map().vertex(robot).0,
-            journey.map().index(robot),
-        )?;
+        let (vertex, index) = (journey.map().vertex(robot).0, journey.map().index(robot));
+        let pose = format!("at v{vertex}, entered by dart v{vertex}.{index}");
+        print_paragraph(out, &format!("The robot is where it believes to be: {pose}."))?;
         if self.carries {
-            writeln!(out, "It carries its marker.")?;
+            print_paragraph(out, "It carries its marker.")?;
         }
         Ok(())
     }
+}
+
+/// What a run can cost with other choices.
+fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
+    let EveryWay { states, runs, costs, complete } = ways;
+    let at_least = |exact: bool| if exact { "" } else { "at least " };
+    let text = format!(
+        "With all choices there are {}{} states and {}{} runs.",
+        at_least(*complete),
+        grouped((*states).into()),
+        at_least(*complete && *runs < u128::MAX),
+        grouped(*runs),
+    );
+    writeln!(out)?;
+    print_paragraph(out, &text)?;
+    let costs: Vec<_> = costs.iter().map(|cost| grouped(cost.into())).collect();
+    let text = match (complete, costs.join(" ")) {
+        (_, costs) if costs.is_empty() => "No run was finished.".to_owned(),
+        (true, costs) => format!("Moves that a run can take: {costs}."),
+        (false, costs) => format!("Moves of the runs that were finished: {costs}."),
+    };
+    print_paragraph(out, &text)
 }

@@ -1,8 +1,12 @@
-//! The story of a run, round by round, for a person to read.
+//! The story of a mapping run, round by round.
 
 mod movable;
 
-use std::io::{self, Write};
+use std::{
+    fmt::Display,
+    io::{self, Write},
+    mem,
+};
 
 use toposlam_model::{
     embedded_graph::Dart,
@@ -12,47 +16,57 @@ use toposlam_model::{
     world::Action,
 };
 
-use crate::cli::text::{counted, vertices};
+use crate::cli::text::{
+    counted, grouped, print_hanging, print_indented, print_paragraph, vertices,
+};
 
-/// How much is told.
+/// How much a story contains.
 #[derive(Clone, Copy)]
 pub(crate) struct StoryDetail {
-    /// Everything that was rejected, or only the first few of each round.
+    /// Every rejected candidate, and not only the first few of each round.
     pub(crate) every_hypothesis: bool,
-    /// The doors taken, and what was done with the marker.
+    /// The doors taken, and each pick-up and drop of the marker.
     pub(crate) doors: bool,
 }
 
-/// How many of those rejected in a round are told one by one, where not all are wanted.
-const TOLD: usize = 4;
+/// How many rejected candidates of a round are printed unless all are wanted.
+const PRINTED_REJECTIONS: usize = 4;
 
-/// Tells a run as it goes.
+/// Prints a run while it goes on.
 pub(crate) struct Story<W> {
     out: W,
     detail: StoryDetail,
     result: io::Result<()>,
     round: u64,
     actions: Vec<Action>,
-    /// Rejected in this round; with a movable marker, at this stage of it.
+    /// Rejected in this round. With a movable marker: in this stage of the round.
     rejected: usize,
-    /// Moves at the beginning of what is told next.
+    /// The moves for those of them that were not printed.
+    moves_not_printed: u64,
+    /// The robot's moves up to the last line.
     moves: u64,
 }
 
 impl<W: Write> Story<W> {
     pub(crate) fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
-        let (at, back) = (world.at_text(facing), world.facing_text(facing));
-        let head = format!("{}, from {at} with its back to the door {back}.", world.name);
-        Self::under(out, &head, detail)
+        let NamedWorld { name, edge_names, .. } = world;
+        let (at, behind) = (world.at_text(facing), world.facing_text(facing));
+        let behind = match edge_names {
+            None => format!("the door to {behind}"),
+            Some(_) => format!("the door of edge {behind}"),
+        };
+        let head = format!("World {name}. The robot starts at {at}, with its back to {behind}.");
+        Self::with_head(out, &head, detail)
     }
 
-    /// The story of a run, under a head that says where it is.
-    pub(crate) fn under(mut out: W, head: &str, detail: StoryDetail) -> Self {
-        let result = writeln!(out, "{head}");
-        Self { out, detail, result, round: 0, actions: Vec::new(), rejected: 0, moves: 0 }
+    /// The story of a run in a world that the head describes.
+    pub(crate) fn with_head(mut out: W, head: &str, detail: StoryDetail) -> Self {
+        let result = print_paragraph(&mut out, head);
+        let (actions, rejected, moves_not_printed) = (Vec::new(), 0, 0);
+        Self { out, detail, result, round: 0, actions, rejected, moves_not_printed, moves: 0 }
     }
 
-    /// Where it is written.
+    /// The output.
     pub(crate) fn out(&self) -> &W {
         &self.out
     }
@@ -61,7 +75,7 @@ impl<W: Write> Story<W> {
         self.result.map(|()| self.out)
     }
 
-    fn tell(&mut self, journey: &Journey, event: MappingEvent) -> io::Result<()> {
+    fn print_event(&mut self, journey: &Journey, event: MappingEvent) -> io::Result<()> {
         let map = journey.map();
         if self.detail.doors {
             self.actions.extend(event.action());
@@ -69,65 +83,50 @@ impl<W: Write> Story<W> {
         match event {
             MappingEvent::Started { percept } => {
                 let marker = match percept.sighting {
-                    Sighting::Pointing(_) => "It drops its marker",
-                    _ => "Its marker lies",
+                    Sighting::Pointing(_) => "It puts its marker down here",
+                    _ => "Its marker lies here",
                 };
-                writeln!(self.out, "{marker} at v0, where it senses {percept}.")
+                let text = format!("{marker}, at vertex v0 of the map. It senses {percept}.");
+                print_paragraph(&mut self.out, &text)
             }
             MappingEvent::Moved { .. } => Ok(()),
             MappingEvent::Arrived { edge, percept, contradicted, hypotheses } => {
-                self.tell_round(journey, edge, "", percept)?;
-                match (contradicted, hypotheses) {
-                    (0, 0) => writeln!(self.out, "     nothing else is unexplored"),
-                    (_, 0) => writeln!(self.out, "     no other unexplored dart fits"),
-                    (_, fit) => {
-                        let others = counted(contradicted + fit, "other unexplored dart");
-                        writeln!(self.out, "     {fit} of the {others} may fit")
-                    }
-                }
+                self.print_round(journey, edge, "", percept)?;
+                self.print_candidates(contradicted, hypotheses)
             }
             MappingEvent::Rejected { hypothesis, followed, expected, perceived } => {
                 let why = format!(
-                    "no, its path fails at move {followed}: {} instead of {}",
-                    seen_against(perceived, expected),
-                    seen_against(expected, perceived),
+                    "at move {} of its path: expected {}, sensed {}",
+                    grouped(followed as u128),
+                    percept_text(expected, perceived),
+                    percept_text(perceived, expected),
                 );
-                self.tell_rejected(journey, &dart(map, hypothesis), &why)
+                self.print_rejected(journey, &dart(map, hypothesis), &why)
             }
             MappingEvent::Confirmed { hypothesis, followed } => {
-                self.tell_untold()?;
-                let moves = self.count_moves(journey);
-                let how = match followed {
-                    0 => "the marker is here and points as it must".to_owned(),
-                    _ => format!("its path leads to the marker, which points as it must ({moves})"),
+                let why = match followed {
+                    0 => "the marker is here and points as expected",
+                    _ => "its path leads to the marker, which points as expected",
                 };
-                writeln!(self.out, "     {}? yes: {how}", dart(map, hypothesis))
+                self.print_confirmed(journey, &dart(map, hypothesis), why)
             }
             MappingEvent::LoopClosed { edge, other } => {
-                writeln!(
-                    self.out,
-                    "     so {} and {} are one edge",
-                    dart(map, edge),
-                    dart(map, other)
-                )?;
-                self.tell_map(map)
+                let (edge, other) = (dart(map, edge), dart(map, other));
+                self.print_line(format!("So {edge} and {other} are the two ends of one edge."))?;
+                self.print_map(map)
             }
             MappingEvent::VertexAdded { edge, vertex } => {
-                self.tell_untold()?;
-                writeln!(
-                    self.out,
-                    "     so {} leads to a new vertex, v{}",
-                    dart(map, edge),
-                    vertex.0
-                )?;
-                self.tell_map(map)
+                self.print_omitted()?;
+                let edge = dart(map, edge);
+                self.print_line(format!("So {edge} leads to a new vertex, v{}.", vertex.0))?;
+                self.print_map(map)
             }
-            MappingEvent::Movable(event) => self.tell_movable(journey, event),
+            MappingEvent::Movable(event) => self.print_movable(journey, event),
         }
     }
 
-    /// A round begins: what there is behind an unexplored dart.
-    fn tell_round(
+    /// A round begins: the robot has followed an unexplored dart.
+    fn print_round(
         &mut self,
         journey: &Journey,
         edge: Dart,
@@ -135,59 +134,97 @@ impl<W: Write> Story<W> {
         percept: Percept,
     ) -> io::Result<()> {
         self.round += 1;
-        self.rejected = 0;
-        let edge = dart(journey.map(), edge);
-        let moves = self.count_moves(journey);
-        writeln!(self.out, "\n{:>3}  behind {edge}, after {moves}{with}: {percept}", self.round)
+        let (round, edge) = (grouped(self.round.into()), dart(journey.map(), edge));
+        let moves = self.take_moves(journey);
+        writeln!(self.out)?;
+        let text = format!("the robot takes {edge}{with}{moves} and senses {percept}.");
+        print_hanging(&mut self.out, &format!("Round {round}: "), &text)
     }
 
-    /// One of those that may be it is not, and why.
-    fn tell_rejected(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
+    /// How many unexplored darts may be the other end of the edge that was just taken.
+    fn print_candidates(&mut self, contradicted: usize, left: usize) -> io::Result<()> {
+        if contradicted + left == 0 {
+            return self.print_line("No other dart is unexplored.");
+        }
+        let darts = counted(contradicted + left, "dart");
+        let ruled_out = match contradicted {
+            0 => "none".to_owned(),
+            some => grouped(some as u128),
+        };
+        let left = match left {
+            0 => "no candidate".to_owned(),
+            some => counted(some, "candidate"),
+        };
+        self.print_line(format!(
+            "Possible other ends: {darts}. The percept rules out {ruled_out}: {left} left."
+        ))
+    }
+
+    /// A candidate is rejected.
+    fn print_rejected(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
         self.rejected += 1;
-        let moves = self.count_moves(journey);
-        if self.rejected > TOLD && !self.detail.every_hypothesis {
+        if self.rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
+            self.moves_not_printed += journey.moves() - self.moves;
+            self.moves = journey.moves();
             return Ok(());
         }
-        writeln!(self.out, "     {what}? {why} ({moves})")
+        let moves = self.take_moves(journey);
+        self.print_line(format!("Candidate {what}: rejected {why}{moves}."))
     }
 
-    /// The rejected ones that were not told one by one.
-    fn tell_untold(&mut self) -> io::Result<()> {
-        let rejected = std::mem::take(&mut self.rejected);
-        if rejected > TOLD && !self.detail.every_hypothesis {
-            let more = rejected - TOLD;
-            writeln!(self.out, "     ... and {more} more, all rejected")?;
+    /// A candidate is confirmed.
+    fn print_confirmed(&mut self, journey: &Journey, what: &str, why: &str) -> io::Result<()> {
+        self.print_omitted()?;
+        let moves = self.take_moves(journey);
+        self.print_line(format!("Candidate {what}: confirmed, {why}{moves}."))
+    }
+
+    /// How many rejected candidates were not printed.
+    fn print_omitted(&mut self) -> io::Result<()> {
+        let (rejected, moves) =
+            (mem::take(&mut self.rejected), mem::take(&mut self.moves_not_printed));
+        if rejected > PRINTED_REJECTIONS && !self.detail.every_hypothesis {
+            let more = grouped((rejected - PRINTED_REJECTIONS) as u128);
+            self.print_line(format!("... and {more} more, all rejected{}.", in_moves(moves)))?;
         }
         Ok(())
     }
 
-    fn tell_map(&mut self, map: &PartialMap) -> io::Result<()> {
+    fn print_map(&mut self, map: &PartialMap) -> io::Result<()> {
         if self.detail.doors {
             let doors: Vec<_> = self.actions.drain(..).map(|action| action.to_string()).collect();
-            writeln!(self.out, "     doors: {}", doors.join(" "))?;
+            print_hanging(&mut self.out, "  Doors: ", &doors.join(" "))?;
         }
-        let unexplored = map.unexplored_count();
-        let edges = (map.dart_count() - unexplored as usize) / 2;
-        writeln!(
-            self.out,
-            "     known: {}, {}; unexplored: {}",
-            vertices(map.vertex_count()),
-            counted(edges, "edge"),
-            counted(unexplored as usize, "dart"),
-        )
+        let unexplored = map.unexplored_count() as usize;
+        let edges = counted((map.dart_count() - unexplored) / 2, "edge");
+        let (vertices, unexplored) = (vertices(map.vertex_count()), counted(unexplored, "dart"));
+        self.print_line(format!("Known: {vertices}, {edges}. Unexplored: {unexplored}."))
     }
 
-    fn count_moves(&mut self, journey: &Journey) -> String {
-        let moves = journey.moves() - std::mem::replace(&mut self.moves, journey.moves());
-        counted(moves as usize, "move")
+    /// A line of a round.
+    fn print_line(&mut self, text: impl Display) -> io::Result<()> {
+        print_indented(&mut self.out, "  ", 4, &text.to_string())
+    }
+
+    /// The moves since the last line, in parentheses.
+    fn take_moves(&mut self, journey: &Journey) -> String {
+        in_moves(journey.moves() - mem::replace(&mut self.moves, journey.moves()))
     }
 }
 
 impl<W: ?Sized, O: Write> Observer<W> for Story<O> {
     fn event(&mut self, _: &mut W, journey: &Journey, event: MappingEvent) {
         if self.result.is_ok() {
-            self.result = self.tell(journey, event);
+            self.result = self.print_event(journey, event);
         }
+    }
+}
+
+/// A number of moves in parentheses, unless it is zero.
+fn in_moves(moves: u64) -> String {
+    match moves {
+        0 => String::new(),
+        moves => format!(" ({})", counted(moves as usize, "move")),
     }
 }
 
@@ -196,8 +233,8 @@ fn dart(map: &PartialMap, dart: Dart) -> String {
     format!("v{}.{}", map.vertex(dart).0, map.index(dart))
 }
 
-/// A percept that differs from another one. It says "no marker" if the other one has a marker.
-fn seen_against(percept: Percept, other: Percept) -> String {
+/// A percept that differs from another one: says "no marker" if the other one has a marker.
+fn percept_text(percept: Percept, other: Percept) -> String {
     let absent = percept.sighting == Sighting::Nothing && other.sighting != Sighting::Nothing;
     format!("{percept}{}", if absent { ", no marker" } else { "" })
 }

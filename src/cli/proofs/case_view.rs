@@ -1,4 +1,4 @@
-//! What a lemma shows of a case, as a person reads it and as a program does.
+//! The worlds, walks and values of a case of a lemma, as text and as JSON.
 
 use std::io::{self, Write};
 
@@ -13,17 +13,20 @@ use toposlam_model::{
 };
 use toposlam_proofs::Exhibit;
 
-use crate::cli::{json::percept_json, text::capital, text::print_rows};
+use crate::cli::{
+    json::percept_json,
+    text::{capital, print_hanging, print_rows},
+};
 
-/// The worlds of a case, the walks in them, and what else there is.
+/// The worlds of a case, the walks in them, and other values.
 pub(super) struct CaseView {
     worlds: Vec<NamedWorld>,
-    /// In the order of the lemma.
+    /// In the order in which the lemma shows them.
     parts: Vec<Part>,
 }
 
 enum Part {
-    /// The world at this place among those that are shown, from 0.
+    /// The index of a world.
     World(usize),
     Walk(Walk),
     Value {
@@ -34,19 +37,18 @@ enum Part {
 
 /// A walk in a world with a marker at the start.
 struct Walk {
-    /// The place of the world among those that are shown, from 0.
+    /// The index of the world.
     world: usize,
     marker: &'static dyn Marker,
     doors: Vec<Door>,
-    /// Where the robot is, `vertex:door`, and what it perceives there: at the beginning and after each
-    /// door.
+    /// The robot's pose, `vertex:door`, and percept: at the start and after each door.
     steps: Vec<(String, Percept)>,
-    /// Why it did not go on, if it could not.
+    /// Why the robot stopped early, if it did.
     stopped: Option<String>,
 }
 
 impl CaseView {
-    /// What a lemma shows; `about` is said of its worlds.
+    /// The view of what a lemma shows. `about` describes its worlds.
     pub(super) fn new(about: &str, exhibits: &[Exhibit]) -> Self {
         let is_world = |exhibit: &&Exhibit| matches!(exhibit, Exhibit::World { .. });
         let several = exhibits.iter().filter(is_world).count() > 1;
@@ -64,7 +66,7 @@ impl CaseView {
                 }
                 Exhibit::Walk { world, marker, pose, doors } => {
                     Walk::new(&worlds, *world, *marker, *pose, doors)
-                        .map_or_else(|| nowhere(*pose, doors), Part::Walk)
+                        .map_or_else(|| impossible_walk(*pose, doors), Part::Walk)
                 }
                 Exhibit::Value { name, value } => Part::Value { name, value: value.clone() },
             });
@@ -72,8 +74,8 @@ impl CaseView {
         Self { worlds, parts }
     }
 
-    /// Each part, after an empty line.
-    pub(super) fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
+    /// Prints each part after an empty line.
+    pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let world = |place: usize| match self.worlds.len() {
             1 => "the world".to_owned(),
             _ => format!("world {}", place + 1),
@@ -83,16 +85,19 @@ impl CaseView {
             match part {
                 Part::World(place) => {
                     let which = capital(&world(*place));
-                    writeln!(out, "{which}, as a file for toposlam draw and toposlam explore:\n")?;
+                    writeln!(
+                        out,
+                        "{which}, as a file for `toposlam draw` and `toposlam explore`:\n"
+                    )?;
                     write!(out, "{}", world_file::to_toml(&self.worlds[*place]))?;
                 }
                 Part::Walk(walk) => {
                     let which = world(walk.world);
                     let marker = walk.marker.name();
                     writeln!(out, "A walk in {which}, marker {marker}:\n")?;
-                    walk.tell(out)?;
+                    walk.print(out)?;
                 }
-                Part::Value { name, value } => writeln!(out, "{name}: {value}")?,
+                Part::Value { name, value } => print_hanging(out, &format!("{name}: "), value)?,
             }
         }
         Ok(())
@@ -115,16 +120,16 @@ impl CaseView {
     }
 }
 
-/// A walk that is in none of the worlds that are shown.
-fn nowhere(pose: Dart, doors: &[Door]) -> Part {
+/// A walk whose world or pose does not exist, as a value.
+fn impossible_walk(pose: Dart, doors: &[Door]) -> Part {
     let doors: Vec<_> = doors.iter().map(|door| door.0.to_string()).collect();
     let value = format!("from dart {} by the doors {}", pose.0, doors.join(","));
     Part::Value { name: "walk", value }
 }
 
 impl Walk {
-    /// The walk from a pose by these doors in one of the worlds, as far as it goes; none where there
-    /// is no such pose.
+    /// The walk from a pose by these doors in one of the worlds, as far as possible. `None` if there is no
+    /// such pose.
     fn new(
         worlds: &[NamedWorld],
         place: usize,
@@ -135,8 +140,8 @@ impl Walk {
         let world = worlds.get(place).filter(|world| pose.at() < world.graph.dart_count())?;
         let facing = world.start?;
         let mut robot = GraphWorld::with_marker(&world.graph, marker, facing);
-        let begun = State { pose, ..robot.state() };
-        robot = robot.at(begun);
+        let start = State { pose, ..robot.state() };
+        robot = robot.at(start);
         let step = |robot: &GraphWorld<'_, &dyn Marker>| {
             (world.state_text(&marker, robot.state()), robot.sensed())
         };
@@ -152,7 +157,7 @@ impl Walk {
         Some(Self { world: place, marker, doors: doors.to_vec(), steps, stopped })
     }
 
-    fn tell(&self, out: &mut dyn Write) -> io::Result<()> {
+    fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let doors = self.doors.iter().map(|door| door.0.to_string());
         let rows: Vec<_> = std::iter::once("start".to_owned())
             .chain(doors)
@@ -161,7 +166,7 @@ impl Walk {
             .collect();
         print_rows(out, ["door", "robot at", "perceives"], &rows)?;
         if let Some(why) = &self.stopped {
-            writeln!(out, "  it cannot go on: {why}")?;
+            print_hanging(out, "  stopped: ", why)?;
         }
         Ok(())
     }
@@ -178,7 +183,7 @@ impl Walk {
     }
 }
 
-/// What `--json` tells of a case.
+/// The part of a line of `--json` that shows a case.
 #[derive(Serialize)]
 pub(super) struct CaseViewLine<'a> {
     worlds: Vec<Value>,
@@ -188,7 +193,7 @@ pub(super) struct CaseViewLine<'a> {
 
 #[derive(Serialize)]
 struct WalkLine<'a> {
-    /// The place of its world in `worlds`.
+    /// The index of its world in `worlds`.
     world: usize,
     marker: &'a str,
     doors: Vec<u32>,

@@ -1,4 +1,4 @@
-//! One lemma in every case within its bound, while somebody watches and may break it off.
+//! The check of one lemma in every case within its bound, which can be interrupted.
 
 use std::{
     sync::mpsc::{self, RecvTimeoutError},
@@ -11,26 +11,26 @@ use toposlam_proofs::{Counterexample, Lemma, lemma};
 
 use crate::cli::Failure;
 
-/// What became of a check, and how long it took.
+/// A check of a lemma.
 pub(super) struct LemmaCheck {
-    pub(super) ending: CheckEnd,
+    pub(super) end: CheckEnd,
     pub(super) seconds: f64,
 }
 
-/// What became of a check.
+/// How a check ended.
 pub(super) enum CheckEnd {
-    /// The lemma holds in so many cases, which are all.
+    /// The lemma holds in all cases.
     Holds { cases: u64 },
-    /// It fails in this case.
+    /// The lemma fails in a case.
     Fails(Counterexample),
-    /// It holds in all cases, but there are more or fewer of them than there must be.
+    /// The lemma holds in all cases, but their number is not the expected one.
     Miscounted { pinned: u64, found: u64 },
-    /// The check was broken off; until then the lemma held in so many cases at least.
+    /// The check was interrupted after at least this many cases, in which the lemma holds.
     Interrupted { cases: u64 },
 }
 
 impl CheckEnd {
-    /// In how many cases the lemma holds; where it fails, in how many before that.
+    /// The number of cases in which the lemma holds, before the first one in which it fails.
     pub(super) fn cases(&self) -> u64 {
         match *self {
             Self::Holds { cases }
@@ -41,34 +41,35 @@ impl CheckEnd {
     }
 }
 
-/// How long a check may go on before anybody asks whether to break it off.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// How often an interrupt is looked for.
+const INTERVAL: Duration = Duration::from_millis(50);
 
-/// What is heard of a check.
-enum News {
+/// A message from the thread that checks.
+enum Message {
     Cases(u64),
-    Ended(Result<u64, lemma::LemmaFailure>),
+    End(Result<u64, lemma::LemmaFailure>),
 }
 
-/// Checks a lemma.
+/// Checks a lemma on a thread of its own, so that an interrupt need not wait for the next case.
 ///
-/// It works on a thread of its own: whoever breaks off need not wait for the next case.
+/// # Errors
+/// Returns an error if the thread cannot be started or panics.
 pub(super) fn check_lemma(lemma: &Lemma, watch: &impl Watch) -> Result<LemmaCheck, Failure> {
-    let begun = Instant::now();
-    let (teller, news) = mpsc::channel();
-    let at_work = *lemma;
-    // Whoever has broken off listens no more.
+    let start = Instant::now();
+    let (sender, receiver) = mpsc::channel();
+    let lemma_copy = *lemma;
+    // After an interrupt there is no receiver.
     let work = move || {
-        let result = at_work.check(&mut |cases| drop(teller.send(News::Cases(cases))));
-        drop(teller.send(News::Ended(result)));
+        let result = lemma_copy.check(&mut |cases| drop(sender.send(Message::Cases(cases))));
+        drop(sender.send(Message::End(result)));
     };
     let spawned = thread::Builder::new().name(lemma.name.to_owned()).spawn(work);
     spawned.map_err(|error| Failure::at(lemma.name, error))?;
     let mut cases = 0;
-    let ending = loop {
-        match news.recv_timeout(PATIENCE) {
-            Ok(News::Ended(result)) => break CheckEnd::from(result),
-            Ok(News::Cases(so_far)) => {
+    let end = loop {
+        match receiver.recv_timeout(INTERVAL) {
+            Ok(Message::End(result)) => break CheckEnd::from(result),
+            Ok(Message::Cases(so_far)) => {
                 if cases == 0 {
                     watch.parts((lemma.exhaustive.cases / so_far.max(1)) as usize);
                 }
@@ -77,14 +78,14 @@ pub(super) fn check_lemma(lemma: &Lemma, watch: &impl Watch) -> Result<LemmaChec
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(Failure::at(lemma.name, "the check came to no end"));
+                return Err(Failure::at(lemma.name, "the check ended without a result"));
             }
         }
         if watch.stop() {
             break CheckEnd::Interrupted { cases };
         }
     };
-    Ok(LemmaCheck { ending, seconds: begun.elapsed().as_secs_f64() })
+    Ok(LemmaCheck { end, seconds: start.elapsed().as_secs_f64() })
 }
 
 impl From<Result<u64, lemma::LemmaFailure>> for CheckEnd {

@@ -1,4 +1,4 @@
-//! One case of a lemma, made again and shown.
+//! One case of a lemma, made from its choices.
 
 use std::io::{self, Write};
 
@@ -9,15 +9,19 @@ use super::{
     Engine,
     case_view::{CaseView, CaseViewLine},
 };
-use crate::cli::{Failure, Outcome, json::print_object, text::print_hanging};
+use crate::cli::{
+    Failure, Outcome,
+    json::print_object,
+    text::{print_command, print_hanging},
+};
 
-/// A case as it was made.
+/// A case of a lemma.
 pub(super) struct LemmaCase<'a> {
     lemma: &'a Lemma,
     engine: Engine,
     choices: &'a [u8],
     case: choose::CaseResult,
-    pub(super) shown: CaseView,
+    pub(super) view: CaseView,
 }
 
 impl<'a> LemmaCase<'a> {
@@ -36,11 +40,11 @@ impl<'a> LemmaCase<'a> {
         };
         let made = CaseReplay::show(replay, choices)
             .map_err(|misfit| Failure::at("--choices", format!("{}: {misfit}", lemma.name)))?;
-        let shown = CaseView::new(&command(lemma, engine, choices), &made.exhibits);
-        Ok(Self { lemma, engine, choices, case: made.case, shown })
+        let view = CaseView::new(&format!("A case of {}", lemma.name), &made.exhibits);
+        Ok(Self { lemma, engine, choices, case: made.case, view })
     }
 
-    /// What does not hold in it.
+    /// The claim that does not hold in it.
     pub(super) fn claim(&self) -> Option<&'static str> {
         match self.case {
             Err(Stop::Fails(claim)) => Some(claim),
@@ -48,8 +52,8 @@ impl<'a> LemmaCase<'a> {
         }
     }
 
-    /// Prints it, and answers what it comes to. A case that the lemma excludes proves nothing.
-    pub(super) fn tell(&self, json: bool, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    /// Prints the case and returns the outcome. A case that the lemma excludes is incomplete.
+    pub(super) fn print(&self, json: bool, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let (outcome, word) = match self.case {
             Ok(()) => (Outcome::Holds, "holds"),
             Err(Stop::Fails(_)) => (Outcome::Violated, "fails"),
@@ -64,24 +68,24 @@ impl<'a> LemmaCase<'a> {
                 verdict: word,
                 holds: outcome == Outcome::Holds,
                 claim: self.claim(),
-                shown: self.shown.json(),
+                view: self.view.json(),
             };
             print_object(out, &line)?;
             return Ok(outcome);
         }
         print_head(out, self.lemma, self.engine, self.choices, self.claim())?;
-        self.shown.tell(out)?;
+        self.view.print(out)?;
         let verdict = match outcome {
             Outcome::Holds => "holds: the lemma holds in this case",
             Outcome::Violated => "violated: the lemma fails in this case",
-            Outcome::Incomplete => "incomplete: the lemma says nothing about this case",
+            Outcome::Incomplete => "incomplete: the lemma excludes this case",
         };
         writeln!(out, "\n{verdict}")?;
         Ok(outcome)
     }
 }
 
-/// What is printed above a case: the lemma, what does not hold, and how the case is made again.
+/// Prints the head of a case: the lemma, the claim that fails, and the command that repeats the case.
 pub(super) fn print_head(
     out: &mut dyn Write,
     lemma: &Lemma,
@@ -92,12 +96,12 @@ pub(super) fn print_head(
     writeln!(out, "{}", lemma.name)?;
     print_hanging(out, "  ", lemma.sentence)?;
     if let Some(claim) = claim {
-        print_hanging(out, "  fails: ", &format!("it does not hold that {claim}"))?;
+        print_hanging(out, "  fails: ", &format!("it is not true that {claim}"))?;
     }
-    writeln!(out, "  again: {}", command(lemma, engine, choices))
+    print_command(out, "  again: ", &command(lemma, engine, choices))
 }
 
-/// The command that makes a case again.
+/// The command that prints a case.
 fn command(lemma: &Lemma, engine: Engine, choices: &[u8]) -> String {
     let engine = match engine {
         Engine::Exhaustive => "",
@@ -110,7 +114,7 @@ fn command(lemma: &Lemma, engine: Engine, choices: &[u8]) -> String {
     format!("toposlam proofs --run {}{engine} --choices {choices}", lemma.name)
 }
 
-/// What `--json` prints of a case.
+/// The line of `--json` for a case.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
@@ -121,5 +125,5 @@ struct Line<'a> {
     holds: bool,
     claim: Option<&'a str>,
     #[serde(flatten)]
-    shown: CaseViewLine<'a>,
+    view: CaseViewLine<'a>,
 }

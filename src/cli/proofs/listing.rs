@@ -1,5 +1,4 @@
-//! The list of all lemmas, and of the theorems that are proved in Coq: what each says, where it stands,
-//! and which engines check it.
+//! The list of the lemmas, and of the theorems that Coq proves.
 
 use std::io::{self, Write};
 
@@ -7,7 +6,11 @@ use serde::Serialize;
 use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
 
 use super::cases;
-use crate::cli::{Failure, json::print_object, text::counted, text::print_hanging};
+use crate::cli::{
+    Failure,
+    json::print_object,
+    text::{counted, print_hanging, print_paragraph},
+};
 
 const EXHAUSTIVE: &str = "exhaustive";
 const SAMPLED: &str = "sampled";
@@ -15,23 +18,23 @@ const KANI: &str = "Kani";
 const COQ: &str = "Coq";
 const EVERY_WORLD: &str = "every world";
 
-/// How each engine is run, below the list.
+/// How to run each engine; printed below the list.
 const ENGINES: [(&str, &str); 4] = [
     (EXHAUSTIVE, "every case within the bound: toposlam proofs --run NAME, or --run all"),
-    (SAMPLED, "cases drawn at random within the bound: cargo test -p toposlam-proofs"),
+    (SAMPLED, "random cases within the bound: cargo test -p toposlam-proofs"),
     (
         KANI,
-        "every case within the bound, made symbolic: proofs/kani/verify, where Kani is installed; \
-         neither this program nor cargo test does it, and no result of it stands here",
+        "every case within the bound, symbolically: proofs/kani/verify, if Kani is installed; \
+         neither this program nor cargo test runs it, and this list does not contain its results",
     ),
     (
         COQ,
-        "every world, without a bound: proofs/coq/check, where Coq is installed; this program does \
-         not do it, cargo test -p toposlam-proofs does",
+        "every world, without a bound: proofs/coq/check, if Coq is installed; cargo test -p \
+         toposlam-proofs runs it too, this program does not",
     ),
 ];
 
-/// Lists the lemmas and the theorems, and how many there are.
+/// Prints the lemmas and the theorems, and their numbers.
 pub(super) fn list(
     lemmas: &[&Lemma],
     theorems: &[Theorem],
@@ -66,7 +69,10 @@ fn print_list(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> i
     let cases = cases(total(lemmas));
     let [lemmas, theorems] =
         [(lemmas.len(), "lemma"), (theorems.len(), "theorem")].map(|(n, word)| counted(n, word));
-    writeln!(out, "\n{lemmas}, {cases} within the exhaustive bounds; {theorems} for {EVERY_WORLD}")
+    writeln!(out)?;
+    let totals =
+        format!("{lemmas}, {cases} within the exhaustive bounds; {theorems} for {EVERY_WORLD}");
+    print_paragraph(out, &totals)
 }
 
 fn print_head(out: &mut dyn Write, [name, sentence, paper, file]: [&str; 4]) -> io::Result<()> {
@@ -81,7 +87,7 @@ fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
     print_hanging(out, &format!("  {label:width$}  "), text)
 }
 
-/// A line of `--json`, of a lemma.
+/// The line of `--json` for a lemma.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
@@ -112,7 +118,7 @@ struct KaniLine<'a> {
     harness: &'a str,
 }
 
-/// A line of `--json`, of a theorem.
+/// The line of `--json` for a theorem.
 #[derive(Serialize)]
 struct TheoremLine<'a> {
     schema: u32,
@@ -170,7 +176,7 @@ fn print_json(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> R
     print_object(out, &totals)
 }
 
-/// How many cases there are within the exhaustive bounds.
+/// The number of cases within the exhaustive bounds.
 fn total(lemmas: &[&Lemma]) -> u64 {
     lemmas.iter().map(|lemma| lemma.exhaustive.cases).sum()
 }

@@ -1,5 +1,5 @@
-//! What a check prints: a row, or a JSON object, for each lemma; below the rows each case in which one
-//! fails; and a verdict.
+//! The report of a check: a row or a JSON object for each lemma, each case in which a lemma fails, and
+//! the verdict.
 
 use std::io::{self, Write};
 
@@ -15,23 +15,23 @@ use super::{
 };
 use crate::cli::{Failure, Outcome, json::print_object, text::print_hanging};
 
-/// Prints as it goes.
+/// Prints the result of each lemma when it is there.
 pub(super) struct ProofsReport<'o> {
     out: &'o mut dyn Write,
     json: bool,
-    /// How wide the names are, and the numbers of cases.
+    /// The widths of the names and of the numbers of cases.
     widths: [usize; 2],
     lemmas: usize,
     held: usize,
     cases: u64,
     seconds: f64,
     interrupted: bool,
-    /// What does not hold, to be told below the rows.
+    /// The lemmas that fail, to be printed below the rows.
     failed: Vec<(&'o Lemma, CheckEnd)>,
 }
 
 impl<'o> ProofsReport<'o> {
-    /// On the check of these lemmas.
+    /// A report on these lemmas.
     pub(super) fn new(out: &'o mut dyn Write, json: bool, lemmas: &[&Lemma]) -> Self {
         let names = lemmas.iter().map(|lemma| lemma.name.len());
         let numbers = lemmas.iter().map(|lemma| cases(lemma.exhaustive.cases).len());
@@ -48,7 +48,7 @@ impl<'o> ProofsReport<'o> {
         }
     }
 
-    /// One lemma.
+    /// Prints the result of one lemma.
     pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), Failure> {
         if self.json {
             print_line(self.out, lemma, &checked)?;
@@ -57,7 +57,7 @@ impl<'o> ProofsReport<'o> {
         }
         self.out.flush()?;
         self.seconds += checked.seconds;
-        match checked.ending {
+        match checked.end {
             CheckEnd::Holds { cases } => {
                 self.held += 1;
                 self.cases += cases;
@@ -72,25 +72,25 @@ impl<'o> ProofsReport<'o> {
     }
 
     fn row(&mut self, lemma: &Lemma, checked: &LemmaCheck) -> io::Result<()> {
-        let LemmaCheck { ending, seconds } = checked;
-        let word = match ending {
+        let LemmaCheck { end, seconds } = checked;
+        let word = match end {
             CheckEnd::Holds { .. } => "holds",
             CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => "fails",
             CheckEnd::Interrupted { .. } => "interrupted",
         };
-        let cases = cases(ending.cases());
+        let cases = cases(end.cases());
         let [name, width] = self.widths;
         writeln!(self.out, "{:name$}  {cases:>width$}  {seconds:>6.2} s  {word}", lemma.name)
     }
 
-    /// What does not hold, and the last line, and the outcome. An empty check does not hold, nor one
-    /// that was broken off.
+    /// Prints the lemmas that fail and the verdict, and returns the outcome. A check does not hold if it is
+    /// empty or interrupted.
     pub(super) fn verdict(self) -> Result<Outcome, Failure> {
         let Self { lemmas, held, .. } = self;
         let (outcome, verdict) = match () {
             () if !self.failed.is_empty() => (Outcome::Violated, "violated"),
             () if self.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if lemmas == 0 => (Outcome::Incomplete, "incomplete: there was nothing to check"),
+            () if lemmas == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
             () => (Outcome::Holds, "holds"),
         };
         if self.json {
@@ -106,9 +106,9 @@ impl<'o> ProofsReport<'o> {
             print_object(self.out, &totals)?;
             return Ok(outcome);
         }
-        for (lemma, ending) in &self.failed {
+        for (lemma, end) in &self.failed {
             writeln!(self.out)?;
-            print_failure(self.out, lemma, ending)?;
+            print_failure(self.out, lemma, end)?;
         }
         write!(self.out, "\n{verdict}")?;
         if lemmas > 0 {
@@ -120,40 +120,43 @@ impl<'o> ProofsReport<'o> {
     }
 }
 
-/// Tells why a lemma does not hold.
-fn print_failure(out: &mut dyn Write, lemma: &Lemma, ending: &CheckEnd) -> io::Result<()> {
-    match ending {
+/// Prints why a lemma does not hold.
+fn print_failure(out: &mut dyn Write, lemma: &Lemma, end: &CheckEnd) -> io::Result<()> {
+    match end {
         CheckEnd::Fails(failed) => {
             let Counterexample { choices, claim, .. } = failed;
             print_head(out, lemma, Engine::Exhaustive, choices, Some(claim))?;
-            match again(lemma, failed) {
-                Some(again) => again.shown.tell(out),
-                None => writeln!(out, "\nIt comes out otherwise when it is made again."),
+            match failed_case(lemma, failed) {
+                Some(again) => again.view.print(out),
+                None => writeln!(
+                    out,
+                    "\nThe failure is not repeatable: the same choices give another result."
+                ),
             }
         }
         CheckEnd::Miscounted { pinned, found } => {
             writeln!(out, "{}", lemma.name)?;
             print_hanging(out, "  ", lemma.sentence)?;
             let [found, pinned] = [cases(*found), cases(*pinned)];
-            let cause = format!("there must be {pinned} within its bound, and it has {found}");
+            let cause = format!("expected {pinned} within its bound, found {found}");
             print_hanging(out, "  fails: ", &cause)
         }
         CheckEnd::Holds { .. } | CheckEnd::Interrupted { .. } => Ok(()),
     }
 }
 
-/// The case in which a lemma failed, if it fails in the same way when it is made again.
-fn again<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<LemmaCase<'a>> {
+/// The case in which a lemma failed, if the same choices fail with the same claim.
+fn failed_case<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<LemmaCase<'a>> {
     let again = LemmaCase::new(lemma, Engine::Exhaustive, &failed.choices).ok()?;
     (again.claim() == Some(failed.claim)).then_some(again)
 }
 
-/// What `--json` prints of a lemma.
+/// The line of `--json` for a lemma.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
     lemma: &'a str,
-    /// Where it fails in one, those before that.
+    /// The number of cases before the first one in which it fails.
     cases: u64,
     seconds: f64,
     holds: bool,
@@ -161,8 +164,8 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     claim: Option<&'a str>,
     #[serde(flatten)]
-    shown: Option<CaseViewLine<'a>>,
-    /// How many cases there must be, where there are not as many.
+    view: Option<CaseViewLine<'a>>,
+    /// The expected number of cases, if another number was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pinned: Option<u64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -170,26 +173,26 @@ struct Line<'a> {
 }
 
 fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
-    let LemmaCheck { ending, seconds } = checked;
-    let failed = match ending {
+    let LemmaCheck { end, seconds } = checked;
+    let failed = match end {
         CheckEnd::Fails(failed) => Some(failed),
         _ => None,
     };
-    let again = failed.and_then(|failed| again(lemma, failed));
+    let again = failed.and_then(|failed| failed_case(lemma, failed));
     let line = Line {
         schema: 1,
         lemma: lemma.name,
-        cases: ending.cases(),
+        cases: end.cases(),
         seconds: *seconds,
-        holds: matches!(ending, CheckEnd::Holds { .. }),
+        holds: matches!(end, CheckEnd::Holds { .. }),
         choices: failed.map(|failed| failed.choices.as_slice()),
         claim: failed.map(|failed| failed.claim),
-        shown: again.as_ref().map(|again| again.shown.json()),
-        pinned: match ending {
+        view: again.as_ref().map(|again| again.view.json()),
+        pinned: match end {
             CheckEnd::Miscounted { pinned, .. } => Some(*pinned),
             _ => None,
         },
-        interrupted: matches!(ending, CheckEnd::Interrupted { .. }),
+        interrupted: matches!(end, CheckEnd::Interrupted { .. }),
     };
     print_object(out, &line)
 }
@@ -200,7 +203,7 @@ struct TotalsLine {
     schema: u32,
     lemmas: usize,
     held: usize,
-    /// In which a lemma was seen to hold.
+    /// The cases in which a lemma holds.
     cases: u64,
     seconds: f64,
     #[serde(skip_serializing_if = "std::ops::Not::not")]

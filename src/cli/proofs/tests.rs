@@ -18,7 +18,7 @@ use toposlam_proofs::{
 
 use super::*;
 
-/// What the verb does with these lemmas.
+/// Runs the verb on these lemmas.
 fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, Failure>, String) {
     let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
     let matches = command.try_get_matches_from(arguments).unwrap();
@@ -44,8 +44,8 @@ fn lemma(
     Lemma { name, sentence, paper, file, exhaustive, sampled: None, kani: None }
 }
 
-/// False: at a vertex with an undirected marker the robot may have come in by any dart.
-fn a_marker_tells_the_entry<C: Choose>(choose: &mut C) -> CaseResult {
+/// False: at a vertex with an undirected marker the robot may have entered by any dart.
+fn a_marker_shows_the_entry<C: Choose>(choose: &mut C) -> CaseResult {
     let graph = draw::start_of::<1, 2>(choose)?;
     let pose = draw::dart(choose, &graph);
     let door = draw::door(choose, &graph, pose);
@@ -64,7 +64,7 @@ fn numbers_are_low<C: Choose>(choose: &mut C) -> CaseResult {
 }
 
 fn false_lemma() -> Lemma {
-    lemma("entry", 1, a_marker_tells_the_entry, a_marker_tells_the_entry)
+    lemma("entry", 1, a_marker_shows_the_entry, a_marker_shows_the_entry)
 }
 
 fn true_lemma() -> Lemma {
@@ -74,13 +74,13 @@ fn true_lemma() -> Lemma {
 const FAILED: &str = "
 entry
   It is so.
-  fails: it does not hold that the robot has come in by the facing dart
+  fails: it is not true that the robot has come in by the facing dart
   again: toposlam proofs --run entry --choices 0,1,0,0,0
 
-The world, as a file for toposlam draw and toposlam explore:
+The world, as a file for `toposlam draw` and `toposlam explore`:
 
 name = \"case\"
-about = \"toposlam proofs --run entry --choices 0,1,0,0,0\"
+about = \"A case of entry\"
 
 [doors]
 v0 = [\"e0\", \"e0\"]
@@ -100,7 +100,7 @@ undirected: marker
 violated: ";
 
 #[test]
-fn a_lemma_that_fails_prints_the_case_and_the_command_that_makes_it_again() {
+fn a_lemma_that_fails_prints_the_case_and_the_command_that_repeats_it() {
     let lemmas = [true_lemma(), false_lemma()];
     let (outcome, text) = run(&lemmas, &["--run", "all"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
@@ -109,7 +109,7 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_makes_it_again() {
     assert!(rows[1].starts_with("entry   1 case  ") && rows[1].ends_with(" s  fails"), "{text}");
     let (_, failed) = text.split_at(rows[0].len() + rows[1].len() + 2);
     assert_eq!(failed, format!("{FAILED}1 of 2 lemmas hold, 4 cases\n"));
-    // As the line says.
+    // The printed command.
     let again = text.lines().find_map(|line| line.strip_prefix("  again: toposlam proofs "));
     let (outcome, text) = run(&lemmas, &again.unwrap().split(' ').collect::<Vec<_>>());
     assert_eq!(outcome.unwrap(), Outcome::Violated);
@@ -117,7 +117,7 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_makes_it_again() {
 }
 
 #[test]
-fn a_program_is_told_the_same() {
+fn the_json_contains_the_same() {
     let lemmas = [false_lemma(), true_lemma()];
     let (outcome, text) = run(&lemmas, &["--run", "all", "--json"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
@@ -162,7 +162,7 @@ fn a_case_holds_or_fails_or_is_excluded() {
     let lemmas = [true_lemma()];
     for (choices, expected, verdict) in [
         ("3", Outcome::Holds, "holds: the lemma holds in this case"),
-        ("4", Outcome::Incomplete, "incomplete: the lemma says nothing about this case"),
+        ("4", Outcome::Incomplete, "incomplete: the lemma excludes this case"),
     ] {
         let (outcome, text) = run(&lemmas, &["--run", "low", "--choices", choices]);
         assert_eq!(outcome.unwrap(), expected);
@@ -175,14 +175,14 @@ fn a_case_holds_or_fails_or_is_excluded() {
 }
 
 #[test]
-fn another_number_of_cases_does_not_hold() {
+fn a_lemma_with_another_number_of_cases_than_expected_fails() {
     for (pinned, cause) in
-        [(5, "there must be 5 cases within its bound, and it has 4 cases"), (1, "it has 4 cases")]
+        [(5, "expected 5 cases within its bound, found 4 cases"), (1, "found 4 cases")]
     {
         let lemmas = [lemma("low", pinned, numbers_are_low, numbers_are_low)];
         let (outcome, text) = run(&lemmas, &["--run", "low"]);
         assert_eq!(outcome.unwrap(), Outcome::Violated);
-        assert!(text.contains(" s  fails\n\nlow\n  It is so.\n  fails: there must be "), "{text}");
+        assert!(text.contains(" s  fails\n\nlow\n  It is so.\n  fails: expected "), "{text}");
         assert!(text.contains(cause), "{text}");
         assert!(text.ends_with("\n\nviolated: 0 of 1 lemmas hold, 0 cases\n"), "{text}");
         let (_, text) = run(&lemmas, &["--run", "low", "--json"]);
@@ -201,10 +201,10 @@ fn a_lemma_without_a_case_does_not_hold_nor_does_a_check_without_a_lemma() {
     assert_eq!(outcome.unwrap(), Outcome::Violated, "{text}");
     let (outcome, text) = run(&[], &["--run", "all"]);
     assert_eq!(outcome.unwrap(), Outcome::Incomplete);
-    assert_eq!(text, "\nincomplete: there was nothing to check\n");
+    assert_eq!(text, "\nincomplete: there is nothing to check\n");
 }
 
-/// Each walk goes as far as it can, if there is its world.
+/// Each walk goes as far as possible, if its world exists.
 #[test]
 fn several_worlds_are_numbered() {
     fn two_worlds<C: Choose>(choose: &mut C) -> CaseResult {
@@ -225,18 +225,18 @@ fn several_worlds_are_numbered() {
     assert_eq!(outcome.unwrap(), Outcome::Holds);
     let heads: Vec<_> =
         text.lines().filter(|line| line.contains("orld ") && line.ends_with(':')).collect();
-    let world = |n| format!("World {n}, as a file for toposlam draw and toposlam explore:");
+    let world = |n| format!("World {n}, as a file for `toposlam draw` and `toposlam explore`:");
     let walk = |n| format!("A walk in world {n}, marker undirected:");
     assert_eq!(heads, [world(1), walk(1), world(2), walk(2)]);
     assert!(text.contains("\nwalk: from dart 0 by the doors 7\n"), "{text}");
     assert!(text.contains("\nwalk: from dart 9 by the doors 0\n"), "{text}");
     assert!(text.contains("name = \"case-1\"") && text.contains("name = \"case-2\""), "{text}");
-    let stopped = "  it cannot go on: door 2 was taken at a vertex with 2 doors\n";
+    let stopped = "  stopped: door 2 was taken at a vertex with 2 doors\n";
     assert!(text.contains(stopped), "{text}");
 }
 
 #[test]
-fn the_command_of_a_case_without_choices_can_be_given_to_a_shell() {
+fn the_command_of_a_case_without_choices_works_in_a_shell() {
     fn never<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
@@ -248,7 +248,7 @@ fn the_command_of_a_case_without_choices_can_be_given_to_a_shell() {
 }
 
 #[test]
-fn a_case_that_comes_out_otherwise_is_not_shown_as_the_one_that_failed() {
+fn a_failure_that_is_not_repeatable_is_reported() {
     fn fails<C>(_: &mut C) -> CaseResult {
         claim("one is two", false)
     }
@@ -257,11 +257,14 @@ fn a_case_that_comes_out_otherwise_is_not_shown_as_the_one_that_failed() {
     }
     let (outcome, text) = run(&[lemma("moody", 1, fails, holds)], &["--run", "moody"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
-    assert!(text.contains("\nIt comes out otherwise when it is made again.\n"), "{text}");
+    assert!(
+        text.contains("\nThe failure is not repeatable: the same choices give another result.\n"),
+        "{text}"
+    );
 }
 
 #[test]
-fn a_part_of_a_name_will_do_if_no_other_has_it() {
+fn a_unique_part_of_a_name_is_enough() {
     let named = |name| lemma(name, 4, numbers_are_low, numbers_are_low);
     let lemmas = ["low", "lowest", "high"].map(named);
     for (part, name) in [("low", "low"), ("lowe", "lowest"), ("hi", "high")] {
@@ -291,13 +294,13 @@ fn a_lemma_that_panics_fails_in_that_case() {
     }
     let (outcome, text) = run(&[lemma("wild", 1, panics, panics)], &["--run", "wild"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
-    let fails = "  fails: it does not hold that the code does not panic\n  \
+    let fails = "  fails: it is not true that the code does not panic\n  \
                  again: toposlam proofs --run wild --choices 2\n";
     assert!(text.contains(fails), "{text}");
 }
 
 #[test]
-fn whoever_breaks_off_waits_for_no_case() {
+fn an_interrupt_does_not_wait_for_the_case() {
     struct Impatient;
     impl Watch for Impatient {
         fn stop(&self) -> bool {
@@ -310,8 +313,8 @@ fn whoever_breaks_off_waits_for_no_case() {
         }
     }
     let endless = lemma("endless", 9, endless, endless);
-    let broken_off = check_lemma(&endless, &Impatient).unwrap();
-    assert!(matches!(broken_off.ending, CheckEnd::Interrupted { cases: 0 }));
+    let interrupted = check_lemma(&endless, &Impatient).unwrap();
+    assert!(matches!(interrupted.end, CheckEnd::Interrupted { cases: 0 }));
     for (json, end) in [
         (false, "\nincomplete, interrupted: 0 of 1 lemmas hold, 0 cases\n"),
         (true, "\"interrupted\":true,\"holds\":false}\n"),
@@ -326,7 +329,7 @@ fn whoever_breaks_off_waits_for_no_case() {
 }
 
 #[test]
-fn a_theorem_is_listed_and_left_to_coq() {
+fn a_theorem_is_listed_but_not_checked() {
     let (outcome, text) = run(&[true_lemma()], &[]);
     assert_eq!(outcome.unwrap(), Outcome::Holds);
     let entry = "\nround\n  It turns.\n  paper       2.2\n  file        proofs/coq/Theorems.v\n  \
@@ -336,7 +339,7 @@ fn a_theorem_is_listed_and_left_to_coq() {
     assert!(text.ends_with(last), "{text}");
     for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
         let (Err(Failure::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
-        let how = "is proved in Coq, for every world; to check it, run proofs/coq/check";
+        let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
         assert_eq!((message, text), (format!("--run: round {how}"), String::new()));
     }
     let (outcome, text) = run(&[true_lemma()], &["--run", "all", "--json"]);

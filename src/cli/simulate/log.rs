@@ -38,7 +38,7 @@ impl Arguments {
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
             command: self.command(),
         };
-        let file = output::grow(path)?;
+        let file = output::create_growing(path)?;
         let recorder = Recorder::new(file, &run, eyes.map(|(camera, _)| camera.clone()));
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }

@@ -1,14 +1,14 @@
-//! What is told of a movable marker: where it was carried, dropped and looked for, and which dart
-//! led back to it.
+//! The story of a movable marker: where it is dropped, searched for and found.
 
 use std::io::{self, Write};
 
 use toposlam_model::mapping::{Journey, MovableEvent};
 
 use super::{Story, dart};
+use crate::cli::text::{counted, grouped, print_paragraph};
 
 impl<W: Write> Story<W> {
-    pub(super) fn tell_movable(
+    pub(super) fn print_movable(
         &mut self,
         journey: &Journey,
         event: MovableEvent,
@@ -16,60 +16,61 @@ impl<W: Write> Story<W> {
         let map = journey.map();
         match event {
             MovableEvent::Arrived { edge, percept, candidates } => {
-                self.tell_round(journey, edge, " with the marker", percept)?;
-                match candidates {
-                    0 => writeln!(self.out, "     no known vertex fits"),
-                    fit => {
-                        let known = map.vertex_count();
-                        writeln!(self.out, "     {fit} of the {known} known vertices may fit")
-                    }
-                }
+                self.print_round(journey, edge, " with the marker", percept)?;
+                let candidates = match candidates {
+                    0 => "none".to_owned(),
+                    some => grouped(some as u128),
+                };
+                let known = match map.vertex_count() {
+                    1 => "the 1 known vertex".to_owned(),
+                    several => format!("the {} known vertices", grouped(several as u128)),
+                };
+                self.print_line(format!("Candidates: {candidates} of {known}."))
             }
-            // For place validation the marker is dropped where the robot has just arrived, for
-            // back-link validation at the known end of the edge.
+            // To validate a place the robot drops the marker where it has just arrived. To validate a
+            // back link it drops the marker at the known end of the edge.
             MovableEvent::Dropped if journey.moves() == self.moves => {
-                writeln!(self.out, "     it drops the marker here and goes to look for it")
+                self.print_line("The robot drops the marker here and searches for it.")
             }
             MovableEvent::Dropped => {
-                let (at, moves) = (map.vertex(journey.robot()).0, self.count_moves(journey));
-                writeln!(self.out, "     it carries the marker to v{at} and drops it ({moves})")
+                let (at, moves) = (map.vertex(journey.robot()).0, self.take_moves(journey));
+                self.print_line(format!(
+                    "The robot carries the marker to v{at}{moves} and drops it."
+                ))
             }
             MovableEvent::PickedUp if self.round == 0 => {
-                writeln!(self.out, "It picks the marker up.")
+                print_paragraph(&mut self.out, "It picks the marker up.")
             }
             MovableEvent::PickedUp if journey.moves() == self.moves => {
-                writeln!(self.out, "     it picks the marker up")
+                self.print_line("The robot picks the marker up.")
             }
             MovableEvent::PickedUp => {
-                let moves = self.count_moves(journey);
-                writeln!(self.out, "     it goes back to the marker and picks it up ({moves})")
+                let moves = self.take_moves(journey);
+                self.print_line(format!("The robot returns to the marker{moves} and picks it up."))
             }
             MovableEvent::NotAt { vertex } => {
-                self.tell_rejected(journey, &format!("v{}", vertex.0), "no: the marker is not here")
+                let why = "because the marker is not here";
+                self.print_rejected(journey, &format!("v{}", vertex.0), why)
             }
             MovableEvent::Found { vertex } => {
-                self.tell_untold()?;
-                let moves = self.count_moves(journey);
                 let mut unexplored = map.unexplored_at(vertex);
-                let which = match (unexplored.next(), unexplored.count()) {
+                let unexplored = match (unexplored.next(), unexplored.count()) {
                     (Some(only), 0) => format!("only {} is unexplored", dart(map, only)),
-                    (_, more) => format!("{} darts are unexplored", more + 1),
+                    (_, more) => format!("{} are unexplored", counted(more + 1, "dart")),
                 };
-                let v = vertex.0;
-                writeln!(self.out, "     v{v}? yes: the marker is here, where {which} ({moves})")
+                let why = format!("the marker is here, and {unexplored}");
+                self.print_confirmed(journey, &format!("v{}", vertex.0), &why)
             }
             MovableEvent::NotFound => {
-                self.tell_untold()?;
-                writeln!(self.out, "     the marker is at no known vertex")
+                self.print_omitted()?;
+                self.print_line("The marker is at no known vertex.")
             }
             MovableEvent::NotBehind { dart: behind, percept } => {
-                let why = format!("no: {percept}, no marker");
-                self.tell_rejected(journey, &dart(map, behind), &why)
+                let why = format!("because it leads to {percept}, no marker");
+                self.print_rejected(journey, &dart(map, behind), &why)
             }
             MovableEvent::Behind { dart: behind } => {
-                self.tell_untold()?;
-                let (behind, moves) = (dart(map, behind), self.count_moves(journey));
-                writeln!(self.out, "     {behind}? yes: it leads to the marker ({moves})")
+                self.print_confirmed(journey, &dart(map, behind), "it leads to the marker")
             }
         }
     }
