@@ -8,6 +8,7 @@ mod contradictions;
 mod contradictions_movable;
 mod costs;
 mod counts;
+mod explorers;
 mod figure_1;
 mod markers;
 mod movable;

@@ -4,9 +4,9 @@ use std::fmt;
 
 use thiserror::Error;
 
-use super::{Algorithm, RunState};
+use super::{Algorithm, ExploredMap, RunState, explorer::explored};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, GraphError},
     isomorphism::{Bijection, Candidate},
     mapping::{FACING, Journey, MappingError, MappingEvent, PartialMap},
     world::{GraphWorld, Refused},
@@ -42,6 +42,18 @@ pub enum Flaw {
         /// The pose in the world.
         truly: Dart,
     },
+    /// The explorer gave up.
+    #[error("the explorer gave up: {0}")]
+    GaveUp(String),
+    /// The explorer's map is not an embedded graph.
+    #[error("the map is not an embedded graph: {0}")]
+    NoGraph(#[from] GraphError),
+    /// The facing dart or the robot's pose is not a dart of the map.
+    #[error("the map has no dart {dart}")]
+    NoSuchDart {
+        /// The number of the dart.
+        dart: u32,
+    },
     /// More moves than the bound.
     #[error("it took {moves} moves; the bound is {bound}")]
     TooManyMoves {
@@ -50,6 +62,12 @@ pub enum Flaw {
         /// The bound.
         bound: u64,
     },
+}
+
+impl From<Refused> for Flaw {
+    fn from(refused: Refused) -> Self {
+        Self::Error(MappingError::World(refused))
+    }
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
@@ -65,25 +83,35 @@ pub fn judge<'c, A: Algorithm>(
     world: &GraphWorld<A::Marker>,
     candidate: &'c mut Candidate,
 ) -> Result<&'c Bijection, Flaw> {
-    let journey = state.journey();
-    let unexplored = journey.map().unexplored_count();
-    let Some(map) = journey.map().complete() else {
-        return Err(Flaw::Unfinished { unexplored });
-    };
     let graph = world.graph();
-    let bijection = candidate.of_starts((map, FACING), (graph, facing));
-    if !bijection.verify(map, graph) {
-        return Err(Flaw::WrongMap);
-    }
-    let (believed, truly) = (journey.robot(), world.pose());
-    let image = bijection.images()[believed.at()];
-    if image != truly {
-        return Err(Flaw::WrongPose { believed, image, truly });
-    }
+    let bijection = judge_map(&explored(state)?, (graph, facing), world.pose(), candidate)?;
     let bound = algorithm.move_bound(graph.edge_count(), graph.vertex_count());
-    let moves = journey.moves();
+    let moves = state.journey().moves();
     if moves > bound {
         return Err(Flaw::TooManyMoves { moves, bound });
+    }
+    Ok(bijection)
+}
+
+/// Judges a map: it is isomorphic to the world as a start, by a bijection that is verified and
+/// returned, and the robot's pose in the world, `truly`, is what it believes.
+pub(super) fn judge_map<'c>(
+    map: &ExploredMap,
+    (graph, facing): (&EmbeddedGraph, Dart),
+    truly: Dart,
+    candidate: &'c mut Candidate,
+) -> Result<&'c Bijection, Flaw> {
+    let dart_count = map.graph.dart_count();
+    if let Some(dart) = [map.facing, map.pose].into_iter().find(|dart| dart.at() >= dart_count) {
+        return Err(Flaw::NoSuchDart { dart: dart.0 });
+    }
+    let bijection = candidate.of_starts((&map.graph, map.facing), (graph, facing));
+    if !bijection.verify(&map.graph, graph) {
+        return Err(Flaw::WrongMap);
+    }
+    let image = bijection.images()[map.pose.at()];
+    if image != truly {
+        return Err(Flaw::WrongPose { believed: map.pose, image, truly });
     }
     Ok(bijection)
 }

@@ -3,6 +3,7 @@
 mod algorithm;
 mod costs;
 mod every_way;
+mod explorer;
 mod judge;
 mod sweep;
 mod tally;
@@ -12,6 +13,9 @@ pub use algorithm::{
 };
 pub use costs::Costs;
 pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
+pub use explorer::{
+    AlgorithmExplorer, DEFAULT_MOVE_BOUND, ExploredMap, Explorer, ExplorerWorld, judge_start,
+};
 pub use judge::{FalseStep, Flaw, first_false_step, judge};
 pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{FailedStart, Tally, WorstStart};

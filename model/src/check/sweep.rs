@@ -4,12 +4,14 @@ use std::{fmt, ops::ControlFlow, str::FromStr};
 
 use thiserror::Error;
 
-use super::{Algorithm, FailedStart, Flaw, RunState, Tally, first_false_step, judge};
+use super::{
+    Algorithm, AlgorithmExplorer, Explorer, FailedStart, FalseStep, RunState, Tally,
+    first_false_step, judge_start,
+};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts},
     isomorphism::{Candidate, canonical},
-    world::GraphWorld,
 };
 
 /// One of several disjoint shares of a check that together are the whole.
@@ -81,14 +83,29 @@ impl Sweep {
         self.worlds.class()
     }
 
-    /// Makes the check. The result does not depend on the number of threads (which is that of
-    /// rayon's pool, or 1 without the feature `rayon`).
+    /// Checks an algorithm. The result does not depend on the number of threads (that of rayon's
+    /// pool, or 1 without the feature `rayon`).
     pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
+        self.tally(watch, || AlgorithmChecker::new(algorithm, watch))
+    }
+
+    /// Checks explorers, each on one part of the worlds. The result does not depend on the number of
+    /// threads, unless an explorer depends on what it explored before.
+    pub fn run_explorers<E: Explorer>(
+        &self,
+        new: impl Fn() -> E + Sync,
+        watch: &impl Watch,
+    ) -> Tally {
+        self.tally(watch, || ExplorerChecker { explorer: new(), candidate: Candidate::default() })
+    }
+
+    fn tally<C: StartChecker>(&self, watch: &impl Watch, new: impl Fn() -> C + Sync) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
         tally_parts(&parts, watch, |part, tally| {
-            let mut checker = Checker::new(algorithm, watch);
+            let mut checker = new();
             part.for_each(&mut |found| {
-                checker.check_starts(found.graph, found.automorphisms as usize, tally)
+                let automorphisms = found.automorphisms as usize;
+                check_starts(&mut checker, found.graph, automorphisms, watch, tally)
             })
         })
     }
@@ -103,9 +120,9 @@ pub fn check_worlds(
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
-        let mut checker = Checker::new(algorithm, watch);
+        let mut checker = AlgorithmChecker::new(algorithm, watch);
         part.iter().try_for_each(|graph| {
-            checker.check_starts(graph, canonical(graph).automorphisms, tally)
+            check_starts(&mut checker, graph, canonical(graph).automorphisms, watch, tally)
         })
     })
 }
@@ -132,46 +149,91 @@ fn tally_parts<P: Sync>(
     in_parts(parts, watch, Tally::default, check, |tally| tally.starts, merge)
 }
 
-/// What is used again from run to run.
-struct Checker<'a, A: Algorithm, W> {
-    algorithm: &'a A,
-    watch: &'a W,
-    state: A::State,
+/// Checks one start after the other. Memory is kept from start to start.
+trait StartChecker {
+    fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally);
+}
+
+/// Checks every start of a world.
+fn check_starts(
+    checker: &mut impl StartChecker,
+    graph: &EmbeddedGraph,
+    automorphisms: usize,
+    watch: &impl Watch,
+    tally: &mut Tally,
+) -> ControlFlow<()> {
+    tally.worlds += 1;
+    let mut check = |facing| {
+        tally.starts += 1;
+        checker.check_start(graph, facing, tally);
+        go_on(watch)
+    };
+    if automorphisms == 1 {
+        graph.darts().try_for_each(check)
+    } else {
+        // Darts that an automorphism takes to each other are the same start.
+        let orbit = canonical(graph).orbit;
+        graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
+    }
+}
+
+struct ExplorerChecker<E> {
+    explorer: E,
     candidate: Candidate,
 }
 
-impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
-    fn new(algorithm: &'a A, watch: &'a W) -> Self {
-        Self { algorithm, watch, state: RunState::new(0), candidate: Candidate::default() }
-    }
-
-    fn check_starts(
-        &mut self,
-        graph: &EmbeddedGraph,
-        automorphisms: usize,
-        tally: &mut Tally,
-    ) -> ControlFlow<()> {
-        tally.worlds += 1;
-        let mut check = |facing| {
-            self.check_start(graph, facing, tally);
-            go_on(self.watch)
-        };
-        if automorphisms == 1 {
-            graph.darts().try_for_each(check)
-        } else {
-            // Darts that an automorphism takes to each other are the same start.
-            let orbit = canonical(graph).orbit;
-            graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
+impl<E: Explorer> StartChecker for ExplorerChecker<E> {
+    fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
+        let Self { explorer, candidate } = self;
+        match judge_start(explorer, graph, facing, candidate) {
+            (moves, Ok(())) => {
+                tally.count_run(graph, facing, moves);
+                tally.mapped += 1;
+            }
+            (moves, Err(flaw)) => {
+                tally.failure.get_or_insert_with(|| FailedStart {
+                    graph: graph.clone(),
+                    facing,
+                    flaw,
+                    moves: Some(moves),
+                    false_step: None,
+                });
+            }
         }
     }
+}
 
+struct AlgorithmChecker<'a, A: Algorithm, W> {
+    algorithm: &'a A,
+    watch: &'a W,
+    explorer: AlgorithmExplorer<'a, A>,
+    candidate: Candidate,
+}
+
+impl<'a, A: Algorithm, W: Watch> AlgorithmChecker<'a, A, W> {
+    fn new(algorithm: &'a A, watch: &'a W) -> Self {
+        let explorer = AlgorithmExplorer::new(algorithm);
+        Self { algorithm, watch, explorer, candidate: Candidate::default() }
+    }
+
+    /// The first addition to the map that was wrong.
+    fn false_step(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Option<FalseStep> {
+        let state = &mut self.explorer.state;
+        // With room for what is wrongly added.
+        state.set_bound(2 * graph.dart_count());
+        first_false_step(self.algorithm, graph, facing, state)
+    }
+}
+
+impl<A: Algorithm, W: Watch> StartChecker for AlgorithmChecker<'_, A, W> {
     fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
-        tally.starts += 1;
-        match self.run(graph, facing) {
-            Ok(moves) => tally.count_run(graph, facing, moves),
-            Err(flaw) => {
+        match judge_start(&mut self.explorer, graph, facing, &mut self.candidate) {
+            (moves, Ok(())) => tally.count_run(graph, facing, moves),
+            (moves, Err(flaw)) => {
                 if tally.failure.is_none() {
-                    tally.failure = Some(self.failure(graph, facing, flaw));
+                    let (false_step, graph) = (self.false_step(graph, facing), graph.clone());
+                    let moves = Some(moves);
+                    tally.failure = Some(FailedStart { graph, facing, flaw, moves, false_step });
                 }
                 return;
             }
@@ -180,7 +242,7 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
             Ok(None) => {}
             Ok(Some(ways)) => tally.count_every_way(&ways),
             Err(flaw) => {
-                // The run is not that of the default choices, whose story could be told.
+                // It is not a run with the default choices, so it has no story.
                 let (graph, moves) = (graph.clone(), None);
                 let failure = FailedStart { graph, facing, flaw, moves, false_step: None };
                 tally.failure.get_or_insert(failure);
@@ -188,24 +250,5 @@ impl<'a, A: Algorithm, W: Watch> Checker<'a, A, W> {
             }
         }
         tally.mapped += 1;
-    }
-
-    fn run(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Result<u64, Flaw> {
-        // No true map has more darts than the world.
-        self.state.set_bound(graph.dart_count());
-        self.state.clear();
-        let mut world = GraphWorld::with_marker(graph, A::Marker::default(), facing);
-        self.algorithm.run(&mut world, &mut self.state, &mut ())?;
-        judge(self.algorithm, &self.state, facing, &world, &mut self.candidate)?;
-        Ok(self.state.journey().moves())
-    }
-
-    fn failure(&mut self, graph: &EmbeddedGraph, facing: Dart, flaw: Flaw) -> FailedStart {
-        let moves = Some(self.state.journey().moves());
-        let graph = graph.clone();
-        // With room for what is wrongly added.
-        self.state.set_bound(2 * graph.dart_count());
-        let false_step = first_false_step(self.algorithm, &graph, facing, &mut self.state);
-        FailedStart { graph, facing, flaw, moves, false_step }
     }
 }

@@ -7,12 +7,10 @@
 mod construct;
 mod fault;
 mod grow;
-mod interop;
 mod list_error;
 mod relabel;
 
 pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
-pub use interop::PetgraphError;
 pub use list_error::ListError;
 
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.

@@ -28,6 +28,12 @@ pub enum Refused {
     /// It tried to drop a marker that it does not carry.
     #[error("the robot carries no marker that it could drop")]
     NothingToDrop,
+    /// It made more moves than allowed.
+    #[error("no more than {bound} moves are allowed")]
+    OutOfMoves {
+        /// The number of moves allowed.
+        bound: u64,
+    },
 }
 
 /// Where the robot is, and where the marker is.
@@ -89,6 +95,7 @@ pub struct GraphWorld<'g, M = Directional> {
     graph: &'g EmbeddedGraph,
     marker: M,
     state: State,
+    moves: u64,
 }
 
 impl<'g> GraphWorld<'g> {
@@ -106,7 +113,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
     #[must_use]
     pub fn with_marker(graph: &'g EmbeddedGraph, marker: M, facing: Dart) -> Self {
         let placed = Some(marker.first_alike(graph, facing));
-        Self { graph, marker, state: State { pose: facing, placed } }
+        Self { graph, marker, state: State { pose: facing, placed }, moves: 0 }
     }
 
     /// The same world with robot and marker where the state says.
@@ -184,6 +191,12 @@ impl<'g, M> GraphWorld<'g, M> {
         self.state.pose
     }
 
+    /// The moves made so far.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.moves
+    }
+
     /// Where robot and marker truly are.
     #[must_use]
     pub fn state(&self) -> State {
@@ -206,6 +219,7 @@ impl<M: Marker> World for GraphWorld<'_, M> {
             return Err(Refused::NoSuchDoor { door, degree });
         }
         self.state.pose = self.graph.after(self.state.pose, door);
+        self.moves += 1;
         Ok(())
     }
 }

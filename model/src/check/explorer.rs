@@ -1,0 +1,184 @@
+//! Judges any explorer: an algorithm that walks through a world and returns a map of it.
+
+use std::borrow::Cow;
+
+use super::{Algorithm, Flaw, RunState, judge::judge_map};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    isomorphism::Candidate,
+    marker::{Directional, Marker},
+    percept::{Door, Percept},
+    world::{GraphWorld, MovableMarkerWorld, Refused, World},
+};
+
+/// An explorer: an algorithm that walks through a world and returns a map of it.
+///
+/// It is judged by [`judge_start`] on one start and by [`Sweep::run_explorers`](super::Sweep::run_explorers)
+/// on every start of every world of a size. An explorer may keep memory from run to run.
+pub trait Explorer {
+    /// The kind of marker with which it explores.
+    type Marker: Marker;
+
+    /// The marker with which it explores.
+    fn marker(&self) -> Self::Marker;
+
+    /// Explores a world. At its start the robot stands where the marker is placed, with its back to
+    /// the facing door.
+    ///
+    /// # Errors
+    /// Returns the explorer's own failure, as [`Flaw::GaveUp`], or the world's refusal of a move.
+    fn explore(&mut self, world: &mut ExplorerWorld<Self::Marker>)
+    -> Result<ExploredMap<'_>, Flaw>;
+
+    /// The most moves that it may make in a world of this size. Further moves are refused.
+    fn move_bound(&self, _edges: usize, _vertices: usize) -> u64 {
+        DEFAULT_MOVE_BOUND
+    }
+}
+
+/// How many moves an explorer may make if it states no bound.
+pub const DEFAULT_MOVE_BOUND: u64 = 1_000_000;
+
+/// What an explorer returns: a map, and the robot's pose in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExploredMap<'a> {
+    /// The map.
+    pub graph: Cow<'a, EmbeddedGraph>,
+    /// The dart of the map that is the facing dart.
+    pub facing: Dart,
+    /// The dart of the map by which the robot has come in.
+    pub pose: Dart,
+}
+
+impl ExploredMap<'_> {
+    /// A map from its two permutations of the darts `0 .. 2m`: the other end of each dart's edge, and
+    /// the next dart clockwise around its vertex. `facing` and `pose` are darts in that numbering.
+    ///
+    /// # Errors
+    /// Returns an error if they are not the permutations of a connected graph, or a dart is missing.
+    pub fn from_permutations(
+        opposite: &[u32],
+        clockwise: &[u32],
+        facing: u32,
+        pose: u32,
+    ) -> Result<Self, Flaw> {
+        let (graph, number) = EmbeddedGraph::from_permutations(opposite, clockwise)?;
+        let dart = |dart: u32| number.get(dart as usize).copied().ok_or(Flaw::NoSuchDart { dart });
+        let (facing, pose) = (dart(facing)?, dart(pose)?);
+        Ok(Self { graph: Cow::Owned(graph), facing, pose })
+    }
+}
+
+/// The world that an explorer gets: it can be sensed and moved in, and nothing else. It counts the
+/// moves.
+#[derive(Debug)]
+pub struct ExplorerWorld<'g, M = Directional> {
+    world: GraphWorld<'g, M>,
+    bound: u64,
+}
+
+impl<'g, M: Marker> ExplorerWorld<'g, M> {
+    /// The world of a start, in which `bound` moves are possible.
+    fn new(graph: &'g EmbeddedGraph, marker: M, facing: Dart, bound: u64) -> Self {
+        Self { world: GraphWorld::with_marker(graph, marker, facing), bound }
+    }
+
+    /// The moves made so far.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.world.moves()
+    }
+}
+
+impl<M: Marker> World for ExplorerWorld<'_, M> {
+    type Error = Refused;
+
+    fn percept(&mut self) -> Result<Percept, Refused> {
+        self.world.percept()
+    }
+
+    fn traverse(&mut self, door: Door) -> Result<(), Refused> {
+        if self.world.moves() >= self.bound {
+            return Err(Refused::OutOfMoves { bound: self.bound });
+        }
+        self.world.traverse(door)
+    }
+}
+
+impl<M: Marker> MovableMarkerWorld for ExplorerWorld<'_, M> {
+    fn pick_up(&mut self) -> Result<(), Refused> {
+        self.world.pick_up()
+    }
+
+    fn drop(&mut self) -> Result<(), Refused> {
+        MovableMarkerWorld::drop(&mut self.world)
+    }
+}
+
+/// Runs an explorer on a start and judges it: the map is isomorphic to the world as a start, the
+/// robot's pose is what the explorer believes, and the moves are within its bound. Returns the moves
+/// made, and the flaw if there is one.
+pub fn judge_start<E: Explorer + ?Sized>(
+    explorer: &mut E,
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    candidate: &mut Candidate,
+) -> (u64, Result<(), Flaw>) {
+    let bound = explorer.move_bound(graph.edge_count(), graph.vertex_count());
+    let mut world = ExplorerWorld::new(graph, explorer.marker(), facing, bound);
+    let explored = explorer.explore(&mut world);
+    let (moves, truly) = (world.moves(), world.world.pose());
+    let judged = explored.and_then(|map| {
+        judge_map(&map, (graph, facing), truly, candidate)?;
+        if moves > bound { Err(Flaw::TooManyMoves { moves, bound }) } else { Ok(()) }
+    });
+    (moves, judged)
+}
+
+/// An [`Algorithm`] as an explorer, with the memory of its runs.
+#[derive(Debug)]
+pub struct AlgorithmExplorer<'a, A: Algorithm> {
+    algorithm: &'a A,
+    pub(super) state: A::State,
+}
+
+impl<'a, A: Algorithm> AlgorithmExplorer<'a, A> {
+    /// The algorithm, ready to explore.
+    #[must_use]
+    pub fn new(algorithm: &'a A) -> Self {
+        Self { algorithm, state: RunState::new(0) }
+    }
+}
+
+impl<A: Algorithm> Explorer for AlgorithmExplorer<'_, A> {
+    type Marker = A::Marker;
+
+    fn marker(&self) -> A::Marker {
+        A::Marker::default()
+    }
+
+    #[inline]
+    fn explore(&mut self, world: &mut ExplorerWorld<A::Marker>) -> Result<ExploredMap<'_>, Flaw> {
+        // No true map has more darts than the world.
+        self.state.set_bound(world.world.graph().dart_count());
+        self.state.clear();
+        self.algorithm.run(&mut world.world, &mut self.state, &mut ())?;
+        explored(&self.state)
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        self.algorithm.move_bound(edges, vertices)
+    }
+}
+
+/// The map of a finished run.
+pub(super) fn explored(state: &impl RunState) -> Result<ExploredMap<'_>, Flaw> {
+    let journey = state.journey();
+    let unexplored = journey.map().unexplored_count();
+    let graph = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
+    Ok(ExploredMap {
+        graph: Cow::Borrowed(graph),
+        facing: crate::mapping::FACING,
+        pose: journey.robot(),
+    })
+}

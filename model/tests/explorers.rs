@@ -1,0 +1,204 @@
+//! Explorers from outside the crate, judged on every start.
+
+#[path = "../examples/depth_first.rs"]
+mod depth_first;
+#[path = "../examples/own_marker.rs"]
+mod own_marker;
+
+use std::borrow::Cow;
+
+use depth_first::DepthFirst;
+use own_marker::Beacon;
+use toposlam_model::{
+    ambiguity::AmbiguitySearch,
+    check::{
+        Algorithm1, AlgorithmExplorer, ExploredMap, Explorer, ExplorerWorld, Flaw, MovableMarker,
+        Shard, Sweep, Tally, judge_start,
+    },
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::Class,
+    isomorphism::Candidate,
+    mapping::MappingError,
+    marker::{Directional, Marker, named},
+    percept::Door,
+    world::{Refused, World},
+};
+
+fn sweep<E: Explorer>(edges: usize, new: impl Fn() -> E + Sync) -> Tally {
+    Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap().run_explorers(new, &())
+}
+
+#[test]
+fn a_depth_first_explorer_maps_every_start_right() {
+    for (edges, starts) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {
+        let tally = sweep(edges, DepthFirst::default);
+        assert_eq!(tally.failure, None);
+        assert_eq!((tally.starts, tally.mapped), (starts, starts));
+        let algorithm = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+        let algorithm = algorithm.run(&Algorithm1, &());
+        assert_eq!(tally.worlds, algorithm.worlds);
+        assert!(tally.moves_total >= algorithm.moves_total, "it is wasteful");
+    }
+}
+
+/// A sweep of explorers and one of algorithms judge an algorithm alike.
+#[test]
+fn an_algorithm_is_an_explorer() {
+    for edges in 1..=4 {
+        let starts = Sweep::new(Class::Multigraph, edges, Shard::WHOLE).unwrap();
+        let explored = starts.run_explorers(|| AlgorithmExplorer::new(&Algorithm1), &());
+        assert_eq!(explored, starts.run(&Algorithm1, &()));
+        let starts = Sweep::new(Class::Simple, edges, Shard::WHOLE).unwrap();
+        let explored = starts.run_explorers(|| AlgorithmExplorer::new(&MovableMarker), &());
+        assert_eq!(explored, starts.run(&MovableMarker, &()));
+    }
+}
+
+/// What is wrong with an explorer.
+#[derive(Clone, Copy, Debug)]
+enum Broken {
+    /// It mirrors its map.
+    Mirrored,
+    /// It believes to be at the facing dart at the end.
+    WrongPose,
+    /// It takes the next dart for the facing dart.
+    WrongFacing,
+    /// It returns the same map for every world.
+    OneMap,
+    /// It returns darts that do not exist.
+    NoDart,
+    /// It does not come to an end.
+    Endless,
+    /// It takes a door that does not exist.
+    NoDoor,
+    /// It gives up.
+    GivesUp,
+}
+
+struct BrokenExplorer(Broken, DepthFirst);
+
+impl Explorer for BrokenExplorer {
+    type Marker = Directional;
+
+    fn marker(&self) -> Directional {
+        Directional
+    }
+
+    fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
+        let mut map = self.1.explore(world)?;
+        let darts = map.graph.dart_count() as u32;
+        match self.0 {
+            Broken::Mirrored => {
+                let clockwise: Vec<_> =
+                    map.graph.darts().map(|dart| map.graph.counterclockwise(dart).0).collect();
+                let opposite: Vec<_> =
+                    map.graph.darts().map(|dart| map.graph.opposite(dart).0).collect();
+                return ExploredMap::from_permutations(
+                    &opposite,
+                    &clockwise,
+                    map.facing.0,
+                    map.pose.0,
+                );
+            }
+            Broken::WrongPose => map.pose = map.facing,
+            Broken::WrongFacing => map.facing = map.graph.clockwise(map.facing),
+            Broken::OneMap => {
+                return ExploredMap::from_permutations(&[1, 0], &[0, 1], 0, 0);
+            }
+            Broken::NoDart => map.pose = Dart(darts),
+            Broken::Endless => loop {
+                world.traverse(Door::BACK)?;
+            },
+            Broken::NoDoor => world.traverse(Door(darts))?,
+            Broken::GivesUp => return Err(Flaw::GaveUp("it is dark".to_owned())),
+        }
+        Ok(map)
+    }
+
+    fn move_bound(&self, _: usize, _: usize) -> u64 {
+        10_000
+    }
+}
+
+/// The first flaw of a broken explorer, and the number of edges.
+fn first_flaw(broken: Broken) -> (usize, Flaw, Option<u64>) {
+    let failed = (1..=5).find_map(|edges| {
+        let tally = sweep(edges, || BrokenExplorer(broken, DepthFirst::default()));
+        assert_eq!(tally.failed() > 0, tally.failure.is_some());
+        tally.failure.map(|failed| (edges, failed.flaw, failed.moves))
+    });
+    failed.expect("the sweep catches it")
+}
+
+#[test]
+fn the_sweep_catches_broken_explorers() {
+    let refused = |refused| Flaw::Error(MappingError::World(refused));
+    for (broken, smallest, flaw) in [
+        (Broken::Mirrored, 2, Flaw::WrongMap),
+        (Broken::OneMap, 1, Flaw::WrongMap),
+        (Broken::WrongFacing, 2, Flaw::WrongMap),
+        (Broken::NoDart, 1, Flaw::NoSuchDart { dart: 2 }),
+        (Broken::Endless, 1, refused(Refused::OutOfMoves { bound: 10_000 })),
+        (Broken::GivesUp, 1, Flaw::GaveUp("it is dark".to_owned())),
+    ] {
+        let (edges, found, _) = first_flaw(broken);
+        assert_eq!((edges, found), (smallest, flaw), "{broken:?}");
+    }
+    assert!(matches!(first_flaw(Broken::WrongPose).1, Flaw::WrongPose { .. }));
+    let no_door = first_flaw(Broken::NoDoor).1;
+    assert!(matches!(no_door, Flaw::Error(MappingError::World(Refused::NoSuchDoor { .. }))));
+    assert_eq!(first_flaw(Broken::Endless).2, Some(10_000));
+}
+
+/// An explorer claims a map and a bound; the moves are the world's count.
+#[test]
+fn the_world_counts_the_moves() {
+    struct Pacing(u64);
+    impl Explorer for Pacing {
+        type Marker = Directional;
+
+        fn marker(&self) -> Directional {
+            Directional
+        }
+
+        fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
+            for _ in 0..self.0 {
+                world.traverse(Door::BACK)?;
+            }
+            let graph =
+                EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]);
+            let pose = Dart((self.0 % 2) as u32);
+            Ok(ExploredMap { graph: Cow::Owned(graph.unwrap()), facing: Dart(0), pose })
+        }
+
+        fn move_bound(&self, edges: usize, _: usize) -> u64 {
+            3 * edges as u64
+        }
+    }
+    let edge =
+        EmbeddedGraph::from_neighbour_lists(&[("a", ["b"].into()), ("b", ["a"].into())]).unwrap();
+    let judge = |moves| {
+        let explorer: &mut dyn Explorer<Marker = Directional> = &mut Pacing(moves);
+        judge_start(explorer, &edge, Dart(0), &mut Candidate::default())
+    };
+    for moves in 0..=3 {
+        assert_eq!(judge(moves), (moves, Ok(())));
+    }
+    let (moves, flaw) = judge(4);
+    assert_eq!(
+        (moves, flaw.unwrap_err().to_string()),
+        (3, "no more than 3 moves are allowed".to_owned())
+    );
+}
+
+/// A marker from outside the crate is searched like one of the crate's. Hearing it next door tells no
+/// more worlds apart: a robot can go and look.
+#[test]
+fn a_beacon_is_worth_as_much_as_an_undirected_marker() {
+    let ambiguous = |marker: &'static dyn Marker| {
+        let findings = AmbiguitySearch::new(Class::Simple, 7, marker).unwrap().run(&()).unwrap();
+        findings.sizes.iter().map(|size| size.ambiguous).collect::<Vec<_>>()
+    };
+    assert_eq!(ambiguous(&Beacon), [0, 0, 0, 0, 0, 6, 4]);
+    assert_eq!(ambiguous(named("undirected").unwrap()), ambiguous(&Beacon));
+}
