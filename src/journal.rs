@@ -1,6 +1,5 @@
-//! What happened in a run of a simulated robot, as a person looks at it: every picture with what the
-//! robot made of it, every junction that it called, the map as it grew, and the story of Algorithm 1.
-//! Section 6, Figure 11.
+//! What a person sees of a simulated run: every frame, every junction that the robot called, the map as
+//! it grew, and the story of Algorithm 1. Section 6, Figure 11.
 
 use std::sync::Arc;
 
@@ -20,12 +19,12 @@ pub struct Journal {
     pub name: String,
     /// The plan.
     pub plan: Arc<FloorPlan>,
-    /// The dart along which the marker lies; the robot begins with its back to its hallway.
+    /// The dart along which the marker lies. At the start the robot has its back to its hallway.
     pub facing: Dart,
-    /// Every picture, in order.
-    pub rounds: Vec<Round>,
-    /// Every junction that the robot came to, in order; the start first.
-    pub calls: Vec<Call>,
+    /// The frames, in order.
+    pub rounds: Vec<FrameEntry>,
+    /// The junctions that the robot came to, in order; the start first.
+    pub calls: Vec<JunctionCall>,
     /// The story of Algorithm 1, line by line.
     pub story: Vec<String>,
     /// The map whenever it grew, in order.
@@ -34,38 +33,38 @@ pub struct Journal {
     pub ending: String,
 }
 
-/// A picture, and what the robot made of it.
+/// A frame, and the robot's answer to it.
 #[derive(Clone, Debug)]
-pub struct Round {
-    /// When it was taken, in seconds of the simulated time.
+pub struct FrameEntry {
+    /// When it was taken, in seconds of simulated time.
     pub time: f64,
-    /// Where the robot really was.
+    /// The robot's true pose.
     pub pose: Pose,
-    /// How many moves were made or begun by then.
+    /// The number of moves begun before it.
     pub moves: u64,
-    /// What the robot was about after it.
+    /// The state of Algorithm 2 after it.
     pub state: PathState,
-    /// What sensing told, in words.
+    /// The scene, in words.
     pub scene: String,
-    /// What the robot did then; `None` where a path ended or was given up.
+    /// What the robot did; `None` if a path ended.
     pub command: Option<Command>,
-    /// The annotated picture, small, as the bytes of a JPEG file; `None` where none was rendered.
+    /// The annotated picture as a small JPEG file, if one was rendered.
     pub picture: Option<Vec<u8>>,
-    /// So many lines of the story were told by then.
+    /// The number of lines of the story before it.
     pub story: usize,
-    /// So many maps were made by then.
+    /// The number of maps before it.
     pub maps: usize,
 }
 
-/// What the robot made of a junction to which it came.
+/// What the robot perceived at a junction.
 #[derive(Clone, Debug)]
-pub struct Call {
-    /// After so many pictures.
+pub struct JunctionCall {
+    /// The number of frames before it.
     pub rounds: usize,
-    /// Where the robot really was.
+    /// The robot's true pose.
     pub pose: Pose,
-    /// What it perceived.
+    /// The percept.
     pub percept: Percept,
-    /// Whether it was where it should be and perceived what it should.
+    /// Whether the robot was where it should be and perceived what it should.
     pub conforms: bool,
 }

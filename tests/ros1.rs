@@ -277,5 +277,5 @@ fn where_the_robot_falls_silent_it_is_told_to_stand() {
     assert_eq!(status.unwrap().code(), Some(1));
     stage.was_safe();
     let end = stage.end();
-    assert!(end.contains("gave-up\0") && end.contains("nothing has come on /odom"), "{end}");
+    assert!(end.contains("gave-up\0") && end.contains("no message on /odom"), "{end}");
 }

@@ -20,44 +20,44 @@ use crate::{
     robot::{Robot, RobotError, Sample},
 };
 
-/// Why a robot cannot go on.
+/// Why a run ended early.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ExplorerError {
-    /// It no longer knows where it is.
+    /// The robot does not know where it is any more.
     #[error("on move {moves}, {}: {lost}", by_door(*.door))]
     Lost {
-        /// Which move it is, counted from 1; 0 at the start.
+        /// The number of the move, counted from 1; 0 at the start.
         moves: u64,
-        /// By which door.
+        /// The door that it took.
         door: Option<Door>,
         /// What happened.
         lost: Lost,
     },
-    /// There is no picture that it could use.
-    #[error("on move {moves}, {}: {pictures} pictures in a row cannot be used: {cause}", by_door(*.door))]
+    /// The camera gives no usable picture.
+    #[error("on move {moves}, {}: {pictures} unusable pictures in a row: {cause}", by_door(*.door))]
     NoPicture {
-        /// Which move it is.
+        /// The number of the move.
         moves: u64,
-        /// By which door.
+        /// The door that it took.
         door: Option<Door>,
-        /// How many.
+        /// The number of pictures.
         pictures: u32,
-        /// What is wrong with the last.
+        /// What is wrong with the last one.
         cause: String,
     },
-    /// The start is none.
-    #[error("the robot stands at a junction with {degree} doors; the marker is put down at an L")]
+    /// The robot does not start at an L.
+    #[error("the robot stands at a junction with {degree} doors; a run starts at an L")]
     NotAnL {
-        /// How many doors the junction has.
+        /// The degree of the junction.
         degree: u32,
     },
-    /// The robot does not obey.
+    /// The robot failed.
     #[error(transparent)]
     Robot(#[from] RobotError),
-    /// Somebody ended the run.
+    /// The user or an observer stopped the run.
     #[error("the run was ended on move {moves}")]
     Stopped {
-        /// Which move it was.
+        /// The number of the move.
         moves: u64,
     },
 }
@@ -361,7 +361,7 @@ mod tests {
     // paper: alg2.4
     // paper: alg2.5
     #[test]
-    fn a_picture_that_is_older_than_the_last_motion_is_not_used() {
+    fn a_picture_from_before_the_end_of_the_last_motion_is_not_used() {
         let (percept, asked) = percept(&[Some(1.9), Some(1.9), Some(2.0), Some(2.5)]);
         // Two pictures decide the start, and there the marker lies along the entry.
         assert_eq!(percept.unwrap().to_string(), "2 doors, marker along door 0");
@@ -369,11 +369,11 @@ mod tests {
     }
 
     #[test]
-    fn pictures_that_do_not_come_are_asked_for_again_but_not_for_ever() {
+    fn a_missing_picture_is_retaken_at_most_5_times() {
         assert!(percept(&[None, None, None, None, None, Some(3.0)]).0.is_ok());
         let (percept, asked) = percept(&[None]);
-        let told = percept.unwrap_err().to_string();
-        let cause = "6 pictures in a row cannot be used: the camera gives no picture";
-        assert_eq!((told, asked), (format!("on move 0, at the start: {cause}"), 6));
+        let error = percept.unwrap_err().to_string();
+        let cause = "6 unusable pictures in a row: the camera gives no picture";
+        assert_eq!((error, asked), (format!("on move 0, at the start: {cause}"), 6));
     }
 }

@@ -1,8 +1,7 @@
-//! The SuperScout robot: what it does for Algorithm 2, a simulated building in which it does it, and
-//! what its sensing and driving make of that, judged against the floor plan. Sections 2.4, 2.5 and 4
-//! to 6.
+//! The SuperScout robot: live, simulated and recorded runs, their logs, and the checks of runs against
+//! the specification. Sections 2.4, 2.5 and 4 to 6.
 
-// Tests state numbers as they are.
+// Tests compare exact numbers.
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
 pub mod conform;

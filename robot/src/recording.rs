@@ -156,7 +156,7 @@ mod tests {
             robot.capture().unwrap();
             ask(&mut robot).unwrap_err().to_string()
         };
-        let is = "entry 2 of the recording is a turn by 0.5000 rad; what is asked for is ";
+        let is = "entry 2 of the recording is a turn by 0.5000 rad, but the robot is asked for ";
         assert_eq!(error(|robot| robot.turn(0.4)), format!("{is}a turn by 0.4000 rad"));
         assert_eq!(error(|robot| robot.forward(0.25)), format!("{is}0.2500 m ahead"));
         assert_eq!(error(|robot| robot.capture().map(|_| ())), format!("{is}a picture"));
@@ -167,6 +167,9 @@ mod tests {
         robot.forward(0.25).unwrap();
         robot.capture().unwrap();
         let past = robot.capture().unwrap_err().to_string();
-        assert_eq!(past, "entry 3 of the recording is the end; what is asked for is a picture");
+        assert_eq!(
+            past,
+            "entry 3 of the recording is the end, but the robot is asked for a picture"
+        );
     }
 }

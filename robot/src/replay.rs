@@ -61,14 +61,14 @@ pub struct Replay {
     /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// How it compares with the recorded run.
-    pub comparison: Comparison,
+    pub comparison: ReplayComparison,
     /// How long the recorded run took, in seconds.
     pub recorded_seconds: f64,
 }
 
 /// How a replay compares with the recorded run.
 #[derive(Clone, Debug, Default)]
-pub struct Comparison {
+pub struct ReplayComparison {
     /// The number of frames that were used.
     pub pictures: u64,
     /// Scenes that were reproduced.
@@ -82,12 +82,12 @@ pub struct Comparison {
     /// Whether the map is the last recorded one; `None` if none was recorded.
     pub map: Option<bool>,
     /// The first result that differs from the recorded one.
-    pub difference: Option<Difference>,
+    pub difference: Option<ReplayDifference>,
 }
 
 /// A result that differs from the recorded one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
+pub struct ReplayDifference {
     /// The number of the picture, counted from 1.
     pub picture: u64,
     /// When it was taken, in seconds since the first message of the log.
@@ -102,23 +102,23 @@ pub struct Difference {
 
 /// Why a log cannot be replayed.
 #[derive(Debug, Error)]
-pub enum NotReplayed {
+pub enum ReplayError {
     /// It cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The mapping does not fit it.
+    /// The topic map does not fit it.
     #[error(transparent)]
     TopicMap(#[from] TopicMapError),
     /// There is nothing to replay.
     #[error(
-        "it has neither pictures nor scenes together with odometry and the commands of Algorithm 2, as \
-         far as the mapping tells; a run of another robot is judged by `toposlam conform`"
+        "it has neither pictures nor scenes together with odometry and the commands of Algorithm 2; \
+         check the run of another robot with `toposlam conform`"
     )]
     Nothing,
-    /// A scene that is none.
-    #[error("message {message}: there is no such scene")]
+    /// A scene is invalid.
+    #[error("message {message}: invalid scene")]
     Scene {
-        /// Which message, counted from 1.
+        /// The number of the message, counted from 1.
         message: u64,
     },
 }
@@ -133,11 +133,11 @@ pub fn replay(
     mapping: &TopicMap,
     sensor: Option<Sensor>,
     dart_bound: usize,
-) -> Result<Replay, NotReplayed> {
+) -> Result<Replay, ReplayError> {
     let has = |role| mapping.carrier(role).is_some();
     let frames = if has(Role::Image) { Role::Image } else { Role::Scene };
     if !has(frames) || !has(Role::Odometry) || !has(Role::Command) {
-        return Err(NotReplayed::Nothing);
+        return Err(ReplayError::Nothing);
     }
     let roles =
         [frames, Role::Scene, Role::Odometry, Role::Command, Role::Percept, Role::Door, Role::Map];
@@ -180,7 +180,7 @@ struct ReplayedRobot<'l> {
     next: Option<Frame>,
     odometry: Odometry,
     recorded: RecordedResults,
-    failure: Option<NotReplayed>,
+    failure: Option<ReplayError>,
 }
 
 impl ReplayedRobot<'_> {
@@ -205,7 +205,7 @@ impl ReplayedRobot<'_> {
                 }
                 Content::Scene(scene) => {
                     let Some(scene) = scene_of(&scene) else {
-                        self.failure = Some(NotReplayed::Scene { message: id });
+                        self.failure = Some(ReplayError::Scene { message: id });
                         return;
                     };
                     if self.frames == Role::Scene {
@@ -285,8 +285,8 @@ struct RecordedResults {
 const SAME: f64 = 1e-6;
 
 impl RecordedResults {
-    fn compare(&self, results: &[Event]) -> Comparison {
-        let mut to = Comparison::default();
+    fn compare(&self, results: &[Event]) -> ReplayComparison {
+        let mut to = ReplayComparison::default();
         let (mut id, mut time) = (0, 0.0);
         for event in results {
             match &event.kind {
@@ -329,7 +329,7 @@ impl RecordedResults {
     }
 }
 
-impl Comparison {
+impl ReplayComparison {
     fn differs(
         &mut self,
         same: bool,
@@ -341,7 +341,7 @@ impl Comparison {
         let picture = self.pictures;
         if !same && self.difference.is_none() {
             let (recorded, found) = (format!("{recorded:?}"), format!("{found:?}"));
-            self.difference = Some(Difference { picture, time, what, recorded, found });
+            self.difference = Some(ReplayDifference { picture, time, what, recorded, found });
         }
     }
 }
@@ -371,7 +371,7 @@ mod tests {
 
     // paper: exp.off-line
     #[test]
-    fn a_log_gives_the_same_map_again_and_all_that_led_to_it() {
+    fn a_replay_reproduces_the_map_and_all_results() {
         for seed in 0..4 {
             let (log, exploration) = recorded(seed);
             let mapping = TopicMap::unambiguous(&log);
@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_that_is_too_low_is_told_and_what_was_not_made_does_not_agree() {
+    fn results_after_the_dart_bound_do_not_agree() {
         let (log, _) = recorded(0);
         let mapping = TopicMap::unambiguous(&log);
         let replay = replay(&log, &mapping, None, 4).unwrap();
@@ -401,6 +401,6 @@ mod tests {
     fn a_log_without_commands_is_not_replayed() {
         let (log, _) = recorded(0);
         let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-        assert!(matches!(replay(&log, &mapping, None, 200), Err(NotReplayed::Nothing)));
+        assert!(matches!(replay(&log, &mapping, None, 200), Err(ReplayError::Nothing)));
     }
 }

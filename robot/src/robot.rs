@@ -53,16 +53,16 @@ pub struct Sample {
     pub reckoned: Reckoned,
 }
 
-/// Where the robot is by its wheels, at some time.
+/// The odometry at some time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reckoned {
     /// In seconds since the robot was switched on.
     pub time: f64,
-    /// Where it is.
+    /// Where the robot is by its wheels.
     pub odometry: Odometry,
 }
 
-/// Why a robot does not do what it is asked for.
+/// Why a robot fails.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RobotError {
     /// The camera gave no picture; the next may come.
@@ -71,32 +71,32 @@ pub enum RobotError {
     /// There are no more pictures in the log.
     #[error("the log has no more pictures")]
     EndOfLog,
-    /// A recorded robot was asked for something else than what is recorded.
-    #[error("entry {entry} of the recording is {recorded}; what is asked for is {asked}")]
+    /// A recorded robot got a command that is not the recorded one.
+    #[error("entry {entry} of the recording is {recorded}, but the robot is asked for {asked}")]
     NotRecorded {
-        /// Which entry it is, counted from 1.
+        /// The number of the entry, counted from 1.
         entry: usize,
-        /// What it is.
+        /// The recorded command.
         recorded: String,
-        /// What the robot was asked for.
+        /// The present command.
         asked: String,
     },
-    /// There is nobody at the other end.
-    #[error("there is no master of ROS at {master}: {cause}")]
+    /// The ROS master does not answer.
+    #[error("no ROS master at {master}: {cause}")]
     Unreachable {
         /// The address.
         master: String,
         /// What happened.
         cause: String,
     },
-    /// Nothing comes from the robot any more.
-    #[error("nothing has come on {topic} for {seconds} s{}", unreadable(*.unread))]
+    /// The robot sends nothing any more.
+    #[error("no message on {topic} for {seconds} s{}", unreadable(*.unread))]
     Silent {
-        /// The topic on which nothing came.
+        /// The silent topic.
         topic: String,
-        /// For how long.
+        /// For how long, in seconds.
         seconds: f64,
-        /// How many messages came of another type.
+        /// The number of messages of another type.
         unread: u64,
     },
     /// The connection is closed.
@@ -105,19 +105,19 @@ pub enum RobotError {
         /// The topic.
         topic: String,
     },
-    /// Pictures come, and all were taken before the robot stood still.
+    /// All pictures were taken before the robot stood still.
     #[error("the last picture is {behind:.3} s older than the end of the last motion")]
     StalePicture {
-        /// By so many seconds.
+        /// By how much, in seconds.
         behind: f64,
     },
-    /// The robot was told to stop, and did not.
-    #[error("by its odometry the robot still moves {seconds} s after it was told to stop")]
+    /// The robot did not stop.
+    #[error("the odometry still moves {seconds} s after the stop command")]
     StillMoving {
-        /// For how long.
+        /// For how long, in seconds.
         seconds: f64,
     },
-    /// Somebody ended the run.
+    /// The user ended the run.
     #[error("the run was ended")]
     Stopped,
 }
@@ -125,6 +125,6 @@ pub enum RobotError {
 fn unreadable(messages: u64) -> String {
     match messages {
         0 => String::new(),
-        messages => format!("; {messages} messages there are of another type"),
+        messages => format!("; {messages} messages on it have another type"),
     }
 }

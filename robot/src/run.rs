@@ -1,5 +1,5 @@
-//! A whole run: a simulated robot maps its building by Algorithm 1, and the specification says whether
-//! that was right. Section 6.
+//! A whole run: a simulated robot maps its building by Algorithm 1, and the result is checked against the
+//! specification. Section 6.
 
 use thiserror::Error;
 use toposlam_model::{
@@ -19,54 +19,54 @@ use crate::{
     simulator::SimulatedRobot,
 };
 
-/// How a whole run ended, and what the specification says of it.
+/// A whole run, and its checks.
 #[derive(Debug)]
 pub struct Run<'p> {
-    /// The robot's map and where it takes itself to be.
+    /// The robot's map and its pose in it.
     pub exploration: Exploration,
     /// Why it ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
-    /// What is wrong with its map or its pose, if it ended in good order.
+    /// What is wrong with the map or the pose of a complete run.
     pub flaw: Option<Flaw>,
-    /// Every arrival, judged.
+    /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
-    /// How many moves Algorithm 1 makes in the plan's embedded graph.
+    /// The number of moves that Algorithm 1 makes in the plan's embedded graph.
     pub explore_moves: u64,
-    /// Seconds of the simulated time.
+    /// The simulated time, in seconds.
     pub seconds: f64,
-    /// How many pictures the robot asked for.
+    /// The number of pictures that the robot asked for.
     pub pictures: u64,
 }
 
-/// How a run ended, in a word.
+/// How a run ended.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunOutcome {
-    /// The map is right, the pose true, and each move as specified.
+    /// The map and the pose are right, and each move is as specified.
     #[error("the map is right")]
     Right,
-    /// The robot gave up and said why.
+    /// The robot gave up, for this reason.
     #[error("the robot gave up: {0}")]
     GaveUp(MappingError<ExplorerError>),
-    /// The map or the pose is wrong, and the robot does not know.
+    /// The map or the pose is wrong, and the robot did not notice.
     #[error("{0}")]
     Wrong(String),
 }
 
 impl Run<'_> {
-    /// Where the robot first did something else than the specification.
+    /// The first arrival that is not as expected.
     #[must_use]
     pub fn divergence(&self) -> Option<TruthDivergence> {
         self.monitor.divergence()
     }
 
-    /// Whether the map is isomorphic to the plan, start to start.
+    /// Whether the map is isomorphic to the plan, with the starts matched.
     #[must_use]
     pub fn isomorphic(&self) -> bool {
         self.error.is_none()
             && matches!(self.flaw, None | Some(Flaw::WrongPose { .. } | Flaw::TooManyMoves { .. }))
     }
 
-    /// Whether the robot is where it believes to be.
+    /// Whether the robot is where it believes it is.
     #[must_use]
     pub fn pose_true(&self) -> bool {
         self.isomorphic() && !matches!(self.flaw, Some(Flaw::WrongPose { .. }))
@@ -115,7 +115,7 @@ pub fn run<'p>(
     Run { exploration, error, flaw, monitor, explore_moves, seconds, pictures }
 }
 
-/// What is wrong with the map, or with where the robot takes itself to be.
+/// What is wrong with the map or the pose.
 fn flaw(
     plan: &FloorPlan,
     facing: Dart,
@@ -124,27 +124,26 @@ fn flaw(
 ) -> Option<Flaw> {
     let world = GraphWorld::new(plan.graph(), facing);
     let placed = world.state().placed;
-    // At no junction at all is nowhere that it could believe to be.
+    // A robot at no junction is not at its pose in the map.
     let nowhere = Dart(u32::MAX);
     let world = world.at(State { pose: reached.unwrap_or(nowhere), placed });
     judge(&Algorithm1, exploration, facing, &world, &mut Candidate::default()).err()
 }
 
-/// How many moves Algorithm 1 makes in the plan's embedded graph.
+/// The number of moves that Algorithm 1 makes in the plan's embedded graph.
 #[must_use]
 pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
     let mut world = GraphWorld::new(plan.graph(), facing);
     let mut exploration = Exploration::new(dart_bound);
-    // What goes wrong there goes wrong with the robot, too.
+    // An error here is also an error of the robot's run.
     let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut ());
     exploration.moves()
 }
 
-/// The off-line version: Algorithm 1 on what was recorded, without a robot that moves. Its map is that
-/// of the recorded run, as far as that came.
+/// The off-line version: Algorithm 1 on a recording, without a robot that moves.
 ///
 /// # Errors
-/// Where the recorded run ended early, and where what was recorded is not what is asked for.
+/// Returns an error if the recorded run ended early, or if a command is not the recorded one.
 // paper: exp.off-line
 pub fn offline(
     recording: &Recording,
@@ -189,7 +188,7 @@ mod tests {
 
     // paper: exp.off-line
     #[test]
-    fn what_was_recorded_gives_the_same_map_without_a_robot_that_moves() {
+    fn a_recording_gives_the_same_map_off_line() {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let robot = SimulationConfig::at_start(plan.clone(), facing, 5).by_scene();
@@ -202,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_loses_its_way_says_so() {
+    fn a_lost_robot_reports_the_reason() {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);

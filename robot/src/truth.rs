@@ -1,8 +1,8 @@
-//! What one image should tell at a pose: the truth of the floor plan.
+//! The ground truth for one image: what the floor plan has around a pose.
 //!
-//! Within [`JUNCTION_WITHIN`] of a turning point the robot is at the junction, from [`HALLWAY_FROM`] on
-//! it is in the hallway; between them either answer is right, if it is the right junction. Distances
-//! are along the hallway. Relative positions and angles are a scene's.
+//! Up to [`JUNCTION_WITHIN`] from a turning point the robot is at the junction. From [`HALLWAY_FROM`] on it
+//! is in the hallway. Between them both answers are right, if it is the right junction. Distances are along
+//! the hallway. Positions and angles are relative to the robot, as in a scene.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -18,68 +18,67 @@ use toposlam_model::{
 
 use crate::pose::Pose;
 
-/// So near a turning point the robot is at the junction, in metres.
+/// Up to this distance from a turning point the robot is at the junction, in metres.
 pub const JUNCTION_WITHIN: f64 = 0.5;
-/// So far from any turning point the robot is in the hallway, in metres.
+/// From this distance on the robot is in the hallway, in metres.
 pub const HALLWAY_FROM: f64 = 1.5;
 
-/// What is true at a pose.
+/// The ground truth at a pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Truth {
     /// In a hallway, far from any junction.
     Hallway(HallwayTruth),
-    /// In a hallway, not far from these junctions.
+    /// In a hallway, near these junctions.
     Between(HallwayTruth, Vec<JunctionTruth>),
     /// At a junction.
     Junction(JunctionTruth),
 }
 
-/// How the robot lies in a hallway.
+/// The robot's pose in a hallway.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallwayTruth {
     /// The hallway's direction, in (-pi/2, pi/2].
     pub heading: f64,
-    /// From the robot's centre to the wall plane on its left, in metres.
+    /// The distance from the robot's centre to the wall on its left, in metres.
     pub left: f64,
-    /// The same on its right.
+    /// The distance to the wall on its right.
     pub right: f64,
 }
 
-/// How a junction lies before the robot.
+/// A junction relative to the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionTruth {
-    /// Which one it is.
+    /// The vertex.
     pub vertex: Vertex,
     /// Dead end, L or T.
     pub kind: JunctionKind,
     /// What it looks like from the door behind the robot; `None` where there is none.
     pub form: Option<JunctionShape>,
-    /// The directions of the doors, clockwise from the one behind the robot, or, where there is
-    /// none, from any.
+    /// The directions of the doors, clockwise from the one behind the robot if there is one.
     pub doors: Vec<f64>,
-    /// The turning point, through which all centre lines go.
+    /// The turning point, where all centre lines meet.
     pub turning_point: [f64; 2],
 }
 
-/// Where the marker lies before the robot.
+/// The marker relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerTruth {
-    /// Its middle.
+    /// Its centre.
     pub position: [f64; 2],
     /// The direction of its longer side, in (-pi/2, pi/2].
     pub axis: f64,
     /// The direction of the door that it points along.
     pub points: f64,
-    /// The number of that door, clockwise from the door behind the robot; `None` where there is
-    /// no door behind it.
+    /// The number of that door, clockwise from the door behind the robot; `None` if there is no door
+    /// behind it.
     pub door: Option<Door>,
-    /// How far its turning point is along the centre line by which the robot comes, positive before
-    /// it; `None` where there is no door behind the robot.
+    /// The distance to its turning point along the entry centre line, positive ahead; `None` if there is
+    /// no door behind the robot.
     pub distance: Option<f64>,
 }
 
 impl Truth {
-    /// What is true at a pose; `None` off the floor.
+    /// The ground truth at a pose; `None` off the floor.
     #[must_use]
     pub fn at(plan: &FloorPlan, pose: Pose) -> Option<Self> {
         let on_floor = plan.hallways().iter().zip(plan.floor());
@@ -103,7 +102,7 @@ impl Truth {
     }
 }
 
-/// A hallway, and a position in it.
+/// A hallway and a position in it.
 struct Stretch {
     hallway: Hallway,
     direction: Direction,
@@ -133,13 +132,13 @@ impl Stretch {
         }
     }
 
-    /// How far the position is from the middle line between the turning points, along an axis.
+    /// The distance of the position from the line between the turning points, along an axis.
     fn off(&self) -> f64 {
         let beyond = (-self.along).max(self.along - self.length);
         self.aside.abs().max(beyond)
     }
 
-    /// The junctions at its ends, and how far their turning points are, along an axis.
+    /// The junctions at its ends, with the distances of their turning points along an axis.
     fn ends(&self) -> [(Vertex, f64); 2] {
         let Hallway { from, to } = self.hallway;
         [(from, self.along), (to, self.length - self.along)]
@@ -156,7 +155,7 @@ impl Stretch {
 }
 
 impl JunctionTruth {
-    /// How a junction lies before a robot.
+    /// A junction relative to a robot's pose.
     #[must_use]
     pub fn of(plan: &FloorPlan, vertex: Vertex, pose: Pose) -> Self {
         let junction = plan.junction(vertex);
@@ -175,8 +174,8 @@ impl JunctionTruth {
         }
     }
 
-    /// How far the turning point is along the entry centre line, positive before it; `None` where
-    /// there is no door behind the robot.
+    /// The distance to the turning point along the entry centre line, positive ahead; `None` if there is
+    /// no door behind the robot.
     #[must_use]
     pub fn distance(&self) -> Option<f64> {
         let [x, y] = self.turning_point;
@@ -186,8 +185,8 @@ impl JunctionTruth {
 }
 
 impl MarkerTruth {
-    /// Where a marker lies before a robot that is centred on the turning point of the dart's vertex
-    /// and lies along the dart.
+    /// A marker relative to a robot's pose. It lies on the turning point of the dart's vertex, along the
+    /// dart.
     #[must_use]
     pub fn of(plan: &FloorPlan, dart: Dart, pose: Pose) -> Self {
         let junction = JunctionTruth::of(plan, plan.graph().vertex(dart), pose);
@@ -224,7 +223,7 @@ pub fn angle(direction: Direction) -> f64 {
     }
 }
 
-/// A position of the plan as the robot has it: x ahead, y to the left.
+/// A position of the plan in the robot's frame: x ahead, y to the left.
 fn relative(position: [f64; 2], pose: Pose) -> [f64; 2] {
     let [east, north] = [position[0] - pose.position[0], position[1] - pose.position[1]];
     let (sine, cosine) = pose.heading.sin_cos();

@@ -70,8 +70,8 @@ enum Verb {
     Draw(draw::DrawArguments),
     Paper(paper::PaperArguments),
     Proofs(proofs::ProofsArguments),
-    Simulate(simulate::Arguments),
-    Drive(drive::Arguments),
+    Simulate(simulate::SimulateArguments),
+    Drive(drive::DriveArguments),
     Render(render::RenderArguments),
     Calibrate(calibrate::CalibrateArguments),
     Train(train::TrainArguments),
@@ -79,7 +79,7 @@ enum Verb {
     Evaluate(evaluate::EvaluateArguments),
     Info(info::InfoArguments),
     Conform(conform::ConformArguments),
-    Replay(replay::Arguments),
+    Replay(replay::ReplayArguments),
     Completions(completions::CompletionsArguments),
 }
 

@@ -1,10 +1,10 @@
-//! `toposlam replay LOG`: the off-line version on a log, without a robot that moves. Section 6.
+//! `toposlam replay LOG`: the off-line version on a log. Section 6.
 
 use std::{io::Write, path::PathBuf, time::Instant};
 
 use serde::Serialize;
 use toposlam_model::{format::named_world::NamedWorld, mapping::FACING};
-use toposlam_robot::replay::{Agreement, NotReplayed, Replay, replay};
+use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
 use super::{
     Failure, Outcome,
@@ -14,26 +14,24 @@ use super::{
     text::{counted, grouped, vertices},
 };
 
-/// Run sensing and Algorithm 1 on the pictures of a log, without a robot that moves
+/// Run sensing and mapping again on the images of a log, without a robot
 ///
-/// Each recorded picture is sensed again, Algorithm 2 answers it again, and Algorithm 1 maps again.
-/// Scenes, commands, percepts, doors and the map are held against those that were recorded; and the time
-/// that this took against the time that the robot took. A log without pictures is replayed from the
-/// scenes in it.
+/// Each recorded image is sensed again, and Algorithm 2 and Algorithm 1 run again. Scenes, commands,
+/// percepts, doors and the map are compared with the recorded ones, and the computing time with the
+/// robot's time. If the log has no images, its scenes are used.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   toposlam simulate worlds/shape-6.toml --log run.mcap
   toposlam replay run.mcap
 
-Exit codes: 0 all is as recorded, 1 something is not, 2 bad usage or input, 3 the log is truncated or
-its run did not come to its end.")]
-pub(super) struct Arguments {
+Exit codes: 0 all results are as recorded, 1 one differs, 2 bad usage or input, 3 the log is truncated or its run is incomplete.")]
+pub(super) struct ReplayArguments {
     /// The log
     log: PathBuf,
     #[command(flatten)]
     sources: LogOptions,
-    /// Give up when more edge ends are known
+    /// Stop if the map has more darts
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
@@ -60,13 +58,13 @@ struct Line {
     percepts: [u64; 2],
     doors: [u64; 2],
     map: Option<bool>,
-    difference: Option<Difference>,
+    difference: Option<DifferenceJson>,
     compute_seconds: f64,
     recorded_seconds: f64,
 }
 
 #[derive(Serialize)]
-struct Difference {
+struct DifferenceJson {
     picture: u64,
     time: f64,
     what: &'static str,
@@ -74,7 +72,7 @@ struct Difference {
     found: String,
 }
 
-impl Arguments {
+impl ReplayArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
@@ -84,22 +82,22 @@ impl Arguments {
         let replay = replay(&opened.log, &opened.mapping, opened.sensor(), self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
-            NotReplayed::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
+            ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
             error => Failure::in_file(&self.log, error),
         })?;
         if self.json {
             print_object(out, &self.line(&replay, seconds))?;
         } else {
-            self.tell(out, &replay, seconds)?;
+            self.print(out, &replay, seconds)?;
             if let Some(truncation) = opened.log.truncation() {
-                writeln!(out, "  the log is {truncation}")?;
+                writeln!(out, "The log is {truncation}.")?;
             }
         }
         if let Some(path) = &self.map {
             match replay.exploration.map().complete() {
                 None => eprintln!("the map is not complete, and is not written"),
                 Some(graph) => {
-                    let about = format!("The map that {} gives off-line", self.log.display());
+                    let about = format!("The map from a replay of {}", self.log.display());
                     let map = NamedWorld::numbered("map", &about, graph.clone(), Some(FACING));
                     output::write_world(path, &map)?;
                 }
@@ -125,7 +123,7 @@ impl Arguments {
             percepts: both(replay.comparison.percepts),
             doors: both(replay.comparison.doors),
             map: replay.comparison.map,
-            difference: replay.comparison.difference.clone().map(|difference| Difference {
+            difference: replay.comparison.difference.clone().map(|difference| DifferenceJson {
                 picture: difference.picture,
                 time: difference.time,
                 what: difference.what,
@@ -137,59 +135,48 @@ impl Arguments {
         }
     }
 
-    fn tell(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), Failure> {
         let map = replay.exploration.map();
-        let whole = if map.complete().is_some() { "the map" } else { "a part of the map" };
-        writeln!(
-            out,
-            "{}: {} give {whole}: {}, {}, in {}",
-            self.log.display(),
-            counted(replay.comparison.pictures as usize, "picture"),
-            vertices(map.vertex_count()),
-            counted(edges(replay), "edge"),
-            counted(replay.exploration.moves() as usize, "move")
-        )?;
+        let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
+        let comparison = &replay.comparison;
+        writeln!(out, "{}: the map is {whole}", self.log.display())?;
+        writeln!(out, "  pictures    {}", comparison.pictures)?;
+        writeln!(out, "  moves       {}", replay.exploration.moves())?;
+        let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
+        writeln!(out, "  map         {vertices}, {edges}")?;
         if let Some(error) = &replay.error {
-            writeln!(out, "  it ends early: {error}")?;
+            writeln!(out, "  ended early {error}")?;
         }
+        writeln!(out, "As recorded:")?;
         let rows = [
-            ("scenes", replay.comparison.scenes),
-            ("commands", replay.comparison.commands),
-            ("percepts", replay.comparison.percepts),
-            ("doors", replay.comparison.doors),
+            ("scenes", comparison.scenes),
+            ("commands", comparison.commands),
+            ("percepts", comparison.percepts),
+            ("doors", comparison.doors),
         ];
         for (name, agreement) in rows.iter().filter(|(_, agreement)| agreement.of > 0) {
-            writeln!(out, "  {name:<10} {agreement} as recorded")?;
+            writeln!(out, "  {name:<11} {agreement}")?;
         }
-        match replay.comparison.map {
-            Some(true) => writeln!(out, "  map        as recorded")?,
-            Some(false) => writeln!(out, "  map        not as recorded")?,
-            None => {}
+        if let Some(same) = comparison.map {
+            writeln!(out, "  map         {}", if same { "yes" } else { "no" })?;
         }
-        if let Some(difference) = &replay.comparison.difference {
-            writeln!(
-                out,
-                "  first difference at picture {}, {:.1} s: the {} was {}; it is {}",
-                difference.picture,
-                difference.time,
-                difference.what,
-                difference.recorded,
-                difference.found
-            )?;
+        if let Some(difference) = &comparison.difference {
+            let ReplayDifference { picture, time, what, recorded, found } = difference;
+            writeln!(out, "First difference: the {what} at picture {picture}, {time:.1} s")?;
+            writeln!(out, "  recorded    {recorded}")?;
+            writeln!(out, "  replayed    {found}")?;
         }
         // paper: exp.off-line-time
         let ratio = (replay.recorded_seconds / seconds.max(1e-9)) as u128;
-        writeln!(
-            out,
-            "  computed in {seconds:.2} s what was recorded in {:.1} minutes: 1 : {}",
-            replay.recorded_seconds / 60.0,
-            grouped(ratio)
-        )?;
+        let minutes = replay.recorded_seconds / 60.0;
+        writeln!(out, "Time:")?;
+        writeln!(out, "  recorded    {minutes:.1} minutes")?;
+        writeln!(out, "  computed    {seconds:.2} s, {} times faster", grouped(ratio))?;
         Ok(())
     }
 }
 
-/// How many edges are known.
+/// The number of edges whose both ends are known.
 fn edges(replay: &Replay) -> usize {
     let map = replay.exploration.map();
     (map.dart_count() - map.unexplored_count() as usize) / 2
@@ -205,7 +192,7 @@ fn outcome(replay: &Replay) -> Outcome {
     let differs = replay.comparison.difference.is_some() || replay.comparison.map == Some(false);
     match &replay.error {
         _ if differs => Outcome::Violated,
-        // The log ends too early, or the robot gave up, and does so again.
+        // The log ends too early, or the robot gave up in the recorded run, too.
         Some(_) => Outcome::Incomplete,
         None if agreements.into_iter().all(Agreement::is_whole) => Outcome::Holds,
         None => Outcome::Violated,

@@ -1,5 +1,4 @@
-//! `toposlam simulate PLAN`: a SuperScout that knows only its camera's pictures maps a floor plan.
-//! Sections 5 and 6.
+//! `toposlam simulate PLAN`: a simulated SuperScout maps a floor plan. Sections 5 and 6.
 
 mod feasible;
 mod log;
@@ -9,6 +8,7 @@ mod result;
 mod run_capture;
 
 use std::{
+    fs::File,
     io::{self, IsTerminal, Write},
     path::{Path, PathBuf},
     sync::Arc,
@@ -21,6 +21,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     evaluation::LearnedSensors,
+    log::recorder::Recorder,
     recording::Recording,
     run::{offline, run},
     simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
@@ -36,74 +37,73 @@ use super::{
     story_lines::StoryLines,
     text::capital,
 };
-use log::Recorder;
 use result::SimulationResult;
 use run_capture::{Pictures, RunCapture};
 
 pub(super) use log::MAX_DARTS;
 
-/// Let a simulated SuperScout map a floor plan by Algorithm 1, from what its camera sees
+/// Let a simulated SuperScout map a floor plan from rendered camera images
 ///
-/// The robot stands at the start, its back to the facing hallway, and puts its marker down along it.
-/// It is told nothing: it takes pictures, which are rendered; sensing makes scenes of them, Algorithm 2
-/// drives by them, and Algorithm 1 maps. The floor plan's embedded graph judges each move and each
-/// percept, and the map.
+/// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
+/// it. Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1
+/// makes the map. Each move, each percept and the map are checked against the floor plan's embedded
+/// graph.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
-pub(super) struct Arguments {
+pub(super) struct SimulateArguments {
     /// The floor plan
     plan: PathBuf,
-    /// Where the robot starts, and which door is behind it [default: the plan's own start]
+    /// Where the robot starts, and the door behind it [default: the plan's own start]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// From which everything follows that is left to chance
+    /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
     /// The camera [default: a spherical mirror]
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// Width and height of the pictures [default: 640x480, or those of the calibration]
+    /// Width and height of the images [default: 640x480, or those of the calibration]
     #[arg(long, value_name = "SIZE")]
     size: Option<ImageSize>,
-    /// The colours of the building [default: learned from rendered pictures of other views]
+    /// The colours of the building [default: learned from rendered images of other views]
     #[arg(long, value_name = "FILE")]
     colours: Option<PathBuf>,
     #[command(flatten)]
     appearance: Appearance,
-    /// Without pictures: scenes are told as often right and as exactly as sensing was measured to be
+    /// Render no images: simulate scenes with the measured accuracy of sensing
     #[arg(long, conflicts_with_all = ["calibration", "size", "colours", "frames"])]
     by_scene: bool,
-    /// How inexact wheels and odometry are: 0 not at all, 1 as by default
+    /// Noise of wheels and odometry, as a multiple of the default
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
     noise: f64,
-    /// How long a picture takes, in seconds
+    /// Time to take a picture, in seconds
     #[arg(long, default_value_t = PICTURE_TIME, value_name = "SECONDS", value_parser = seconds)]
     picture_time: f64,
-    /// Something goes wrong; may be given more than once
-    #[arg(long, value_name = "NAME@PICTURE[:HOW-MANY]")]
+    /// Inject a fault at a picture; may be repeated
+    #[arg(long, value_name = "NAME@PICTURE[:COUNT]")]
     fault: Vec<RobotFault>,
-    /// Give up when more edge ends are known
+    /// Stop if the map has more darts
     #[arg(long, value_name = "N", default_value_t = MAX_DARTS)]
     max_darts: usize,
-    /// Write a log of the run, .mcap: pictures, commands, odometry, scenes, percepts, the mapping
+    /// Write a log of the run, .mcap
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Write a picture of the run: the floor plan, the way, what the robot called each junction
+    /// Write a picture of the run, .svg: the plan, the path, and the junctions as the robot saw them
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Write a page on which the run can be watched: the plan, the camera, the map, the story
+    /// Write a page that shows the run step by step, .html
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// The folder for the annotated pictures that the robot took
+    /// Write the annotated images to this folder
     #[arg(long, value_name = "DIR")]
     frames: Option<PathBuf>,
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Do not explore: let the robot be driven through topics of ROS 1, at this master
+    /// Do not explore: serve the robot through ROS 1 topics at this master
     #[arg(long, value_name = "URI", conflicts_with_all = NOT_DRIVEN)]
     ros: Option<String>,
-    /// With --ros, let the simulated time go by so many times as fast as the real one
+    /// With --ros: how fast simulated time passes, as a multiple of real time
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed, requires = "ros")]
     speed: f64,
     /// Print one JSON object
@@ -111,20 +111,20 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What a run leaves; a robot that is driven by somebody else makes none.
+/// Options that need a run; --ros serves the robot instead.
 const NOT_DRIVEN: [&str; 7] = ["by_scene", "log", "svg", "html", "frames", "map", "json"];
 
-/// What is simulated.
+/// A simulation that is ready to run.
 struct Simulation {
     world: NamedWorld,
     plan: Arc<FloorPlan>,
     facing: Dart,
     setting: SimulationConfig,
-    /// Begun before colours were learned.
+    /// Before colours were learned.
     begun: Instant,
 }
 
-impl Arguments {
+impl SimulateArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         #[cfg(not(feature = "ros1"))]
         if self.ros.is_some() {
@@ -213,7 +213,7 @@ impl Arguments {
         robot: SimulatedRobot,
         sensor: Option<Sensor>,
         pictures: Pictures,
-        mut log: Option<Recorder>,
+        mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let Simulation { world, plan, facing, .. } = simulation;
@@ -282,38 +282,37 @@ impl Simulation {
     }
 }
 
-/// Reads how long a picture takes.
+/// Parses the time of a picture.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| (0.0..=60.0).contains(seconds));
-    seconds.ok_or_else(|| "write a number of seconds from 0 to 60".to_owned())
+    seconds.ok_or_else(|| "expected a number of seconds from 0 to 60".to_owned())
 }
 
-/// Reads how fast time goes by: at most so many times as fast that a motion is not over before it is
-/// known of.
+/// Parses the speed of simulated time. At a higher speed a motion is over before the program sees it.
 fn speed(text: &str) -> Result<f64, String> {
     let times = text.parse().ok().filter(|times: &f64| (0.1..=20.0).contains(times));
-    times.ok_or_else(|| "write a number from 0.1 to 20".to_owned())
+    times.ok_or_else(|| "expected a number from 0.1 to 20".to_owned())
 }
 
-/// What can go wrong, and examples.
+/// The faults, the log and examples.
 fn after_help() -> String {
     let faults = FAULTS
         .iter()
         .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
-    let head = "What can go wrong, and for how many pictures or commands by default:\n".to_owned();
+    let head = "Faults, and for how many pictures or commands each lasts by default:\n".to_owned();
     head + &faults.collect::<String>()
-        + "\nA log is an MCAP file of ROS 2 messages: /camera/image/compressed, /camera/annotated/compressed,
-/cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, percept, hypothesis, map, end.
-It grows under its own name: if the program is killed, it can be read up to its last ten seconds.
+        + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \
+/camera/annotated/compressed, /cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, \
+percept, hypothesis, map, end. If the program is killed, all but the last ten seconds can be read.
 
 Examples:
   toposlam simulate worlds/shape-6.toml
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
-  toposlam simulate worlds/building-12.toml --start north-west:north --seed 3 --json
+  toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 
-Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input,
-3 ended by Ctrl-C or at --max-darts."
+Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input, 3 ended by \
+Ctrl-C or at --max-darts."
 }

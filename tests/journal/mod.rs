@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use toposlam::journal::{Call, Journal, Round};
+use toposlam::journal::{FrameEntry, Journal, JunctionCall};
 use toposlam_model::{
     driving::{algorithm2::PathState, scene::Place},
     embedded_graph::Dart,
@@ -33,7 +33,7 @@ impl RunObserver for Keeper {
         match &event.kind {
             EventKind::Frame(frame) => {
                 let turn = rounds / self.pictures.len().max(1) % (self.pictures.len() + 1);
-                journal.rounds.push(Round {
+                journal.rounds.push(FrameEntry {
                     time: event.time as f64 / 1e9,
                     pose,
                     moves: self.moves,
@@ -52,7 +52,7 @@ impl RunObserver for Keeper {
             EventKind::Door { .. } => self.moves += 1,
             EventKind::Arrival(arrival) => {
                 let percept = arrival.percept;
-                journal.calls.push(Call { rounds, pose, percept, conforms: true });
+                journal.calls.push(JunctionCall { rounds, pose, percept, conforms: true });
             }
             _ => {}
         }

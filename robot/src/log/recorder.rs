@@ -14,17 +14,17 @@ use super::{
 };
 use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
 
-/// The topic of the pictures that were used, as the camera gave them.
+/// The topic of the images that were used, as the camera gave them.
 pub const IMAGE: &str = "/camera/image/compressed";
-/// The topic of the same with the scene drawn over them.
+/// The topic of the same images with the scene drawn over them.
 pub const ANNOTATED: &str = "/camera/annotated/compressed";
-/// The topic of what the wheels were told.
+/// The topic of the commands of the wheels.
 pub const CMD_VEL: &str = "/cmd_vel";
-/// The topic of where the robot is by its wheels.
+/// The topic of odometry.
 pub const ODOM: &str = "/odom";
-/// The topic of the same as a frame in another.
+/// The topic of odometry as a transform.
 pub const TF: &str = "/tf";
-/// The name of the note that holds what the message [`Run`](messages::Run) does.
+/// The name of the note with the content of the message [`Run`](messages::Run).
 pub const NOTE: &str = "toposlam";
 
 /// The quality of annotated pictures.
@@ -212,15 +212,15 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_told_from_its_head_to_its_end_in_the_order_of_time() {
+    fn a_log_has_the_run_from_head_to_end_in_the_order_of_time() {
         let pictures = std::cell::Cell::new(0);
-        let told = messages(&logged(None, |run| {
+        let log = messages(&logged(None, |run| {
             assert_eq!((run.exploration.moves(), run.explore_moves), (8, 8));
             pictures.set(run.pictures as usize);
         }));
-        let count = |topic: &str| told.iter().filter(|(found, ..)| found == topic).count();
-        assert_eq!((&*told[0].0, &*told[told.len() - 1].0), ("/toposlam/run", "/toposlam/end"));
-        assert!(told.is_sorted_by_key(|(_, time, _)| *time));
+        let count = |topic: &str| log.iter().filter(|(found, ..)| found == topic).count();
+        assert_eq!((&*log[0].0, &*log[log.len() - 1].0), ("/toposlam/run", "/toposlam/end"));
+        assert!(log.is_sorted_by_key(|(_, time, _)| *time));
         assert_eq!((count("/toposlam/door"), count("/toposlam/percept")), (8, 9));
         // The start, and six edges.
         assert_eq!(count("/toposlam/map"), 7);
@@ -233,11 +233,11 @@ mod tests {
 
     #[test]
     fn each_motion_ends_with_a_stop_and_the_robot_stands_where_a_picture_is_taken() {
-        let told = messages(&logged(None, |_| {}));
+        let log = messages(&logged(None, |_| {}));
         // The body of a twist: x ahead first, the turn about z last.
         let mut standing = true;
         let mut stops = 0;
-        for (topic, _, body) in &told {
+        for (topic, _, body) in &log {
             match topic.as_str() {
                 CMD_VEL => {
                     let stop = number(body, 0) == 0.0 && number(body, 40) == 0.0;
@@ -253,17 +253,17 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_given_up_says_so_at_its_end() {
+    fn the_end_of_a_log_has_the_reason_why_the_robot_gave_up() {
         let blocked = RobotFault::at(FaultKind::Blocked, 20);
-        let told = messages(&logged(Some(blocked), |run| assert!(run.error.is_some())));
-        let (topic, _, body) = &told[told.len() - 1];
+        let log = messages(&logged(Some(blocked), |run| assert!(run.error.is_some())));
+        let (topic, _, body) = &log[log.len() - 1];
         let text = String::from_utf8_lossy(body);
         assert!(topic == "/toposlam/end" && text.contains("gave-up\0"), "{text}");
         assert!(text.contains("3 commands in a row were not carried out"), "{text}");
     }
 
     #[test]
-    fn a_full_disk_ends_the_run() {
+    fn a_full_disk_stops_the_run() {
         struct Full;
         impl Write for Full {
             fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -44,7 +44,7 @@ kinds! {
 
 /// A fault that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("write NAME@PICTURE or NAME@PICTURE:HOW-MANY, as in dropped@12:3; there are {}", names())]
+#[error("write NAME@PICTURE or NAME@PICTURE:COUNT, as in dropped@12:3; there are {}", names())]
 pub struct FaultError;
 
 fn names() -> String {

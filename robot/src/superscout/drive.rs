@@ -5,56 +5,56 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use super::{CLEARANCE, COMMAND, PERIOD, SONARS, SPEED, TURN_RATE, WheelSpeeds, sonar_direction};
 use crate::robot::RobotError;
 
-/// The wheels, their odometry and the sonars: a simulated robot's, or a real one's.
+/// The wheels, their odometry and the sonars of a simulated or a real robot.
 pub trait Base {
-    /// Lets the wheels turn so for one period of the control loop, and reads what comes of it.
+    /// Turns the wheels for one period of the control loop, and returns the odometry after it.
     ///
     /// # Errors
-    /// Where the base does not answer.
+    /// Returns an error if the base does not answer.
     fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError>;
 
-    /// What was last read.
+    /// The last reading.
     fn reading(&self) -> Reading;
 
-    /// By how much a command outlasts its period before the next one takes over, in seconds: what is
-    /// known of it is that old, and the last step of a motion is shorter by as much.
+    /// How long a command acts after its period, in seconds. Readings are this old, and the last step of
+    /// a motion is shorter by as much.
     fn lag(&self) -> f64 {
         0.0
     }
 
-    /// How far from its body a sonar hears something, in metres; infinite for nothing.
+    /// The range that a sonar measures from the robot's body, in metres; infinite if there is no echo.
     fn sonar(&self, sonar: usize) -> f64;
 }
 
-/// What a base tells.
+/// A reading of the odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// In seconds since it was switched on.
     pub time: f64,
-    /// Where it is by its wheels.
+    /// Where the robot is by its wheels.
     pub odometry: Odometry,
 }
 
-/// The motions of a base: within its limits, and never longer than they should take.
+/// Motions of a base, within its limits and a time limit.
 #[derive(Debug)]
 pub struct Drive<'a, B>(pub &'a mut B);
 
-/// What is left of a motion does not matter below this: half a unit of odometry.
+/// A motion is complete when less than this is left, in metres: half a unit of odometry.
 const NEAR: f64 = 0.0015;
-/// The same of a turn, in radians.
+/// The same for a turn, in radians.
 const NEAR_ANGLE: f64 = 0.002;
-/// Of what a motion is off its heading, this part is mended in one period.
+/// The part of a heading error that is corrected in one period.
 const MEND: f64 = 0.3;
-/// Sonars that look no farther aside than this look where the robot goes: 45 degrees and a little.
+/// Sonars up to this angle from straight ahead look where the robot goes: a little over 45 degrees.
 const WHITHER: f64 = 0.8;
-/// A motion may take this much longer than it should.
+/// A motion may take this many times its expected duration.
 const PATIENCE: f64 = 1.5;
 
 impl<B: Base> Drive<'_, B> {
-    /// Turns on the spot by so many radians, counter-clockwise.
+    /// Turns on the spot by an angle in radians, counter-clockwise.
     ///
     /// # Errors
-    /// The base's.
+    /// Returns the error of the base.
     pub fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
         let angle = wrapped(angle);
         let begun = self.0.reading().odometry;
@@ -73,11 +73,11 @@ impl<B: Base> Drive<'_, B> {
         self.stop()
     }
 
-    /// Goes straight ahead by so many metres, at most as far as one command may; or as far as there is
-    /// room.
+    /// Goes straight ahead by a distance in metres, at most the limit of one command, and only as far as
+    /// there is room.
     ///
     /// # Errors
-    /// The base's.
+    /// Returns the error of the base.
     pub fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
         let distance = distance.clamp(0.0, COMMAND);
         let lasting = PERIOD + self.0.lag();
@@ -104,13 +104,13 @@ impl<B: Base> Drive<'_, B> {
     /// Stops.
     ///
     /// # Errors
-    /// The base's.
+    /// Returns the error of the base.
     pub fn stop(&mut self) -> Result<(), RobotError> {
         self.0.drive(WheelSpeeds::STOP).map(|_| ())
     }
 }
 
-/// How many periods a motion may take that should take so many seconds.
+/// The most periods that a motion of this expected duration may take.
 fn periods(seconds: f64) -> u32 {
     (seconds / PERIOD * PATIENCE) as u32 + 4
 }

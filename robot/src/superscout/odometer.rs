@@ -9,19 +9,19 @@ const LENGTH: f64 = 0.002_54;
 /// The unit of angle, a tenth of a degree, in radians.
 const ANGLE: f64 = std::f64::consts::PI / 1800.0;
 
-/// What the robot adds up from the turning of its wheels.
+/// Integrates the turning of the wheels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Odometer {
     sum: Odometry,
 }
 
 impl Odometer {
-    /// Adds what the wheels have turned in so many seconds.
+    /// Adds the motion of the wheels over a time in seconds.
     pub fn add(&mut self, wheels: WheelSpeeds, seconds: f64) {
         self.sum = along_arc(&self.sum, wheels, seconds);
     }
 
-    /// What the robot tells: whole units of length and angle.
+    /// The odometry that the robot reports, in whole units of length and angle.
     #[must_use]
     pub fn told(&self) -> Odometry {
         let whole = |value: f64, unit: f64| (value / unit).round() * unit;
@@ -32,8 +32,8 @@ impl Odometer {
     }
 }
 
-/// Where one gets from somewhere with the wheels turning so for some seconds: on an arc, whose chord
-/// lies halfway between the headings before and after.
+/// The pose after driving for a time in seconds: on an arc, whose chord lies halfway between the headings
+/// before and after.
 #[must_use]
 pub fn along_arc(from: &Odometry, wheels: WheelSpeeds, seconds: f64) -> Odometry {
     let half = wheels.turn_rate() * seconds / 2.0;

@@ -1,8 +1,8 @@
-//! Differential drive: how fast each wheel turns. Section 2.5.
+//! Differential drive: the speed of each wheel. Section 2.5.
 
 use super::{SPEED, TURN_RATE, WHEEL_BASE};
 
-/// How fast the ground passes under each wheel, in metres a second.
+/// The speed of the ground under each wheel, in metres a second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelSpeeds {
     /// Under the left wheel.
@@ -15,8 +15,8 @@ impl WheelSpeeds {
     /// The robot stands.
     pub const STOP: Self = Self { left: 0.0, right: 0.0 };
 
-    /// The wheel speeds at which the robot goes so fast ahead, in metres a second, and turns so fast
-    /// counter-clockwise, in radians a second; no faster than it may.
+    /// The wheel speeds for a speed ahead, in metres a second, and a turn rate counter-clockwise, in
+    /// radians a second, within the robot's limits.
     #[must_use]
     pub fn of(speed: f64, turn_rate: f64) -> Self {
         let speed = speed.clamp(-SPEED, SPEED);
@@ -24,13 +24,13 @@ impl WheelSpeeds {
         Self { left: speed - half, right: speed + half }
     }
 
-    /// How fast the robot goes ahead, in metres a second.
+    /// The robot's speed ahead, in metres a second.
     #[must_use]
     pub fn speed(self) -> f64 {
         f64::midpoint(self.left, self.right)
     }
 
-    /// How fast it turns counter-clockwise, in radians a second.
+    /// Its turn rate counter-clockwise, in radians a second.
     #[must_use]
     pub fn turn_rate(self) -> f64 {
         (self.right - self.left) / WHEEL_BASE

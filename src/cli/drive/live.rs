@@ -1,4 +1,4 @@
-//! A run of a live robot: what is read before it, what is told and written of it.
+//! A run of a live robot: its inputs, its story and its files.
 
 use std::{
     fs::File,
@@ -15,7 +15,12 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     explorer::Explorer,
-    log::{messages, recorder, world_hash, writer::LogWriteError},
+    log::{
+        messages,
+        recorder::{self, Recorder},
+        world_hash,
+        writer::LogWriteError,
+    },
     record::{Event, EventKind, RunObserver},
     robot::{Robot, RobotError},
     ros1::{LiveRobot, RobotTopics},
@@ -26,7 +31,7 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{Arguments, Failure, MAX_DARTS, Outcome, result::DriveResult};
+use super::{DriveArguments, Failure, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
     explore::story::{Story, StoryDetail},
     input, output,
@@ -35,9 +40,7 @@ use crate::cli::{
     text::quoted,
 };
 
-type Recorder = recorder::Recorder<File>;
-
-impl Arguments {
+impl DriveArguments {
     pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         if let Some(log) = &self.log {
             output::check_place(log, &["mcap"])?;
@@ -58,8 +61,8 @@ impl Arguments {
         };
         let progress = Progress::endless("exploring", "pictures")?.always_graceful();
         // On a terminal the story shows how far the run is.
-        let told = !self.json && io::stdout().is_terminal();
-        let progress = Rc::new(if told { progress.hidden() } else { progress });
+        let hidden = !self.json && io::stdout().is_terminal();
+        let progress = Rc::new(if hidden { progress.hidden() } else { progress });
         let stop = progress.clone();
         let topics = RobotTopics {
             master: self.ros.clone(),
@@ -82,7 +85,7 @@ impl Arguments {
         robot: LiveRobot,
         sensor: Sensor,
         world: Option<&(NamedWorld, Dart)>,
-        mut log: Option<Recorder>,
+        mut log: Option<Recorder<File>>,
         progress: &Rc<Progress>,
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
@@ -100,7 +103,7 @@ impl Arguments {
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
-        // It stands before anything else is said.
+        // The robot stops before anything else.
         drop(robot);
         progress.clear();
         narrator.story.finish()?;
@@ -123,13 +126,13 @@ impl Arguments {
         Ok(result.outcome())
     }
 
-    /// The log, where one is wanted. What is not known of the world is left empty.
+    /// Opens the log, if one is wanted. Unknown fields of its head are empty.
     fn recorder(
         &self,
         world: Option<&(NamedWorld, Dart)>,
         camera: &Camera,
         colours: &ColourModel,
-    ) -> Result<Option<Recorder>, Failure> {
+    ) -> Result<Option<Recorder<File>>, Failure> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
             let hash = world_hash(&world.graph, *facing);
@@ -157,11 +160,11 @@ impl Arguments {
         Failure::in_file(&path, format!("cannot be written: {error}"))
     }
 
-    /// The command of this run: all but where its results go.
+    /// The command of this run, without the options for its outputs.
     fn command(&self) -> String {
         let path = |path: &std::path::PathBuf| path.display().to_string();
         let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
-        let told = [
+        let options = [
             ("--ros", Some(self.ros.clone())),
             ("--calibration", Some(path(&self.calibration))),
             ("--colours", Some(path(&self.colours))),
@@ -172,14 +175,15 @@ impl Arguments {
             ("--start", self.start.clone()),
             ("--max-darts", (self.max_darts != MAX_DARTS).then(|| self.max_darts.to_string())),
         ];
-        let told = told.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
+        let options =
+            options.into_iter().filter_map(|(name, value)| Some([name.to_owned(), value?]));
         let words = ["toposlam".to_owned(), "drive".to_owned()];
-        let words = words.into_iter().chain(told.flatten());
+        let words = words.into_iter().chain(options.flatten());
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Tells the story of Algorithm 1, and shows progress.
+/// Prints the story of Algorithm 1 and the progress.
 struct Narrator<'o, 'p> {
     story: Story<StoryLines<'o>>,
     progress: &'p Progress,

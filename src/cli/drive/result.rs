@@ -1,4 +1,4 @@
-//! How a run of a live robot ended.
+//! The result of a live run.
 
 use std::io::Write;
 
@@ -12,13 +12,13 @@ use toposlam_robot::explorer::ExplorerError;
 use super::{Failure, Outcome};
 use crate::cli::{json::print_object, text::sentence};
 
-/// How a run ended.
+/// The result of a run.
 pub(super) struct DriveResult<'a> {
-    /// Where it was, where that is known.
+    /// The name of the world, or an empty string.
     pub(super) world: &'a str,
     pub(super) exploration: &'a Exploration,
     pub(super) error: Option<&'a MappingError<ExplorerError>>,
-    /// How long it took by the robot's clock.
+    /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
     pub(super) pictures: u64,
 }
@@ -48,19 +48,19 @@ impl DriveResult<'_> {
         }
     }
 
-    /// The map as a world, where it is complete.
+    /// The map as a world, if it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let graph = self.exploration.map().complete()?;
         let moves = self.exploration.moves();
         let (name, of) = match self.world {
-            "" => ("map".to_owned(), "where it was"),
+            "" => ("map".to_owned(), "an unknown world"),
             world => (format!("{world}-map"), world),
         };
         let about = format!("The map of {of}, made by a live robot in {moves} moves");
         Some(NamedWorld::numbered(&name, &about, graph.clone(), Some(FACING)))
     }
 
-    /// How many edges are known from end to end.
+    /// The number of edges whose both ends are known.
     fn edges(&self) -> usize {
         let map = self.exploration.map();
         (map.dart_count() - map.unexplored_count() as usize) / 2
@@ -69,13 +69,14 @@ impl DriveResult<'_> {
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let (moves, vertices) = (self.exploration.moves(), self.exploration.map().vertex_count());
         let ended = match self.error {
-            None => format!("the map is complete, made in {moves} moves"),
+            None => format!("the map is complete, after {moves} moves"),
             Some(error) => format!("the robot gave up: {error}"),
         };
         writeln!(out, "\n{}", sentence(&ended))?;
-        writeln!(out, "  known              {vertices} vertices, {} edges", self.edges())?;
+        writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
         let minutes = self.seconds / 60.0;
-        writeln!(out, "  the robot's time   {minutes:.1} minutes, {} pictures", self.pictures)?;
+        writeln!(out, "  pictures          {}", self.pictures)?;
+        writeln!(out, "  robot time        {minutes:.1} minutes")?;
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! What a robot cannot do, said before it begins.
+//! Checks before a run that the robot can drive in the plan and see the marker.
 
 use std::path::Path;
 
@@ -18,14 +18,14 @@ use toposlam_robot::{
 
 use super::Failure;
 
-/// Beside what it must keep free the robot needs so much room in a hallway, in metres.
+/// The free width that the robot needs in a hallway besides its clearance, in metres.
 const ROOM: f64 = 0.40;
-/// Of wider hallways sensing does not see both walls, in metres.
+/// The widest hallway in which sensing sees both walls, in metres.
 const WIDEST: f64 = 2.3;
-/// The marker is looked at from so far before the middle of its junction, in metres.
+/// The marker must be visible from this distance to the centre of its junction, in metres.
 const BEFORE: f64 = 0.5;
 
-/// Refuses a plan in which the robot cannot drive, and a start at which it cannot put its marker down.
+/// Rejects a plan in which the robot cannot drive, and a start that is not an L.
 pub(super) fn check(
     path: &Path,
     world: &NamedWorld,
@@ -36,7 +36,7 @@ pub(super) fn check(
     let least = 2.0 * (RADIUS + CLEARANCE) + ROOM;
     if width < least {
         let cause = format!(
-            "its hallways are {width} m wide; the robot, {:.2} m across, needs {least:.2} m",
+            "its hallways are {width} m wide; a robot {:.2} m across needs {least:.2} m",
             2.0 * RADIUS
         );
         return Err(Failure::in_file(path, cause));
@@ -55,17 +55,13 @@ pub(super) fn check(
         Some(&start) => {
             format!("as in --start {}", world.start_text(start))
         }
-        None => "and there is none in this plan".to_owned(),
+        None => "and this plan has none".to_owned(),
     };
-    let cause = format!(
-        "the start, {}, is {kind}; the marker is put down at an L, {instead}",
-        junction.name
-    );
+    let cause = format!("the start, {}, is {kind}; a run starts at an L, {instead}", junction.name);
     Err(Failure::in_file(path, cause))
 }
 
-/// Refuses a camera that does not see the marker where it lies, from the other door of its junction,
-/// or colours that do not tell it.
+/// Rejects a camera and colours with which the marker is not seen from the other door of its junction.
 pub(super) fn check_marker(
     plan: &FloorPlan,
     facing: Dart,
@@ -84,7 +80,7 @@ pub(super) fn check_marker(
         Ok(Scene { marker: Some(_), .. }) => Ok(()),
         Ok(_) => {
             let cause =
-                format!("with this camera and these colours, it is not seen from {BEFORE} m");
+                format!("with this camera and these colours, it is not seen from {BEFORE} m away");
             Err(Failure::at("the marker", cause))
         }
         Err(error) => Err(Failure::at("the camera", error)),

@@ -1,5 +1,4 @@
-//! `toposlam simulate PLAN --ros URI`: the simulated robot is driven through topics of ROS 1, by
-//! `toposlam drive` or by anybody else.
+//! `toposlam simulate PLAN --ros URI`: another program drives the simulated robot through ROS 1 topics.
 
 use std::io::Write;
 
@@ -12,7 +11,7 @@ use toposlam_robot::{
 use super::{Failure, Outcome};
 use crate::cli::progress::Progress;
 
-/// Lets the robot be driven until Ctrl-C.
+/// Serves the robot until Ctrl-C.
 pub(super) fn run(
     robot: SimulatedRobot,
     master: &str,
@@ -22,8 +21,9 @@ pub(super) fn run(
     let progress = Progress::endless("serving", "pictures")?.hidden();
     let topics = RobotTopics::usual(master);
     let RobotTopics { wheels, odometry, pictures, .. } = &topics;
-    writeln!(out, "A robot at {master}: {wheels} in, {odometry}, /tf and {pictures} out.")?;
-    writeln!(out, "Ctrl-C ends it.")?;
+    writeln!(out, "A simulated robot at {master}. Ctrl-C ends it.")?;
+    writeln!(out, "  subscribes to  {wheels}")?;
+    writeln!(out, "  publishes      {odometry}, /tf, {pictures}")?;
     out.flush()?;
     let served = serve(robot, &topics, speed, || progress.stop());
     progress.finish();
@@ -31,8 +31,8 @@ pub(super) fn run(
         served.map_err(|error| Failure::at("--ros", error))?;
     writeln!(
         out,
-        "{seconds:.0} s of simulated time in {real_seconds:.0} s: {:.1} times as fast; \
-         {pictures} pictures, {:.1} a second",
+        "{seconds:.0} s of simulated time in {real_seconds:.0} s ({:.1} times real time), \
+         {pictures} pictures ({:.1} a second)",
         seconds / real_seconds,
         pictures as f64 / real_seconds
     )?;

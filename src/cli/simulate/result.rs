@@ -1,4 +1,4 @@
-//! How a simulated run ended, and what the specification says of it.
+//! The result of a simulated run, and its checks.
 
 use std::io::Write;
 
@@ -16,21 +16,21 @@ use toposlam_robot::{
 use super::{Failure, Outcome};
 use crate::cli::{json::print_object, text::sentence};
 
-/// How a run ended.
+/// The result of a run.
 pub(super) struct SimulationResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) seed: u64,
     pub(super) run: &'a Run<'a>,
-    /// What the off-line version made of the recorded pictures, if it came to an end.
+    /// The result of the off-line version on the same pictures, if it is complete.
     pub(super) replayed: Option<Exploration>,
-    /// How long that took.
+    /// How long the off-line version took, in seconds.
     pub(super) compute_seconds: f64,
-    /// How long all of it took.
+    /// How long all of it took, in seconds.
     pub(super) wall_seconds: f64,
 }
 
-/// Computation is told from so many seconds on.
+/// A shorter computation is not printed, in seconds.
 const SHOWN: f64 = 0.01;
 
 /// What `--json` prints.
@@ -66,7 +66,7 @@ impl SimulationResult<'_> {
         }
     }
 
-    /// The map as a world, where it is complete.
+    /// The map as a world, if it is complete.
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
         let (name, moves) = (&self.world.name, self.run.exploration.moves());
@@ -75,12 +75,12 @@ impl SimulationResult<'_> {
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
-    /// In words.
+    /// The result in words.
     pub(super) fn in_words(&self) -> String {
         let moves = self.run.exploration.moves();
         match self.run.outcome() {
             RunOutcome::Right => {
-                format!("the map is right, made in {moves} moves, as the specification makes them")
+                format!("the map is right, after {moves} moves, all as specified")
             }
             ending => ending.to_string(),
         }
@@ -96,21 +96,19 @@ impl SimulationResult<'_> {
         }
         let map = run.exploration.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
-        writeln!(
-            out,
-            "  moves : edges      {} : {edges}; {} in the plan's embedded graph",
-            run.exploration.moves(),
-            run.explore_moves
-        )?;
-        writeln!(out, "  known              {} vertices, {known} edges", map.vertex_count())?;
+        let (moves, expected) = (run.exploration.moves(), run.explore_moves);
+        writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
+        writeln!(out, "  edges             {edges}")?;
+        writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
         let (minutes, seconds) = (run.seconds / 60.0, self.compute_seconds);
-        writeln!(out, "  simulated time     {minutes:.1} minutes, {} pictures", run.pictures)?;
-        // Without pictures there is next to nothing to compute.
+        writeln!(out, "  pictures          {}", run.pictures)?;
+        writeln!(out, "  simulated time    {minutes:.1} minutes")?;
+        // Without images there is almost nothing to compute.
         if self.replayed.is_some() && seconds >= SHOWN {
             let ratio = run.seconds / seconds.max(1e-9);
             writeln!(
                 out,
-                "  computation alone  {seconds:.2} s, off-line on the same pictures: 1 : {ratio:.0}"
+                "  computation       {seconds:.2} s off-line, {ratio:.0} times real time"
             )?;
         }
         eprintln!("{:.1} s", self.wall_seconds);

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, sync::Arc};
 
 use image::{codecs::jpeg::JpegEncoder, imageops::FilterType};
-use toposlam::journal::{Call, Journal, Round};
+use toposlam::journal::{FrameEntry, Journal, JunctionCall};
 use toposlam_model::{
     driving::algorithm2::PathState,
     embedded_graph::Dart,
@@ -26,7 +26,7 @@ pub(super) struct RunCapture<'o> {
     story: Story<StoryLines<'o>>,
     progress: Progress,
     pictures: Pictures,
-    rounds: Vec<Round>,
+    rounds: Vec<FrameEntry>,
     /// The number of frames before each arrival.
     arrivals: Vec<usize>,
     maps: Vec<PartialMap>,
@@ -85,7 +85,7 @@ impl<'o> RunCapture<'o> {
             return Err(failure);
         }
         let calls = self.arrivals.into_iter().zip(run.monitor.arrivals());
-        let calls = calls.map(|(rounds, arrival)| Call {
+        let calls = calls.map(|(rounds, arrival)| JunctionCall {
             rounds,
             pose: arrival.pose,
             percept: arrival.perceived,
@@ -105,7 +105,7 @@ impl<'o> RunCapture<'o> {
 
     fn frame(&mut self, frame: &Frame, pose: Pose) {
         self.progress.part_done(1);
-        let round = Round {
+        let round = FrameEntry {
             time: frame.taken,
             pose,
             moves: self.moves,

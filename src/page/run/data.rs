@@ -1,4 +1,4 @@
-//! What the page is told, as the JSON that its script reads.
+//! The data of the page, as JSON for its script.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::words;
 use crate::{
-    journal::{Call, Journal, Round},
+    journal::{FrameEntry, Journal, JunctionCall},
     page::{clock, in_script},
     picture::Drawn,
 };
@@ -21,7 +21,7 @@ pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
     let rounds = journal.rounds.iter().zip(&drawn.places);
     let mut rounds = rounds.map(|(it, at)| round(it, *at, &mut album)).collect::<Vec<_>>();
     if let Some(last) = rounds.last_mut() {
-        // What came after the last picture is the end of the run.
+        // The last frame shows the end of the run.
         last["story"] = json!(journal.story.len());
         last["maps"] = json!(journal.maps.len());
     }
@@ -34,7 +34,7 @@ pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
     }))
 }
 
-/// Every picture that is different from the others, as the address of an image.
+/// The distinct pictures, as data URLs.
 #[derive(Default)]
 struct Album<'a> {
     pictures: Vec<String>,
@@ -42,7 +42,7 @@ struct Album<'a> {
 }
 
 impl<'a> Album<'a> {
-    /// The place of a picture, which is put in if it is not there yet.
+    /// The index of a picture. It is added if it is new.
     fn place(&mut self, jpeg: &'a [u8]) -> usize {
         *self.place.entry(jpeg).or_insert_with(|| {
             self.pictures.push(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)));
@@ -51,7 +51,7 @@ impl<'a> Album<'a> {
     }
 }
 
-fn round<'a>(round: &'a Round, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
+fn round<'a>(round: &'a FrameEntry, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value {
     json!({
         "time": clock(round.time),
         "x": rounded(x),
@@ -68,7 +68,7 @@ fn round<'a>(round: &'a Round, [x, y]: [f64; 2], album: &mut Album<'a>) -> Value
     })
 }
 
-fn call(call: &Call) -> Value {
+fn call(call: &JunctionCall) -> Value {
     json!({
         "rounds": call.rounds,
         "percept": call.percept.to_string(),
@@ -76,7 +76,7 @@ fn call(call: &Call) -> Value {
     })
 }
 
-/// In tenths.
+/// Rounded to tenths.
 fn rounded(number: f64) -> f64 {
     (number * 10.0).round() / 10.0 + 0.0
 }

@@ -1,5 +1,5 @@
-//! A page on which a reader follows the run of a simulated robot, picture by picture: where it was, what
-//! its camera saw, its map as it grew, and the story of Algorithm 1. Section 6, Figure 11.
+//! A page that shows the run of a simulated robot step by step: where it was, its camera image, its map,
+//! and the story of Algorithm 1. Section 6, Figure 11.
 
 mod data;
 mod words;
@@ -11,7 +11,7 @@ use crate::{
 };
 
 const PAGE: &str = include_str!("../browser/run.html");
-/// In the order in which they build on each other; they share one scope.
+/// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 3] =
     [PAGE_SCRIPT, include_str!("../browser/floor.js"), include_str!("../browser/run.js")];
 
@@ -31,7 +31,7 @@ pub fn run_page(journal: &Journal) -> String {
     })
 }
 
-/// Every map, each in an element of its own; the page shows one of them.
+/// Every map, each in its own element; the page shows one of them.
 fn maps(journal: &Journal) -> String {
     let of = |svg: &String| format!("<div class=\"stage\" hidden>\n{svg}</div>\n");
     growth(&journal.maps).iter().map(of).collect()
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_text_wherever_they_stand() {
+    fn names_are_escaped_everywhere() {
         let nasty = "</script><!--<i>&\"{{data}}";
         let mut journal = example::journal();
         for text in [&mut journal.name, &mut journal.ending] {
@@ -77,7 +77,7 @@ mod tests {
         assert!(!document.contains("</script><"));
         assert_eq!(document.matches("</script>").count(), 2);
         assert_eq!(document.matches("<!--").count(), 1, "the template's own");
-        // What is put in is not searched for places.
+        // The inserted text is not searched for places.
         assert!(document.contains("{{data}}"));
         let data = data_of(&document);
         assert_eq!(
@@ -97,18 +97,18 @@ mod tests {
     }
 
     #[test]
-    fn the_data_tells_each_round() {
+    fn the_data_has_each_frame() {
         let journal = example::journal();
         let data = data_of(&run_page(&journal));
         let round = &data["rounds"][1];
-        let told = |key: &str| round[key].clone();
-        assert_eq!(told("time"), "0:02.5");
-        assert_eq!(told("turn"), -90.0);
-        assert_eq!(told("state"), "in a hallway");
-        assert_eq!(told("command"), "go 0.50 m ahead");
-        assert_eq!((told("moves"), told("story"), told("maps")), (json!(1), json!(0), json!(1)));
+        let field = |key: &str| round[key].clone();
+        assert_eq!(field("time"), "0:02.5");
+        assert_eq!(field("turn"), -90.0);
+        assert_eq!(field("state"), "in a hallway");
+        assert_eq!(field("command"), "go 0.50 m ahead");
+        assert_eq!((field("moves"), field("story"), field("maps")), (json!(1), json!(0), json!(1)));
         assert_eq!(data["calls"][2], json!({"rounds": 7, "percept": "3 doors", "conforms": false}));
-        // All is told at the end, also what came after the last picture.
+        // The last frame has the whole story, with what came after it.
         assert_eq!(data["rounds"][6]["story"], journal.story.len());
         assert_eq!(data["rounds"][6]["maps"], journal.maps.len());
     }

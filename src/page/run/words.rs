@@ -1,4 +1,4 @@
-//! What the page says of a run, in words.
+//! The words of the page of a run.
 
 use crate::{
     journal::Journal,
@@ -6,7 +6,7 @@ use crate::{
     page::clock,
 };
 
-/// How the run ended, and how long it was.
+/// The result and the length of the run.
 pub(super) fn about(journal: &Journal) -> String {
     let ending = journal.ending.trim_end_matches('.');
     let pictures = match journal.rounds.len() {
@@ -24,14 +24,14 @@ pub(super) fn state(state: PathState) -> &'static str {
         PathState::Leaving => "leaving a junction",
         PathState::Hallway => "in a hallway",
         PathState::Junction => "at a junction",
-        PathState::Unknown => "it does not know where it is",
+        PathState::Unknown => "lost",
     }
 }
 
-/// What the robot is told to do.
+/// The robot's command.
 pub(super) fn command(command: Option<Command>) -> String {
     let Some(Command { turn, forward }) = command else {
-        return "nothing more: the path ends".to_owned();
+        return "none: the path ends".to_owned();
     };
     let degrees = turn.to_degrees().round();
     let side = if degrees > 0.0 { "left" } else { "right" };
@@ -50,12 +50,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commands_are_told_in_degrees_and_metres() {
-        let told = |turn: f64, forward| command(Some(Command { turn, forward }));
-        assert_eq!(told(0.5, 0.5), "turn 29\u{b0} to the left, go 0.50 m ahead");
-        assert_eq!(told(-0.5, 0.0), "turn 29\u{b0} to the right");
-        assert_eq!(told(0.001, 0.25), "go 0.25 m ahead");
-        assert_eq!(told(0.0, 0.0), "take another picture");
-        assert_eq!(command(None), "nothing more: the path ends");
+    fn commands_are_in_degrees_and_metres() {
+        let text = |turn: f64, forward| command(Some(Command { turn, forward }));
+        assert_eq!(text(0.5, 0.5), "turn 29\u{b0} to the left, go 0.50 m ahead");
+        assert_eq!(text(-0.5, 0.0), "turn 29\u{b0} to the right");
+        assert_eq!(text(0.001, 0.25), "go 0.25 m ahead");
+        assert_eq!(text(0.0, 0.0), "take another picture");
+        assert_eq!(command(None), "none: the path ends");
     }
 }

@@ -10,7 +10,7 @@ use super::{
     },
     ground::{Ground, along},
 };
-use crate::{journal::Call, model::embedded_graph::Vertex};
+use crate::{journal::JunctionCall, model::embedded_graph::Vertex};
 
 /// The radius of a badge, and from one to the next.
 const BADGE: f64 = 8.0;
@@ -28,8 +28,8 @@ struct Badge {
 }
 
 impl Badges {
-    pub(super) fn of(ground: &Ground, calls: &[Call]) -> Self {
-        let mut counted: BTreeMap<_, BTreeMap<_, Call>> = BTreeMap::new();
+    pub(super) fn of(ground: &Ground, calls: &[JunctionCall]) -> Self {
+        let mut counted: BTreeMap<_, BTreeMap<_, JunctionCall>> = BTreeMap::new();
         for (number, call) in calls.iter().enumerate() {
             // What is at no junction stands for itself.
             let place = junction(ground, call).ok_or(number);
@@ -43,7 +43,7 @@ impl Badges {
                     Ok(vertex) => beside(ground, *vertex, number as f64),
                     Err(_) => ground.at(call.pose.position) + Point::new(1.0, -1.0) * (1.4 * BADGE),
                 };
-                let Call { rounds, percept, conforms, .. } = *call;
+                let JunctionCall { rounds, percept, conforms, .. } = *call;
                 badges.push(Badge { at, degree: percept.degree, conforms, rounds });
             }
         }
@@ -77,7 +77,7 @@ impl Badges {
 }
 
 /// Writes where the robot stood at each call.
-pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[Call], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[JunctionCall], shift: Point) {
     for call in calls {
         let at = ground.at(call.pose.position) + shift;
         let (x, y, rounds) = (short(at.x), short(at.y), call.rounds);
@@ -97,7 +97,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[Call], shift: Poi
 }
 
 /// The junction in whose square the robot stood.
-fn junction(ground: &Ground, call: &Call) -> Option<Vertex> {
+fn junction(ground: &Ground, call: &JunctionCall) -> Option<Vertex> {
     let at = ground.at(call.pose.position);
     let off = |vertex: Vertex| {
         let off = at - ground.turning_point(vertex);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toposlam_robot::pose::Pose;
 
 use crate::{
-    journal::{Call, Journal, Round},
+    journal::{FrameEntry, Journal, JunctionCall},
     model::{
         driving::algorithm2::{Command, PathState},
         embedded_graph::Dart,
@@ -26,7 +26,7 @@ pub(crate) fn journal() -> Journal {
     let plan = Arc::new(FloorPlan::new(1.6, &places, &hallways).unwrap());
     let facing = Dart(0);
     let maps = maps(&plan, facing);
-    let round = |(number, y): (usize, f64)| Round {
+    let round = |(number, y): (usize, f64)| FrameEntry {
         time: 2.5 * number as f64,
         pose: Pose { position: [0.0, y], heading: std::f64::consts::FRAC_PI_2 },
         moves: number.div_ceil(3) as u64,
@@ -39,7 +39,7 @@ pub(crate) fn journal() -> Journal {
     };
     let ways = [0.0, 0.6, 2.0, 4.0, 3.5, 2.0, 0.1];
     let rounds: Vec<_> = ways.into_iter().enumerate().map(round).collect();
-    let call = |(pictures, degree): (usize, u32)| Call {
+    let call = |(pictures, degree): (usize, u32)| JunctionCall {
         rounds: pictures,
         pose: rounds[pictures - 1].pose,
         percept: Percept { degree, sighting: Sighting::Nothing },

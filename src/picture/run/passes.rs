@@ -11,7 +11,7 @@ use super::{
     },
     ground::{Ground, along},
 };
-use crate::{journal::Round, model::embedded_graph::Dart};
+use crate::{journal::FrameEntry, model::embedded_graph::Dart};
 
 /// The font size of the numbers, and from line to line.
 const SIZE: f64 = 9.5;
@@ -20,7 +20,7 @@ const LINE: f64 = 11.5;
 const CLEAR: f64 = 6.0;
 
 /// Writes the numbers of all moves.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[Round], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
     let graph = ground.plan.graph();
     let mut through = vec![Vec::new(); graph.dart_count()];
     for of_move in rounds.chunk_by(|one, other| one.moves == other.moves) {
@@ -36,9 +36,9 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[Round], shift: P
 }
 
 /// The dart by which the robot went off to the other end of its hallway, if it got there.
-fn passed(ground: &Ground, rounds: &[Round]) -> Option<Dart> {
+fn passed(ground: &Ground, rounds: &[FrameEntry]) -> Option<Dart> {
     let graph = ground.plan.graph();
-    let near = |round: &Round, dart: Dart| {
+    let near = |round: &FrameEntry, dart: Dart| {
         let at = ground.at(round.pose.position);
         at.distance(ground.turning_point(graph.vertex(dart))) < ground.half()
     };

@@ -9,7 +9,7 @@ use super::{
     },
     ground::Ground,
 };
-use crate::journal::Round;
+use crate::journal::FrameEntry;
 
 /// How many colours the line has at most.
 const COLOURS: usize = 40;
@@ -17,7 +17,7 @@ const COLOURS: usize = 40;
 const RAMP: [[f64; 3]; 3] = [[126.0, 187.0, 234.0], [44.0, 116.0, 186.0], [9.0, 32.0, 66.0]];
 
 /// Writes the line: a piece for each colour, which begins where the last one ends.
-pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[Round], shift: Point) {
+pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
     page.line(
         "<g fill=\"none\" stroke-width=\"1.7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
     );

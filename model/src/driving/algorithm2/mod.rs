@@ -2,15 +2,15 @@
 //!
 //! The numbers are those of the printed lines. One call of [`PathExecution::round`] is one round of
 //! the printed loop: a scene in, a command out. Pictures, sensing and motors are the caller's. What
-//! odometry says and when to give up is in `reckoning`.
+//! odometry says and when to give up is in `dead_reckoning`.
 
+mod dead_reckoning;
 mod lost;
-mod reckoning;
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
+pub use dead_reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
 pub use lost::{Lost, LostReason};
-pub use reckoning::{CREEP, IDLE, LEG, STALLS, UNKNOWNS};
 
 use super::{
     odometry::Odometry,
@@ -18,7 +18,7 @@ use super::{
     visit::{JunctionEstimate, JunctionShape},
 };
 use crate::percept::{Door, Percept};
-use reckoning::{DeadReckoning, Round};
+use dead_reckoning::{DeadReckoning, Round};
 
 /// A unit distance, in metres.
 // paper: alg2.2
