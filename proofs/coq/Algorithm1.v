@@ -1,11 +1,10 @@
-(** Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
+(** Algorithm 1: mapping with one directional marker that stays at the start. Section 2.3.
 
-    The numbers are those of the printed lines. Coq wants the inner part first, so read from the end:
+    The numbers are those of the printed lines. Coq needs the inner parts first, so read from the end:
     [algorithm1] is lines 1 to 3, [rounds] line 4, [explore] 5 to 23, [try_all] 8 to 17, [follow] 11 to 17.
-    U is not kept, but read off S: the darts whose other end is not known. So lines 5, 20 and 23 change U by
-    changing S. What the paper leaves open is left open: the edge of line
-    5, the hypothesis of line 9, the paths of lines 6 and 10 are chosen, and the default is what toposlam
-    does when nobody says otherwise. Definitions only. *)
+    U is computed from S: the darts whose other end is not known. So lines 5, 20 and 23 change U by changing
+    S. The open choices of the paper stay open: the edge of line 5, the hypothesis of line 9, the paths of
+    lines 6 and 10. The defaults are those of toposlam. Definitions only. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program.
@@ -16,8 +15,8 @@ Unset Printing Implicit Defensive.
 
 (** * The map S *)
 
-(** What is known of a dart: the first dart of its vertex, by which the robot first came there; the degree
-    of its vertex; and the other end of its edge, if that is explored.
+(** A known dart: the first dart of its vertex, by which the robot first came there; the degree of its
+    vertex; and the other end of its edge, if that is explored.
 
     Darts are numbered as they become known: those of a vertex together, clockwise from the first. The
     start vertex has the first numbers, from the facing dart, which is dart 0. A vertex is named by its
@@ -44,11 +43,11 @@ Definition known_vertices := count (fun d => vertex d == d) (iota 0 (size S)).
 (** The door that leads to the dart [d] for a robot that came in by [pose], at the same vertex. *)
 Definition door_to pose d : door := (d + doors pose - pose) %% doors pose.
 
-(** What the robot expects to perceive when it comes in by this dart. *)
+(** The percept that the robot expects after it comes in by this dart. *)
 Definition expected pose : percept :=
   (doors pose, if vertex pose == 0 then Pointing (door_to pose 0) else Nothing).
 
-(** Whether leaving vertex after vertex by these darts leads from one vertex to another. *)
+(** Whether these darts, one after the other, lead from one vertex to another. *)
 Fixpoint leads v darts v' :=
   if darts is d :: darts' then
     (vertex d == v) && (if other d is Some d' then leads (vertex d') darts' v' else false)
@@ -57,11 +56,11 @@ Fixpoint leads v darts v' :=
 (** The pose behind these darts. *)
 Definition pose_behind pose darts := foldl (fun pose d => odflt pose (other d)) pose darts.
 
-(** The doors by which a robot with this pose takes these darts. *)
+(** The doors for these darts, for a robot with this pose. *)
 Fixpoint doors_along pose darts : seq door :=
   if darts is d :: darts' then door_to pose d :: doors_along (odflt pose (other d)) darts' else [::].
 
-(** With one more vertex, all darts of which are unexplored. *)
+(** The map with one more vertex, whose darts are all unexplored. *)
 Definition with_vertex degree : partial_map := S ++ nseq degree (Known (size S) degree None).
 
 Definition set_other d d' : partial_map := set_nth nowhere S d (Known (vertex d) (doors d) (Some d')).
@@ -84,7 +83,7 @@ Fixpoint grow fuel i tree :=
 
 Definition tree_from root := grow (size S) 0 [:: root].
 
-(** The darts by which to leave the vertices on the way from [v] to the root. *)
+(** The darts of the path from [v] to the root. *)
 Fixpoint up fuel tree v :=
   if fuel is fuel'.+1 then
     let i := index v (map vertex tree) in
@@ -94,10 +93,10 @@ Fixpoint up fuel tree v :=
 
 Definition to_root tree v := up (size tree) tree v.
 
-(** And on the way from the root to [v]. *)
+(** The darts of the path from the root to [v]. *)
 Definition from_root tree v := rev [seq odflt 0 (other d) | d <- to_root tree v].
 
-(** Of these darts the one whose vertex is fewest edges from the root; of several the first. *)
+(** The dart whose vertex is the fewest edges from the root; the first one of several. *)
 Definition nearest tree darts :=
   foldl (fun best d =>
            if size (to_root tree (vertex d)) < size (to_root tree (vertex best)) then d else best)
@@ -105,27 +104,28 @@ Definition nearest tree darts :=
 
 End Map.
 
-(** With two darts made the ends of one edge. *)
+(** The map with two darts as the ends of one edge. *)
 Definition with_edge (S : partial_map) d d' : partial_map := set_other (set_other S d d') d' d.
 
 (** * The algorithm *)
 
 Section Algorithm1.
 
-(** Which paths through the map may be chosen at lines 6 and 10, of those that lead where they should. *)
+(** The paths through the map that may be chosen at lines 6 and 10, among those that lead to their goals.
+    *)
 Variable allowed : partial_map -> seq nat -> bool.
 
-(** How a hypothesis ended: confirmed, the robot having come to the marker by this dart of the map; or
-    rejected, the robot being back, turned by this door. *)
+(** The end of a hypothesis: confirmed, and the robot came to the marker by this dart of the map; or
+    rejected, and the robot is back, turned by this door. *)
 Inductive verdict := Confirmed of nat | Rejected of door.
 
-(** What became of the robot's new place: the dart of a confirmed hypothesis, and the robot's pose; or no
-    known place, the robot being there, turned by this door. *)
+(** The robot's new place: the dart of a confirmed hypothesis, and the robot's pose; or a new vertex, where
+    the robot stands, turned by this door. *)
 Inductive outcome := Loop of nat & nat | New of door.
 
-(** Lines 11 to 17. The robot should be at [pose], and is to leave by these darts. It stands at a vertex of
-    this degree, turned by [turned]; [taken] are the doors that it took since it set out, with the degrees
-    of the vertices there. *)
+(** Lines 11 to 17. The robot should be at [pose], and leaves by these darts. It stands at a vertex of
+    this degree, turned by [turned]; [taken] are the doors of the path so far, with the degrees of their
+    vertices. *)
 Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdict :=
   if darts is d :: darts' then
     let i := door_to S pose d in
@@ -133,7 +133,7 @@ Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdi
     (* 11: try to traverse the path. *)
     let* seen := move ((i + degree - turned) %% degree) in
     let taken' := rcons taken (i, degree) in
-    (* 12, 13: compare what is perceived with what is expected, at each step: the first mismatch decides. *)
+    (* 12, 13: compare the percept with the expected one, at each step: the first mismatch decides. *)
     if seen == expected S pose' then follow S seen.1 0 pose' darts' taken'
     (* 14, 15: reject the hypothesis, retrace the path. *)
     else (moves (way_back taken') ;; Return (Rejected (head (0, 0) taken').1))
@@ -141,7 +141,7 @@ Fixpoint follow (S : partial_map) degree turned pose darts taken : program verdi
   else Return (Confirmed pose).
 
 (** Lines 8 to 17, for hypotheses [H]; each is the unexplored dart by which the robot would have come in.
-    [fuel], the number of hypotheses, is there for Coq to see that this ends. *)
+    [fuel], the number of hypotheses, shows Coq that this ends. *)
 Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
   let tree := tree_from S 0 in
   (* 8: while H is not empty. *)
@@ -149,7 +149,7 @@ Fixpoint try_all fuel (S : partial_map) degree turned H : program outcome :=
   if fuel is fuel'.+1 then
     (* 9: remove a hypothesis from H. *)
     let* h := choose (fun h => h \in H) (nearest S tree H) in
-    (* 10: a path to v0; what is to be perceived along it is [expected]. *)
+    (* 10: a path to v0; the percepts along it should be [expected]. *)
     let* path := choose (fun path => leads S (vertex S h) path 0 && allowed S path)
                    (to_root S tree (vertex S h)) in
     (* 11 to 17. *)
@@ -177,14 +177,14 @@ Definition explore (S : partial_map) pose : program (partial_map * nat) :=
   (* 8 to 17. *)
   let* became := try_all (size H) S seen.1 0 H in
   match became with
-  (* 18, 19, 20: a loop was closed. *)
+  (* 18, 19, 20: a known vertex. *)
   | Loop h pose' => Return (with_edge S e h, pose')
-  (* 21, 22, 23: a new place. *)
+  (* 21, 22, 23: a new vertex. *)
   | New turned => Return (with_edge (with_vertex S seen.1) e (size S), size S + turned)
   end.
 
-(** Lines 4 to 23: while U is not empty. A robot that is lied to could go on for ever, so the number of
-    rounds is bounded; [None] is the answer if they do not suffice. *)
+(** Lines 4 to 23: while U is not empty. With wrong percepts the loop could be endless, so the number of
+    rounds is limited; the answer is [None] if they do not suffice. *)
 Fixpoint rounds bound (S : partial_map) pose : program (option (partial_map * nat)) :=
   (* return S. *)
   if unexplored S is [::] then Return (Some (S, pose)) else
@@ -194,21 +194,21 @@ Fixpoint rounds bound (S : partial_map) pose : program (option (partial_map * na
   else Return None.
 
 (** The marker lies at v0 (line 1), where the robot perceives [seen]: S is v0 (line 2), U its edges (line
-    3). The answer is the map S, with the robot's pose in it. *)
+    3). The answer is the map S and the robot's pose in it. *)
 Definition algorithm1 bound (seen : percept) : program (option (partial_map * nat)) :=
   rounds bound (with_vertex [::] seen.1) 0.
 
 End Algorithm1.
 
-(** Any path will do. *)
+(** Any path is allowed. *)
 Definition any_path : partial_map -> seq nat -> bool := fun _ _ => true.
 
-(** No more than it takes to visit every other vertex. *)
+(** Paths with fewer darts than there are known vertices. *)
 Definition short_paths : partial_map -> seq nat -> bool := fun S path => size path < known_vertices S.
 
 (** * The map as a world *)
 
-(** A world, and where the robot is in it. *)
+(** A world, and the robot's pose in it. *)
 Record located := Located { world :> start; robot : world }.
 
 Section Drawn.
@@ -242,7 +242,7 @@ Proof. by case/and4P=> _ _ _ /forallP H d; apply/forallP. Qed.
 Definition drawn_graph (ok : is_drawn) : embedded_graph :=
   EmbeddedGraph (drawn_involutive ok) (drawn_moves ok) (drawn_injective ok) (drawn_connected ok).
 
-(** The world that is drawn in a map, if there is one, and the robot where it believes to be. *)
+(** The world that a map describes, if it describes one, and the robot where it believes to be. *)
 Definition drawn (pose : nat) : option located :=
   match @idP is_drawn, @idP (0 < size S) with
   | ReflectT ok, ReflectT begun =>

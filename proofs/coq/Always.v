@@ -1,4 +1,4 @@
-(** How a program's runs are put together from those of its parts. *)
+(** The runs of a program, composed of the runs of its parts. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Walks.
@@ -19,7 +19,7 @@ elim: p pose Q R => [a|i go IH|T ok default go IH] pose Q R QR /=; first exact: 
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
-(** What is always so is so of some run. *)
+(** What holds for all runs holds for some run. *)
 Lemma some_run A (p : program A) (pose : W) : ~ always M p pose (fun _ _ _ => False).
 Proof.
 by elim: p pose => [a|i go IH|T ok default go IH] pose //= [] => [_ /IH|okd /(_ default okd)/IH].

@@ -1,5 +1,5 @@
-(** Bisimilar starts are those that no robot tells apart: it perceives the same in both, and answers the
-    same. Section 2.2 of the paper. *)
+(** No robot can tell bisimilar starts apart: its percepts and its answer are the same in both. Section
+    2.2 of the paper. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks.
@@ -27,7 +27,7 @@ Lemma indistinguishable_trans M U V W :
   indistinguishable M U V -> indistinguishable M V W -> indistinguishable M U W.
 Proof. by move=> UV VW doors; rewrite UV. Qed.
 
-(** * What a robot does in them *)
+(** * Robots in bisimilar starts *)
 
 Section Runs.
 

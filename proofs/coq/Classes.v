@@ -1,8 +1,6 @@
-(** How the poses of indistinguishable starts fall into classes that no walk tells apart: all classes have
-    one size, which divides the degree of the marked vertex. Beyond Section 2.2.
-
-    Of starts that an undirected marker does not tell apart, it follows that they have equally many
-    edges and vertices. *)
+(** The poses of indistinguishable starts form classes that no walk tells apart. All classes have the same
+    size, which divides the degree of the marked vertex. So starts that an undirected marker cannot tell
+    apart have equally many edges and vertices. Beyond Section 2.2. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation.
@@ -33,7 +31,8 @@ move=> same; have [doors <-] := walk_anywhere (facing V) p.
 by exists (walk (facing W) doors); apply: alike_walk.
 Qed.
 
-(** Whether two poses are alike can be decided, for only finitely many pairs of poses can be reached. *)
+(** It is decidable whether two poses are alike, because only finitely many pairs of poses can be reached.
+    *)
 Definition both_step (x y : V * W) :=
   (y == (opposite x.1, opposite x.2)) || (y == (clockwise x.1, clockwise x.2)).
 
@@ -79,7 +78,7 @@ Qed.
 
 (** * All classes have one size *)
 
-(** A walk takes a class into a class, and no two poses to one. *)
+(** A walk maps a class into a class, and is injective. *)
 Lemma classes_same_size M (V W : start) (p p' : V) : #|class M W p| = #|class M W p'|.
 Proof.
 suff leq (r r' : V) : #|class M W r| <= #|class M W r'| by apply/eqP; rewrite eqn_leq !leq.
@@ -91,7 +90,7 @@ Qed.
 Lemma class_gt0 M (W : start) (p : W) : 0 < #|class M W p|.
 Proof. by apply/card_gt0P; exists p; apply/alikeP. Qed.
 
-(** ** Which divides the degree of the marked vertex *)
+(** ** The size divides the degree of the marked vertex *)
 
 Lemma alike_marked (V W : start) (p : V) (q : W) :
   alike undirected p q -> same_vertex p (facing V) = same_vertex q (facing W).
@@ -112,7 +111,7 @@ apply: eq_card => r; rewrite !inE; apply: andb_idl => /alikeP /alike_marked same
 by move: q_marked; rewrite !inE same_vertex_sym same same_vertex_sym.
 Qed.
 
-(** ** In both of two starts that an undirected marker does not tell apart *)
+(** ** Two starts that an undirected marker cannot tell apart *)
 
 Lemma count_both_ways (T U : finType) (R : T -> U -> bool) (A : pred T) (B : pred U) k l :
   (forall x y, R x y -> A x = B y) ->
@@ -179,8 +178,8 @@ have : degree (facing V) * l = degree (facing W) * k.
 by move/eqP; rewrite -(indistinguishable_degree same) eqn_pmul2l ?degree_gt0 // => /eqP.
 Qed.
 
-(** One size for all: of the classes of either, and of the poses of either that are alike to one of the
-    other. *)
+(** One size for all classes: within each start, and of the poses of one start that are alike to a pose of
+    the other. *)
 Lemma indistinguishable_classes :
   exists size, [/\ size %| degree (facing V),
     forall p : V, #|class undirected V p| = size, forall q : W, #|class undirected W q| = size,
@@ -194,7 +193,7 @@ exists k; split=> [|p|q|p|q].
 exact: card_class_across (indistinguishable_sym same).
 Qed.
 
-(** Whatever is perceived, equally many poses of both give it: so they have equally many edges and
+(** For any percept, equally many poses of both starts give it: so they have equally many edges and
     vertices. *)
 Lemma indistinguishable_card (A : pred percept) :
   #|[pred p : V | A (perceive undirected p)]| = #|[pred q : W | A (perceive undirected q)]|.

@@ -32,7 +32,7 @@ Proof.
 move=> uniq_l lt; rewrite map_inj_in_uniq // => d e /lt d_lt /lt e_lt; exact: (em_inj em d_lt e_lt).
 Qed.
 
-(** No more is known than there is. *)
+(** The map has at most as many darts as the world. *)
 Lemma size_known : size S <= 2 * edges W.
 Proof.
 rewrite -card_darts.
@@ -63,7 +63,7 @@ move=> lt; have := mem_unexplored S d; rewrite explored lt /=.
 by case: (other S d) => // d' _; exists d'.
 Qed.
 
-(** Nothing is left out. *)
+(** Every dart of the world is in the map. *)
 Lemma place_onto (q : W) : exists2 d, d < size S & place d = q.
 Proof.
 have /connectP[s path_s ->] := connected (facing W) q.
@@ -85,7 +85,7 @@ apply: leq_trans (_ : size (map place (iota 0 (size S))) <= _).
 by rewrite size_map size_iota.
 Qed.
 
-(** * The world drawn in the map *)
+(** * The world that the map describes *)
 
 Let f (d : 'I_(size S)) : W := place d.
 

@@ -16,7 +16,7 @@ Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowe
 
 Variable W : start.
 
-(** What [left] rounds cost at most, with paths shorter than the number of vertices. *)
+(** The greatest cost of [left] rounds, with paths shorter than the number of vertices. *)
 Definition cost left := left * vertices W + 2 * (left * left) * (vertices W).-1.
 
 Lemma cost_of_round left k l u :
@@ -30,7 +30,7 @@ have {}k_le : k <= n + 1 + (2 * left + 1) * (2 * n).
 by arithmetic.
 Qed.
 
-(** What may be chosen is shorter than the number of known vertices. *)
+(** The allowed paths are shorter than the number of known vertices. *)
 Definition only_short := forall S path, allowed S path -> size path < known_vertices S.
 
 Lemma vertices_gt0 : 0 < vertices W.

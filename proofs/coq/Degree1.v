@@ -1,5 +1,5 @@
-(** On a vertex with one door an undirected marker tells as much as a directional one: it can only point
-    along that door. Beyond Section 2.2. *)
+(** At a vertex with one door, an undirected marker is as good as a directional one, which could only
+    point along that door. Beyond Section 2.2. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation Separates.
@@ -8,7 +8,7 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** What a directional marker would have shown where an undirected one lies. *)
+(** The sighting of a directional marker at the place of an undirected one. *)
 Definition point (seen : percept) : percept :=
   (seen.1, if seen.2 is Lying then Pointing 0 else seen.2).
 
@@ -30,7 +30,7 @@ Qed.
 Lemma percepts_point p doors : percepts directional p doors = map point (percepts undirected p doors).
 Proof. by elim: doors p => [|i doors IH] p /=; rewrite perceive_point ?IH. Qed.
 
-(** With the undirected marker a robot can do what another one does with a directional one. *)
+(** A robot with the undirected marker can do what a robot with a directional one does. *)
 Definition pointing A (robot : strategy A) : strategy A := robot \o map point.
 
 Lemma situation_point A (robot : strategy A) n :

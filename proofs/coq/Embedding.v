@@ -7,9 +7,8 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** [place] tells where each dart of the map is in the world. The facing dart is the facing dart; different
-    darts are different; degrees, the order around each vertex, and the explored edges are those of the
-    world. *)
+(** [place] maps each dart of the map to a dart of the world. It maps facing to facing, is injective, and
+    keeps degrees, the order around each vertex, and the explored edges. *)
 Record embeds (S : partial_map) (W : start) (place : nat -> W) : Prop := Embeds {
   em_wf : well_formed S;
   em_facing : place 0 = facing W;
@@ -63,7 +62,7 @@ rewrite (em_turn em e_lt) same (em_turn em lt) -turn_add addKn.
 by rewrite -degree_vertex // turn_mod.
 Qed.
 
-(** Darts of one vertex in the world are of one vertex in the map. *)
+(** Darts at the same vertex in the world are at the same vertex in the map. *)
 Lemma same_vertex_known d e : d < size S -> e < size S ->
   same_vertex (place d) (place e) = (vertex S d == vertex S e).
 Proof.
@@ -73,7 +72,7 @@ move=> d_lt e_lt; apply/same_vertexP/eqP=> [[i]|same].
 by exists (door_to S d e); rewrite turn_door_to.
 Qed.
 
-(** What is expected in the map is perceived in the world. *)
+(** The percepts in the world are those expected in the map. *)
 Lemma expected_is_perceived d : d < size S -> expected S d = perceive directional (place d).
 Proof.
 move=> lt; have S_gt0 := wf_some wf.
@@ -103,7 +102,7 @@ have [lt' _ _] := wf_other wf dd'.
 rewrite (traverse_known lt dd' same) -(em_doors em lt) door_to_lt //; exact: IH.
 Qed.
 
-(** Whoever sees the marker as he should, where the map has it, is where he believes to be. *)
+(** A robot that has the expected sighting at the marked vertex of the map is where it believes to be. *)
 Lemma sighting_tells_pose pose (q : W) : pose < size S -> vertex S pose = 0 ->
   perceive directional q = expected S pose -> place pose = q.
 Proof.

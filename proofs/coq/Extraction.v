@@ -1,8 +1,7 @@
-(** The two mapping algorithms as a program of OCaml, which [compare/main.ml] runs and a test compares with
-    the ones of toposlam, on every small start.
-
-    Trusted is what Coq's extraction does, and that booleans, options, pairs and lists are OCaml's own.
-    Numbers are not replaced: they are Coq's [nat], with Coq's arithmetic. *)
+(** The two mapping algorithms as an OCaml program, which [compare/main.ml] runs and a test compares with
+    those of toposlam, on every small start. This trusts Coq's extraction, and its mapping of booleans,
+    options, pairs and lists to OCaml's own. Numbers are not mapped: they are Coq's [nat], with Coq's
+    arithmetic. *)
 
 From mathcomp Require Import ssreflect.
 From Coq Require Extraction ExtrOcamlBasic.
@@ -13,7 +12,7 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** What a robot does that obeys a program and chooses the default each time. *)
+(** The decisions of a robot that runs a program with the default choices. *)
 Inductive deeds (A : Type) :=
   | Answers of A
   | Leaves of door & (percept -> deeds A)
@@ -41,12 +40,11 @@ Fixpoint handling_by_default A (p : MovableMarker.handling_program A) : deeds A 
   | MovableMarker.Choose T _ default go => handling_by_default (go default)
   end.
 
-(** So many rounds are allowed, and this is perceived at the start. *)
+(** With a limit on rounds, and the percept at the start. *)
 Definition directional_mapping bound seen := by_default (algorithm1 any_path bound seen).
 Definition movable_mapping bound seen := handling_by_default (MovableMarker.movable any_path bound seen).
 
 Extraction Language OCaml.
-(* That the proofs of comparisons are looked into, and some names of theirs, is of no account: no value
-   depends on them. *)
+(* Extraction warns that it opens proofs of comparisons; no value depends on them. *)
 Set Warnings "-extraction-opaque-accessed,-extraction-reserved-identifier".
 Extraction "mappings.ml" directional_mapping movable_mapping.

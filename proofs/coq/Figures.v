@@ -1,5 +1,5 @@
-(** The worlds of the figures, from the very lists of their world files, and what is checked of them by
-    calculation: Figure 1 of the paper, the smallest simple pair, and two cycles. *)
+(** The worlds of the figures, as lists from their world files, and facts about them that are checked by
+    computation: Figure 1 of the paper, the smallest simple pair, and two cycles. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation.
@@ -10,14 +10,14 @@ Unset Printing Implicit Defensive.
 
 (** * Worlds from lists *)
 
-(** A simple world as its file gives it: for each vertex, in the order of their numbers, its neighbours
+(** A simple world as in its file: for each vertex, in the order of their numbers, its neighbours
     clockwise. *)
 Definition world_file := seq (seq nat).
 
 (** The dart at vertex [v] whose edge leads to vertex [w] is the pair of both. *)
 Definition name := (nat * nat)%type.
 
-(** Everything that some steps lead to from some things, in so many rounds. *)
+(** Everything that the steps reach from some elements, in a number of rounds. *)
 Fixpoint explore (T : eqType) (steps : seq (T -> T)) (rounds : nat) (found : seq T) : seq T :=
   if rounds is fewer.+1 then
     explore steps fewer (undup (found ++ [seq step x | step <- steps, x <- found]))
@@ -46,8 +46,8 @@ Definition flip (d : name) : name := (d.2, d.1).
 
 Definition around (d : name) : name := (d.1, next (neighbours d.1) d.2).
 
-(** What a file must fulfil: no neighbour twice, none its own, each a neighbour of its neighbours, and all
-    in one piece. *)
+(** A valid file: no neighbour twice, no vertex its own neighbour, neighbours mutual, and the graph
+    connected. *)
 Definition sound : bool :=
   [&& all uniq file,
       all (fun d => (flip d \in names) && (d.1 != d.2)) names
@@ -116,7 +116,7 @@ Definition world : embedded_graph :=
 
 Implicit Types d e : world.
 
-(** ** What can be seen from the names *)
+(** ** Facts that follow from the names *)
 
 Lemma val_turn d i : val (turn d i) = iter i around (val d).
 Proof. by elim: i => //= i <-. Qed.
@@ -174,7 +174,7 @@ End File.
 Definition start_at (file : world_file) (ok : sound file) (d : name) (d_in : d \in names file) : start :=
   @Start (world ok) (SeqSub d_in).
 
-(** * Bisimilar by calculation *)
+(** * Bisimilar, by computation *)
 
 Section Pair.
 
@@ -189,7 +189,7 @@ Definition together : seq (name * name -> name * name) :=
   [:: fun both => (flip both.1, flip both.2);
       fun both => (around file1 both.1, around file2 both.2)].
 
-(** The pairs of darts to which the same steps lead, if so many rounds find them all. *)
+(** The pairs of darts that the same steps reach, if the rounds suffice to find them all. *)
 Definition pairs (rounds : nat) := explore together rounds [:: (d1, d2)].
 
 Definition closed (found : seq (name * name)) :=
@@ -227,9 +227,9 @@ have /andP[/eqP degrees /eqP marks] := same _ pq.
 by rewrite /perceive /undirected !world_degree !world_same_vertex /= degrees [_ == d1.1]marks.
 Qed.
 
-(** * Not isomorphic by calculation *)
+(** * Not isomorphic, by computation *)
 
-(** A walk that ends where it began, and in the other world never does. *)
+(** A walk that is closed in one world, and in the other world from no pose. *)
 Lemma round_walk_not_isomorphic doors :
   has (fun d => name_walk file1 d doors == d) (names file1) ->
   ~~ has (fun d => name_walk file2 d doors == d) (names file2) ->

@@ -8,7 +8,7 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** Whatever it is, the robot gives the same map in both. *)
+(** The robot gives the same map in both. *)
 Lemma bisimilar_maps M (robot : strategy embedded_graph) V W :
   bisimilar M V W -> maps M robot V -> maps M robot W -> isomorphic V W.
 Proof.
@@ -16,7 +16,7 @@ move=> /(bisimilar_same_answers robot) same [map /same answers_map map_V] [map' 
 by apply: isomorphic_trans (isomorphic_sym map_V) _; rewrite (answers_unique answers_map answers_map').
 Qed.
 
-(** And if it also tells where it began, that is the same place. *)
+(** And if the map contains the start, it is the same start in both. *)
 Lemma bisimilar_maps_start M (robot : strategy start) V W :
   bisimilar M V W -> maps_start M robot V -> maps_start M robot W -> isomorphic_starts V W.
 Proof.

@@ -1,5 +1,5 @@
-(** Algorithm 1 as a robot of Section 2.1: a strategy that knows nothing but what it has perceived. So
-    there is a robot that maps every world with one directional marker. *)
+(** Algorithm 1 as a robot of Section 2.1: a strategy that depends only on its percepts. So there is a
+    robot that maps every world with one directional marker. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Always Correct.
@@ -8,8 +8,8 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** The robot obeys Algorithm 1 with its default choices. It has made fewer rounds than it has perceived
-    places, so their number is bound enough, and it need not know how large the world is. *)
+(** The robot runs Algorithm 1 with its default choices. It has made fewer rounds than it has percepts, so
+    their number is a sufficient limit, and it need not know the size of the world. *)
 Definition mapper : strategy start := fun past =>
   if past is first :: later then
     match obey (algorithm1 short_paths (size past) first) later with
@@ -19,9 +19,9 @@ Definition mapper : strategy start := fun past =>
     end
   else Leave 0.
 
-(** * The bound makes no difference before it is reached *)
+(** * The limit makes no difference before it is reached *)
 
-(** A program obeyed to its end: its answer, and what was perceived after it; or the door to take next. *)
+(** A program, run on some percepts: its answer and the remaining percepts, or the door to take next. *)
 Fixpoint finish A (p : program A) (past : seq percept) : door + A * seq percept :=
   match p with
   | Return a => inr (a, past)
@@ -47,7 +47,7 @@ elim: p past => [b|i go IH|T ok default go IH] past /=; first by case=> _ ->.
 exact: IH.
 Qed.
 
-(** Every round perceives something. *)
+(** Every round has a percept. *)
 Lemma explore_moves allowed S pose past a later :
   finish (explore allowed S pose) past = inr (a, later) -> size later < size past.
 Proof.
@@ -71,7 +71,7 @@ Section Obedient.
 
 Variables (A : Type) (M : marker) (W : start).
 
-(** What is perceived by whoever obeys the program to its end. *)
+(** The percepts of a robot that runs the program to its end. *)
 Fixpoint heard (p : program A) (pose : W) : seq percept :=
   match p with
   | Return _ => [::]
@@ -91,7 +91,7 @@ Qed.
 Variables (B : Type) (report : decision A -> decision B).
 Hypothesis report_leave : forall i, report (Leave i) = Leave i.
 
-(** A strategy that does what the program does until that ends answers what it answers. *)
+(** A strategy that does what the program does until it ends gives the same answer. *)
 Lemma obedient (robot : strategy B) p past n (pose : W) a b :
   situation robot M W n = (past, pose) ->
   (forall later, size later <= size (heard p pose) -> robot (past ++ later) = report (obey p later)) ->

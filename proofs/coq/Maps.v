@@ -1,4 +1,4 @@
-(** What holds of every map that Algorithm 1 builds, whatever the world. *)
+(** Invariants of every map that Algorithm 1 builds, in any world. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Arithmetic Program Algorithm1.
@@ -7,8 +7,8 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** The darts of a vertex stand together, the first one first; [other] is an involution where it is known;
-    and every vertex can be reached from the start vertex. *)
+(** The darts of a vertex are consecutive, from the first; [other] is an involution where it is known; and
+    every vertex can be reached from the start vertex. *)
 Record well_formed (S : partial_map) : Prop := WellFormed {
   wf_some : 0 < size S;
   wf_first : vertex S 0 = 0;
@@ -44,7 +44,7 @@ Qed.
 
 End WellFormed.
 
-(** * One edge more *)
+(** * One more edge *)
 
 Section SetOther.
 
@@ -127,7 +127,7 @@ move=> d; rewrite !inE inU'; case: eqP => [->|_] /=; first by rewrite eU.
 by case: eqP => [->|_] /=; rewrite ?hU.
 Qed.
 
-(** * One vertex more *)
+(** * One more vertex *)
 
 Section WithVertex.
 
@@ -166,7 +166,7 @@ move=> e_lt g_gt0; rewrite size_with_edge size_with_vertex //; first exact: ltn_
 by rewrite -[X in X < _]addn0 ltn_add2l.
 Qed.
 
-(** A new place, of so many doors, makes one edge more explored. *)
+(** A new vertex makes one more edge explored. *)
 Lemma unexplored_with_place S e g : e \in unexplored S -> 0 < g ->
   let S' := with_edge (with_vertex S g) e (size S) in
   (size S + size (unexplored S')).+2 = size S' + size (unexplored S).

@@ -1,6 +1,6 @@
-(** The algorithm with one movable marker maps every simple world, however its choices are made: what
-    place validation and back-link validation find out is so. Section 2.3, after Dudek, Jenkin, Milios
-    and Wilkes (1991). *)
+(** The algorithm with one movable marker maps every simple world, with any choices: the results of place
+    validation and back-link validation are right. Section 2.3, after Dudek, Jenkin, Milios and Wilkes
+    (1991). *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Algorithm1 Walks Arithmetic Maps Paths Embedding Rounds Complete.
@@ -10,7 +10,7 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** * How a program's runs are put together from those of its parts *)
+(** * The runs of a program, composed of the runs of its parts *)
 
 Section AlwaysHandling.
 
@@ -28,7 +28,7 @@ move=> QR; elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose
 - by case=> okd all; split=> // x /all; apply: IH.
 Qed.
 
-(** What is always so is so of some run. *)
+(** What holds for all runs holds for some run. *)
 Lemma some_handling p pose lying : ~ always_handling p pose lying (fun _ _ _ => False).
 Proof.
 elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
@@ -38,7 +38,7 @@ elim: p pose lying => [a|i go IH|go IH|go IH|T ok default go IH] pose lying //=.
 - by case=> okd /(_ default okd)/IH.
 Qed.
 
-(** A part of a program of which it is known how it ends, and the rest. *)
+(** A part of a program whose end is known, and the rest. *)
 Lemma always_handling_bind p (next : A -> handling_program B) pose lying Q
     (R : B -> W -> marker_place W -> Prop) :
   always_handling p pose lying Q ->
@@ -68,7 +68,7 @@ Section Correct.
 
 Variable allowed : partial_map -> seq nat -> bool.
 
-(** The paths that may be chosen include the short ones, so that there is always one. *)
+(** The allowed paths include the short ones, so that there is always one. *)
 Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
 
 Variable W : start.
@@ -100,7 +100,7 @@ have [p_lt at_d walked open_doors] := walk_known em pose_lt path_ok.
 by apply: always_handling_bind (always_handling_moves _ open_doors) _ => _ _ _ [-> ->].
 Qed.
 
-(** From a known vertex over any of its edges: the door exists, and leads to the other end. *)
+(** A move over any edge of a known vertex: the door exists, and leads to the other end. *)
 Lemma leave_by pose e : pose < size S -> e < size S -> vertex S pose = vertex S e ->
   door_to S pose e < degree (place pose) /\
   traverse (place pose) (door_to S pose e) = opposite (place e).
@@ -113,7 +113,7 @@ Qed.
 Lemma opposite_back e : traverse (opposite (place e)) 0 = place e.
 Proof. exact: opposite_involutive. Qed.
 
-(** No parallel edges, as the map has it. *)
+(** The map has no parallel edges. *)
 Lemma no_parallel_known d e : d < size S -> e < size S -> vertex S d = vertex S e ->
   same_vertex (opposite (place d)) (opposite (place e)) -> d = e.
 Proof.
@@ -125,14 +125,14 @@ Qed.
 
 Section Search.
 
-(** Where the marker lies. *)
+(** The place of the marker. *)
 Variable spot : W.
 
-(** If its vertex is known, then it is among these candidates. *)
+(** If its vertex is known, it is among these candidates. *)
 Definition enough_candidates (C : seq nat) :=
   forall d, d < size S -> same_vertex (place d) spot -> vertex S d \in C.
 
-(** The robot sees the marker; or it does not, and knows where else that may lie. *)
+(** The robot sees the marker, or knows the remaining candidates. *)
 Definition found_well p (r : W) := [/\ p < size S, r = place p & same_vertex (place p) spot].
 
 Definition missed_well p C (r : W) :=
@@ -243,7 +243,8 @@ Proof.
 by move=> none d d_lt placed; have := none d d_lt; rewrite placed => /(_ (same_vertex_refl _)).
 Qed.
 
-(** Place validation: a place that is called new is new, and where the marker is found it was dropped. *)
+(** Place validation: a vertex that it reports as new is new; a marker that it finds is at the vertex
+    where it was dropped. *)
 Lemma validate_place_spec :
   always_handling (validate_place allowed S e (degree t)) t None
     (fun came r l =>
@@ -264,8 +265,8 @@ have [open_e ->] := leave_by near_lt e_lt at_e; split=> //; split; first exact: 
 by split=> //; apply: no_dart_there.
 Qed.
 
-(** Back-link validation: the marker is behind the dart [h] that is the other end of [e], and, as there
-    are no parallel edges, behind no other. *)
+(** Back-link validation: the marker is behind the dart [h] that is the other end of [e] and, because
+    there are no parallel edges, behind no other. *)
 Lemma try_back_links_spec n p links (spot : W) h : size links <= n -> p < size S ->
   {in links, forall g, g < size S /\ vertex S g = vertex S p} ->
   same_vertex (place e) spot -> h \in links -> place h = t ->
@@ -327,7 +328,7 @@ End OneRound.
 
 (** * All rounds *)
 
-(** A round explores one edge more: the map stays a part of the world, and the marker in hand. *)
+(** A round explores one more edge: the map is still a part of the world, and the marker is in hand. *)
 Lemma explore_edge_spec S (place : nat -> W) pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
   always_handling (explore_edge allowed S pose) (place pose) None
@@ -358,7 +359,7 @@ Definition explored_well (answer : option (partial_map * nat)) (r : W) (l : mark
   l = None /\ exists S p (place : nat -> W),
     [/\ answer = Some (S, p), embeds S place, unexplored S = [::], p < size S & r = place p].
 
-(** As many rounds suffice as there are edges that are not explored yet. *)
+(** As many rounds suffice as there are unexplored edges. *)
 Lemma explore_edges_spec bound S (place : nat -> W) pose :
   embeds S place -> pose < size S -> 2 * edges W + size (unexplored S) <= size S + 2 * bound ->
   always_handling (explore_edges allowed bound S pose) (place pose) None explored_well.
@@ -376,8 +377,8 @@ Qed.
 
 Let begin := Some (facing W).
 
-(** Begun where the marker lies, the algorithm ends with a map that is the whole world, the robot being
-    where it believes to be, with the marker in hand. *)
+(** From the place of the marker, the algorithm ends with a map of the whole world. The robot is where it
+    believes to be, with the marker in hand. *)
 Lemma movable_spec bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     explored_well.
@@ -387,7 +388,7 @@ apply: (explore_edges_spec (embeds_at_start W) (pose := 0)); rewrite size_with_v
 by rewrite unexplored_at_start size_iota; arithmetic.
 Qed.
 
-(** The same of the world that is drawn in the map. *)
+(** The same for the world that the map describes. *)
 Lemma movable_marker_answers_right bound : edges W <= bound ->
   always_handling (movable allowed bound (perceive_lying begin (facing W))) (facing W) begin
     (fun answer pose lying => lying = None /\ right_answer answer pose).

@@ -1,9 +1,8 @@
-(** One marker that can be picked up and dropped: what a robot does with it, and the mapping algorithm
-    for simple worlds that uses it. Section 2.3, after Dudek, Jenkin, Milios and Wilkes, "Robotic
-    exploration as graph construction" (1991), the paper's reference 8.
-
-    What the algorithm leaves open is left open, as in [Algorithm1.v]: the edge to explore, the order in
-    which places and darts are tried, and the paths between them are chosen. Definitions only. *)
+(** One marker that can be picked up and dropped, and the mapping algorithm for simple worlds that uses
+    it. Section 2.3, after Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph construction"
+    (1991), the paper's reference 8. As in [Algorithm1.v], the open choices stay open: the edge to
+    explore, the order in which places and darts are tried, and the paths between them. Definitions only.
+    *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Algorithm1.
@@ -14,8 +13,8 @@ Unset Printing Implicit Defensive.
 
 (** * Programs of a robot that handles a marker *)
 
-(** As in [Program.v], and the robot may also pick the marker up, to carry it, and drop it. That file is
-    not imported: its names stand here for the same with such a marker. *)
+(** As in [Program.v]; the robot may also pick up the marker, carry it and drop it. That file is not
+    imported: its names are defined here for such a marker. *)
 Inductive handling_program (A : Type) : Type :=
   | Return of A
   | Move of door & (percept -> handling_program A)
@@ -43,7 +42,7 @@ Definition drop : handling_program unit := Drop (Return tt).
 Definition choose T (allowed : T -> bool) (default : T) : handling_program T :=
   Choose allowed default (@Return T).
 
-(** Moves by one door after the other, whatever is perceived. *)
+(** Moves by one door after the other, for any percepts. *)
 Fixpoint moves (doors : seq door) : handling_program unit :=
   if doors is i :: others then (move i ;; moves others) else Return tt.
 
@@ -53,18 +52,18 @@ Section Handling.
 
 Variable W : start.
 
-(** Where the marker lies: at the vertex of a dart; or nowhere, if the robot carries it. *)
+(** The place of the marker: the vertex of a dart, or none if the robot carries it. *)
 Definition marker_place := option W.
 
-(** The marker is seen by a robot at the vertex where it lies; in the robot's hand it is not seen. *)
+(** A robot sees the marker at the vertex where it lies, and does not see it in its hand. *)
 Definition perceive_lying (lying : marker_place) (pose : W) : percept :=
   (degree pose,
    if lying is Some spot then if same_vertex pose spot then Lying else Nothing else Nothing).
 
-(** Whatever is chosen: the program, begun at this pose with the marker there, takes only doors that
-    there are, picks the marker up only where it lies, drops it only when the robot carries it, and comes
-    to an end, with an answer, at a pose, and with the marker at a place, of which [Q] holds. That the
-    default is allowed says that there always is a choice. *)
+(** For all choices: the program, begun at this pose and with this place of the marker, takes only doors
+    that exist, picks up the marker only where it lies, drops it only if the robot carries it, and ends
+    with an answer, at a pose, with the marker at a place, for which [Q] holds. The default is always
+    allowed, so there always is a choice. *)
 Fixpoint always_handling A (p : handling_program A) (pose : W) (lying : marker_place)
     (Q : A -> W -> marker_place -> Prop) : Prop :=
   match p with
@@ -83,11 +82,11 @@ End Handling.
 
 (** * The algorithm *)
 
-(** Whether the map has an edge between these vertices: some dart leads from the one to the other. *)
+(** Whether the map has an edge between these vertices. *)
 Definition joined (S : partial_map) v w := has (fun d => leads S v [:: d] w) (iota 0 (size S)).
 
-(** Of two paths from one vertex, given by the darts that they take, whether a depth-first walk that takes
-    the darts of each vertex in their order comes to the end of the first before that of the second. *)
+(** Given two paths from the same vertex, as darts: whether a depth-first walk that takes the darts of
+    each vertex in order reaches the end of the first path before the end of the second. *)
 Fixpoint met_before (darts darts' : seq nat) : bool :=
   match darts, darts' with
   | [::], _ => true
@@ -95,30 +94,30 @@ Fixpoint met_before (darts darts' : seq nat) : bool :=
   | d :: others, d' :: others' => (d < d') || (d == d') && met_before others others'
   end.
 
-(** The known vertices that the unknown end of [e] may be, if so many doors are perceived there: those
-    that have as many doors, and an unexplored dart; but neither the known end of [e], since there are no
-    loops, nor a vertex that is joined to that already, since there are no parallel edges. They stand in the
-    order in which a depth-first walk of the shortest paths from the known end meets them. *)
+(** The candidates for the unknown end of [e], if this number of doors is perceived there: the known
+    vertices with as many doors and an unexplored dart, except the known end of [e], because there are no
+    loops, and its neighbours, because there are no parallel edges. Their order is that of a depth-first
+    walk along the shortest paths from the known end. *)
 Definition candidates (S : partial_map) e degree :=
   let way := from_root S (tree_from S (vertex S e)) in
   sort (fun v w => met_before (way v) (way w))
     [seq v <- undup [seq vertex S d | d <- unexplored S]
        | [&& doors S v == degree, v != vertex S e & ~~ joined S (vertex S e) v]].
 
-(** The darts of vertex [v] that may be the other end of the edge that led there, the back-link. *)
+(** The darts of vertex [v] that may be the back-link, the other end of the edge that led there. *)
 Definition back_links (S : partial_map) v := [seq h <- unexplored S | vertex S h == v].
 
-(** What became of a search: the marker was seen, by a robot with this pose; or it was not, the robot has
-    this pose, and these candidates are left. *)
+(** The result of a search: the marker was seen, and the robot has this pose; or it was not seen, the
+    robot has this pose, and these candidates are left. *)
 Inductive search := Found of nat | Missed of nat & seq nat.
 
-(** What the unknown end of an edge turned out to be: a new place, the robot being there with the marker
-    in hand; or a known one, the robot being there with this pose, and with the marker at its feet. *)
+(** The unknown end of an edge: a new vertex, where the robot stands with the marker in hand; or a known
+    one, where the robot stands with this pose, and the marker lies. *)
 Inductive arrival := NewPlace | KnownPlace of nat.
 
 Section MovableMarker.
 
-(** Which paths through the map may be chosen, of those that lead where they should. *)
+(** The paths through the map that may be chosen, among those that lead to their goals. *)
 Variable allowed : partial_map -> seq nat -> bool.
 
 (** A path through the map, for a robot at [pose], to vertex [v]. *)
@@ -126,14 +125,14 @@ Definition choose_path (S : partial_map) pose v : handling_program (seq nat) :=
   choose (fun path => leads S (vertex S pose) path v && allowed S path)
     (from_root S (tree_from S (vertex S pose)) v).
 
-(** Goes to vertex [v]; answers the robot's pose there. *)
+(** Goes to vertex [v]; returns the robot's pose there. *)
 Definition travel (S : partial_map) pose v : handling_program nat :=
   let* path := choose_path S pose v in
   moves (doors_along S pose path) ;;
   Return (pose_behind S pose path).
 
-(** Leaves vertex after vertex by these darts, until it sees the marker. The vertices where it did not
-    see it, the first included, are candidates no longer. *)
+(** Follows these darts until it sees the marker. The vertices where it does not see it, including the
+    first, are no longer candidates. *)
 Fixpoint look_along (S : partial_map) pose darts C : handling_program search :=
   let C' := [seq v <- C | v != vertex S pose] in
   if darts is d :: darts' then
@@ -142,8 +141,8 @@ Fixpoint look_along (S : partial_map) pose darts C : handling_program search :=
     if seen.2 is Lying then Return (Found pose') else look_along S pose' darts' C'
   else Return (Missed pose C').
 
-(** Visits the candidates [C] one after the other, until it sees the marker. Every visit leaves fewer
-    candidates, so that no more visits are needed than there are candidates now. *)
+(** Visits the candidates [C] one after the other, until it sees the marker. Every visit removes a
+    candidate, so that no more visits are needed than there are candidates. *)
 Fixpoint look_for_marker fuel (S : partial_map) pose C : handling_program search :=
   if C is [::] then Return (Missed pose C) else
   if fuel is fuel'.+1 then
@@ -153,18 +152,18 @@ Fixpoint look_for_marker fuel (S : partial_map) pose C : handling_program search
     if sought is Missed pose' C' then look_for_marker fuel' S pose' C' else Return sought
   else Return (Missed pose C).
 
-(** Place validation: is the unknown end of [e] a new place? The robot is there, with the marker in hand,
-    and perceives so many doors. *)
+(** Place validation: is the unknown end of [e] a new vertex? The robot is there, with the marker in hand,
+    and perceives this number of doors. *)
 Definition validate_place (S : partial_map) e degree : handling_program arrival :=
   let C := candidates S e degree in
   (* No known vertex can be it: it is new. *)
   if C is [::] then Return NewPlace else
-  (* Drop the marker there, go back, and look for it everywhere that this may be. *)
+  (* Drop the marker there, go back, and look for it at every candidate. *)
   drop ;;
   move 0 ;;
   let* sought := look_for_marker (size C) S e C in
   match sought with
-  (* Found there: this is it. *)
+  (* Found: it is this vertex. *)
   | Found pose => Return (KnownPlace pose)
   (* Not found: it is new. Go there again, for the marker. *)
   | Missed pose _ =>
@@ -175,7 +174,7 @@ Definition validate_place (S : partial_map) e degree : handling_program arrival 
   end.
 
 (** Tries these darts of the robot's vertex one after the other, until it sees the marker behind one.
-    Where it does not, it returns by door 0, the way back, and so comes in by the dart that it tried. *)
+    Otherwise it returns by door 0, the way back, and so comes in by the dart that it tried. *)
 Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (option nat) :=
   if links is [::] then Return None else
   if fuel is fuel'.+1 then
@@ -186,9 +185,9 @@ Fixpoint try_back_links fuel (S : partial_map) pose links : handling_program (op
   else Return None.
 
 (** Carries the marker from the robot's vertex to the known end of [e], drops it there, and returns
-    without it: of these darts the one behind which the marker lies is the other end of [e]. There the
-    robot, which has come in by [e], picks the marker up. Answers that dart, and the robot's pose; or
-    nothing if there is no such dart, as cannot be in a simple world. *)
+    without it. The dart behind which the marker lies is the other end of [e]. There the robot, which came
+    in by [e], picks up the marker. Returns that dart and the robot's pose, or nothing if there is no such
+    dart, which is impossible in a simple world. *)
 Definition find_back_link (S : partial_map) pose e links : handling_program (option (nat * nat)) :=
   let* near := travel S pose (vertex S e) in
   drop ;;
@@ -197,7 +196,7 @@ Definition find_back_link (S : partial_map) pose e links : handling_program (opt
   if found is Some h then (pick_up ;; Return (Some (h, e))) else Return None.
 
 (** Back-link validation: which dart of the robot's vertex is the other end of [e]? The marker lies at
-    the robot's feet; afterwards the robot carries it. *)
+    this vertex; afterwards the robot carries it. *)
 Definition validate_back_link (S : partial_map) pose e : handling_program (option (nat * nat)) :=
   let links := back_links S (vertex S pose) in
   pick_up ;;
@@ -220,7 +219,7 @@ Definition explore_edge (S : partial_map) pose : handling_program (option (parti
       Return (if link is Some (h, pose'') then Some (with_edge S e h, pose'') else None)
   end.
 
-(** While U is not empty; but no more than so many rounds. *)
+(** While U is not empty; at most this number of rounds. *)
 Fixpoint explore_edges bound (S : partial_map) pose : handling_program (option (partial_map * nat)) :=
   if unexplored S is [::] then Return (Some (S, pose)) else
   if bound is bound'.+1 then
@@ -228,9 +227,9 @@ Fixpoint explore_edges bound (S : partial_map) pose : handling_program (option (
     if after is Some (S', pose') then explore_edges bound' S' pose' else Return None
   else Return None.
 
-(** The marker lies at v0, where the robot perceives [seen], and picks it up: S is v0, U its edges. The
-    answer is the map S, with the robot's pose in it; [None] if the rounds do not suffice, or if this is
-    seen to be no simple world. *)
+(** The marker lies at v0, where the robot perceives [seen] and picks it up: S is v0, U its edges. The
+    answer is the map S with the robot's pose in it, or [None] if the rounds do not suffice, or if the
+    world turns out not to be simple. *)
 Definition movable bound (seen : percept) : handling_program (option (partial_map * nat)) :=
   pick_up ;; explore_edges bound (with_vertex [::] seen.1) 0.
 

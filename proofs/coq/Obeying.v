@@ -1,4 +1,5 @@
-(** A robot that obeys a program is a strategy, and does what is always so of the program. Section 2.1. *)
+(** A robot that runs a program is a strategy, and has the properties that always hold for the program.
+    Section 2.1. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program.
@@ -11,7 +12,7 @@ Section Obeying.
 
 Variables (A : Type) (M : marker) (W : start).
 
-(** From a situation on in which the robot obeys [p]. *)
+(** From a situation in which the robot runs [p]. *)
 Lemma obeys_from (robot : strategy A) p past n (pose : W) (Q : A -> W -> nat -> Prop) :
   situation robot M W n = (past, pose) -> (forall later, robot (past ++ later) = obey p later) ->
   always M p pose Q ->

@@ -1,5 +1,5 @@
-(** The shortest paths that Algorithm 1 takes by default lead where they should, and take fewer darts
-    than there are known vertices. Section 2.3, lines 6 and 10. *)
+(** The shortest paths that Algorithm 1 takes by default lead to their goals, and have fewer darts than
+    there are known vertices. Section 2.3, lines 6 and 10. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Maps.
@@ -53,7 +53,7 @@ have [|_ ->] := wf_same wf_S (e := vertex S d) d_lt; first by rewrite leqnn (leq
 by rewrite mem_iota le_d.
 Qed.
 
-(** Every vertex of the tree but the root has its dart lead to an earlier one. *)
+(** The dart of every vertex of the tree except the root leads to an earlier vertex. *)
 Record is_tree (t : seq nat) : Prop := IsTree {
   tree_root : index root (reached t) = 0;
   tree_some : 0 < size t;
@@ -100,7 +100,7 @@ Qed.
 Lemma known_vertices_size : known_vertices S <= size S.
 Proof. by rewrite /known_vertices -[leqRHS](size_iota 0) count_size. Qed.
 
-(** What [look_around] does, for any darts of vertices of the tree. *)
+(** The effect of [look_around], for any darts of vertices of the tree. *)
 Lemma look_at t darts : is_tree t -> {in darts, forall d, vertex S d \in reached t} ->
   let look tree d :=
     if other S d is Some d' then if vertex S d' \in reached tree then tree else rcons tree d'

@@ -1,7 +1,6 @@
-(** A robot's program: what it does, one move at a time, with every choice that is left open.
-
-    A program knows nothing of the world but what is perceived behind the doors that it takes: it is a
-    tree, and the world only says where in it the robot is. Definitions only. *)
+(** A robot's program: its moves, one at a time, with open choices. A program depends on the world only
+    through the percepts behind the doors that it takes: it is a tree, and the world decides which branch
+    the robot takes. Definitions only. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
@@ -10,8 +9,8 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** Return an answer; move by a door, and go on with what is perceived behind it; or choose anything that
-    is allowed, where nothing says otherwise the default. *)
+(** Return an answer; move by a door, and continue with the percept behind it; or choose anything that is
+    allowed, the default unless stated otherwise. *)
 Inductive program (A : Type) : Type :=
   | Return of A
   | Move of door & (percept -> program A)
@@ -32,13 +31,13 @@ Notation "first ;; next" := (bind first (fun=> next))
 Definition move (i : door) : program percept := Move i (@Return percept).
 Definition choose T (allowed : T -> bool) (default : T) : program T := Choose allowed default (@Return T).
 
-(** Moves by one door after the other, whatever is perceived. *)
+(** Moves by one door after the other, for any percepts. *)
 Fixpoint moves (doors : seq door) : program unit :=
   if doors is i :: others then (move i ;; moves others) else Return tt.
 
-(** Whatever is chosen: the program, begun at this pose, takes only doors that there are, and comes to an
-    end, with an answer, at a pose, after a number of moves, of which [Q] holds. That the default is allowed
-    says that there always is a choice. That it comes to an end need not be said: no program is endless. *)
+(** For all choices: the program, begun at this pose, takes only doors that exist, and ends with an
+    answer, at a pose, after a number of moves, for which [Q] holds. The default is always allowed, so
+    there always is a choice. Termination needs no statement: no program is endless. *)
 Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> W -> nat -> Prop) : Prop :=
   match p with
   | Return a => Q a pose 0
@@ -50,8 +49,7 @@ Fixpoint always A (M : marker) (W : start) (p : program A) (pose : W) (Q : A -> 
       allowed default /\ forall x, allowed x -> always M (go x) pose Q
   end.
 
-(** What a robot that obeys the program, and chooses the default each time, does after it has perceived
-    this behind the doors that it took. *)
+(** The decision of a robot that runs the program with the default choices, after these percepts. *)
 Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
   match p with
   | Return a => Answer a
@@ -59,6 +57,6 @@ Fixpoint obey A (p : program A) (past : seq percept) : decision A :=
   | Choose T _ default go => obey (go default) past
   end.
 
-(** Such a robot as a strategy; the program may depend on what is perceived at the start. *)
+(** Such a robot as a strategy; the program may depend on the percept at the start. *)
 Definition obeying A (p : percept -> program A) : strategy A :=
   fun past => if past is first :: later then obey (p first) later else Leave 0.

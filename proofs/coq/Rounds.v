@@ -1,5 +1,4 @@
-(** What one round of Algorithm 1 does, and what all of them do, however the choices are made. Section
-    2.3, lines 4 to 23. *)
+(** One round of Algorithm 1, and all rounds, for any choices. Section 2.3, lines 4 to 23. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1 Walks Arithmetic Always Maps Paths Embedding.
@@ -13,7 +12,7 @@ Section Rounds.
 
 Variable allowed : partial_map -> seq nat -> bool.
 
-(** The paths that may be chosen include the short ones, so that there is always one. *)
+(** The allowed paths include the short ones, so that there is always one. *)
 Hypothesis allowed_short : forall S path, size path < known_vertices S -> allowed S path.
 
 Variable W : start.
@@ -28,7 +27,7 @@ Hypothesis em : embeds S place.
 
 Let wf := em_wf em.
 
-(** No path that may be chosen is longer than this. *)
+(** The greatest length of an allowed path. *)
 Definition longest B := forall path, allowed S path -> size path <= B.
 
 (** Lines 8 to 17, for a robot that came to [t]. *)
@@ -76,7 +75,7 @@ move=> -> j_lt none; split=> // g.
 by rewrite (perm_mem (perm_to_rem inH)) inE => /predU1P[-> //|/none].
 Qed.
 
-(** A dart of the world that is known at both ends was so before it was walked. *)
+(** If the opposite of an unexplored dart is known, it is unexplored too, and is another dart. *)
 Lemma unexplored_opposite e d : e \in unexplored S -> d < size S ->
   place d = opposite (place e) -> (d \in unexplored S) && (d != e).
 Proof.
@@ -92,7 +91,7 @@ Qed.
 
 End OneRound.
 
-(** A loop is closed. *)
+(** An edge between known vertices is added. *)
 Lemma embeds_with_edge S place e h :
   embeds S place -> e \in unexplored S -> h \in unexplored S -> h != e ->
   place h = opposite (place e) -> @embeds (with_edge S e h) W place.
@@ -110,7 +109,7 @@ split; rewrite ?size_with_edge //; first exact: well_formed_with_edge.
   by case: eqP => [->|_]; [case=> <- | apply: em_other em d d'].
 Qed.
 
-(** A new place is added. *)
+(** A new vertex is added. *)
 Lemma embeds_with_vertex S place e :
   embeds S place -> e \in unexplored S ->
   let t := opposite (place e) in
@@ -158,7 +157,7 @@ split; rewrite ?size_with_edge //; first exact: (well_formed_with_vertex wf eU (
   by have [lt' _ _] := wf_other wf dd'; rewrite lt lt'; apply: em_other em d d' dd'.
 Qed.
 
-(** Line 5 to 23: a round explores one edge more, and the map stays a part of the world. *)
+(** Lines 5 to 23: a round explores one more edge, and the map is still a part of the world. *)
 Lemma explore_spec S place pose :
   embeds S place -> pose < size S -> unexplored S != [::] ->
   always directional (explore allowed S pose) (place pose)

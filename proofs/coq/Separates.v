@@ -1,5 +1,5 @@
-(** A directional marker separates: starts that are indistinguishable with it are the same.
-    Section 2.3. *)
+(** A directional marker separates: starts that are indistinguishable with it are isomorphic. Section 2.3.
+    *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Walks Bisimulation.
@@ -8,7 +8,7 @@ Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
-(** * The same starts give the same percepts *)
+(** * Isomorphic starts give the same percepts *)
 
 (** A marker that sees no more than what an isomorphism keeps. *)
 Definition invariant (M : marker) :=
@@ -33,7 +33,7 @@ move=> M_inv [f [iso start_f]] doors; apply: eq_percepts => {}doors.
 by rewrite -start_f -isomorphism_walk // /perceive isomorphism_degree // M_inv.
 Qed.
 
-(** * And with a directional marker, only they do *)
+(** * With a directional marker, only isomorphic starts do *)
 
 (** Only at the facing dart does the marker point along door 0. *)
 Lemma points_back (W : start) (p : W) : directional p = Pointing 0 <-> p = facing W.
@@ -49,12 +49,13 @@ Variables V W : start.
 Let reachable (p : V) : exists doors, walk (facing V) doors == p.
 Proof. by have [doors <-] := walk_anywhere (facing V) p; exists doors; apply/eqP. Qed.
 
-(** Where a door sequence that leads to [p] in [V] leads to in [W]. *)
+(** The end in [W] of a door sequence that leads to [p] in [V]. *)
 Definition counterpart (p : V) : W := walk (facing W) (xchoose (reachable p)).
 
 Hypothesis same : indistinguishable directional V W.
 
-(** Which one it is makes no difference: from there back to the marker, both come to the facing dart. *)
+(** The end does not depend on the sequence: from there back to the marker, both come to the facing dart.
+    *)
 Lemma counterpart_walk doors : counterpart (walk (facing V) doors) = walk (facing W) doors.
 Proof.
 rewrite /counterpart; set other := xchoose _.

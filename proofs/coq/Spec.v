@@ -1,8 +1,6 @@
-(** What the theorems speak of: worlds, what a robot perceives in them, markers, robots, and when two
-    worlds are the same or cannot be told apart. Sections 2.1 and 2.2 of the paper.
-
-    The words are those of toposlam; definitions only. Algorithm 1 is in [Algorithm1.v], what is proved
-    of both in [Theorems.v]. *)
+(** Definitions only: worlds, percepts, markers, robots, and when two worlds are isomorphic or
+    indistinguishable. Sections 2.1 and 2.2 of the paper. The terms are those of toposlam. Algorithm 1 is
+    in [Algorithm1.v], the theorems are in [Theorems.v]. *)
 
 From mathcomp Require Import all_ssreflect.
 
@@ -29,8 +27,8 @@ Record embedded_graph := EmbeddedGraph {
 Arguments opposite {_}.
 Arguments clockwise {_}.
 
-(** A start: a world, and the dart by which the robot counts as having come in, its facing dart. So the
-    world of a start has at least one edge. *)
+(** A start: a world and its facing dart, by which the robot counts as having come in. So the world of a
+    start has at least one edge. *)
 Record start := Start { graph :> embedded_graph; facing : graph }.
 
 Arguments facing : clear implicits.
@@ -51,14 +49,14 @@ Definition same_vertex (d e : G) := fconnect clockwise d e.
 (** The number of doors of a dart's vertex. *)
 Definition degree (d : G) := order clockwise d.
 
-(** A pose is the dart by which the robot has come in. Door [i] is the [i]-th dart clockwise from it; they
-    are counted round and round, so that door [degree] is door 0 again, the way back. *)
+(** A pose is the dart by which the robot came in. Door [i] is the [i]-th dart clockwise from it, modulo
+    the degree, so that door [degree] is door 0 again, the way back. *)
 Definition turn (pose : G) (i : door) : G := iter i clockwise pose.
 
 (** The robot leaves by a door, and comes in by the other end of that edge. *)
 Definition traverse (pose : G) (i : door) : G := opposite (turn pose i).
 
-(** Where a door sequence leads. *)
+(** The pose at the end of a door sequence. *)
 Definition walk (pose : G) (doors : seq door) : G := foldl traverse pose doors.
 
 End EmbeddedGraph.
@@ -67,11 +65,11 @@ End EmbeddedGraph.
 Fixpoint taken (G : embedded_graph) (pose : G) (doors : seq door) : seq (door * nat) :=
   if doors is i :: others then (i, degree pose) :: taken (traverse pose i) others else [::].
 
-(** The door that undoes door [i], at a vertex with so many doors. *)
+(** The door that undoes door [i], at a vertex with [doors] doors. *)
 Definition inverse_door (doors : nat) (i : door) : door := (doors - i %% doors) %% doors.
 
-(** The way back along a path, from the doors that it took and the degrees of the vertices at which it
-    took them: turn round, then undo every turn but the first, the last one first. *)
+(** The way back along a path, from its doors and the degrees of the vertices at which it took them: turn
+    round, then undo every turn except the first, the last one first. *)
 Definition way_back (taken : seq (door * nat)) : seq door :=
   if taken is _ :: others then 0 :: rev [seq inverse_door step.2 step.1 | step <- others] else [::].
 
@@ -82,8 +80,8 @@ Definition simple (G : embedded_graph) :=
 
 (** * Percepts and markers *)
 
-(** What a marker adds to a percept: nothing; an undirected marker lies here; a directional one does, and
-    points along this door. *)
+(** What a marker adds to a percept: nothing; an undirected marker lies here; a directional marker lies
+    here and points along this door. *)
 Inductive sighting := Nothing | Lying | Pointing of door.
 
 (** Sightings can be compared. *)
@@ -95,7 +93,7 @@ Lemma sighting_codeK : cancel sighting_code sighting_of_code.
 Proof. by case. Qed.
 Canonical sighting_eqType := EqType sighting (CanEqMixin sighting_codeK).
 
-(** What the robot senses where it comes in: the number of doors, and what the marker adds. *)
+(** What the robot senses on arrival: the number of doors, and what the marker adds. *)
 Definition percept := (nat * sighting)%type.
 
 (** A kind of marker: what it adds to the percept of a robot with this pose, in the world in which it was
@@ -104,26 +102,26 @@ Definition marker := forall W : start, W -> sighting.
 
 Definition no_marker : marker := fun _ _ => Nothing.
 
-(** One undirected immovable marker, at the start vertex from the beginning. *)
+(** One undirected marker that stays at the start vertex. *)
 Definition undirected : marker :=
   fun W pose => if same_vertex pose (facing W) then Lying else Nothing.
 
-(** One directional immovable marker, at the start vertex from the beginning, along the facing dart. *)
+(** One directional marker that stays at the start vertex, along the facing dart. *)
 Definition directional : marker :=
   fun W pose =>
     if same_vertex pose (facing W) then Pointing (findex clockwise pose (facing W)) else Nothing.
 
 Definition perceive (M : marker) (W : start) (pose : W) : percept := (degree pose, M W pose).
 
-(** What is perceived along a door sequence, where it begins and behind each door. *)
+(** The percepts along a door sequence: at its beginning and behind each door. *)
 Fixpoint percepts (M : marker) (W : start) (pose : W) (doors : seq door) : seq percept :=
   perceive M pose
     :: (if doors is i :: others then percepts M (traverse pose i) others else [::]).
 
 (** * Robots *)
 
-(** All that a deterministic robot can do: from what it has perceived so far it decides by which door to
-    leave, or what to answer. *)
+(** Any deterministic robot: from its percepts so far it decides by which door to leave, or what to
+    answer. *)
 Inductive decision (A : Type) := Leave of door | Answer of A.
 
 Arguments Leave {A}.
@@ -134,7 +132,7 @@ Section Runs.
 
 Variables (A : Type) (robot : strategy A) (M : marker) (W : start).
 
-(** What the robot has perceived after so many decisions, and where it is then. *)
+(** The robot's percepts and its pose after a number of decisions. *)
 Fixpoint situation (decisions : nat) : seq percept * W :=
   if decisions is earlier.+1 then
     let: (past, pose) := situation earlier in
@@ -149,7 +147,7 @@ Definition answers (a : A) := exists decisions, robot (history decisions) = Answ
 
 End Runs.
 
-(** * The same, and indistinguishable *)
+(** * Isomorphic and indistinguishable *)
 
 (** A bijection of darts that keeps both permutations. *)
 Definition isomorphism (G H : embedded_graph) (f : G -> H) :=
@@ -159,7 +157,7 @@ Definition isomorphism (G H : embedded_graph) (f : G -> H) :=
 
 Definition isomorphic (G H : embedded_graph) := exists f : G -> H, isomorphism f.
 
-(** Between starts it also takes facing to facing. *)
+(** Between starts it also maps facing to facing. *)
 Definition isomorphic_starts (V W : start) :=
   exists f : V -> W, isomorphism f /\ f (facing V) = facing W.
 
@@ -170,18 +168,18 @@ Definition alike (M : marker) (V W : start) (p : V) (q : W) :=
 (** Two starts that no robot can tell apart. *)
 Definition indistinguishable (M : marker) (V W : start) := alike M (facing V) (facing W).
 
-(** The certificate of that: a relation of poses that holds at the starts, within which the percepts are
-    the same, and out of which no door leads. *)
+(** The certificate for that: a relation of poses that contains the starts, whose related poses have equal
+    percepts, and that every door preserves. *)
 Definition bisimilar (M : marker) (V W : start) :=
   exists R : V -> W -> Prop,
     R (facing V) (facing W) /\
     forall p q, R p q ->
       perceive M p = perceive M q /\ forall i, R (traverse p i) (traverse q i).
 
-(** The robot answers with a map isomorphic to the world in which it is. *)
+(** The robot answers with a map that is isomorphic to its world. *)
 Definition maps (M : marker) (robot : strategy embedded_graph) (W : start) :=
   exists2 map : embedded_graph, answers robot M W map & isomorphic map W.
 
-(** More than that: its map also tells where in it the robot began. *)
+(** And its map also contains the robot's start. *)
 Definition maps_start (M : marker) (robot : strategy start) (W : start) :=
   exists2 map : start, answers robot M W map & isomorphic_starts map W.

@@ -14,7 +14,7 @@ Hypothesis em : embeds S place.
 
 Let wf := em_wf em.
 
-(** Leaving by a door as it is called by a robot that is turned. *)
+(** Leaving by a door, as counted by a robot that has turned. *)
 Lemma traverse_turned (q : W) turned i : turned <= degree q ->
   traverse (turn q turned) ((i + degree q - turned) %% degree q) = traverse q i.
 Proof.
@@ -74,7 +74,7 @@ have -> : size (way_back (taken t (rcons before i))) = (size before).+1.
 by arithmetic.
 Qed.
 
-(** From where a place was just reached, and the robot has turned since. *)
+(** The robot has just reached a place, and has turned since. *)
 Lemma follow_once (t : W) h path turned :
   h < size S -> leads S (vertex S h) path 0 -> turned < degree t -> (path = [::] -> turned = 0) ->
   expected S h = perceive directional t ->

@@ -1,5 +1,5 @@
-(** What every walk in a world has: turns are counted round and round, a walk can be undone, and some walk
-    leads from every pose to every other. Section 2.1. *)
+(** Facts about walks: turns are counted modulo the degree, a walk can be undone, and some walk leads from
+    every pose to every other. Section 2.1. *)
 
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec.
@@ -79,7 +79,7 @@ Proof. exact: foldl_cat. Qed.
 Lemma walk_rcons p ds i : walk p (rcons ds i) = traverse (walk p ds) i.
 Proof. by rewrite -cats1 walk_cat. Qed.
 
-(** The same doors never lead two poses together. *)
+(** The same doors never lead two poses to the same pose. *)
 Lemma walk_inj ds : injective (fun p => walk p ds).
 Proof. by elim: ds => [|i ds IH] p q //= /IH /traverse_inj. Qed.
 
@@ -108,7 +108,7 @@ Proof. by elim: ds p => //= i ds IH p; rewrite IH. Qed.
 Lemma taken_rcons p ds i : taken p (rcons ds i) = rcons (taken p ds) (i, degree (walk p ds)).
 Proof. by rewrite -!cats1 taken_cat. Qed.
 
-(** The way back ends where the walk began, facing its first door. *)
+(** The way back ends where the walk began, turned by its first door. *)
 Lemma retrace_walk p ds : walk (walk p ds) (way_back (taken p ds)) = turn p (head 0 ds).
 Proof.
 case: ds => // i ds; elim: ds p i => [|j ds IH] p i; first exact: opposite_involutive.
@@ -118,7 +118,7 @@ have -> : way_back (taken p (i :: j :: ds)) = rcons back (inverse_door (degree p
 rewrite walk_rcons [walk _ _]IH /traverse turn_inverse_door; exact: opposite_involutive.
 Qed.
 
-(** Whether the doors that a walk takes are less than the degrees there, as those of a real robot are. *)
+(** Whether the doors of a walk are below the degrees of their vertices, as those of a real robot are. *)
 Fixpoint passable (pose : G) (doors : seq door) : bool :=
   if doors is i :: others then (i < degree pose) && passable (traverse pose i) others else true.
 
@@ -147,7 +147,7 @@ Implicit Types (p : W) (ds es : seq door).
 Lemma last_percepts x p ds : last x (percepts M p ds) = perceive M (W := W) (walk p ds).
 Proof. by elim: ds x p => //= i ds IH x p; rewrite IH. Qed.
 
-(** The percepts along two door sequences are the same as soon as those at the ends always are. *)
+(** The percepts along a door sequence are equal from two poses if those at its ends always are. *)
 Lemma eq_percepts V (q : graph V) p :
   (forall ds, perceive M (W := V) (walk q ds) = perceive M (W := W) (walk p ds)) ->
   forall ds, percepts M q ds = percepts M p ds.

@@ -2,8 +2,8 @@
 
 use crate::choose::Choose;
 
-/// Chooses as bytes say, whatever these are: each decides one choice, and after the last all choices
-/// are the first there is. Fewer and lower bytes make simpler cases.
+/// Chooses by any bytes: each byte decides one choice, and after the last byte every choice is the first
+/// possible one. Fewer and lower bytes make simpler cases.
 #[derive(Clone, Debug)]
 pub struct Bytes {
     bytes: Vec<u8>,
@@ -11,13 +11,13 @@ pub struct Bytes {
 }
 
 impl Bytes {
-    /// Chooses as these bytes say.
+    /// Chooses by these bytes.
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         Self { bytes, choices: Vec::new() }
     }
 
-    /// The choices made so far, with which a [`CaseReplay`](crate::CaseReplay) makes the case again.
+    /// The choices made so far, from which a [`CaseReplay`](crate::CaseReplay) makes the case again.
     #[must_use]
     pub fn choices(&self) -> &[u8] {
         &self.choices

@@ -1,4 +1,4 @@
-//! What a lemma stands on: it chooses a case, may assume something of it, and claims something.
+//! The interface of lemmas: a lemma chooses a case, may assume something about it, and claims something.
 
 use std::panic::{self, AssertUnwindSafe};
 
@@ -8,32 +8,32 @@ use toposlam_model::{
     percept::Door,
 };
 
-/// Who makes the choices of a lemma.
+/// Makes the choices of a lemma.
 pub trait Choose {
     /// A number below `n`.
     ///
     /// # Panics
-    /// Where `n` is 0: a lemma that has nothing to choose from is at fault.
+    /// Panics if `n` is 0: the lemma has nothing to choose from.
     fn below(&mut self, n: u8) -> u8;
 
-    /// Whether this is a case to go on with; the lemma says nothing about the others.
+    /// Whether to go on with this case; the lemma says nothing about the others.
     fn assume(&mut self, condition: bool) -> bool;
 
-    /// Shows a person what was chosen. Only a [`CaseReplay`](crate::CaseReplay) looks.
+    /// Shows a person what was chosen. Only a [`CaseReplay`](crate::CaseReplay) keeps it.
     fn show(&mut self, exhibit: impl FnOnce() -> Exhibit) {
         let _ = exhibit;
     }
 }
 
-/// What a lemma comes to in one case.
+/// The result of a lemma in one case.
 pub type CaseResult = Result<(), Stop>;
 
-/// Why a lemma does not hold in a case.
+/// The reason why a lemma does not hold in a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// The case is none of those of which the lemma speaks.
+    /// The lemma says nothing about this case.
     Excluded,
-    /// What should hold, and does not.
+    /// The claim that does not hold.
     Fails(&'static str),
 }
 
@@ -55,13 +55,13 @@ pub fn claim(what: &'static str, holds: bool) -> CaseResult {
     if holds { Ok(()) } else { Err(Stop::Fails(what)) }
 }
 
-/// What a lemma comes to, where that the code panics is one way to fail.
+/// The result of a lemma; a panic is a failure.
 pub(crate) fn unless_it_panics(lemma: impl FnOnce() -> CaseResult) -> CaseResult {
     let ended = panic::catch_unwind(AssertUnwindSafe(lemma));
     ended.unwrap_or(Err(Stop::Fails("the code does not panic")))
 }
 
-/// Something that was chosen, for a person to look at.
+/// Something that was chosen, shown to a person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Exhibit {
     /// A start.

@@ -1,5 +1,5 @@
-//! What is meant: the definitions of the field, written down as plainly as can be, without regard to
-//! how the model decides them. Section 2.1.
+//! The definitions of the field, as plain as possible and independent of how the model decides them.
+//! Section 2.1.
 
 use std::mem;
 
@@ -9,7 +9,7 @@ use toposlam_model::{
     world::{GraphWorld, State},
 };
 
-/// Whether each number below the length is the entry at its own entry, which is another place.
+/// Whether the entry at each number's entry is that number, and the entry is another number.
 #[must_use]
 pub fn is_involution_without_fixed_points(array: &[u32]) -> bool {
     let mut dart = 0;
@@ -68,8 +68,8 @@ pub fn is_connected(opposite: &[u32], clockwise: &[u32], reached: &mut [bool]) -
     dart == opposite.len()
 }
 
-/// Whether this is a connected embedded graph with an edge: every edge has two ends, every vertex its
-/// edge ends in a circle, and all can be reached. Linear time.
+/// Whether this is a connected embedded graph with an edge: every edge has two ends, every vertex has its
+/// edge ends in a cycle, and all can be reached. Linear time.
 #[must_use]
 pub fn is_world(graph: &EmbeddedGraph) -> bool {
     let darts = graph.dart_count();
@@ -102,7 +102,7 @@ pub fn is_world(graph: &EmbeddedGraph) -> bool {
     darts == 2 * graph.edge_count() && listed == darts && in_circles && in_pairs && count == darts
 }
 
-/// Whether no edge leads from a vertex to itself, and no two lead to the same one.
+/// Whether there are no loops and no parallel edges.
 #[must_use]
 pub fn is_simple(graph: &EmbeddedGraph) -> bool {
     let far = |dart| graph.vertex(graph.opposite(dart));
@@ -111,8 +111,8 @@ pub fn is_simple(graph: &EmbeddedGraph) -> bool {
     pairs.iter().all(|(here, there)| here != there) && pairs.windows(2).all(|two| two[0] != two[1])
 }
 
-/// Whether two starts are isomorphic: going on from facing and facing to what is opposite to them, and
-/// to what stands clockwise from them, pairs their darts one to one.
+/// Whether two starts are isomorphic: from the two facing darts, the opposite and the clockwise darts of
+/// paired darts are paired, and this pairs the darts one to one.
 #[must_use]
 pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) -> bool {
     let mut pairs = vec![(one.1, other.1)];
@@ -135,9 +135,9 @@ pub fn isomorphic(one: (&EmbeddedGraph, Dart), other: (&EmbeddedGraph, Dart)) ->
     one.0.dart_count() == other.0.dart_count() && one.0.darts().all(is_paired_once)
 }
 
-/// Whether these pairs of states are a bisimulation with the starts of the two worlds among them: the
-/// states exist, with a marker that stays where it is placed; in each pair robots perceive the same
-/// and can do the same; and whatever both do leads to a pair.
+/// Whether these pairs of states are a bisimulation that contains the starts of the two worlds: the
+/// states exist, and a marker that cannot be carried stays in its place; in each pair the robots perceive
+/// the same and have the same actions; and each action leads to a pair.
 #[must_use]
 pub fn is_bisimulation<M: Marker + Clone>(
     pairs: &[(State, State)],

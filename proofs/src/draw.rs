@@ -1,5 +1,5 @@
-//! What lemmas are about, made of choices: starts, permutations, numbers, runs. Everything is drawn
-//! by choosing among what is left, so that no choice is in vain and each structure is made once.
+//! Starts, permutations, numbers and runs, made from choices. Each choice is among the remaining
+//! possibilities, so that no choice is in vain and each structure is made once.
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -12,13 +12,14 @@ use crate::choose::{Choose, Exhibit, Stop};
 /// Not yet joined, or not yet taken.
 const FREE: u32 = u32::MAX;
 
-/// A start with so many edges, whose facing dart is dart 0; at most `MOST`, and that at most 63.
+/// A start with the given number of edges, whose facing dart is dart 0; at most `MOST` edges, which is at
+/// most 63.
 ///
 /// Darts are numbered in the order in which a robot meets them: the lowest free dart is joined to
 /// another free one, or to the first dart of a new vertex. Each start has exactly one such history.
 ///
 /// # Errors
-/// Where this is no world, which would be a fault of the drawing or of the constructor.
+/// Returns an error if this is not a world, which would be a fault of this function or of the constructor.
 pub fn start<const MOST: usize>(
     choose: &mut impl Choose,
     edges: usize,
@@ -99,7 +100,7 @@ pub fn start_of<const LEAST: usize, const MOST: usize>(
 /// The embedded graph of these two permutations.
 ///
 /// # Errors
-/// Where the constructor refuses them.
+/// Returns an error if the constructor rejects them.
 pub fn world(opposite: &[u32], clockwise: &[u32]) -> Result<EmbeddedGraph, Stop> {
     match EmbeddedGraph::from_permutations(opposite, clockwise) {
         Ok((graph, _)) => Ok(graph),
@@ -162,8 +163,8 @@ pub fn pairing<const MOST: usize>(choose: &mut impl Choose, n: usize) -> [u32; M
     partner
 }
 
-/// A number whose lower `NIBBLES` half bytes are anything, and whose higher ones are all 0 or all 15:
-/// with 8, every number there is.
+/// A number with any lower `NIBBLES` half bytes, whose higher ones are all 0 or all 15: with 8, any
+/// number.
 pub fn number<const NIBBLES: u32>(choose: &mut impl Choose) -> u32 {
     let mut number = if NIBBLES < 8 && choose.below(2) == 1 { u32::MAX } else { 0 };
     let mut nibble = 0;
@@ -179,8 +180,8 @@ pub fn byte(choose: &mut impl Choose) -> u8 {
     choose.below(16) << 4 | choose.below(16)
 }
 
-/// What Algorithm 1 leaves open, chosen: any edge at line 5, any hypothesis at line 9. The map has at
-/// most 127 edges.
+/// The open choices of Algorithm 1: any edge at line 5, any hypothesis at line 9. The map has at most 127
+/// edges.
 pub struct DrawnChoices<'c, C>(pub &'c mut C);
 
 impl<C: Choose> Choices for DrawnChoices<'_, C> {
@@ -201,7 +202,7 @@ mod tests {
     use super::*;
     use crate::odometer::ChoiceOdometer;
 
-    /// OEIS A000698, shifted by one, as the model's own enumeration has it.
+    /// OEIS A000698, shifted by one, as in the model's own enumeration.
     #[test]
     fn every_start_is_drawn_once() {
         for (edges, count) in [(1, 2), (2, 10), (3, 74), (4, 706), (5, 8162)] {

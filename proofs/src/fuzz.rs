@@ -1,7 +1,7 @@
-//! What fuzzers try to break: for each parser, and for Algorithm 1, what it promises of any bytes.
+//! Bodies for fuzzers: for each parser, and for Algorithm 1, what must hold for any bytes.
 //!
-//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by `tests/fuzz.rs` on stable Rust, on
-//! the seeds in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
+//! A target of cargo-fuzz in `fuzz/` runs each body, and so does `tests/fuzz.rs` on stable Rust, with the
+//! seeds in `fuzz/corpus/` and mutations of them. A body panics if its property does not hold.
 
 use std::fmt;
 
@@ -41,11 +41,11 @@ macro_rules! targets {
 }
 targets!(world_file, planar_code, edge_code, mapping);
 
-/// Any bytes are a world file that tells a world, or there is one message that says why not. A world
-/// that was read is written, as TOML and as JSON, so that it reads as the same world.
+/// Any bytes give a world or an error of one line. A world, written as TOML or as JSON, reads as the same
+/// world.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn world_file(bytes: &[u8]) {
     let world = match world_file::read(bytes) {
         Ok(world) => world,
@@ -63,11 +63,11 @@ pub fn world_file(bytes: &[u8]) {
     }
 }
 
-/// Any bytes are worlds in `planar_code`, and then nothing, or an error that tells where it is. What
-/// was read is written so that it reads as the same worlds.
+/// Any bytes, read as `planar_code`, give worlds, and then the end or an error with its place. The worlds,
+/// written again, read as the same worlds.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn planar_code(bytes: &[u8]) {
     let worlds = read(bytes, PlantriCode::Planar);
     // This code tells a world in one way, if its numbers have one byte.
@@ -79,18 +79,18 @@ pub fn planar_code(bytes: &[u8]) {
     }
 }
 
-/// The same of `edge_code`.
+/// The same for `edge_code`.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if that does not hold.
 pub fn edge_code(bytes: &[u8]) {
     read(bytes, PlantriCode::Edge);
 }
 
-/// Algorithm 1 maps every world of up to 24 edges rightly, whatever it chooses at lines 5 and 9.
+/// Algorithm 1 maps every world of up to 24 edges correctly, with any choices at lines 5 and 9.
 ///
 /// # Panics
-/// Where it does not.
+/// Panics if it does not.
 pub fn mapping(bytes: &[u8]) {
     let mut choose = Bytes::new(bytes.to_vec());
     let graph = match draw::start_of::<1, 24>(&mut choose) {
@@ -113,8 +113,8 @@ pub fn mapping(bytes: &[u8]) {
     assert!(flaw.is_none(), "{flaw:?} in {graph:?}");
 }
 
-/// The worlds of a file of plantri's, up to the first error: each is one, and they are written in
-/// each code that can tell them so that they read as the same worlds.
+/// The worlds of a plantri file, up to the first error: each is valid, and written in each code that can
+/// represent it, it reads as the same world.
 fn read(bytes: &[u8], code: PlantriCode) -> Vec<EmbeddedGraph> {
     let mut worlds = Vec::new();
     let mut results = plantri::read_headerless(bytes, code);
@@ -159,8 +159,8 @@ fn assert_is_a_message(error: &impl fmt::Display) {
     assert!(!message.contains(char::is_control), "a message has control characters: {message:?}");
 }
 
-/// Every vertex has a name of its own; every edge has one, or none has and the world is simple; the
-/// start is a dart, and its text tells it.
+/// Every vertex has a different name; every edge has a name, or none has and the world is simple; the
+/// start is a dart, and its text names it.
 fn assert_is_named(world: &NamedWorld) {
     let NamedWorld { graph, vertex_names, edge_names, .. } = world;
     assert_eq!(vertex_names.len(), graph.vertex_count(), "every vertex has a name");

@@ -1,9 +1,9 @@
-//! A plan of hallways without images: what the pictures of a robot tell there, rightly or not, and
-//! where its motions take it. Sections 3 and 4.
+//! A plan of hallways without images: the scenes that a robot gets there, correct or not, and the effect
+//! of its motions. Sections 3 and 4.
 //!
-//! Angles and distances are made of a few small numbers. What is surprising (a picture that tells
-//! nothing, or that is wrong; a motion that is not carried out) is a choice, and costs from a
-//! [`Budget`]: so the cases are finite, and they are all cases with no more surprises.
+//! Angles and distances are made of a few small numbers. A surprise (a picture that shows nothing, or is
+//! wrong; a motion that is not carried out) is a choice, paid from a [`Budget`]. So the number of cases is
+//! finite, and they are all cases with no more surprises than that.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -35,27 +35,27 @@ pub const FORMS: [JunctionShape; 6] = [
 
 /// From the middle of a hallway to its walls, in metres.
 pub const HALF_WIDTH: f64 = 0.8;
-/// How far from the middle the robot can be.
+/// The greatest distance of the robot from the middle.
 const FREE: f64 = 0.5;
-/// What rounding may add to a distance.
+/// The greatest rounding error of a distance.
 const TIE: f64 = 1e-6;
-/// So near in metres or radians is the same place or direction.
+/// Places and directions that are nearer than this, in metres or radians, are the same.
 const NEAR: f64 = 0.1;
-/// Nearer to a junction a picture of a hallway is a mistake,
+/// Nearer to a junction than this, a picture of a hallway is a mistake,
 const SURELY: f64 = 0.7;
-/// and farther from it one of a junction.
+/// and farther than this, a picture of a junction.
 const HARDLY: f64 = 1.6;
 
-/// Who drives: Algorithm 2, or something like it that is broken.
+/// The driver: Algorithm 2, or a broken variant of it.
 pub trait PathDriver {
-    /// Begins a path from where the last one ended, and gives up after so many metres without a
+    /// Begins a path where the last one ended, and gives up after the given number of metres without a
     /// junction.
     fn begin(queue: &'static [Door], from: &Standing, leg: f64) -> Self;
 
     /// One round: a scene in, a command out.
     ///
     /// # Errors
-    /// Where it gives up.
+    /// Returns an error if it gives up.
     fn round(&mut self, scene: &Scene, odometry: Odometry) -> Result<Step, Lost>;
 
     /// The doors that have not been taken.
@@ -79,7 +79,7 @@ impl PathDriver for PathExecution<'static> {
 /// A junction of the plan.
 #[derive(Clone, Copy, Debug)]
 pub struct PathJunction {
-    /// What it looks like from the door by which the path comes in.
+    /// Its shape from the door by which the path comes in.
     pub form: JunctionShape,
     /// Its turning point.
     at: [f64; 2],
@@ -100,13 +100,13 @@ impl PathJunction {
         self.doors().nth(door.0 as usize).unwrap_or(self.entry)
     }
 
-    /// How far its turning point is from the robot.
+    /// The distance of its turning point from the robot.
     #[must_use]
     pub fn distance(&self, robot: &Odometry) -> f64 {
         Odometry { position: self.at, heading: 0.0 }.distance(robot)
     }
 
-    /// What a robot sees of it, from a door behind.
+    /// The view of a robot with a door behind it.
     fn seen(&self, robot: &Odometry) -> JunctionView {
         let [x, y] = [0, 1].map(|axis| self.at[axis] - robot.position[axis]);
         let (sine, cosine) = robot.heading.sin_cos();
@@ -117,7 +117,7 @@ impl PathJunction {
         JunctionView { doors, turning_point: through, confidence: 1.0 }.entered_from(PI)
     }
 
-    /// What it looks like from a door of which this is the direction.
+    /// Its shape from the door in this direction.
     fn form_from(&self, entry: f64) -> JunctionShape {
         let is_door = |quarter| {
             let direction = entry - f64::from(quarter) * FRAC_PI_2;
@@ -126,7 +126,7 @@ impl PathJunction {
         JunctionShape([0, 1, 2, 3].map(is_door))
     }
 
-    /// What a robot knows that stands there.
+    /// The knowledge of a robot that stands there.
     #[must_use]
     pub fn standing(&self) -> Standing {
         let percept = Percept { degree: self.form.degree(), sighting: Sighting::Nothing };
@@ -134,7 +134,7 @@ impl PathJunction {
     }
 }
 
-/// How much may surprise the robot.
+/// The number of surprises that are left.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// In all.
@@ -145,32 +145,32 @@ pub struct Budget {
     pub failures: u8,
 }
 
-/// What a picture told of the junction to come to, or at which the robot stands.
+/// What a picture showed of the next junction, or of the one at which the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureEvidence {
-    /// Nothing of a form.
+    /// No shape.
     Nothing,
-    /// The form of a junction that is there.
+    /// The shape of the junction that is there.
     Truth,
-    /// Another form, or one where there is no junction.
+    /// Another shape, or a shape where there is no junction.
     Mistake(JunctionShape),
 }
 
-/// A robot on its way along some junctions.
+/// A robot on a path of junctions.
 #[derive(Clone, Debug)]
 pub struct HallwayDrive {
     /// The junctions of its path, in their order.
     junctions: Vec<PathJunction>,
-    /// Where the robot is, and where odometry says that it is.
+    /// The pose of the robot, and its pose by odometry.
     pub robot: Odometry,
-    /// How near to a junction the robot mostly sees it.
+    /// The distance from which the robot usually sees a junction.
     sight: f64,
     budget: Budget,
 }
 
 impl HallwayDrive {
-    /// A robot at the turning point of the first of some junctions, with the doors that lead from each
-    /// to the next, the length of these hallways, and the forms of the junctions there, but for one to
+    /// A robot at the turning point of the first junction, with the doors that lead from each junction to
+    /// the next, the length of these hallways, and the shapes of the junctions there, except for one to
     /// which the path comes back.
     #[must_use]
     pub fn new(
@@ -198,7 +198,7 @@ impl HallwayDrive {
         &self.junctions[place]
     }
 
-    /// The junction that is nearest to the robot; of one that stands twice on the path, the latter.
+    /// The junction nearest to the robot; the later one if it is on the path twice.
     #[must_use]
     pub fn nearest(&self) -> &PathJunction {
         let distance = |junction: &PathJunction| junction.distance(&self.robot);
@@ -211,7 +211,7 @@ impl HallwayDrive {
         nearest
     }
 
-    /// Takes one of so many chances to surprise the robot, if one is left; 0 is none.
+    /// Chooses one of the given number of surprises, if one is left; 0 is none.
     fn surprise(&mut self, choose: &mut impl Choose, ways: u8) -> u8 {
         let ways = if self.budget.surprises == 0 { 0 } else { ways };
         let surprise = if ways == 0 { 0 } else { choose.below(1 + ways) };
@@ -219,7 +219,7 @@ impl HallwayDrive {
         surprise
     }
 
-    /// The scene of a picture, and what it told.
+    /// The scene of a picture, and what it showed.
     pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, PictureEvidence) {
         let junction = *self.nearest();
         let distance = junction.distance(&self.robot);
@@ -277,7 +277,7 @@ impl HallwayDrive {
                 self.budget.mistakes -= 1;
                 let other = usize::from(other - 3 - near);
                 let form = FORMS[other % FORMS.len()];
-                // Where the robot is, or a little ahead.
+                // At the robot, or a little ahead.
                 let ahead = if other < FORMS.len() { 0.6 } else { 0.0 };
                 let onwards = self.onwards();
                 let there = Odometry { heading: onwards, ..self.robot }.moved(0.0, ahead);
@@ -288,7 +288,7 @@ impl HallwayDrive {
         }
     }
 
-    /// The hallways: from where, to which direction, how long.
+    /// The hallways: start, direction, length.
     fn hallways(&self) -> impl Iterator<Item = ([f64; 2], f64, f64)> + '_ {
         let length = |junction: &PathJunction, door: f64| {
             let leads_to = |other: &&PathJunction| {
@@ -304,15 +304,15 @@ impl HallwayDrive {
         })
     }
 
-    /// How far the robot is along a hallway, and to the left of its middle.
+    /// The distance of the robot along a hallway, and to the left of its middle.
     fn along(&self, from: [f64; 2], direction: f64) -> (f64, f64) {
         let [x, y] = [0, 1].map(|axis| self.robot.position[axis] - from[axis]);
         let (sine, cosine) = direction.sin_cos();
         (x * cosine + y * sine, y * cosine - x * sine)
     }
 
-    /// How far the robot is to the left of the middle of the hallway in which it is, and that hallway's
-    /// direction out of a junction.
+    /// The distance of the robot to the left of the middle of its hallway, and the hallway's direction out
+    /// of a junction.
     fn lane(&self) -> (f64, f64) {
         let mut lane = (f64::INFINITY, 0.0);
         for (from, direction, length) in self.hallways() {
@@ -324,7 +324,7 @@ impl HallwayDrive {
         lane
     }
 
-    /// Where a robot that looks nearly along its hallway goes.
+    /// The direction of a robot that looks nearly along its hallway.
     fn onwards(&self) -> f64 {
         let (_, direction) = self.lane();
         let looks_back = self.robot.seen(direction).abs() > FRAC_PI_2;
@@ -340,8 +340,7 @@ impl HallwayDrive {
         HallwayView { heading, left, right, status, confidence: 1.0 }
     }
 
-    /// The robot carries out a command: wholly, or by choice the half of it, or nothing. Walls are in
-    /// its way.
+    /// The robot carries out a command: all of it or, by choice, half or nothing. Walls stop it.
     pub fn carry_out(&mut self, choose: &mut impl Choose, command: Command) {
         let ways = if self.budget.failures == 0 { 0 } else { 2 };
         let surprise = self.surprise(choose, ways);

@@ -1,4 +1,4 @@
-//! What there is to know about a lemma, and how it is declared.
+//! Lemmas and their declaration.
 
 use crate::{
     bytes::Bytes,
@@ -7,22 +7,22 @@ use crate::{
     replay::{CaseReplay, CaseView, ChoicesError},
 };
 
-/// A lemma: a sentence, and the engines that check it.
+/// A lemma: a statement, and the engines that check it.
 #[derive(Clone, Copy, Debug)]
 pub struct Lemma {
     /// Its name.
     pub name: &'static str,
-    /// What it says.
+    /// Its statement, a sentence.
     pub sentence: &'static str,
     /// Its place in the paper.
     pub paper: &'static str,
-    /// The file in which it stands, from the root of the workspace.
+    /// Its file, relative to the root of the workspace.
     pub file: &'static str,
-    /// Its check on every case within a bound: no lemma is without one.
+    /// Its check on every case within a bound; every lemma has one.
     pub exhaustive: Exhaustive,
-    /// Its check on cases drawn at random within a larger bound.
+    /// Its check on random cases within a larger bound.
     pub sampled: Option<Sampled>,
-    /// Its check by Kani, where that is installed.
+    /// Its check by Kani, if that is installed.
     pub kani: Option<Kani>,
 }
 
@@ -31,20 +31,20 @@ pub struct Lemma {
 pub struct Exhaustive {
     /// The bound, in words.
     pub bound: &'static str,
-    /// How many cases there are within it: a check that finds another number does not hold.
+    /// The number of cases within it. A check that finds another number fails.
     pub cases: u64,
-    /// The lemma, for a driver that goes through all cases.
+    /// The lemma, for the driver that goes through all cases.
     pub body: fn(&mut ChoiceOdometer) -> CaseResult,
     /// The lemma, for making one case again.
     pub replay: fn(&mut CaseReplay) -> CaseResult,
 }
 
-/// The check of a lemma on cases drawn at random.
+/// The check of a lemma on random cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampled {
     /// The bound, in words.
     pub bound: &'static str,
-    /// The lemma, for a driver that is given bytes.
+    /// The lemma, for the driver that reads bytes.
     pub body: fn(&mut Bytes) -> CaseResult,
     /// The lemma, for making one case again.
     pub replay: fn(&mut CaseReplay) -> CaseResult,
@@ -55,32 +55,32 @@ pub struct Sampled {
 pub struct Kani {
     /// The bound, in words.
     pub bound: &'static str,
-    /// How often a loop is unwound.
+    /// The number of times that a loop is unwound.
     pub unwind: u32,
     /// The name of the harness.
     pub harness: &'static str,
 }
 
-/// Why the exhaustive check of a lemma does not hold.
+/// The reason why the exhaustive check of a lemma fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LemmaFailure {
     /// The lemma fails in a case.
     Case(Counterexample),
-    /// There are more or fewer cases than there must be.
+    /// The number of cases is wrong.
     Cases {
-        /// How many there must be.
+        /// The expected number.
         pinned: u64,
-        /// How many there are.
+        /// The number of cases.
         found: u64,
     },
 }
 
 impl Lemma {
-    /// Checks the lemma on every case within its bound, and answers how many there are. Now and then
-    /// it tells `progress` how many there were.
+    /// Checks the lemma on every case within its bound, and returns their number. It reports the number so
+    /// far to `progress` from time to time.
     ///
     /// # Errors
-    /// The first case in which it fails; or that the number of cases is not what it must be.
+    /// Returns the first case in which the lemma fails, or an error if the number of cases is wrong.
     pub fn check(&self, progress: &mut impl FnMut(u64)) -> Result<u64, LemmaFailure> {
         let Exhaustive { body, cases: pinned, .. } = self.exhaustive;
         match ChoiceOdometer::exhaust(body, progress) {
@@ -95,16 +95,16 @@ impl Lemma {
     /// Makes one case of the exhaustive check again.
     ///
     /// # Errors
-    /// Where the choices are not those of a case.
+    /// Returns an error if the choices are not those of a case.
     pub fn replay(&self, choices: &[u8]) -> Result<CaseView, ChoicesError> {
         CaseReplay::show(self.exhaustive.replay, choices)
     }
 }
 
-/// Declares lemmas: each with its sentence, its place in the paper, and its engines, which are the
-/// same generic function at different bounds. From it come the list `LEMMAS` of the file; for each
-/// lemma the tests `exhaustively` and `sampled` in a module of its name; and with `--cfg kani` its
-/// harness, beside them, `kani`.
+/// Declares lemmas: each with its statement, its place in the paper, and its engines, which are the same
+/// generic function with different bounds. The macro expands to the list `LEMMAS` of the file; for each
+/// lemma to a module of its name with the tests `exhaustively` and `sampled`; and with `--cfg kani` to
+/// its harness `kani` there.
 macro_rules! declare {
     ($(
         $name:ident {

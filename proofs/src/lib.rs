@@ -1,24 +1,23 @@
-//! The lemmas on which the correctness of the mapping rests, each one body with three drivers.
+//! The lemmas behind the correctness of the mapping: each is one function with three drivers.
 //!
-//! A lemma is a plain function over [`Choose`]: it chooses a case, and answers whether what it
-//! claims holds there. An [`ChoiceOdometer`] makes it choose in every way within a bound, so that the
-//! lemma is proved for all of these cases; property tests let it choose from [`Bytes`] at larger
-//! bounds, and shrink what fails; under [Kani](https://github.com/model-checking/kani) each choice
+//! A lemma is a plain function over [`Choose`]: it chooses a case, and returns whether its claims hold
+//! there. A [`ChoiceOdometer`] makes every choice within a bound, which proves the lemma for
+//! all of these cases; property tests choose from [`Bytes`] at larger bounds, and shrink failures; under [Kani](https://github.com/model-checking/kani) each choice
 //! is symbolic. A [`CaseReplay`] makes one case again and shows it to a person.
 //!
-//! From the ground up:
+//! Bottom up:
 //!
-//! * [`choose`]: the trait, and what a case can come to;
-//! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: who chooses;
-//! * [`draw`]: starts, permutations and numbers, made of choices, so that none is in vain;
-//! * [`definition`]: what is meant by a graph, an isomorphism, a bisimulation;
-//! * [`hallways`]: where a robot drives, what it sees there, rightly or not, and where it gets;
-//! * [`lemma`]: what there is to know about a lemma, and how it is declared;
+//! * [`choose`]: the trait, and the results of a case;
+//! * [`odometer`], [`bytes`], [`replay`], and `symbolic` for Kani: the drivers;
+//! * [`draw`]: starts, permutations and numbers, made from choices;
+//! * [`definition`]: the definitions of a graph, an isomorphism, a bisimulation;
+//! * [`hallways`]: a robot in hallways: what it sees there, correctly or not, and where it arrives;
+//! * [`lemma`]: lemmas and their declaration;
 //! * [`lemmas`]: the lemmas, a file for each theme;
-//! * [`theorems`]: what is proved in Coq, in `coq/`;
-//! * [`fuzz`]: what fuzzers try to break, on bytes of their own.
+//! * [`theorems`]: the theorems proved in Coq, in `coq/`;
+//! * [`fuzz`]: the bodies for fuzzers.
 //!
-//! How they make up the theorem is told in the README beside this crate.
+//! The README of this crate combines them to the theorem.
 
 pub mod bytes;
 pub mod choose;

@@ -4,23 +4,23 @@ use std::fmt;
 
 use crate::choose::{CaseResult, Choose, Stop, unless_it_panics};
 
-/// Chooses in every way, one case after the other, the latest choice turning fastest.
+/// Makes every combination of choices, one case after the other; the latest choice changes fastest.
 #[derive(Clone, Debug, Default)]
 pub struct ChoiceOdometer {
-    /// The choices of this case, each with how many there are.
+    /// The choices of this case, each with its number of possibilities.
     digits: Vec<(u8, u8)>,
-    /// How many of them have been made.
+    /// The number of choices made so far.
     made: usize,
-    /// Whether the lemma once had other choices after the same ones.
+    /// Whether the lemma once had other possibilities after the same choices.
     wavered: bool,
 }
 
 impl ChoiceOdometer {
-    /// Makes every case, and answers how many there are of which the lemma speaks. Each time after
-    /// so many cases it tells `progress` how many there were.
+    /// Makes every case, and returns the number of those to which the lemma applies. It reports the number
+    /// so far to `progress` from time to time.
     ///
     /// # Errors
-    /// The first case in which the lemma fails.
+    /// Returns the first case in which the lemma fails.
     pub fn exhaust(
         mut lemma: impl FnMut(&mut Self) -> CaseResult,
         progress: &mut impl FnMut(u64),
@@ -66,7 +66,7 @@ impl ChoiceOdometer {
     }
 }
 
-/// How many cases pass between two tellings of progress.
+/// The number of cases between two reports of progress.
 const PROGRESS: u64 = 1 << 16;
 
 impl Choose for ChoiceOdometer {
@@ -93,15 +93,15 @@ impl Choose for ChoiceOdometer {
 /// A case in which a lemma fails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counterexample {
-    /// The choices, with which a [`CaseReplay`](crate::CaseReplay) makes it again.
+    /// The choices, from which a [`CaseReplay`](crate::CaseReplay) makes it again.
     pub choices: Vec<u8>,
-    /// What should hold, and does not.
+    /// The claim that does not hold.
     pub claim: &'static str,
-    /// In how many cases before it the lemma holds.
+    /// The number of cases before it, in which the lemma holds.
     pub cases: u64,
 }
 
-/// The choices stand with commas between them, as they are written to make the case again.
+/// The choices are separated by commas, in the format of `--choices`.
 impl fmt::Display for Counterexample {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         write!(out, "it does not hold that {}; choices ", self.claim)?;
@@ -109,7 +109,7 @@ impl fmt::Display for Counterexample {
     }
 }
 
-/// Numbers with commas between them.
+/// Numbers separated by commas.
 #[must_use]
 pub fn listed(choices: &[u8]) -> String {
     choices.iter().map(u8::to_string).collect::<Vec<_>>().join(",")

@@ -1,43 +1,43 @@
-//! One case again, for a person to look at.
+//! Makes one case again, to show it to a person.
 
 use std::fmt;
 
 use crate::choose::{CaseResult, Choose, Exhibit, unless_it_panics};
 
-/// Makes one case again, from a list of choices, and keeps what it shows.
+/// Makes one case again, from a list of choices, and keeps its exhibits.
 #[derive(Clone, Debug, Default)]
 pub struct CaseReplay {
     choices: Vec<u8>,
-    /// How many of them have been made, or would have been.
+    /// The number of choices made, or needed.
     made: usize,
     misfit: Option<ChoicesError>,
     exhibits: Vec<Exhibit>,
 }
 
-/// A list of choices that is not one of the lemma's.
+/// A list of choices that is not a case of the lemma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChoicesError {
-    /// There is no so high choice.
+    /// A choice is too high.
     TooHigh {
-        /// The place in the list, from 1.
+        /// Its place in the list, from 1.
         place: usize,
         /// The choice there.
         choice: u8,
-        /// How many choices there are at this place.
+        /// The number of possibilities at this place.
         of: u8,
     },
     /// The list is too short.
     TooFew {
-        /// How many choices it has.
+        /// The number of choices in the list.
         choices: usize,
-        /// How many the case that begins so has at least.
+        /// The least number of choices of a case that begins so.
         needed: usize,
     },
     /// The list is too long.
     TooMany {
-        /// How many choices it has.
+        /// The number of choices in the list.
         choices: usize,
-        /// How many the case has.
+        /// The number of choices of the case.
         needed: usize,
     },
 }
@@ -58,10 +58,10 @@ impl fmt::Display for ChoicesError {
     }
 }
 
-/// A case that was made again.
+/// A case, made again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CaseView {
-    /// What the lemma comes to in it.
+    /// The result of the lemma.
     pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
     pub exhibits: Vec<Exhibit>,
@@ -71,7 +71,7 @@ impl CaseReplay {
     /// Makes a case again.
     ///
     /// # Errors
-    /// Where the choices are not those of a case.
+    /// Returns an error if the choices are not those of a case.
     pub fn show(
         lemma: impl FnOnce(&mut Self) -> CaseResult,
         choices: &[u8],

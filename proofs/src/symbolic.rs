@@ -1,8 +1,8 @@
-//! The driver for Kani: every case within a bound, without making them one by one.
+//! The driver for Kani: all cases within a bound at once.
 
 use crate::choose::Choose;
 
-/// Each choice is open: a symbol that stands for all of them at once.
+/// Each choice is a symbol that stands for all possibilities.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Symbolic;
 

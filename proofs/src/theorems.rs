@@ -1,18 +1,18 @@
-//! The theorems that are proved in Coq, for every world. They stand in `coq/Theorems.v`, and nowhere else:
-//! each under a comment that says it in words.
+//! The theorems that are proved in Coq, for every world. They are read from `coq/Theorems.v`, where each
+//! follows a comment with its statement in words.
 
 /// A theorem that is proved in Coq.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Theorem {
     /// Its name.
     pub name: &'static str,
-    /// What it says, in words.
+    /// Its statement in words.
     pub sentence: String,
     /// Its place in the paper.
     pub paper: String,
 }
 
-/// The file in which they stand, from the root of the workspace.
+/// Their file, relative to the root of the workspace.
 pub const FILE: &str = "proofs/coq/Theorems.v";
 
 const SOURCE: &str = include_str!("../coq/Theorems.v");
@@ -22,7 +22,7 @@ pub fn all() -> impl Iterator<Item = Theorem> {
     SOURCE.split("(**").filter_map(theorem)
 }
 
-/// The theorem that stands under a comment, `(** SENTENCES Paper: PLACE. *)`, which begins here.
+/// The theorem after a comment, `(** SENTENCES Paper: PLACE. *)`, that begins here.
 fn theorem(text: &'static str) -> Option<Theorem> {
     let (comment, code) = text.split_once("*)")?;
     let code = code.trim_start().strip_prefix("Theorem ")?;

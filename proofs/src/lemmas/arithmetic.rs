@@ -139,7 +139,7 @@ fn the_highest<C: Choose, const NIBBLES: u32>(choose: &mut C) -> CaseResult {
         2..=MOST_DARTS => None,
         _ => Some(GraphError::TooManyEdges),
     };
-    claim("it is refused exactly for its size", size_fault(darts) == expected)?;
+    claim("it is rejected exactly for its size", size_fault(darts) == expected)?;
     given(choose, expected.is_none() && size_fault(degree).is_none())?;
     let sum = u32::try_from(darts + degree);
     claim("all numbers fit, and none stands for none", sum.is_ok_and(|sum| sum < u32::MAX))

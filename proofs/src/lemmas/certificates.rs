@@ -1,5 +1,5 @@
-//! Certificates that no robot can tell two placed worlds apart: what the verifier accepts is a
-//! bisimulation, and what a bisimulation relates perceives the same for ever. Section 2.2.
+//! Certificates that no robot can tell two placed worlds apart: the verifier accepts exactly
+//! bisimulations, and related robots perceive the same for ever. Section 2.2.
 
 use toposlam_model::{
     ambiguity::{Comparison, PlacedRobot, Relation},
@@ -61,8 +61,7 @@ fn marker(choose: &mut impl Choose, of: impl Fn(&dyn Marker) -> bool) -> &'stati
     marker
 }
 
-/// Two starts that the marker cannot tell apart, what the search compares them with, and its
-/// certificate.
+/// Two starts that the marker cannot tell apart, their comparison, and its certificate.
 fn certified<'g, C: Choose>(
     choose: &mut C,
     marker: &'static dyn Marker,
@@ -136,7 +135,7 @@ fn verified<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) ->
     let relation = Relation(pairs);
     choose.show(|| shown(&relation));
     let is_one = is_bisimulation(&relation.0, &here, &there);
-    claim("the verifier tells it", relation.verify(&here, &there) == is_one)
+    claim("the verifier finds it", relation.verify(&here, &there) == is_one)
 }
 
 fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> CaseResult {
@@ -152,7 +151,7 @@ fn altered<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -> 
             relation.0.remove(usize::from(choose.below(relation.0.len() as u8)));
         }
         1 => {
-            // All of it once more, with the marker elsewhere, or nowhere.
+            // The whole certificate, with the marker elsewhere, or nowhere.
             let (here, there) = (placed(choose), placed(choose));
             let moved = |(one, other): &(State, State)| {
                 (State { placed: here, ..*one }, State { placed: there, ..*other })

@@ -86,7 +86,7 @@ fn same_code<C: Choose, const LEAST: usize, const MOST: usize>(choose: &mut C) -
     compare(choose, (&one, here), (&other, there))
 }
 
-/// The same, but that the other start is as likely a copy of the one.
+/// The same, but the other start is as likely to be a copy.
 fn copy_or_other<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: usize>(
     choose: &mut C,
 ) -> CaseResult {
@@ -96,7 +96,7 @@ fn copy_or_other<C: Choose, const LEAST: usize, const MOST: usize, const DARTS: 
     } else {
         (draw::start_of::<LEAST, MOST>(choose)?, Dart(0))
     };
-    // From another dart of a copy it is another start, most often.
+    // From another dart a copy is usually another start.
     let here = if choose.below(2) == 0 { Dart(0) } else { draw::dart(choose, &one) };
     compare(choose, (&one, here), (&other, there))
 }
@@ -114,5 +114,5 @@ fn compare(
     let isomorphic = isomorphic((one, here), (other, there));
     claim("the codes tell it", (code(one, here) == code(other, there)) == isomorphic)?;
     let bijection = Bijection::of_starts((one, here), (other, there));
-    claim("the verifier tells it", bijection.verify(one, other) == isomorphic)
+    claim("the verifier finds it", bijection.verify(one, other) == isomorphic)
 }

@@ -1,5 +1,5 @@
-//! The decoders: whatever they are given, they answer an error or a world, and what is written of it
-//! reads as the same world. Section 2.1.
+//! The decoders: any input gives an error or a world, and the world, written again, reads as the same
+//! world. Section 2.1.
 
 use toposlam_model::{
     embedded_graph::EmbeddedGraph,
@@ -44,7 +44,7 @@ declare! {
          written again, they read as the same worlds.",
         paper "2.1",
         // The powers of 3 from 0 to 11.
-        exhaustive "up to 11 bytes from 0 to 2, after a header that tells the order", 265_720 cases:
+        exhaustive "up to 11 bytes from 0 to 2, after a header with the byte order", 265_720 cases:
             wide_planar_code::<_, 11, 3>;
     }
     edge_code_is_an_error_or_worlds {
@@ -79,14 +79,14 @@ declare! {
         "A world file gives an error or a world; written again, in TOML or in JSON, it reads as \
          the same world, and is written the same again.",
         paper "2.1",
-        // 2 tables, 1 + 13 + 2 (13^2 + 13^3) lists, and 1 + 3 5 ways to tell a start or none.
+        // 2 tables, 1 + 13 + 2 (13^2 + 13^3) lists, and 1 + 3 5 ways to give a start or none.
         exhaustive "up to 3 lists of up to 2 of 3 names, the last perhaps with the first one's \
                     name, of neighbours or of doors, any start or none", 151_872 cases:
             world_files::<_>;
     }
 }
 
-/// Up to `MOST` bytes: the numbers below `LETTERS`, and one more, if that is another.
+/// Up to `MOST` bytes: the numbers below `LETTERS`, and `also`.
 fn bytes<const MOST: usize, const LETTERS: u8>(choose: &mut impl Choose, also: u8) -> Vec<u8> {
     let length = choose.below(MOST as u8 + 1);
     let letters = LETTERS + u8::from(also >= LETTERS);
@@ -96,7 +96,7 @@ fn bytes<const MOST: usize, const LETTERS: u8>(choose: &mut impl Choose, also: u
     bytes
 }
 
-/// The worlds read of some bytes, each of which is one; whether they were read to the end.
+/// The worlds read from some bytes, each of them valid; and whether they were read to the end.
 fn worlds(bytes: &[u8], code: PlantriCode) -> Result<(Vec<EmbeddedGraph>, bool), Stop> {
     let mut worlds = Vec::with_capacity(bytes.len());
     let mut read = plantri::read_headerless(bytes, code);
@@ -193,7 +193,7 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
     let file = plantri::write(std::slice::from_ref(graph), PlantriCode::Edge);
     let is_read = file.is_ok_and(|file| reads(&file, PlantriCode::Edge));
     claim("edge_code as it is written reads as the same world", is_read)?;
-    // By hand, the edges in any order, each of one byte where they fit and else of two.
+    // By hand, the edges in any order, each of one byte if they fit, otherwise of two.
     let order = draw::permutation::<MOST>(choose, graph.edge_count());
     let mut edge_of = vec![0; graph.dart_count()];
     for ((dart, other), &edge) in graph.edges().zip(&order) {
@@ -266,8 +266,7 @@ fn named_once(lists: &Lists) -> bool {
     lists.iter().enumerate().all(is_first)
 }
 
-/// Whether all vertices can be reached from the first, of which `joined` tells whether two are
-/// neighbours.
+/// Whether all vertices can be reached from the first; `joined` says whether two are neighbours.
 fn all_reached(lists: &Lists, joined: impl Fn(usize, usize) -> bool) -> bool {
     let mut reached = vec![0];
     let mut next = 0;

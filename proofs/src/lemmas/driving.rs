@@ -1,7 +1,7 @@
-//! Algorithm 2: what it never does, and where it gets. Section 4.3.
+//! Algorithm 2: its limits, and where it arrives. Section 4.3.
 //!
-//! In a [`HallwayDrive`] pictures and motions may surprise the robot, within a budget. Where scenes are
-//! arbitrary, they come from [`SCENES`], in any order.
+//! In a [`HallwayDrive`] pictures and motions may surprise the robot, within a budget. Arbitrary scenes
+//! come from [`SCENES`], in any order.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -47,7 +47,7 @@ declare! {
         "At a known junction, an image of it takes the first door of the path and no other, and \
          turns the robot to it, or ends a path without doors; no other image does.",
         paper "4.2; Algorithm 2, lines 20 to 26",
-        exhaustive "paths of up to 2 doors at every form, pictures of every form, turned by any \
+        exhaustive "paths of up to 2 doors at every shape, pictures of every shape, turned by any \
                     multiple of 15 degrees", 6048 cases:
             the_first_door::<_, Algorithm2, 24>;
         kani "the same, turned by multiples of 90 degrees", unwind 10:
@@ -79,7 +79,7 @@ declare! {
          junction, not at the one that it left, and knows its shape, its degree and its entry \
          door.",
         paper "4.3; Algorithm 2",
-        exhaustive "every door of every form to every form, over 3.2 and 4.1 m of hallway; three \
+        exhaustive "every door of every shape to every shape, over 3.2 and 4.1 m of hallway; three \
                     ranges of sight; two pictures that are unclear, unknown or of hallway or \
                     junction", 122_112 cases:
             arrives::<_, Algorithm2, 2>;
@@ -89,7 +89,7 @@ declare! {
         "The robot arrives at the next junction with its true shape, or gives up, unless two \
          images were mistaken and agreed.",
         paper "4.3; Algorithm 2",
-        exhaustive "a door of every form to every form, over 3.2 m of hallway; three ranges of \
+        exhaustive "a door of every shape to every shape, over 3.2 m of hallway; three ranges of \
                     sight; two surprises, wrong pictures and motions in part or not at all among \
                     them", 793_596 cases:
             no_false_arrival::<_, Algorithm2, 2, 2>;
@@ -98,7 +98,7 @@ declare! {
     }
 }
 
-/// Each form with each of its doors.
+/// Each shape with each of its doors.
 const EXITS: [(usize, u32); 14] = [
     (0, 0),
     (1, 1),
@@ -124,13 +124,13 @@ const TWO_DOORS: [[&[Door]; 3]; 3] = [
     [&[Door(2), Door(0)], &[Door(2), Door(1)], &[Door(2), Door(2)]],
 ];
 
-/// How near to a junction it is mostly seen.
+/// The distances from which a junction is usually seen.
 const SIGHTS: [f64; 3] = [1.1, 0.75, 1.6];
 
-/// No drive on these plans takes so many rounds.
+/// More rounds than any drive on these plans takes.
 const ROUNDS: u32 = 200;
 
-/// A picture of a junction whose turning point is so far ahead of a robot that then has turned.
+/// A picture of a junction whose turning point is the given distance ahead, of a robot that then turned.
 fn junction(form: JunctionShape, ahead: f64, turned: f64) -> Place {
     let through =
         if ahead == 0.0 { [0.0; 2] } else { [ahead * turned.cos(), -ahead * turned.sin()] };
@@ -150,7 +150,7 @@ fn hallway(heading: f64, left: f64, right: f64, status: HallwayStatus) -> Place 
     Place::Hallway(HallwayView { heading, left, right, status, confidence: 1.0 })
 }
 
-/// How many scenes [`any_scene`] has.
+/// The number of scenes of [`any_scene`].
 const SCENES: u8 = 8;
 
 /// One of a few scenes.
@@ -167,7 +167,7 @@ fn any_scene(choose: &mut impl Choose) -> Place {
     }
 }
 
-/// How much of a command is carried out: all, or so little that it just counts, or nothing.
+/// The part of a command that is carried out: all, or as little as just counts, or nothing.
 fn any_share(choose: &mut impl Choose) -> f64 {
     [1.0, 0.5, 0.0][usize::from(choose.below(3))]
 }
@@ -203,7 +203,7 @@ fn limits(Command { turn, forward }: Command) -> CaseResult {
     claim("no way is too little to be done", forward == 0.0 || forward >= LEAST_FORWARD)
 }
 
-/// A robot at the turning point of a junction with this form.
+/// A robot at the turning point of a junction with this shape.
 fn stands(form: JunctionShape) -> Standing {
     let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
     Standing { form, percept, entry: PI }
@@ -274,17 +274,17 @@ fn the_first_door<C: Choose, D: PathDriver, const TURNS: u8>(choose: &mut C) -> 
     }
 }
 
-/// Where a drive has come to.
+/// The end of a drive.
 struct End {
-    /// What the robot believes; `None` if it gave up.
+    /// The robot's belief; `None` if it gave up.
     standing: Option<Standing>,
-    /// The pictures since the last door that were mistaken, by their forms.
+    /// The mistaken pictures since the last door, by their shapes.
     mistaken: Vec<JunctionShape>,
     /// Whether a picture showed the junction from where a marker would be seen.
     looked: bool,
 }
 
-/// Drives a path to its end, and looks that its doors are taken as they must be.
+/// Drives a path to its end, and checks that its doors are taken as required.
 fn driven<C: Choose, D: PathDriver>(
     choose: &mut C,
     drive: &mut HallwayDrive,
@@ -292,14 +292,14 @@ fn driven<C: Choose, D: PathDriver>(
 ) -> Result<End, Stop> {
     choose.show(|| Exhibit::Value { name: "path", value: format!("{queue:?} {drive:?}") });
     let mut driver = D::begin(queue, &drive.junction(0).standing(), LEG);
-    // How many doors the robot has left by, and whether it has taken one more.
+    // The number of doors by which the robot has left, and whether it has taken one more.
     let (mut left_by, mut takes) = (0, false);
-    // The forms of which pictures told since then, and those by mistake.
+    // The shapes that pictures showed since then, and the mistaken ones.
     let (mut told_of, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
     let mut looked = true;
     for _ in 0..ROUNDS {
         let (scene, told) = drive.picture(choose);
-        // The junction to come to, or at which the robot stands.
+        // The next junction, or the one at which the robot stands.
         let here = *drive.junction(left_by);
         match (told, &scene.place) {
             (PictureEvidence::Mistake(form), _) => {
@@ -352,12 +352,12 @@ fn driven<C: Choose, D: PathDriver>(
     Err(Stop::Fails("it ends"))
 }
 
-/// So many of these are of this form.
+/// The number of these with this shape.
 fn agreeing(forms: &[JunctionShape], form: JunctionShape) -> usize {
     forms.iter().filter(|&&other| other == form).count()
 }
 
-/// Nearer than this to a junction the robot is not at another one, in metres.
+/// A robot nearer than this to a junction is not at another one, in metres.
 const HALFWAY: f64 = 1.6;
 
 // paper: alg2.23, alg2.25, drive.turn, drive.path
@@ -389,9 +389,9 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
     }
     choose.show(|| Exhibit::Value { name: "for ever", value: format!("{:?}", &moments[before..]) });
     let mut odometry = Odometry::default();
-    // Rounds in a row without getting anywhere, and metres in a row without a door.
+    // Rounds in a row without progress, and metres in a row without a door.
     let (mut idle, mut way) = (0, 0.0);
-    // Pictures in a row that told nothing, and commands in a row of which nothing was carried out.
+    // Unknown pictures in a row, and commands in a row of which nothing was carried out.
     let (mut unknowns, mut stalls) = (0, 0);
     let mut round = 0;
     loop {
@@ -410,8 +410,8 @@ fn always_ends<C: Choose, D: PathDriver, const BEFORE: u8, const PERIOD: u8>(
         let stalled = *share == 0.0 && command != Command::default();
         stalls = if stalled { stalls + 1 } else { 0 };
         claim("it gives up when nothing is carried out", stalls <= STALLS)?;
-        claim("it gets somewhere", idle <= IDLE)?;
-        claim("it does not get too far", way <= FAR + 2.0 * UNIT)?;
+        claim("it makes progress", idle <= IDLE)?;
+        claim("it does not go too far", way <= FAR + 2.0 * UNIT)?;
         round += 1;
     }
 }
@@ -431,7 +431,7 @@ fn arrives<C: Choose, D: PathDriver, const SURPRISES: u8>(choose: &mut C) -> Cas
     let there = drive.junction(1);
     claim("it is in the next junction", there.distance(&drive.robot) < HALF_WIDTH)?;
     let expected = there.standing();
-    claim("it knows its form", standing.form == form && standing.percept == expected.percept)?;
+    claim("it knows its shape", standing.form == form && standing.percept == expected.percept)?;
     let off = wrapped(standing.entry - expected.entry).abs();
     claim("it knows its entry door", off < 1e-6)
 }
@@ -450,7 +450,7 @@ fn no_false_arrival<C: Choose, D: PathDriver, const SURPRISES: u8, const MISTAKE
     let Some(standing) = standing else { return Ok(()) };
     if agreeing(&mistaken, standing.form) < 2 {
         let there = drive.junction(1);
-        claim("its form is the true one", standing.form == form)?;
+        claim("its shape is the true one", standing.form == form)?;
         claim("it is at the next junction", there.distance(&drive.robot) < HALFWAY)?;
         let off = wrapped(standing.entry - there.standing().entry).abs();
         claim("it knows its entry door", off < PI / 4.0)?;

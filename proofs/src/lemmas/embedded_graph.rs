@@ -65,8 +65,8 @@ declare! {
     }
 }
 
-/// An array of `n` entries, each of so many half bytes; without these each is at most `MOST`, or the
-/// highest number there is.
+/// An array of `n` entries of the given number of half bytes; with 0 half bytes each entry is at most
+/// `MOST`, or the highest number.
 fn array<const MOST: usize, const NIBBLES: u32>(choose: &mut impl Choose, n: usize) -> [u32; MOST] {
     let mut array = [0; MOST];
     let mut place = 0;
@@ -263,7 +263,7 @@ fn permutations_are_accepted<
         Err(GraphError::NotConnected { .. }) => {
             claim("what is refused is not connected", !connected)
         }
-        Err(_) => claim("nothing else is refused", false),
+        Err(_) => claim("nothing else is rejected", false),
     }
 }
 

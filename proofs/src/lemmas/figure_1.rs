@@ -67,7 +67,7 @@ fn show_walks(choose: &mut impl Choose, poses: [Dart; 2], door: Door) {
     }
 }
 
-/// What a robot perceives behind each of its doors: degrees; 0 where there is no such door.
+/// The degree of the vertex behind each door; 0 if there is no such door.
 fn neighbours(graph: &EmbeddedGraph, pose: Dart) -> [u32; 4] {
     let mut degrees = [0; 4];
     let mut dart = pose;

@@ -1,8 +1,8 @@
-//! Whole runs of Algorithm 1, with every choice that it leaves open: what it holds from round to
-//! round, what a round costs, and where it ends. Section 2.3.
+//! Whole runs of Algorithm 1, with all open choices: its invariant from round to round, the cost of a
+//! round, and its end. Section 2.3.
 //!
-//! The runs are those of [`map_world`] itself. Beside each the truth is kept, which the robot does
-//! not know: its pose in the world, and which dart of the world each dart of its map is.
+//! The runs are those of [`map_world`] itself. Each is tracked with the truth that the robot does not
+//! know: its pose in the world, and the dart of the world for each dart of its map.
 
 use std::cell::Cell;
 
@@ -21,8 +21,8 @@ use crate::{
     lemma::declare,
 };
 
-const EVERY_RUN: &str = "every run on every start with up to 4 edges, whatever the choices";
-/// With 1, 2, 3 and 4 edges, as `toposlam check --choices all` counts them in another way.
+const EVERY_RUN: &str = "every run on every start with up to 4 edges, with any choices";
+/// With 1, 2, 3 and 4 edges, as `toposlam check --choices all` counts them by another method.
 const RUNS: u64 = 3 + 45 + 1_777 + 502_371;
 const LARGER_RUNS: &str = "starts with up to 20 edges, any choices";
 
@@ -85,20 +85,20 @@ declare! {
     }
 }
 
-/// What is so while the robot explores a world.
+/// The truth while the robot explores a world.
 struct Truth<'g> {
     graph: &'g EmbeddedGraph,
-    /// The dart by which the robot has really come in.
+    /// The dart by which the robot really came in.
     pose: Dart,
-    /// The dart of the world that each dart of the map is: what stands clockwise from a dart, or
-    /// opposite to the one explored, is so from its image.
+    /// The image of each dart of the map in the world. The clockwise successor of a dart, and the opposite
+    /// of the explored one, are those of its image.
     image: Vec<Dart>,
     /// The doors taken.
     doors: Vec<Door>,
 }
 
 impl Truth<'_> {
-    /// Takes note of what happened.
+    /// Follows an event.
     fn event(&mut self, journey: &Journey, event: MappingEvent) {
         match event {
             MappingEvent::Started { percept } => self.meet(FACING, percept.degree),
@@ -122,19 +122,19 @@ impl Truth<'_> {
         }
     }
 
-    /// The dart of the world to which an edge leads that is known at one end.
+    /// The dart of the world at the other end of an edge that is known at one end.
     fn behind(&self, edge: Dart) -> Dart {
         self.graph.opposite(self.image[edge.at()])
     }
 
-    /// The dart of the map that is this one of the world, if that is known.
+    /// The dart of the map whose image is this dart of the world, if there is one.
     fn known(&self, dart: Dart) -> Option<Dart> {
         let place = self.image.iter().position(|&image| image == dart);
         place.map(|place| Dart(place as u32))
     }
 }
 
-/// The latest choice that was made, beside whoever makes it.
+/// The latest choice, and the choices that made it.
 struct Noted<'n, C> {
     choices: DrawnChoices<'n, C>,
     latest: &'n Cell<Dart>,
@@ -153,9 +153,8 @@ impl<C: Choose> Choices for Noted<'_, C> {
     }
 }
 
-/// Draws a run on a start, and lets `judge` look at each event of the run, with the truth as it then
-/// is; what it answers first in the negative is the answer, or that a choice was not heeded. At the
-/// end it answers where the run has come to.
+/// Draws a run on a start, and calls `judge` with each event of the run and the truth at that moment.
+/// Returns its first error, or an error if a choice was not used; otherwise the end of the run.
 fn run<'g, C: Choose>(
     choose: &mut C,
     graph: &'g EmbeddedGraph,
@@ -166,7 +165,7 @@ fn run<'g, C: Choose>(
         MappingEvent::Arrived { edge: chosen, .. }
         | MappingEvent::Rejected { hypothesis: chosen, .. }
         | MappingEvent::Confirmed { hypothesis: chosen, .. } => {
-            claim("the choice is heeded", latest.get() == chosen)
+            claim("the choice is used", latest.get() == chosen)
         }
         _ => Ok(()),
     };
@@ -178,7 +177,7 @@ fn run<'g, C: Choose>(
             verdict = heeded(event).and_then(|()| judge(&truth, journey, event));
         }
     };
-    // No more need be known than there is.
+    // The map never needs more darts than the world has.
     let mut exploration = Exploration::new(graph.dart_count());
     let mut world = GraphWorld::new(graph, FACING);
     let mut choices = Noted { choices: DrawnChoices(choose), latest: &latest };

@@ -1,4 +1,4 @@
-//! What a marker's sighting tells about the entry dart. Sections 2.2, 2.3.
+//! What a sighting of the marker says about the entry dart. Sections 2.2, 2.3.
 
 use toposlam_model::{
     embedded_graph::Dart,

@@ -1,4 +1,4 @@
-//! Why a confirmed hypothesis is true: a door taken is injective on poses. Section 2.3; Algorithm 1,
+//! A confirmed hypothesis is true, because taking a door is injective on poses. Section 2.3; Algorithm 1,
 //! lines 10 to 17.
 
 use toposlam_model::{

@@ -9,7 +9,7 @@ use crate::ChoiceOdometer;
 #[derive(Clone)]
 struct Broken<const FLAW: u8> {
     path: Algorithm2,
-    /// The path that it was told, and how many of its doors it has not taken into account.
+    /// The given path, and the number of its doors that it has ignored.
     queue: &'static [Door],
     skipped: usize,
 }
@@ -24,9 +24,9 @@ const KEPT: u8 = 2;
 const LEFT_OUT: u8 = 3;
 /// It leaves a junction without a picture of the doors turned.
 const AT_ONCE: u8 = 4;
-/// Pictures that tell nothing are not counted.
+/// Pictures that show nothing are not counted.
 const UNKNOWN_FOR_EVER: u8 = 5;
-/// What is not carried out is tried for ever.
+/// Commands that are not carried out are repeated for ever.
 const STALLED_FOR_EVER: u8 = 6;
 /// Pictures from the same place are not counted.
 const IDLE_FOR_EVER: u8 = 7;
@@ -75,7 +75,7 @@ impl<const FLAW: u8> PathDriver for Broken<FLAW> {
     }
 }
 
-/// What it is that does not hold.
+/// The claim that does not hold.
 #[track_caller]
 fn fails(lemma: fn(&mut ChoiceOdometer) -> CaseResult) -> &'static str {
     ChoiceOdometer::exhaust(lemma, &mut |_| {}).expect_err("the lemma fails").claim
@@ -118,7 +118,7 @@ fn whatever_may_go_on_for_ever_is_noticed() {
     assert_eq!(fails(always_ends::<_, Broken<UNKNOWN_FOR_EVER>, 0, 1>), claim);
     let claim = "it gives up when nothing is carried out";
     assert_eq!(fails(always_ends::<_, Broken<STALLED_FOR_EVER>, 0, 1>), claim);
-    let claim = "it gets somewhere";
+    let claim = "it makes progress";
     assert_eq!(fails(always_ends::<_, Broken<IDLE_FOR_EVER>, 0, 1>), claim);
 }
 
