@@ -52,5 +52,7 @@ pub mod percept;
 pub mod trace;
 pub mod world;
 
+mod union_find;
+
 #[cfg(test)]
 mod any_graph;

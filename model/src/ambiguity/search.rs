@@ -5,8 +5,6 @@
 
 use std::ops::ControlFlow;
 
-use petgraph::unionfind::UnionFind;
-
 use super::{
     AmbiguousGroup, Comparison, Findings, PlacedWorld, SizeFindings, Unfinished,
     findings::rank,
@@ -20,6 +18,7 @@ use crate::{
     },
     isomorphism::{as_discovered, canonical, code},
     marker::Marker,
+    union_find::UnionFind,
     world::State,
 };
 
@@ -125,7 +124,7 @@ impl AmbiguitySearch {
     /// For each placed world of a graph the facing darts that place the marker so, the first one
     /// first, in the order of the first.
     fn placings(&self, graph: &EmbeddedGraph, automorphisms: u32) -> Vec<Vec<Dart>> {
-        let mut alike = UnionFind::<u32>::new(graph.dart_count());
+        let mut alike = UnionFind::new(graph.dart_count());
         for dart in graph.darts() {
             alike.union(dart.0, self.marker.first_alike(graph, dart).0);
         }
@@ -137,7 +136,7 @@ impl AmbiguitySearch {
         let mut places: Vec<Vec<Dart>> = Vec::new();
         let mut place_of = vec![None; graph.dart_count()];
         for dart in graph.darts() {
-            let root = alike.find_mut(dart.0) as usize;
+            let root = alike.find(dart.0) as usize;
             let place = *place_of[root].get_or_insert_with(|| {
                 places.push(Vec::new());
                 places.len() - 1

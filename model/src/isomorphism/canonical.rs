@@ -3,10 +3,11 @@
 
 use std::cmp::Ordering;
 
-use petgraph::unionfind::UnionFind;
-
 use super::code::{Numbering, StartCode};
-use crate::embedded_graph::{Dart, EmbeddedGraph};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    union_find::UnionFind,
+};
 
 /// What is the same for all isomorphic embedded graphs, and where it is found in this one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,12 +34,12 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut rival = Numbering::new(graph);
     let mut code = vec![best.begin(graph, Dart(0))];
     code.extend(std::iter::from_fn(|| best.next_word(graph)));
-    let mut orbits = UnionFind::<u32>::new(graph.dart_count());
+    let mut orbits = UnionFind::new(graph.dart_count());
     let mut tried = vec![false; graph.dart_count()];
     tried[0] = true;
     for dart in graph.darts().skip(1) {
         // An automorphism takes it to a dart that has competed already.
-        if std::mem::replace(&mut tried[orbits.find_mut(dart.0) as usize], true) {
+        if std::mem::replace(&mut tried[orbits.find(dart.0) as usize], true) {
             continue;
         }
         let mut place = 0;
@@ -63,15 +64,15 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
             }
             Ordering::Equal => {
                 for (one, other) in best.order.iter().zip(&rival.order) {
-                    let trod = tried[orbits.find_mut(one.0) as usize]
-                        || tried[orbits.find_mut(other.0) as usize];
+                    let trod =
+                        tried[orbits.find(one.0) as usize] || tried[orbits.find(other.0) as usize];
                     orbits.union(one.0, other.0);
-                    tried[orbits.find_mut(one.0) as usize] = trod;
+                    tried[orbits.find(one.0) as usize] = trod;
                 }
             }
         }
     }
-    let root = orbits.find_mut(best.order[0].0);
+    let root = orbits.find(best.order[0].0);
     let automorphisms = graph.darts().filter(|dart| orbits.find(dart.0) == root).count();
     let mut least = vec![None; graph.dart_count()];
     let orbit = graph
