@@ -205,7 +205,7 @@ mod tests {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
-        let told = |setting: &SimulationConfig| {
+        let outcome = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
             run(&plan, facing, robot, NoSensor, (), DARTS).outcome().to_string()
         };
@@ -214,18 +214,18 @@ mod tests {
             (FaultKind::Blocked, "3 commands in a row were not carried out"),
         ] {
             setting.faults = vec![RobotFault::at(kind, 20)];
-            let told = told(&setting);
+            let text = outcome(&setting);
             assert!(
-                told.contains(why) && told.starts_with("the robot gave up: on move "),
-                "{told}"
+                text.contains(why) && text.starts_with("the robot gave up: on move "),
+                "{text}"
             );
         }
         setting.faults =
             vec![RobotFault { lasting: 100, ..RobotFault::at(FaultKind::Dropped, 20) }];
-        assert!(told(&setting).contains("the camera gives no picture"));
+        assert!(outcome(&setting).contains("the camera gives no picture"));
         for kind in [FaultKind::Dropped, FaultKind::Late, FaultKind::Ignored, FaultKind::Corrupt] {
             setting.faults = vec![RobotFault::at(kind, 20)];
-            assert_eq!(told(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
+            assert_eq!(outcome(&setting), RunOutcome::Right.to_string(), "{}", kind.name());
         }
     }
 }

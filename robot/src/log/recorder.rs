@@ -175,16 +175,21 @@ fn entries(run: &messages::Run) -> BTreeMap<String, String> {
 mod tests {
     use std::io;
 
+    use image::{ImageFormat, RgbImage};
     use mcap::MessageStream;
-    use toposlam_model::mapping::MappingError;
+    use toposlam_model::{
+        driving::scene::Scene,
+        mapping::{Exploration, MappingError},
+    };
 
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},
-        explorer::ExplorerError,
-        record::NoSensor,
+        explorer::{Explorer, ExplorerError},
+        record::{CameraImage, DECODED, FrameSensor, NoSensor, SensingError},
+        robot::{Reckoned, Robot, RobotError},
         run::{Run, run},
-        simulator::{FaultKind, RobotFault, SimulationConfig},
+        simulator::{FaultKind, RobotFault, SimulatedRobot, SimulationConfig},
     };
 
     /// A run on shape 6, perhaps with a fault, and its log.
@@ -260,6 +265,70 @@ mod tests {
         let text = String::from_utf8_lossy(body);
         assert!(topic == "/toposlam/end" && text.contains("gave-up\0"), "{text}");
         assert!(text.contains("3 commands in a row were not carried out"), "{text}");
+    }
+
+    /// A simulated robot without a camera image, to which the test adds one.
+    struct WithImages(SimulatedRobot);
+
+    impl Robot for WithImages {
+        fn capture(&mut self) -> Result<Frame, RobotError> {
+            let frame = self.0.capture()?;
+            let mut file = io::Cursor::new(Vec::new());
+            let colour = image::Rgb([frame.id as u8; 3]);
+            RgbImage::from_pixel(64, 48, colour).write_to(&mut file, ImageFormat::Png).unwrap();
+            Ok(Frame { image: Some(CameraImage::encoded(file.into_inner())), ..frame })
+        }
+
+        fn turn(&mut self, angle: f64) -> Result<(), RobotError> {
+            self.0.turn(angle)
+        }
+
+        fn forward(&mut self, distance: f64) -> Result<(), RobotError> {
+            self.0.forward(distance)
+        }
+
+        fn odometry(&self) -> Reckoned {
+            self.0.odometry()
+        }
+    }
+
+    /// Needs the pixels of each frame, as sensing and the page of a run do.
+    #[derive(Default)]
+    struct Pixels(u64);
+
+    impl FrameSensor for Pixels {
+        fn scene(&mut self, frame: &Frame) -> Result<Scene, SensingError> {
+            frame.image.as_ref().unwrap().pixels()?;
+            NoSensor.scene(frame)
+        }
+    }
+
+    impl RunObserver for Pixels {
+        fn event(&mut self, event: &Event) {
+            if let EventKind::Frame(frame) = &event.kind {
+                frame.image.as_ref().unwrap().pixels().unwrap();
+                self.0 += 1;
+            }
+        }
+    }
+
+    #[test]
+    fn a_frame_is_decoded_once_for_sensing_the_log_and_the_page() {
+        let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-6").unwrap();
+        let facing = starts_of(&plan)[0];
+        let robot = WithImages(SimulationConfig::at_start(plan, facing, 5).by_scene());
+        let camera = Some(Camera::superscout().sized([64, 48]));
+        let mut log = Vec::new();
+        let mut recorder = Recorder::new(&mut log, &messages::Run::default(), camera).unwrap();
+        let mut page = Pixels::default();
+        let decoded = DECODED.get();
+        let mut explorer = Explorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
+        explorer.map(&mut Exploration::new(200)).unwrap();
+        assert!(page.0 > 60, "{}", page.0);
+        assert_eq!(DECODED.get() - decoded, page.0);
+        recorder.finish().unwrap();
+        let annotated = messages(&log).iter().filter(|(topic, ..)| topic == ANNOTATED).count();
+        assert_eq!(annotated as u64, page.0);
     }
 
     #[test]

@@ -87,7 +87,7 @@ pub struct Arrival {
 }
 
 impl Arrival {
-    /// The arrival of a robot after so many moves.
+    /// The arrival of a robot after a number of moves.
     #[must_use]
     pub fn new(moves: u64, at: &Standing) -> Self {
         let &Standing { form, percept, entry } = at;

@@ -25,7 +25,7 @@ impl MapRecord {
         Self::new(journey.moves(), journey.map(), journey.robot())
     }
 
-    /// A map after so many moves, and the dart by which the robot came in.
+    /// A map after a number of moves, and the dart by which the robot came in.
     #[must_use]
     pub fn new(moves: u64, map: &PartialMap, robot: Dart) -> Self {
         let darts = map.vertices().flat_map(|vertex| map.darts_of(vertex));

@@ -8,6 +8,8 @@ mod observer;
 mod sensor;
 
 pub use event::{Arrival, Event, EventId, EventKind, RunEnd, RunEnding, nanoseconds};
+#[cfg(test)]
+pub(crate) use frame::DECODED;
 pub use frame::{CameraImage, Frame};
 pub use map::MapRecord;
 pub use observer::RunObserver;

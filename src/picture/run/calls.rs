@@ -1,5 +1,5 @@
-//! What the robot made of each junction: a dot where it stood, a cross if that is not as the
-//! specification says; and beside the junction how many doors it counted there.
+//! The junctions as the robot saw them: a dot where it stood, a cross if the arrival is not as specified,
+//! and beside the junction the number of doors that it counted.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +12,18 @@ use super::{
 };
 use crate::{journal::JunctionCall, model::embedded_graph::Vertex};
 
-/// The radius of a badge, and from one to the next.
+/// The radius of a badge, and the distance between two badges.
 const BADGE: f64 = 8.0;
 const APART: f64 = 17.5;
 
-/// How many doors were counted at a junction, each number once, and once more where it was wrong.
+/// The numbers of doors counted at each junction: each number once, and once more if it was wrong.
 pub(super) struct Badges(Vec<Badge>);
 
 struct Badge {
     at: Point,
     degree: u32,
     conforms: bool,
-    /// After so many pictures it was counted first.
+    /// The number of frames before it was first counted.
     rounds: usize,
 }
 
@@ -76,7 +76,7 @@ impl Badges {
     }
 }
 
-/// Writes where the robot stood at each call.
+/// Draws where the robot stood at each call.
 pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[JunctionCall], shift: Point) {
     for call in calls {
         let at = ground.at(call.pose.position) + shift;
@@ -96,7 +96,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, calls: &[JunctionCall], sh
     }
 }
 
-/// The junction in whose square the robot stood.
+/// The junction at which the robot stood.
 fn junction(ground: &Ground, call: &JunctionCall) -> Option<Vertex> {
     let at = ground.at(call.pose.position);
     let off = |vertex: Vertex| {
@@ -106,7 +106,7 @@ fn junction(ground: &Ground, call: &JunctionCall) -> Option<Vertex> {
     ground.plan.graph().vertices().find(|&vertex| off(vertex) <= ground.half())
 }
 
-/// The place of a junction's badge of this number: along the walls that it has, away from its doors.
+/// The position of a junction's n-th badge: along its walls, away from its doors.
 fn beside(ground: &Ground, vertex: Vertex, number: f64) -> Point {
     let closed: Vec<_> = ground.closed(vertex).map(along).collect();
     let whole = closed.iter().fold(Point::default(), |sum, &side| sum + side);

@@ -1,5 +1,5 @@
-//! A small run, for tests: two hallways that meet at an L, of which the robot takes the northern one, and
-//! comes back.
+//! A small run, for tests: two hallways meet at an L; the robot drives through the northern one and comes
+//! back.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// Seven pictures, of which the last three are the same; the third call is wrong.
+/// Seven frames; the last three pictures are the same, and the third call is wrong.
 pub(crate) fn journal() -> Journal {
     let places = [("corner", [0.0, 0.0]), ("north", [0.0, 4.0]), ("east", [4.0, 0.0])];
     let places = places.map(|(name, place)| (name.to_owned(), place));

@@ -14,17 +14,17 @@ use crate::model::{
     floor_plan::{Direction, FloorPlan},
 };
 
-/// The longer side that a plan is given, in units, and the bounds of a metre.
+/// The longer side of a drawing, in units, and the bounds of the scale, in units per metre.
 const SIDE: f64 = 620.0;
 const METRE: [f64; 2] = [36.0, 70.0];
-/// The bounds of the font size of names, and how far from the wall they stand.
+/// The bounds of the font size of names, and their distance from the wall.
 const NAME: [f64; 2] = [11.0, 16.0];
 const AWAY: f64 = 5.0;
 
 /// A floor plan at a scale.
 pub(super) struct Ground<'a> {
     pub(super) plan: &'a FloorPlan,
-    /// Units of the picture in a metre.
+    /// Units of the drawing per metre.
     pub(super) metre: f64,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Ground<'a> {
         Self { plan, metre: (SIDE / sides.x.max(sides.y)).clamp(METRE[0], METRE[1]) }
     }
 
-    /// Where a position of the plan is in the picture.
+    /// A position of the plan in the drawing.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Point {
         Point::new(x * self.metre, -y * self.metre)
     }
@@ -45,7 +45,7 @@ impl<'a> Ground<'a> {
         self.at(self.plan.junction(vertex).position)
     }
 
-    /// From the middle of a hallway to its walls.
+    /// Half the width of a hallway.
     pub(super) fn half(&self) -> f64 {
         self.plan.hallway_width() / 2.0 * self.metre
     }
@@ -66,7 +66,7 @@ impl<'a> Ground<'a> {
             .map(|floor| Extent::of([floor.least, floor.greatest].map(|it| self.at(it))))
     }
 
-    /// The name of each junction: outside, at a side without a door, above or below if there is such.
+    /// The name of each junction: outside, at a side without a door, above or below if possible.
     fn names(&self) -> impl Iterator<Item = Name<'_>> {
         // So that it can be read when the whole of a large picture is seen.
         let size = (self.floor().size().x / 90.0).clamp(NAME[0], NAME[1]);
@@ -84,7 +84,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// The box around all floor.
+    /// The bounding box of the floor.
     fn floor(&self) -> Extent {
         let mut extent = Extent::EMPTY;
         for hallway in self.hallways() {
@@ -124,7 +124,7 @@ impl<'a> Ground<'a> {
         page.line("</g>");
     }
 
-    /// The marker: a rectangle that is centred on the turning point and points along a hallway.
+    /// The marker: a rectangle, centred on the turning point, that points along a hallway.
     pub(super) fn write_marker(&self, page: &mut Page, facing: Dart, shift: Point) {
         let ahead = along(self.plan.direction(facing));
         let middle = self.turning_point(self.plan.graph().vertex(facing)) + shift;
@@ -148,9 +148,9 @@ impl<'a> Ground<'a> {
 /// A junction's name, beside its wall.
 struct Name<'a> {
     text: &'a str,
-    /// Where it begins, away from the wall.
+    /// Its anchor.
     at: Point,
-    /// Away from the wall, of length 1.
+    /// The unit vector away from the wall.
     out: Point,
     size: f64,
 }
@@ -180,7 +180,7 @@ impl Name<'_> {
     }
 }
 
-/// The step of length 1 in a direction of the plan.
+/// The unit vector of a direction of the plan.
 pub(super) fn along(direction: Direction) -> Point {
     let [x, y] = direction.vector();
     Point::new(x, -y)

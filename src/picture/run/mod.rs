@@ -1,8 +1,8 @@
-//! A run on the floor: the plan, the marker, where the robot was, and what it made of each junction.
+//! A run on the floor: the plan, the marker, the robot's path, and the junctions as the robot saw them.
 //! Section 6, Figure 11.
 //!
-//! What belongs to a picture or a move says so (`data-rounds`, `data-moves`), so that the page of a run
-//! can show the drawing as it was at any time.
+//! Elements of a frame or a move have the attribute `data-rounds` or `data-moves`, so that the page of a
+//! run can show the drawing at any time.
 
 mod calls;
 #[cfg(test)]
@@ -26,11 +26,11 @@ pub fn run_svg(journal: &Journal) -> String {
     let extent = drawing.extent();
     let metre = Some(drawing.ground.metre);
     let sheet = Sheet { title: &journal.name, caption: &journal.ending, extent, metre };
-    let legend = sheet.legend(says(journal));
+    let legend = sheet.legend(legend(journal));
     sheet.document(&legend, None, |page, shift| drawing.write(page, shift))
 }
 
-/// The drawing alone, and where each picture was taken in it.
+/// The drawing alone, with the positions of the frames.
 pub(crate) fn run_drawing(journal: &Journal) -> Drawn {
     let drawing = RunDrawing::of(journal);
     let sheet = Sheet { title: "", caption: "", extent: drawing.extent(), metre: None };
@@ -46,17 +46,17 @@ pub(crate) fn run_drawing(journal: &Journal) -> Drawn {
     Drawn { svg, places: places.collect(), metre: drawing.ground.metre }
 }
 
-/// A run as it is drawn.
+/// A drawing of a run.
 pub(crate) struct Drawn {
     /// The SVG document.
     pub(crate) svg: String,
-    /// Where each picture was taken, in units of the drawing, x to the right and y down.
+    /// The position of each frame, in units of the drawing, x to the right and y down.
     pub(crate) places: Vec<[f64; 2]>,
-    /// Units of the drawing in a metre.
+    /// Units of the drawing per metre.
     pub(crate) metre: f64,
 }
 
-/// Everything at its place.
+/// Draws everything.
 struct RunDrawing<'a> {
     journal: &'a Journal,
     ground: Ground<'a>,
@@ -92,17 +92,17 @@ impl<'a> RunDrawing<'a> {
     }
 }
 
-/// What the signs mean.
-fn says(journal: &Journal) -> Vec<String> {
-    let mut says = vec![
-        "line: where the robot was, light at first and dark at last".to_owned(),
-        "along a hallway: the moves through it, on the right of their way".to_owned(),
-        "in a circle: the doors that the robot counted at the junction".to_owned(),
+/// The meaning of the signs.
+fn legend(journal: &Journal) -> Vec<String> {
+    let mut lines = vec![
+        "line: the robot's path, from light at the start to dark at the end".to_owned(),
+        "along a hallway: the numbers of the moves through it".to_owned(),
+        "in a circle: the number of doors that the robot counted there".to_owned(),
     ];
     if journal.calls.iter().any(|call| !call.conforms) {
-        says.push("a red cross: not as the specification says".to_owned());
+        lines.push("a red cross: not as specified".to_owned());
     }
-    says
+    lines
 }
 
 #[cfg(test)]
@@ -187,17 +187,17 @@ mod tests {
     }
 
     #[test]
-    fn the_numbers_of_moves_stand_on_the_right_of_their_way() {
+    fn the_numbers_of_moves_are_on_the_right_of_the_path() {
         let drawn = run_drawing(&example::journal());
         let document = Document::parse(&drawn.svg).unwrap();
         let east_of_hallway =
             |text: &Node| text.attribute("x").unwrap().parse::<f64>().unwrap() > drawn.places[0][0];
         let passes = of_class(&document, "passes");
-        let told: Vec<_> = passes
+        let numbers: Vec<_> = passes
             .iter()
             .map(|text| (text.first_element_child().unwrap().text(), east_of_hallway(text)))
             .collect();
-        assert_eq!(told, [(Some("1"), true), (Some("2"), false)]);
+        assert_eq!(numbers, [(Some("1"), true), (Some("2"), false)]);
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Which moves went through which hallway: their numbers, on the right of their way, so that a hallway
-//! through which the robot went often can still be read.
+//! The numbers of the moves through each hallway, on the right of the robot's path.
 
 use std::fmt::Write;
 
@@ -13,13 +12,13 @@ use super::{
 };
 use crate::{journal::FrameEntry, model::embedded_graph::Dart};
 
-/// The font size of the numbers, and from line to line.
+/// The font size of the numbers, and the height of a line.
 const SIZE: f64 = 9.5;
 const LINE: f64 = 11.5;
-/// Room to the walls and to the middle of the hallway.
+/// The margin to the walls and to the middle of the hallway.
 const CLEAR: f64 = 6.0;
 
-/// Writes the numbers of all moves.
+/// Draws the numbers of all moves.
 pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
     let graph = ground.plan.graph();
     let mut through = vec![Vec::new(); graph.dart_count()];
@@ -35,7 +34,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shi
     page.line("</g>");
 }
 
-/// The dart by which the robot went off to the other end of its hallway, if it got there.
+/// The dart by which the robot left, if it reached the other end of the hallway.
 fn passed(ground: &Ground, rounds: &[FrameEntry]) -> Option<Dart> {
     let graph = ground.plan.graph();
     let near = |round: &FrameEntry, dart: Dart| {
@@ -47,7 +46,7 @@ fn passed(ground: &Ground, rounds: &[FrameEntry]) -> Option<Dart> {
     graph.darts().find(between)
 }
 
-/// Writes the numbers of the moves that set out by a dart: in lines, at the middle of the hallway.
+/// Draws the numbers of the moves that left by a dart: in lines, at the middle of the hallway.
 fn write_numbers(page: &mut Page, ground: &Ground, dart: Dart, moves: &[u64], shift: Point) {
     if moves.is_empty() {
         return;

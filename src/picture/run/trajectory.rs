@@ -1,4 +1,4 @@
-//! Where the robot was: a line through the places of all pictures, light at first and dark at last.
+//! The robot's path: a line through the positions of all frames, from light to dark.
 
 use std::fmt::Write;
 
@@ -11,12 +11,12 @@ use super::{
 };
 use crate::journal::FrameEntry;
 
-/// How many colours the line has at most.
+/// The most colours of the line.
 const COLOURS: usize = 40;
-/// Red, green and blue at first, half-way and at last.
+/// Red, green and blue at the start, half-way and at the end.
 const RAMP: [[f64; 3]; 3] = [[126.0, 187.0, 234.0], [44.0, 116.0, 186.0], [9.0, 32.0, 66.0]];
 
-/// Writes the line: a piece for each colour, which begins where the last one ends.
+/// Draws the line: one piece for each colour, each from the end of the last.
 pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shift: Point) {
     page.line(
         "<g fill=\"none\" stroke-width=\"1.7\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
@@ -38,7 +38,8 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shi
     page.line("</g>");
 }
 
-/// The first and the last point of each piece of a line through so many, and its share of the time.
+/// The first and the last point of each piece of a line through a number of points, and its share of the
+/// time.
 fn pieces(points: usize) -> impl Iterator<Item = (usize, usize, f64)> {
     let steps = points.saturating_sub(1);
     let count = steps.min(COLOURS);
