@@ -1,4 +1,4 @@
-//! Can robots in two placed worlds tell that these are two?
+//! Are two placed worlds distinguishable?
 
 use std::{cell::OnceCell, collections::HashSet};
 
@@ -22,12 +22,12 @@ pub struct Comparison<'a> {
     marker: &'a dyn Marker,
     worlds: [PlacedRobot<'a>; 2],
     states: [States; 2],
-    /// The class of each state of the first and then of the second world, once somebody asked.
+    /// The class of each state of the first and then of the second world, computed when needed.
     class: OnceCell<Vec<u32>>,
 }
 
 impl<'a> Comparison<'a> {
-    /// Compares two graphs, in each of which such a marker was placed by the facing dart.
+    /// Compares two graphs. The facing darts place the marker in each.
     #[must_use]
     pub fn new(
         marker: &'a dyn Marker,
@@ -68,7 +68,7 @@ impl<'a> Comparison<'a> {
         [begun(one, poses[0]), begun(other, poses[1])]
     }
 
-    /// Whether robots that begin so can never tell the worlds apart.
+    /// Whether no walk from these starts distinguishes the worlds.
     // paper: marker.undirected-insufficient, marker.none-cycles
     #[must_use]
     pub fn indistinguishable(&self, poses: [Dart; 2]) -> bool {

@@ -1,4 +1,4 @@
-//! What a search finds: how many worlds a marker cannot tell apart, and which.
+//! What a search finds: the worlds that a marker does not distinguish.
 
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ impl PlacedWorld {
     /// The facing dart by which the marker was placed.
     pub const FACING: Dart = Dart(0);
 
-    /// The order in which worlds are told: fewer edges first, then the lesser code.
+    /// The order of worlds in a report: fewer edges first, then the lesser code.
     pub(super) fn rank(&self) -> (usize, &StartCode) {
         (self.graph.edge_count(), &self.code)
     }
@@ -44,18 +44,18 @@ impl AmbiguousGroup {
     }
 }
 
-/// What was found among the worlds with a number of edges.
+/// The findings among the worlds with one number of edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SizeFindings {
     /// The number of edges.
     pub edges: usize,
     /// All placed worlds.
     pub placed_worlds: u64,
-    /// Those that share all percepts with another placed world of the sizes searched.
+    /// The placed worlds that are indistinguishable from another of the sizes searched.
     pub ambiguous: u64,
 }
 
-/// What a search found.
+/// The findings of a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Findings {
     /// For each number of edges from 1.
@@ -64,14 +64,14 @@ pub struct Findings {
     pub groups: Vec<AmbiguousGroup>,
 }
 
-/// Why a search found nothing that could be told.
+/// Why a search has no findings.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Unfinished {
-    /// It was broken off: what it has seen is not all.
-    #[error("the search was broken off")]
+    /// It was interrupted: it is not complete.
+    #[error("the search was interrupted")]
     Interrupted,
-    /// Two worlds have the same quotient, and yet no relation that can be verified. This is a fault
-    /// of the search.
+    /// Two worlds have the same quotient, but no relation that can be verified. This is a bug in the
+    /// search.
     #[error(
         "two worlds with {} and {} edges have the same quotient and are not confirmed to be \
          indistinguishable: the search is at fault",
@@ -81,8 +81,8 @@ pub enum Unfinished {
 }
 
 impl Findings {
-    /// The smallest pair: that whose larger world has the fewest edges; then whose smaller world
-    /// has; then the one with the least codes.
+    /// The smallest pair: the one with the fewest edges in its larger world; then in its smaller
+    /// world; then with the least codes.
     #[must_use]
     pub fn smallest(&self) -> Option<[&PlacedWorld; 2]> {
         self.groups.first()?.smallest()

@@ -1,4 +1,4 @@
-//! The coarsest partition of states that a robot can tell apart: Hopcroft's algorithm.
+//! The coarsest partition of states into indistinguishable ones: Hopcroft's algorithm.
 //!
 //! J. Hopcroft, "An n log n algorithm for minimizing states in a finite automaton" (1971), with the
 //! refinable partitions of A. Valmari and P. Lehtinen (2008).
@@ -136,7 +136,7 @@ impl Partition {
         self.marked[class] += 1;
     }
 
-    /// Splits the marked states off one class that has both marked and unmarked ones, and answers
+    /// Splits the marked states off one class that has both marked and unmarked ones, and returns
     /// it and the new class; `None` when no class is left to split. No state is marked then.
     fn split_touched(&mut self) -> Option<(u32, u32)> {
         while let Some(class) = self.touched.pop() {

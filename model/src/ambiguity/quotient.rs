@@ -1,11 +1,11 @@
-//! The quotient of a placed world: its states, as far as a robot can tell them apart.
+//! The quotient of a placed world: its states up to indistinguishability.
 
 use super::{
     partition::coarsest,
     space::{Space, StateLabel},
 };
 
-/// What is left of a placed world when states that no robot can tell apart are one.
+/// A placed world with indistinguishable states identified.
 ///
 /// It is no embedded graph: crossing may stay in the same class, and the degree is but a label. No
 /// two of its classes can be told apart by nothing, so it has no automorphism.
@@ -37,12 +37,12 @@ impl Quotient {
         Self { labels, maps, class }
     }
 
-    /// Whether the robot can tell all states apart.
+    /// Whether no two states are indistinguishable.
     pub(super) fn is_discrete(&self) -> bool {
         self.labels.len() == self.class.len()
     }
 
-    /// The code of the class of a state, which is told by its number.
+    /// The code of the class of a state, given by the state's number.
     pub(super) fn code(&self, state: u32) -> QuotientCode {
         const UNMET: u32 = u32::MAX;
         let mut number = vec![UNMET; self.labels.len()];

@@ -1,7 +1,7 @@
 //! All worlds of a class that a marker cannot tell apart, up to a number of edges.
 //!
-//! Placed worlds are indistinguishable exactly when their quotients are the same; so one pass over
-//! all worlds and a grouping find them, without holding each against each.
+//! Placed worlds are indistinguishable exactly when their quotients are equal. So one pass over all
+//! worlds and a grouping find them, without comparing each pair.
 
 use std::ops::ControlFlow;
 
@@ -30,11 +30,11 @@ pub struct AmbiguitySearch {
     marker: &'static dyn Marker,
 }
 
-/// What one part of the search has seen.
+/// The result of one part of the search.
 #[derive(Default)]
 struct Seen {
     placed_worlds: u64,
-    /// Those that may be ambiguous, with the code of their quotient.
+    /// The worlds that may be ambiguous, with the codes of their quotients.
     candidates: Vec<(QuotientCode, PlacedWorld)>,
     interrupted: bool,
 }
@@ -43,7 +43,7 @@ impl AmbiguitySearch {
     /// A search over the worlds with 1 to `edges` edges.
     ///
     /// # Errors
-    /// Where they cannot be enumerated.
+    /// Returns an error if they cannot be enumerated.
     pub fn new(class: Class, edges: usize, marker: &'static dyn Marker) -> Result<Self, SizeError> {
         // A number of edges that is refused is refused before those below it.
         Enumeration::new(Each::World, class, edges)?;
@@ -54,7 +54,7 @@ impl AmbiguitySearch {
     /// Makes the search. The result does not depend on the number of threads.
     ///
     /// # Errors
-    /// Where the watch broke it off, or a find is not confirmed.
+    /// Returns an error if the watch interrupts the search, or a pair is not confirmed.
     pub fn run(&self, watch: &impl Watch) -> Result<Findings, Unfinished> {
         let mut sizes = Vec::new();
         let mut candidates = Vec::new();
@@ -77,7 +77,7 @@ impl AmbiguitySearch {
         let look = |part: &EnumerationPart| {
             let mut seen = Seen::default();
             let end = part.for_each(&mut |found| {
-                self.look_at_graph(found, &mut seen);
+                self.search_graph(found, &mut seen);
                 if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
             seen.interrupted = end.is_break();
@@ -92,8 +92,8 @@ impl AmbiguitySearch {
         in_parts(&worlds.parts(), watch, Seen::default, look, |seen| seen.placed_worlds, merge)
     }
 
-    /// Looks at all ways to place the marker in a graph.
-    fn look_at_graph(&self, found: EnumeratedGraph, seen: &mut Seen) {
+    /// Searches all ways to place the marker in a graph.
+    fn search_graph(&self, found: EnumeratedGraph, seen: &mut Seen) {
         let EnumeratedGraph { graph, automorphisms } = found;
         let mut refined: Option<(States, Quotient)> = None;
         for places in self.placings(graph, automorphisms) {
@@ -106,8 +106,8 @@ impl AmbiguitySearch {
                 let quotient = Quotient::of(&Space::of(graph, self.marker, &states));
                 (states, quotient)
             });
-            // A world all of whose states can be told apart shares its percepts only with its
-            // covers, which have at least twice as many edges.
+            // A world without two indistinguishable states shares its percepts only with its covers,
+            // which have at least twice as many edges.
             if !quotient.is_discrete() || 2 * graph.edge_count() <= self.sizes.len() {
                 let placed_at = Some(self.marker.first_alike(graph, facing));
                 let begun = |&pose| states.number(State { pose, placed: placed_at });
@@ -121,8 +121,8 @@ impl AmbiguitySearch {
         }
     }
 
-    /// For each placed world of a graph the facing darts that place the marker so, the first one
-    /// first, in the order of the first.
+    /// For each placed world of a graph, the facing darts that place the marker so. Both the darts and
+    /// the worlds are in the order of the darts' numbers.
     fn placings(&self, graph: &EmbeddedGraph, automorphisms: u32) -> Vec<Vec<Dart>> {
         let mut alike = UnionFind::new(graph.dart_count());
         for dart in graph.darts() {
@@ -146,8 +146,8 @@ impl AmbiguitySearch {
         places
     }
 
-    /// The groups of candidates that have the same code, each world of which is confirmed by a
-    /// relation with the first.
+    /// The groups of candidates with the same code. Each world is confirmed by a relation with the
+    /// first of its group.
     fn grouped(
         &self,
         mut candidates: Vec<(QuotientCode, PlacedWorld)>,
@@ -181,7 +181,7 @@ impl AmbiguitySearch {
     }
 }
 
-/// Whether a relation, which is verified, shows that two placed worlds are indistinguishable.
+/// Whether a verified relation shows that two placed worlds are indistinguishable.
 fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
     let start = PlacedWorld::FACING;
     let comparison = Comparison::new(marker, (&one.graph, start), (&other.graph, start));
@@ -192,7 +192,7 @@ fn is_confirmed(marker: &dyn Marker, [one, other]: [&PlacedWorld; 2]) -> bool {
     })
 }
 
-/// The placed world that all these facing darts make.
+/// The placed world of these facing darts, which all place the marker alike.
 fn placed(graph: &EmbeddedGraph, places: &[Dart]) -> PlacedWorld {
     let least = places.iter().map(|&facing| (code(graph, facing), facing)).min();
     let (code, facing) = least.unwrap_or_else(|| (code(graph, Dart(0)), Dart(0)));

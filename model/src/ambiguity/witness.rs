@@ -35,7 +35,7 @@ impl Relation {
         let mut pairs = self.0.clone();
         pairs.sort_unstable();
         let among = |pair: (State, State)| pairs.binary_search(&pair).is_ok();
-        // A claim may speak of anything.
+        // A claim may name states that do not exist.
         let exists = |world: &GraphWorld<'_, M>, state: State| {
             let is_dart = |dart: Dart| dart.at() < world.graph().dart_count();
             is_dart(state.pose) && state.placed.map_or(world.marker().is_movable(), is_dart)
@@ -83,7 +83,7 @@ impl Walk {
 /// What a robot perceives: at the start, and after each action.
 ///
 /// # Errors
-/// Where an action is impossible.
+/// Returns an error if an action is impossible.
 pub fn replay<M: Marker>(
     mut world: GraphWorld<'_, M>,
     actions: &[Action],

@@ -1,4 +1,4 @@
-//! What can be checked: an algorithm that maps worlds with a marker. Section 2.3.
+//! The mapping algorithms that a sweep checks. Section 2.3.
 
 use std::fmt;
 
@@ -14,16 +14,16 @@ use crate::{
     world::{GraphWorld, Refused},
 };
 
-/// An algorithm that maps worlds; the check is run on those of the paper, and its tests on broken
-/// variants.
+/// A mapping algorithm of this crate, or a variant of one. For any other algorithm implement
+/// [`Explorer`](super::Explorer).
 pub trait Algorithm: Sync {
     /// The marker with which it maps.
     type Marker: Marker + Clone + Default;
 
-    /// What it keeps of a run.
+    /// The state of a run.
     type State: RunState;
 
-    /// What it is called in a report.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// The order of its cost.
@@ -32,10 +32,11 @@ pub trait Algorithm: Sync {
     /// The most moves that it may make in a world of this size.
     fn move_bound(&self, edges: usize, vertices: usize) -> u64;
 
-    /// Maps a world, with the default choices; afterwards the state holds map, pose and moves.
+    /// Maps a world, with the default choices. Afterwards the state holds the map, the pose and the
+    /// moves.
     ///
     /// # Errors
-    /// Those of the algorithm.
+    /// Returns the errors of the algorithm.
     fn run<'g>(
         &self,
         world: &mut GraphWorld<'g, Self::Marker>,
@@ -43,10 +44,10 @@ pub trait Algorithm: Sync {
         observer: &mut impl Observer<GraphWorld<'g, Self::Marker>>,
     ) -> Result<(), MappingError<Refused>>;
 
-    /// The runs that are to be made of a start besides, judged; none, but with [`AllChoices`].
+    /// Makes and judges the other runs of a start. There are some with [`AllChoices`] only.
     ///
     /// # Errors
-    /// The first [`Flaw`].
+    /// Returns the first [`Flaw`].
     fn other_runs(
         &self,
         _graph: &EmbeddedGraph,
@@ -57,7 +58,7 @@ pub trait Algorithm: Sync {
     }
 }
 
-/// What an algorithm keeps of a run. All memory is kept from run to run.
+/// The state of a run. Memory is reused from run to run.
 pub trait RunState: Clone {
     /// A state ready for a run that may come to know at most `bound` darts.
     fn new(bound: usize) -> Self;
@@ -68,7 +69,7 @@ pub trait RunState: Clone {
     /// Forgets an earlier run.
     fn clear(&mut self);
 
-    /// What the robot knows, where it is in it, and how far it went.
+    /// The robot's map, its pose in the map and its moves.
     fn journey(&self) -> &Journey;
 }
 
@@ -106,7 +107,7 @@ pub enum CostOrder {
 }
 
 impl CostOrder {
-    /// What it is for a world of this size.
+    /// Its value for a world of this size.
     #[must_use]
     pub fn of(self, edges: f64, vertices: f64) -> f64 {
         match self {
@@ -130,7 +131,7 @@ pub trait OpenChoices: Algorithm<Marker = Directional, State = Exploration> {
     /// One step of it, from one choice to the next.
     ///
     /// # Errors
-    /// Those of [`step`].
+    /// Returns the errors of [`step`].
     fn step<'g>(
         &self,
         exploration: &mut Exploration,
@@ -179,13 +180,12 @@ impl Algorithm for Algorithm1 {
 
 impl OpenChoices for Algorithm1 {}
 
-/// Algorithm 1, or a variant of it, with the default choices, and then with every other resolution
-/// of what it leaves open.
+/// Algorithm 1, or a variant of it, with the default choices, and then with all choices.
 #[derive(Clone, Copy, Debug)]
 pub struct AllChoices<A> {
     /// The algorithm.
     pub algorithm: A,
-    /// How many states of one start may be explored.
+    /// The number of states of one start that may be explored.
     pub budget: u64,
 }
 

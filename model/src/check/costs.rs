@@ -31,7 +31,7 @@ impl Costs {
         (0..self.0.len() as u64 * 64).filter(|&cost| self.contains(cost))
     }
 
-    /// Whether a run can take so many moves.
+    /// Whether a run can take this number of moves.
     #[must_use]
     pub fn contains(&self, cost: u64) -> bool {
         self.0.get((cost / 64) as usize).is_some_and(|word| word >> (cost % 64) & 1 == 1)

@@ -26,19 +26,19 @@ pub struct EveryWay {
     pub complete: bool,
 }
 
-/// How many states of one start are explored where nobody says otherwise.
+/// The default number of states of one start that may be explored.
 pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
 
-/// The search is as deep as the world has edges. One with more is not begun: its states are beyond
-/// counting anyway.
+/// The search is as deep as the number of edges. A larger world is not searched: it has too many
+/// states anyway.
 const MAX_EDGES: usize = 100;
 
 /// Runs an algorithm on a start with all choices, and judges the end of every run. States are
-/// explored once, runs are counted. After `budget` states, those within a round (what is left of H)
-/// included, or when the watch says stop, no new one is begun.
+/// explored once, runs are counted. The search stops after `budget` states, including those within a
+/// round (the hypotheses that are left), or when the watch stops it.
 ///
 /// # Errors
-/// The first [`Flaw`].
+/// Returns the first [`Flaw`].
 pub fn every_way(
     algorithm: &impl OpenChoices,
     graph: &EmbeddedGraph,
@@ -71,14 +71,14 @@ pub fn every_way(
     }
 }
 
-/// What can come after a state: how many runs, and how many more moves they take.
+/// What can follow a state: the number of runs, and the moves that they still take.
 #[derive(Clone, Default)]
 struct Futures {
     runs: u128,
     costs: Costs,
 }
 
-/// What can come after each state of a round: the hypotheses that are left.
+/// What can follow each state of a round. A state is the hypotheses that are left.
 type Round = HashMap<Vec<Dart>, Futures>;
 
 impl Futures {
@@ -100,7 +100,7 @@ struct Search<'w, A, W> {
     /// States begun, at line 4 and at line 8.
     begun: u64,
     complete: bool,
-    /// For each state at line 4 what can come after it, and where the robot truly was.
+    /// For each state at line 4, what can follow it, and the robot's pose in the world.
     known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
     candidate: Candidate,
 }
@@ -141,7 +141,7 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
         Ok(futures)
     }
 
-    /// Every choice at line 9. What is left of H decides the state within the round.
+    /// Every choice at line 9. The hypotheses that are left are the state within the round.
     fn line_8(
         &mut self,
         world: &GraphWorld,
@@ -162,7 +162,7 @@ impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
         Ok(futures)
     }
 
-    /// What can come after a choice, and the moves of its step.
+    /// What can follow a choice, and the moves of its step.
     fn after(
         &mut self,
         choice: MappingChoice,

@@ -1,4 +1,4 @@
-//! Is a run right? Section 2.1 (the map is isomorphic to the world), Section 2.3.
+//! Judges a finished run. Section 2.1 (the map is isomorphic to the world), Section 2.3.
 
 use std::fmt;
 
@@ -12,32 +12,31 @@ use crate::{
     world::{GraphWorld, Refused},
 };
 
-/// What is wrong with a run. Darts of the map are numbered as discovered, those of the world as
-/// there.
+/// What is wrong with a run.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Flaw {
-    /// It did not come to an end: a door that does not exist, a contradiction, the bound.
+    /// It ended with an error: a door that does not exist, a contradiction, the bound.
     #[error(transparent)]
     Error(#[from] MappingError<Refused>),
     /// It ended with unexplored edges.
     #[error("it ended with {unexplored} edge ends unexplored")]
     Unfinished {
-        /// How many.
+        /// Their number.
         unexplored: u32,
     },
     /// The map is not isomorphic to the world, start to start.
     #[error("the map is not isomorphic to the world")]
     WrongMap,
-    /// The robot is not where it believes to be.
+    /// The robot is not where it believes it is.
     #[error(
-        "the robot believes to have come in by the map's dart {}, which is dart {} of the world, \
-         but has come in by dart {}",
+        "the robot believes it came in by the map's dart {}, which is dart {} of the world, but it \
+         came in by dart {}",
         believed.0, image.0, truly.0
     )]
     WrongPose {
         /// The pose in the map.
         believed: Dart,
-        /// The dart of the world that this is.
+        /// The image of that dart in the world.
         image: Dart,
         /// The pose in the world.
         truly: Dart,
@@ -71,10 +70,10 @@ impl From<Refused> for Flaw {
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is
-/// verified, and answered; the robot's pose is what it believes; the moves are within the bound.
+/// verified and returned; the robot's pose is what it believes; the moves are within the bound.
 ///
 /// # Errors
-/// The first [`Flaw`].
+/// Returns the first [`Flaw`].
 // paper: alg1.isomorphic
 pub fn judge<'c, A: Algorithm>(
     algorithm: &A,
@@ -116,7 +115,7 @@ pub(super) fn judge_map<'c>(
     Ok(bijection)
 }
 
-/// The first thing that a run added to its map and that is not so in the world.
+/// The first addition to the map that is not true of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FalseStep {
     /// The moves made by then.
@@ -143,8 +142,8 @@ impl fmt::Display for FalseStep {
     }
 }
 
-/// Runs an algorithm on a start, and answers the first step after which its map no longer embeds in
-/// the world; `None` if it always does.
+/// Runs an algorithm on a start, and returns the first step after which the map does not embed in the
+/// world; `None` if it always does.
 pub fn first_false_step<A: Algorithm>(
     algorithm: &A,
     graph: &EmbeddedGraph,
@@ -159,7 +158,7 @@ pub fn first_false_step<A: Algorithm>(
             first = Some(FalseStep { moves: journey.moves(), added });
         }
     };
-    // Whether it ends well does not matter here.
+    // An error at its end does not matter here.
     let mut world = GraphWorld::with_marker(graph, A::Marker::default(), facing);
     let _ = algorithm.run(&mut world, state, &mut watch);
     first

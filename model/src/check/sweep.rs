@@ -14,25 +14,25 @@ use crate::{
     isomorphism::{Candidate, canonical},
 };
 
-/// One of several disjoint shares of a check that together are the whole.
+/// One of `n` disjoint parts of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which, from 1.
+    /// Its number, from 1.
     index: usize,
-    /// Of how many.
+    /// The number of shards.
     of: usize,
 }
 
-/// Not a shard.
+/// The error for a text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is no shard; write i/n with i from 1 to n, as in 2/4")]
+#[error("`{0}` is not a shard; write i/n with i from 1 to n, for example 2/4")]
 pub struct ShardError(String);
 
 impl Shard {
-    /// The whole.
+    /// The whole check.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// What belongs to the shard, of the parts of an enumeration.
+    /// The parts of an enumeration that belong to the shard.
     fn select(self, parts: Vec<EnumerationPart>) -> Vec<EnumerationPart> {
         parts.into_iter().skip(self.index - 1).step_by(self.of).collect()
     }
@@ -69,10 +69,10 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A check of one share of the worlds.
+    /// A check of one shard of the worlds.
     ///
     /// # Errors
-    /// Where the worlds cannot be enumerated.
+    /// Returns an error if the worlds cannot be enumerated.
     pub fn new(class: Class, edges: usize, shard: Shard) -> Result<Self, SizeError> {
         Ok(Self { worlds: Enumeration::new(Each::World, class, edges)?, shard })
     }
@@ -219,7 +219,7 @@ impl<'a, A: Algorithm, W: Watch> AlgorithmChecker<'a, A, W> {
     /// The first addition to the map that was wrong.
     fn false_step(&mut self, graph: &EmbeddedGraph, facing: Dart) -> Option<FalseStep> {
         let state = &mut self.explorer.state;
-        // With room for what is wrongly added.
+        // A wrong map can have more darts than the world.
         state.set_bound(2 * graph.dart_count());
         first_false_step(self.algorithm, graph, facing, state)
     }

@@ -1,4 +1,4 @@
-//! What a check counts.
+//! The counts of a check.
 
 use super::{CostOrder, EveryWay, FalseStep, Flaw};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
@@ -21,15 +21,15 @@ pub struct FailedStart {
     pub graph: EmbeddedGraph,
     /// The facing dart.
     pub facing: Dart,
-    /// What was wrong at the end.
+    /// What is wrong.
     pub flaw: Flaw,
-    /// The moves made by then; none where the run is one of many.
+    /// The moves made, if it is the run with the default choices.
     pub moves: Option<u64>,
-    /// The first wrong addition to the map, if there was one.
+    /// The first wrong addition to the map, if any.
     pub false_step: Option<FalseStep>,
 }
 
-/// What a check has seen so far.
+/// The result of a check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Embedded graphs up to isomorphism.
@@ -38,23 +38,23 @@ pub struct Tally {
     pub starts: u64,
     /// Starts mapped right.
     pub mapped: u64,
-    /// The moves of all runs with the default choices together.
+    /// The total of moves of all runs with the default choices.
     pub moves_total: u64,
     /// The first start that took the most moves with the default choices.
     pub worst: Option<WorstStart>,
-    /// The moves and the vertices of the run with the most moves a vertex.
+    /// The moves and the vertices of the run with the most moves per vertex.
     pub dearest: Option<(u64, u64)>,
     /// The first start on which the algorithm failed.
     pub failure: Option<FailedStart>,
-    /// Where all choices were tried: distinct states at line 4, summed over the starts.
+    /// With all choices: distinct states at line 4, summed over the starts.
     pub states: u64,
-    /// Where all choices were tried: runs, summed over the starts.
+    /// With all choices: runs, summed over the starts.
     pub runs: u128,
-    /// Where all choices were tried: the fewest and the most moves of any run.
+    /// With all choices: the fewest and the most moves of any run.
     pub extremes: Option<(u64, u64)>,
-    /// Where all choices were tried: starts that have more states than the budget allowed.
+    /// With all choices: starts with more states than the budget.
     pub gave_up: u64,
-    /// Whether the check was broken off.
+    /// Whether the check was interrupted.
     pub interrupted: bool,
 }
 
@@ -65,7 +65,7 @@ impl Tally {
         self.starts - self.mapped
     }
 
-    /// The most moves of a run with the default choices; 0 if there was none.
+    /// The most moves of a run with the default choices; 0 if there is none.
     #[must_use]
     pub fn moves_max(&self) -> u64 {
         self.worst.as_ref().map_or(0, |worst| worst.moves)
@@ -87,7 +87,7 @@ impl Tally {
         self.count_dearest((moves, graph.vertex_count() as u64));
     }
 
-    /// Counts all runs of a start, beside that of the default choices.
+    /// Counts all runs of a start.
     pub(super) fn count_every_way(&mut self, ways: &EveryWay) {
         self.states += ways.states;
         self.runs = self.runs.saturating_add(ways.runs);
@@ -108,7 +108,7 @@ impl Tally {
         }
     }
 
-    /// Takes in what another part of the same check has seen, which comes later in its order.
+    /// Adds the result of a later part of the same check.
     pub fn merge(&mut self, later: Self) {
         self.worlds += later.worlds;
         self.starts += later.starts;

@@ -1,4 +1,4 @@
-//! Driving: what sensing tells of a place, and what is decided on it. Sections 3 and 4.
+//! Driving: scenes, the estimate of a junction, and Algorithm 2. Sections 3 and 4.
 
 pub mod algorithm2;
 pub mod odometry;

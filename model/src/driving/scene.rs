@@ -1,4 +1,5 @@
-//! What sensing tells of one image: a hallway, a junction or neither, and the marker. Section 3.
+//! A scene, the result of sensing one image: a hallway, a junction or neither, and the marker.
+//! Section 3.
 //!
 //! Floor coordinates have the robot's centre as origin, x ahead and y to the left, in metres. Angles
 //! are radians counter-clockwise seen from above, relative to the robot's heading, in (-pi, pi].
@@ -8,16 +9,16 @@ use std::fmt;
 
 use crate::percept::Door;
 
-/// All that one image tells.
+/// What is sensed in one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Where the robot is.
     pub place: Place,
-    /// The marker, where it is seen.
+    /// The marker, if it is seen.
     pub marker: Option<MarkerView>,
 }
 
-/// Where the robot is, as far as one image tells.
+/// The place of the robot, as sensed in one image.
 // paper: sense.place
 // paper: alg2.6
 #[derive(Clone, Debug, PartialEq)]
@@ -26,11 +27,11 @@ pub enum Place {
     Hallway(HallwayView),
     /// At a vertex.
     Junction(JunctionView),
-    /// The image does not tell.
+    /// It is not known.
     Unknown(Reason),
 }
 
-/// How the robot lies in a hallway.
+/// A hallway, and the robot's pose in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallwayView {
     /// The hallway's direction, in (-pi/2, pi/2].
@@ -39,9 +40,9 @@ pub struct HallwayView {
     pub left: f64,
     /// The same on its right.
     pub right: f64,
-    /// Whether the robot may go on as fast as it likes.
+    /// Whether the robot may go on at full speed.
     pub status: HallwayStatus,
-    /// How well what was seen fits, from 0 to 1.
+    /// How well the view fits, from 0 to 1.
     pub confidence: f64,
 }
 
@@ -73,7 +74,7 @@ pub struct JunctionView {
     pub doors: Vec<CentreLine>,
     /// Where the centre lines meet.
     pub turning_point: [f64; 2],
-    /// How well what was seen fits, from 0 to 1.
+    /// How well the view fits, from 0 to 1.
     pub confidence: f64,
 }
 
@@ -111,16 +112,16 @@ pub struct MarkerView {
     pub door: Option<Door>,
 }
 
-/// Why an image tells of no place.
+/// Why the place in an image is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// There is no floor around the robot in it.
+    /// No floor is visible around the robot.
     NoFloor,
-    /// Too few walls are to be seen.
+    /// Too few walls are visible.
     FewWalls,
-    /// What is seen is neither a hallway nor a junction.
+    /// The view is neither a hallway nor a junction.
     NothingFits,
-    /// What is seen fits different places equally well.
+    /// The view fits different places equally well.
     Ambiguous,
 }
 

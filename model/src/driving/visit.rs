@@ -1,4 +1,4 @@
-//! A visit to a junction: what the pictures of one approach tell together. Sections 3 and 5.1.
+//! The estimate of a junction from the images of one approach. Sections 3 and 5.1.
 //!
 //! One picture can err. A visit is decided when two agree on the junction's form; the marker is taken
 //! from the best view of the approach, for beside the turning point the robot's body hides it.
@@ -14,10 +14,10 @@ use crate::percept::{Door, Percept, Sighting};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JunctionShape(pub [bool; 4]);
 
-/// What the pictures of one approach told so far.
+/// The estimate of a junction, from the images of one approach so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JunctionEstimate {
-    /// How many pictures told of each form, by its [`JunctionShape::code`].
+    /// The number of images of each shape, by its [`JunctionShape::code`].
     forms: [u32; 8],
     /// The best view of the marker.
     marker: Option<Glimpse>,
@@ -34,7 +34,7 @@ struct Glimpse {
     along_entry: bool,
 }
 
-/// So many pictures must agree.
+/// The number of images that must agree.
 const AGREEING: u32 = 2;
 /// From where before its middle the marker is seen well, in metres.
 const APPROACH: RangeInclusive<f64> = 0.2..=0.8;
@@ -104,7 +104,7 @@ impl JunctionEstimate {
         Self { marker, looked: true, ..Self::default() }
     }
 
-    /// Takes in what the next picture tells.
+    /// Adds the scene of the next image.
     pub fn see(&mut self, scene: &Scene) {
         let entry = match &scene.place {
             Place::Hallway(hallway) => Some(hallway.heading),

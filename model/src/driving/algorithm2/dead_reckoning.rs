@@ -1,5 +1,5 @@
-//! What Algorithm 2 keeps by odometry: where the hallway leads, where the entry door is, and how long
-//! the robot has got nowhere. What the print leaves open, so that a path always ends.
+//! The odometry of Algorithm 2: the direction of the hallway, of the entry door, and the counters
+//! that end a path on which the robot makes no progress. The print leaves this open.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -9,30 +9,30 @@ use crate::driving::{
     scene::{CentreLine, JunctionView, undirected, wrapped},
 };
 
-/// After so many pictures in a row that tell of no place the robot gives up,
+/// The robot gives up after this number of images in a row without a known place,
 pub const UNKNOWNS: u32 = 7;
-/// or after more than so many metres on which it crept,
+/// or after creeping farther than this, in metres,
 pub const CREEP: f64 = 1.0;
-/// or after so many commands in a row that were not carried out,
+/// or after this number of commands in a row that were not executed,
 pub const STALLS: u32 = 3;
-/// or after so many pictures in a row from the same place,
+/// or after this number of images in a row from the same place,
 pub const IDLE: u32 = 16;
-/// or after so many metres without a junction.
+/// or after this distance without a junction, in metres.
 pub const LEG: f64 = 100.0;
 
-/// By what the robot turns to look around: ten degrees, to one side and the other.
+/// The step by which the robot turns to look around, to one side and the other: ten degrees.
 const LITTLE: f64 = 10.0 / 180.0 * PI;
-/// What is seen may be off by so much from where odometry puts it.
+/// The largest difference between a view and odometry.
 const AGAINST: f64 = FRAC_PI_4;
 
-/// What a picture told.
+/// Whether an image shows a known place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Round {
     Known,
     Unknown,
 }
 
-/// Where the robot is on its way, as far as odometry can tell.
+/// Where the robot is on its path, by odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     /// At a junction that it has not left.
@@ -41,18 +41,18 @@ enum Stage {
     OnTheWay,
 }
 
-/// What is kept by odometry.
+/// The state of dead reckoning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeadReckoning {
     now: Odometry,
     stage: Stage,
-    /// Where the entry door is, as a direction in the frame of odometry.
+    /// The direction of the entry door, in the frame of odometry.
     entry: f64,
-    /// Where the hallway leads, likewise.
+    /// The direction of the hallway, likewise.
     leg: f64,
-    /// Where the robot looked when a picture last told of a place, and turned then.
+    /// The heading after the turn at the last image of a known place.
     known: f64,
-    /// What was asked for, and where the robot was then.
+    /// The last command, and the odometry then.
     asked: Option<(Command, Odometry)>,
     since_turn: f64,
     unknowns: u32,
@@ -84,7 +84,7 @@ impl DeadReckoning {
         self.leg_bound = metres;
     }
 
-    /// A round begins: what was asked for has been done or not.
+    /// A round begins: the last command was executed or not.
     pub(super) fn begin(&mut self, now: Odometry) -> Result<(), LostReason> {
         self.now = now;
         let Some((command, before)) = self.asked.take() else {
@@ -113,7 +113,7 @@ impl DeadReckoning {
         Ok(())
     }
 
-    /// A picture told of a place, or of none.
+    /// Counts an image of a known place, or of none.
     pub(super) fn note(&mut self, round: Round) -> Result<(), LostReason> {
         if round == Round::Known {
             (self.unknowns, self.crept) = (0, 0.0);
@@ -129,7 +129,7 @@ impl DeadReckoning {
         Ok(())
     }
 
-    /// A round ends: what is asked for now. What is too little to be done is left out.
+    /// A round ends with a command. Motions that are too small are left out.
     pub(super) fn end(&mut self, command: Command) -> Command {
         let Command { turn, forward } = command;
         let command = Command {
@@ -170,17 +170,17 @@ impl DeadReckoning {
         self.since_turn
     }
 
-    /// Where the hallway leads, relative to the robot's heading.
+    /// The direction of the hallway, relative to the robot's heading.
     pub(super) fn ahead(&self) -> f64 {
         self.now.seen(self.leg)
     }
 
-    /// Where the entry door is, in the frame of odometry.
+    /// The direction of the entry door, in the frame of odometry.
     pub(super) fn entry_direction(&self) -> f64 {
         self.entry
     }
 
-    /// A hallway is seen to run so.
+    /// A hallway with this heading is seen.
     pub(super) fn hallway(&mut self, heading: f64) -> Result<(), LostReason> {
         let off = undirected(heading - self.ahead());
         if off.abs() > AGAINST {
@@ -190,15 +190,15 @@ impl DeadReckoning {
         Ok(())
     }
 
-    /// The junction just left is seen; whether one of its doors is where the robot goes.
+    /// The junction just left is seen. Returns whether one of its doors is where the robot goes.
     pub(super) fn left(&mut self, junction: &JunctionView) -> bool {
         let off = nearest(junction, self.ahead()).filter(|off| off.abs() <= AGAINST);
         self.leg = wrapped(self.leg + off.unwrap_or(0.0));
         off.is_some()
     }
 
-    /// Where a junction's entry door is, relative to the robot's heading; `None` where no door is
-    /// near where it should be.
+    /// The direction of a junction's entry door, relative to the robot's heading; `None` if no door is
+    /// near the expected direction.
     pub(super) fn entry(&self, junction: &JunctionView) -> Option<f64> {
         let expected = match self.stage {
             Stage::OnTheWay => wrapped(self.ahead() + PI),
@@ -208,7 +208,7 @@ impl DeadReckoning {
         (off.abs() <= AGAINST).then(|| wrapped(expected + off))
     }
 
-    /// The robot is at a junction, whose first door is the one by which it came.
+    /// The robot is at a junction. The first door is its entry door.
     pub(super) fn at(&mut self, junction: &JunctionView) {
         if let Some(entry) = junction.doors.first() {
             self.entry = self.now.whither(entry.direction);
@@ -217,7 +217,7 @@ impl DeadReckoning {
     }
 }
 
-/// By how much the door that is nearest to a direction is off it.
+/// The angle from a direction to the nearest door.
 fn nearest(junction: &JunctionView, direction: f64) -> Option<f64> {
     let off = |door: &CentreLine| wrapped(door.direction - direction);
     junction.doors.iter().map(off).min_by(|one, other| one.abs().total_cmp(&other.abs()))

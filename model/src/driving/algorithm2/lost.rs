@@ -20,7 +20,7 @@ pub struct Lost {
 /// What makes a robot give up a path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LostReason {
-    /// Too many pictures in a row tell of no place that the robot could be at.
+    /// Too many images in a row show no place where the robot could be.
     #[error("{pictures} pictures in a row do not tell where the robot is")]
     Unknown {
         /// How many.

@@ -23,25 +23,25 @@ use dead_reckoning::{DeadReckoning, Round};
 /// A unit distance, in metres.
 // paper: alg2.2
 pub const UNIT: f64 = 0.5;
-/// Motions that are shorter count as done, in metres
+/// Shorter motions count as done, in metres.
 pub const LEAST_FORWARD: f64 = 0.03;
-/// and turns that are smaller, in radians.
+/// Smaller turns count as done, in radians.
 pub const LEAST_TURN: f64 = 0.035;
 
-/// The robot is too close to one side when it is so far from the centre line, in metres,
+/// At this distance from the centre line, in metres, the robot is too close to one side.
 const TOO_CLOSE: f64 = 0.10;
-/// and then turns towards that line by no more than this.
+/// It then turns towards that line by at most this angle.
 const INWARDS: f64 = FRAC_PI_4 / 2.0;
-/// A door is straight ahead if it is no farther aside than this: ten degrees.
+/// A door within this angle is straight ahead: ten degrees.
 const STRAIGHT: f64 = 10.0 / 180.0 * PI;
-/// The turning point is aimed at while it is no farther aside than this.
+/// The robot aims at the turning point while it is within this angle.
 const AHEAD: f64 = FRAC_PI_4;
-/// Arrival takes a hallway in between, or so many metres since the turn.
+/// Arrival needs a hallway in between, or this distance since the turn, in metres.
 const ARRIVAL: f64 = 1.2;
-/// A junction is the one just left if that is behind the robot, by odometry, to so many metres.
+/// A junction is the one just left if odometry puts that one within this distance of it, in metres.
 const SAME: f64 = 0.6;
 
-/// What the robot is about.
+/// The robot's state on its path.
 // paper: alg2.1
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathState {
@@ -51,11 +51,11 @@ pub enum PathState {
     Hallway,
     /// At a junction, on the way to its turning point or turning there.
     Junction,
-    /// Not knowing where it is.
+    /// Lost.
     Unknown,
 }
 
-/// What the robot is told to do: first to turn, then to go straight ahead.
+/// A command: first turn, then go straight ahead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// Radians counter-clockwise, in (-pi, pi].
@@ -64,40 +64,40 @@ pub struct Command {
     pub forward: f64,
 }
 
-/// What a round of the loop ends with.
+/// The result of one round of the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Do this, then take the next picture; nothing is asked for where only another picture is needed.
+    /// Execute this command, then take the next image. The command may be empty.
     Go(Command),
-    /// The path is done: the robot is at the turning point of its last junction.
+    /// The path is complete: the robot is at the turning point of its last junction.
     Arrived(Standing),
 }
 
-/// Where the robot stands between two paths: at the turning point of a junction that it knows.
+/// The robot between two paths: at the turning point of a junction that it has identified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// What the junction looks like from its entry door.
+    /// The shape of the junction, seen from its entry door.
     pub form: JunctionShape,
     /// What the robot perceives there.
     pub percept: Percept,
-    /// Where the entry door is, as a direction in the frame of odometry.
+    /// The direction of the entry door, in the frame of odometry.
     pub entry: f64,
 }
 
-/// A path that is being driven.
+/// The execution of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathExecution<'a> {
     /// The doors that have not been taken.
     queue: &'a [Door],
     state: PathState,
-    /// What is known of the junction ahead, or of the one at which the robot stands.
+    /// The estimate of the junction ahead, or of the one where the robot is.
     visit: JunctionEstimate,
-    /// The door that the robot has taken from the queue and is turning to.
+    /// The door, taken from the queue, to which the robot is turning.
     door: Option<Door>,
     reckoning: DeadReckoning,
 }
 
-/// What a scene is taken for, given odometry.
+/// The interpretation of a scene, given odometry.
 enum Seen {
     Hallway(HallwayView),
     /// The junction that the robot has just left.
@@ -108,7 +108,7 @@ enum Seen {
 }
 
 impl<'a> PathExecution<'a> {
-    /// A path from where the last one ended.
+    /// A path from the end of the last one.
     // paper: drive.path
     #[must_use]
     pub fn new(queue: &'a [Door], from: &Standing) -> Self {
@@ -116,8 +116,8 @@ impl<'a> PathExecution<'a> {
         Self::at_junction(queue, visit, from.entry)
     }
 
-    /// The path of no door, by which a robot gets to know the junction at whose turning point it
-    /// stands at the very start, its back to the facing door and the marker along it.
+    /// The empty path at the start of a run. It identifies the junction at whose turning point the
+    /// robot stands, with its back to the facing door and the marker along it.
     #[must_use]
     pub fn at_start(odometry: &Odometry) -> Self {
         Self::at_junction(&[], JunctionEstimate::at_marker(), odometry.whither(PI))
@@ -129,14 +129,15 @@ impl<'a> PathExecution<'a> {
         Self { queue, state, visit, door: None, reckoning: DeadReckoning::at_junction(entry) }
     }
 
-    /// Gives up a path that is so long from junction to junction, in metres; [`LEG`] otherwise.
+    /// Sets the distance between junctions, in metres, after which the path is given up; by default
+    /// [`LEG`].
     #[must_use]
     pub fn with_leg_bound(mut self, metres: f64) -> Self {
         self.reckoning.bound_leg(metres);
         self
     }
 
-    /// What the robot is about.
+    /// The robot's state.
     #[must_use]
     pub fn state(&self) -> PathState {
         self.state
@@ -148,17 +149,17 @@ impl<'a> PathExecution<'a> {
         self.queue
     }
 
-    /// How far the robot has come since it last turned to a door, in metres of odometry.
+    /// The distance since the robot last turned to a door, in metres of odometry.
     #[must_use]
     pub fn since_turn(&self) -> f64 {
         self.reckoning.since_turn()
     }
 
-    /// One round of the loop, lines 3 to 32, on the scene of a picture and what odometry said when it
-    /// was taken.
+    /// One round of the loop, lines 3 to 32, on the scene of an image and the odometry when it was
+    /// taken.
     ///
     /// # Errors
-    /// Where the robot can no longer know where it is. So it always ends.
+    /// Returns an error if the robot is lost. So a path always ends.
     // paper: alg2.3, alg2.4, alg2.5, alg2.6, alg2.7, alg2.8, alg2.9, alg2.10, alg2.11, alg2.12
     // paper: alg2.13, alg2.14, alg2.15, alg2.16, alg2.17, alg2.18, alg2.19, alg2.20, alg2.21
     // paper: alg2.22, alg2.23, alg2.24, alg2.25, alg2.26, alg2.27, alg2.28, alg2.29, alg2.30
@@ -226,8 +227,8 @@ impl<'a> PathExecution<'a> {
     /// Lines 20 to 26: the red line is reached or passed.
     // paper: drive.turn
     fn at_turning_point(&mut self, junction: &JunctionView) -> Result<Step, LostReason> {
-        // A visit is decided by two pictures, and doors are counted in one that agrees with them: else
-        // another one, from the same place.
+        // Two images decide an estimate, and doors are counted in an image that agrees with them. If
+        // this one does not, take another from the same place.
         let agreed = |standing: &Standing| JunctionShape::of(junction) == Some(standing.form);
         let Some(standing) = self.standing().filter(agreed) else {
             return Ok(Step::Go(Command::default()));
@@ -248,7 +249,7 @@ impl<'a> PathExecution<'a> {
             return Err(LostReason::NoSuchDoor { door, degree: standing.form.degree() });
         };
         if exit.abs() > STRAIGHT {
-            // 24: and a picture must show the doors turned by it before the robot leaves.
+            // 24: before the robot leaves, an image must show the doors turned by this angle.
             self.door = Some(door);
             return Ok(Step::Go(Command { turn: exit, forward: 0.0 }));
         }
@@ -261,7 +262,7 @@ impl<'a> PathExecution<'a> {
         Ok(Step::Go(Command { turn: exit, forward: UNIT }))
     }
 
-    /// What a scene is taken for.
+    /// Interprets a scene.
     fn made_out(&mut self, scene: &Scene) -> Result<Seen, LostReason> {
         let seen = match &scene.place {
             Place::Unknown(_) => Seen::Unknown,
@@ -288,8 +289,8 @@ impl<'a> PathExecution<'a> {
         Ok(seen)
     }
 
-    /// A junction, from its entry door. Once its form is known, a picture of another one, or of the
-    /// same one turned otherwise than odometry says, tells nothing.
+    /// A junction, seen from its entry door. Once its shape is known, an image of another shape, or of
+    /// the same one turned against odometry, is ignored.
     fn junction(&mut self, scene: &Scene, junction: &JunctionView) -> Seen {
         let Some(entry) = self.reckoning.entry(junction) else { return Seen::Unknown };
         let junction = junction.clone().entered_from(entry);
@@ -320,12 +321,12 @@ impl<'a> PathExecution<'a> {
         is_behind || is_early
     }
 
-    /// Whether the turning point is still ahead. Once the robot turns to a door it no longer matters.
+    /// Whether the turning point is still ahead. Once the robot turns to a door, it does not matter.
     fn is_before(&self, junction: &JunctionView) -> bool {
         self.door.is_none() && junction.turning() == Turning::Before
     }
 
-    /// The junction at which the robot stands, once two pictures agree on it.
+    /// The junction where the robot is, once two images agree on it.
     fn standing(&self) -> Option<Standing> {
         let (form, percept) = (self.visit.form()?, self.visit.percept()?);
         Some(Standing { form, percept, entry: self.reckoning.entry_direction() })
@@ -339,7 +340,7 @@ impl<'a> PathExecution<'a> {
         if off.abs() <= PI / 2.0 { hallway.heading } else { wrapped(hallway.heading + PI) }
     }
 
-    /// Out of a junction along the centre line of the door that was taken.
+    /// The command that leads out of a junction, along the centre line of the door taken.
     fn onwards(&self, junction: &JunctionView) -> Command {
         let ahead = self.reckoning.ahead();
         let off = |line: &&CentreLine| wrapped(line.direction - ahead).abs();
@@ -357,8 +358,8 @@ impl<'a> PathExecution<'a> {
     }
 }
 
-/// By how much more the robot turns to get nearer to the centre line of a hallway, where it is too
-/// close to one side; `along` is the hallway's direction onwards.
+/// The additional turn towards the centre line of a hallway, if the robot is too close to one side;
+/// `along` is the hallway's direction onwards.
 // paper: drive.centre
 fn towards_centre(hallway: &HallwayView, along: f64) -> f64 {
     let left = (hallway.left - hallway.right) / 2.0;
@@ -366,13 +367,13 @@ fn towards_centre(hallway: &HallwayView, along: f64) -> f64 {
     inwards(if back { -left } else { left })
 }
 
-/// The turn towards a line that is so far to the left, if that is too far.
+/// The turn towards a line at this distance to the left, if it is too far.
 fn inwards(left: f64) -> f64 {
     if left.abs() > TOO_CLOSE { left.atan2(UNIT).clamp(-INWARDS, INWARDS) } else { 0.0 }
 }
 
-/// Lines 18 and 19: towards the crossing of the centre lines, in steps of half a unit, because a visit
-/// is decided by its pictures.
+/// Lines 18 and 19: towards the crossing of the centre lines, in steps of half a unit, to get more
+/// images for the estimate.
 // paper: drive.before
 fn to_turning_point(junction: &JunctionView) -> Command {
     let [x, y] = junction.turning_point;
