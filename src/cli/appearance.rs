@@ -1,4 +1,4 @@
-//! What buildings look like, on the command line: a look, and effects.
+//! Options for rendered images: their size, the look of the building, and effects.
 
 use clap::{
     ValueEnum,
@@ -10,7 +10,7 @@ use toposlam_robot::simulator::{BuildingLook, Effects, LOOKS};
 
 use super::Failure;
 
-/// Width and height of pictures.
+/// Width and height of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum ImageSize {
     /// Small
@@ -22,7 +22,7 @@ pub(super) enum ImageSize {
 }
 
 impl ImageSize {
-    /// As it is written.
+    /// The name on the command line.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Small => "640x480",
@@ -38,32 +38,32 @@ impl ImageSize {
     }
 }
 
-/// Which effects there are.
+/// The effects of a rendered image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum EffectsChoice {
-    /// Each drawn from its default range
+    /// Draw each effect from its default range
     Default,
-    /// None
+    /// No effects
     None,
 }
 
-/// What a building looks like, and what makes pictures of it harder to read.
+/// The look of a building, and the effects that make its images harder to read.
 #[derive(clap::Args)]
 pub(super) struct Appearance {
-    /// What the building looks like
+    /// Look of the building
     #[arg(long, value_name = "NAME", default_value = LOOKS[0].name, value_parser = looks())]
     pub(super) look: &'static BuildingLook,
-    /// Which effects there are
+    /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Set one effect; may be given more than once; `toposlam render --help` lists them
+    /// Set one effect (repeatable); `toposlam render --help` lists them
     #[arg(long, value_name = "NAME=VALUE", value_parser = read_setting)]
     effect: Vec<(String, f64)>,
 }
 
 impl Appearance {
-    /// The arguments that say it, without those that are as usual.
-    pub(super) fn told(&self) -> Vec<(&'static str, String)> {
+    /// The options that differ from the defaults.
+    pub(super) fn arguments(&self) -> Vec<(&'static str, String)> {
         let look = (self.look.name != LOOKS[0].name).then(|| ("--look", self.look.name.to_owned()));
         let none =
             matches!(self.effects, EffectsChoice::None).then(|| ("--effects", "none".to_owned()));
@@ -71,7 +71,7 @@ impl Appearance {
         look.into_iter().chain(none).chain(set).collect()
     }
 
-    /// The effects of a seed.
+    /// The effects drawn from a seed.
     pub(super) fn effects(&self, seed: u64) -> Result<Effects, Failure> {
         let mut effects = match self.effects {
             EffectsChoice::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
@@ -84,7 +84,7 @@ impl Appearance {
     }
 }
 
-/// Reads the name of a look.
+/// Parses the name of a look.
 pub(super) fn looks() -> impl TypedValueParser<Value = &'static BuildingLook> {
     let looks = LOOKS.each_ref().map(|look| PossibleValue::new(look.name).help(look.about));
     PossibleValuesParser::new(looks).try_map(|name| {

@@ -1,4 +1,4 @@
-//! `toposlam calibrate IMAGE...`: centre, rim and focal length of a spherical mirror, from images of it.
+//! `toposlam calibrate IMAGE...`: finds centre, rim and focal length of a spherical mirror in images.
 //! Section 3.
 
 use std::{
@@ -19,51 +19,52 @@ use toposlam_vision::camera::{
 
 use super::{Failure, Outcome, input, json::print_object, output, picture_file};
 
-/// Find a spherical mirror in images of it: its centre, its rim and the focal length
+/// Find centre, rim and focal length of a spherical mirror in images
 ///
-/// From a few images of one camera (PNG or JPEG), best from different places. The mirror must be
-/// brighter than what surrounds it; its rim may be cropped by the image's border. The focal length
-/// follows from the rim and from what a ruler tells: the mirror's radius and distance.
+/// Use a few images (PNG or JPEG) that one camera took from different places. The mirror must be
+/// brighter than its surroundings. The border of the image may cut off parts of its rim. The focal
+/// length is computed from the rim and from the mirror's radius and distance, which you measure.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
-  toposlam calibrate view-*.png --out camera.toml --picture fit.png --mask-out mask.png
+  toposlam calibrate view-*.png --out camera.toml --picture fit.png \\
+    --mask-out mask.png
 
-What is not given is taken from --start, or else is the SuperScout's: radius 0.05, distance 0.15,
-height 0.90, ahead 90, seen from below.")]
+Missing values are taken from --start. Without it they are the SuperScout's:
+radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.")]
 pub(super) struct CalibrateArguments {
-    /// The images
+    /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
-    /// The calibration file to write: .toml [default: standard output]
+    /// Calibration file to write: .toml [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// A calibration from which to take what is not given here
+    /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
     start: Option<PathBuf>,
     /// Radius of the spherical mirror, in metres
     #[arg(long, value_name = "METRES")]
     mirror_radius: Option<f64>,
-    /// From the camera's pinhole up to the sphere's centre, in metres
+    /// Distance from the camera's pinhole up to the sphere's centre, in metres
     #[arg(long, value_name = "METRES")]
     mirror_distance: Option<f64>,
-    /// From the floor up to the pinhole, in metres
+    /// Height of the pinhole above the floor, in metres
     #[arg(long, value_name = "METRES")]
     camera_height: Option<f64>,
-    /// Where ahead is in the image, in degrees counter-clockwise from the right
+    /// Direction of ahead in the image, in degrees counter-clockwise from the right
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     ahead: Option<f64>,
-    /// From where the camera sees: it looks up into the mirror from below
+    /// Side from which the camera sees the mirror
     #[arg(long, value_name = "WHERE")]
     seen_from: Option<From>,
     /// Also draw the fit over the first image: .png, .jpg or .jpeg
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
-    /// Also find what never changes (body, struts, lens), and write a mask without it: .png; needs
-    /// at least four images, from different places
+    /// Also write a mask without the pixels that never change (body, struts, lens): .png; needs at least
+    /// four images from different places
     #[arg(long, value_name = "FILE")]
     mask_out: Option<PathBuf>,
-    /// Print one JSON object; the calibration then goes to --out only
+    /// Print one JSON object, and the calibration only to --out
     #[arg(long)]
     json: bool,
 }
@@ -76,7 +77,7 @@ enum From {
     Above,
 }
 
-/// What `--json` prints.
+/// The JSON line.
 #[derive(Serialize)]
 struct Report {
     schema: u32,
@@ -85,11 +86,11 @@ struct Report {
     centre: [f64; 2],
     rim: f64,
     focal: f64,
-    /// Over which share of the full circle the rim was seen.
+    /// The share of the full circle on which the rim was seen.
     rim_seen: f64,
-    /// How far from the circle it was seen: root mean square, in pixels.
+    /// Root mean square distance of the rim from the circle, in pixels.
     rim_spread: f64,
-    /// Which share of the mirror the mask leaves.
+    /// The share of the mirror that the mask keeps.
     mask_seen: Option<f64>,
 }
 
@@ -143,7 +144,7 @@ impl CalibrateArguments {
         Ok(())
     }
 
-    /// What is known before any image is looked at.
+    /// The camera as far as it is known without the images.
     fn known(&self) -> Result<(Camera, SphericalMirror), Failure> {
         let start = match &self.start {
             Some(path) => input::read_camera(path)?,
@@ -172,14 +173,14 @@ impl CalibrateArguments {
             seen_from,
             ..Camera::superscout()
         };
-        // What is out of range is told before long work begins, with some focal length.
+        // Report values out of range before the long work begins. Any focal length will do.
         let some = SphericalMirror { focal: 1000.0, centre: [0.0; 2], ..mirror };
         let probe = OpticsModel::SphericalMirror(some);
         checked(&Camera { optics: probe, ..known.clone() })?;
         Ok((known, mirror))
     }
 
-    /// The images, all of the size of the first.
+    /// Reads the images. All must have the size of the first.
     fn read_images(&self) -> Result<Vec<RgbImage>, Failure> {
         let mut images: Vec<RgbImage> = Vec::new();
         for path in &self.images {
@@ -204,7 +205,7 @@ impl CalibrateArguments {
         Ok(images)
     }
 
-    /// The failure that there is no rim.
+    /// The failure if no rim was found.
     fn no_rim(&self, error: RimError) -> Failure {
         match self.images.as_slice() {
             [path] => Failure::in_file(path, error),
@@ -216,7 +217,7 @@ impl CalibrateArguments {
         }
     }
 
-    /// How the calibration names the mask: by its name where it lies beside it, else by its whole path.
+    /// The mask's path in the calibration: its file name if both are in one folder, else its whole path.
     fn mask_name(&self, path: &Path) -> String {
         let beside = self.out.as_deref().and_then(Path::parent) == path.parent();
         let name = if beside { path.file_name().map(Path::new).map(Path::to_owned) } else { None };
@@ -261,13 +262,13 @@ impl CalibrateArguments {
             mirror.focal, mirror.mirror_radius, mirror.mirror_distance
         )?;
         if let Some(seen) = mask_seen {
-            writeln!(out, "mask    leaves {:.0} % of the mirror", 100.0 * seen)?;
+            writeln!(out, "mask    keeps {:.0} % of the mirror", 100.0 * seen)?;
         }
         Ok(())
     }
 }
 
-/// The camera with this rim.
+/// The calibrated camera with this rim.
 fn with_rim(
     (known, mirror): (Camera, SphericalMirror),
     image: [u32; 2],
@@ -282,18 +283,18 @@ fn with_rim(
     Ok(camera)
 }
 
-/// Calibrations are read by people, and a hundredth of a pixel is more than images tell.
+/// Rounds to hundredths. Images are not more exact than a hundredth of a pixel.
 fn hundredth(number: f64) -> f64 {
     (100.0 * number).round() / 100.0
 }
 
-/// Refuses a camera that no calibration file can tell.
+/// Returns an error if a calibration file cannot contain this camera.
 fn checked(camera: &Camera) -> Result<(), Failure> {
     let text = calibration::to_toml(camera);
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
     match calibration::read(text.as_bytes(), nothing) {
         Ok(_) => Ok(()),
-        // The arguments are named as the keys are.
+        // The options have the names of the keys.
         Err(CalibrationError { position, kind }) if !position.key.is_empty() => {
             let name = position.key.trim_start_matches("camera.").replace('_', "-");
             Err(Failure::at(format!("--{name}"), kind))
@@ -319,7 +320,7 @@ fn same_size(
     Err(Failure::in_file(path, cause))
 }
 
-/// Which share of the mirror's pixels a mask leaves.
+/// The share of the mirror's pixels that a mask keeps.
 fn share_seen(mask: &Mask, rim: &Rim) -> f64 {
     let [width, height] = mask.size();
     let pixels = (0..height).flat_map(|v| (0..width).map(move |u| [u, v]));

@@ -1,4 +1,4 @@
-//! `toposlam evaluate WHAT`: what a robot senses and where it gets, held against the truth.
+//! `toposlam evaluate WHAT`: compares sensing, driving and whole runs with the ground truth.
 
 mod control;
 mod failing;
@@ -13,12 +13,12 @@ use clap::Subcommand;
 
 use super::{Failure, Outcome};
 
-/// Measure sensing, driving or whole runs against the truth, on many cases
+/// Measure sensing, driving or whole runs against the ground truth
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  toposlam evaluate vision --views 200 --out failing    sensing, on rendered views
-  toposlam evaluate control                             each door of each junction
-  toposlam evaluate runs                                whole buildings, mapped")]
+  toposlam evaluate vision --views 200 --out failing    sensing on rendered views
+  toposlam evaluate control                             every door of every junction
+  toposlam evaluate runs                                mapping of whole buildings")]
 pub(super) struct EvaluateArguments {
     #[command(subcommand)]
     what: What,

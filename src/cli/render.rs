@@ -1,4 +1,4 @@
-//! `toposlam render`: what the robot's camera would see from a pose in a floor plan. Section 2.5.
+//! `toposlam render`: the image that the robot's camera takes from a pose. Section 2.5.
 
 use std::{io::Write, path::PathBuf};
 
@@ -16,37 +16,38 @@ use super::{
     appearance::{Appearance, ImageSize},
     input, output,
     picture_file::encoded,
+    text::print_hanging,
 };
 
-/// Render what the robot's camera would see from a pose in a floor plan
+/// Render the image that the robot's camera takes from a pose in a floor plan
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(super) struct RenderArguments {
-    /// The floor plan
+    /// Floor plan
     plan: PathBuf,
-    /// Where the robot is, in metres, x to the east, y to the north, and its heading in degrees
-    /// counter-clockwise from east [default: at the plan's start, its back to the facing hallway]
-    #[arg(long, value_name = "X,Y,HEADING", value_parser = read_pose, allow_hyphen_values = true)]
+    /// Position in metres (x east, y north) and heading in degrees counter-clockwise from east
+    /// [default: the plan's start, with the back to the facing hallway]
+    #[arg(long, value_name = "X,Y,HEADING", value_parser = parse_pose, allow_hyphen_values = true)]
     pose: Option<Pose>,
-    /// The file to write: .png, .jpg or .jpeg
+    /// Output file: .png, .jpg or .jpeg
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// The camera [default: a spherical mirror, 1280x960]
+    /// Camera calibration [default: a spherical mirror, 1280x960]
     #[arg(long, value_name = "FILE")]
     calibration: Option<PathBuf>,
-    /// Width and height of the picture, in pixels [default: the camera's]
+    /// Image size in pixels [default: the camera's]
     #[arg(long, value_name = "SIZE")]
     size: Option<ImageSize>,
     #[command(flatten)]
     appearance: Appearance,
-    /// From which everything follows that is left to chance
+    /// Random seed
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Put the marker at the plan's start, along the facing hallway; without a start at the first L
+    /// Put the marker at the plan's start, along the facing hallway, or, without a start, at the first L
     #[arg(long)]
     marker: bool,
-    /// Also write what each pixel shows, as a .png: floor green, stripe red, marker blue, anything
-    /// else black, the robot and what lies beyond the mirror white
+    /// Also write the class of each pixel as a .png: floor green, stripe red, marker blue, the robot and
+    /// the area outside the mirror white, anything else black
     #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
 }
@@ -96,17 +97,17 @@ impl RenderArguments {
         })
     }
 
-    /// The dart that the marker points along.
+    /// The dart along which the marker points.
     fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, Failure> {
         let graph = plan.graph();
         let at_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
         start
             .or_else(|| graph.darts().find(at_l))
-            .ok_or_else(|| Failure::in_file(&self.plan, "there is neither a start nor an L in it"))
+            .ok_or_else(|| Failure::in_file(&self.plan, "it has neither a start nor an L"))
     }
 }
 
-fn read_pose(text: &str) -> Result<Pose, String> {
+fn parse_pose(text: &str) -> Result<Pose, String> {
     let numbers: Option<Vec<f64>> = text
         .split(',')
         .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
@@ -117,36 +118,24 @@ fn read_pose(text: &str) -> Result<Pose, String> {
     }
 }
 
-/// The effects, and an example.
+/// The list of effects, and an example.
 fn after_help() -> String {
-    let mut text = "Effects, the range that each is drawn from, and what it is:\n".to_owned();
-    for (of, title) in
-        [(EffectScope::Building, "Of the building:"), (EffectScope::Picture, "Of the picture:")]
+    let mut text = b"Effects, with the range from which each is drawn:\n".to_vec();
+    for (scope, title) in
+        [(EffectScope::Building, "Of the building:"), (EffectScope::Picture, "Of the image:")]
     {
-        text.extend(["  ", title, "\n"]);
-        for knob in KNOBS.iter().filter(|knob| knob.of == of) {
+        // Writing to memory does not fail.
+        let _ = writeln!(text, "  {title}");
+        for knob in KNOBS.iter().filter(|knob| knob.scope == scope) {
             let range = format!("{}..{}", knob.default.start(), knob.default.end());
-            let head = format!("    {:<14} {range:<12} ", knob.name);
-            text += &hanging(&head, knob.about);
+            let _ = print_hanging(
+                &mut text,
+                &format!("    {:<14} {range:<12} ", knob.name),
+                knob.about,
+            );
         }
     }
-    text + "\nExample:\n  toposlam render worlds/shape-8.toml --pose 2,8,0 --look vinyl \
-            --effect blur=1.5 --out view.png"
-}
-
-/// Words in lines of a hundred columns, those after the first as far in as the head is long.
-fn hanging(head: &str, words: &str) -> String {
-    let (mut text, mut line) = (String::new(), head.trim_end().to_owned());
-    let mut gap = head.len() - line.len();
-    for word in words.split(' ') {
-        if line.len() + gap + word.len() > 98 {
-            text += &line;
-            text.push('\n');
-            (line, gap) = (String::new(), head.len());
-        }
-        line += &" ".repeat(gap);
-        line += word;
-        gap = 1;
-    }
-    text + &line + "\n"
+    let example = "\nExample:\n  toposlam render worlds/shape-8.toml --pose 2,8,0 --look vinyl \\\n    \
+                   --effect blur=1.5 --out view.png";
+    String::from_utf8_lossy(&text).into_owned() + example
 }

@@ -1,4 +1,4 @@
-//! A scene, as JSON and in words.
+//! A scene as JSON, as labelled rows and as one line.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,7 +7,7 @@ use toposlam_model::driving::scene::{
     CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Scene, Turning,
 };
 
-/// A scene as JSON; keys in the order of the design page.
+/// A scene as JSON. The keys have the documented order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "scene", rename_all = "lowercase")]
 pub(super) enum SceneLine {
@@ -95,46 +95,52 @@ impl From<&MarkerView> for MarkerLine {
     }
 }
 
-/// To a thousandth of a millimetre.
+/// Rounds to six decimal places.
 fn rounded(value: f64) -> f64 {
-    // Adding zero makes of a negative zero a plain one.
+    // Adding zero turns negative zero into zero.
     (value * 1e6).round() / 1e6 + 0.0
 }
 
-/// An angle, likewise, but never beyond what it may be.
+/// Rounds an angle to six decimal places and keeps it within `greatest`.
 fn rounded_angle(angle: f64, greatest: f64) -> f64 {
     let greatest = (greatest * 1e6).floor() / 1e6;
     rounded(angle).clamp(-greatest, greatest)
 }
 
-/// A scene in a few words.
-pub(super) fn in_words(scene: &Scene) -> String {
-    let place = match &scene.place {
-        Place::Hallway(hallway) => hallway_in_words(hallway),
-        Place::Junction(junction) => junction_in_words(junction),
-        Place::Unknown(reason) => format!("unknown: {reason}"),
+/// A scene as labels and texts. The first label is `place`.
+pub(super) fn rows(scene: &Scene) -> Vec<(&'static str, String)> {
+    let mut rows = match &scene.place {
+        Place::Hallway(hallway) => hallway_rows(hallway),
+        Place::Junction(junction) => junction_rows(junction),
+        Place::Unknown(reason) => vec![("place", format!("unknown: {reason}"))],
     };
-    match &scene.marker {
-        None => place,
-        Some(marker) => format!("{place}; {}", marker_in_words(marker)),
-    }
+    rows.extend(scene.marker.as_ref().map(|marker| ("marker", marker_in_words(marker))));
+    rows
 }
 
-fn hallway_in_words(hallway: &HallwayView) -> String {
+/// A scene in one line.
+pub(super) fn in_words(scene: &Scene) -> String {
+    let texts = rows(scene).into_iter().map(|(label, text)| match label {
+        "place" => text,
+        _ => format!("{label} {text}"),
+    });
+    texts.collect::<Vec<_>>().join("; ")
+}
+
+fn hallway_rows(hallway: &HallwayView) -> Vec<(&'static str, String)> {
     let status = match hallway.status {
         HallwayStatus::Clear => "clear".to_owned(),
         HallwayStatus::Unclear(reason) => format!("unclear ({reason})"),
     };
-    format!(
-        "hallway, {status}, {}; walls {:.2} m to the left and {:.2} m to the right; confidence {:.2}",
-        bearing(hallway.heading),
-        hallway.left,
-        hallway.right,
-        hallway.confidence
-    )
+    let HallwayView { heading, left, right, confidence, .. } = hallway;
+    vec![
+        ("place", format!("hallway, {status}, {}", bearing(*heading))),
+        ("walls", format!("{left:.2} m to the left and {right:.2} m to the right")),
+        ("confidence", format!("{confidence:.2}")),
+    ]
 }
 
-fn junction_in_words(junction: &JunctionView) -> String {
+fn junction_rows(junction: &JunctionView) -> Vec<(&'static str, String)> {
     let kind = match junction.doors.len() {
         1 => "dead end",
         2 => "L",
@@ -148,8 +154,11 @@ fn junction_in_words(junction: &JunctionView) -> String {
         Turning::At => "at its turning point".to_owned(),
         Turning::Past => format!("{:.2} m past its turning point", -distance),
     };
-    let doors = doors.join(", ");
-    format!("{kind}, {turning}; doors {doors}; confidence {:.2}", junction.confidence)
+    vec![
+        ("place", format!("{kind}, {turning}")),
+        ("doors", doors.join(", ")),
+        ("confidence", format!("{:.2}", junction.confidence)),
+    ]
 }
 
 fn marker_in_words(marker: &MarkerView) -> String {
@@ -160,10 +169,10 @@ fn marker_in_words(marker: &MarkerView) -> String {
         None => bearing(marker.axis),
     };
     let (ahead, aside) = (if x < 0.0 { "behind" } else { "ahead" }, y.abs());
-    format!("marker {:.2} m {ahead} and {aside:.2} m to the {side}, {along}", x.abs())
+    format!("{:.2} m {ahead} and {aside:.2} m to the {side}, {along}", x.abs())
 }
 
-/// A direction in degrees.
+/// A direction in whole degrees, in words.
 fn bearing(angle: f64) -> String {
     let degrees = angle.to_degrees().round();
     match degrees {
@@ -190,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_are_those_of_the_design_page() {
+    fn scenes_have_the_documented_form() {
         let hallway = HallwayView {
             heading: 0.02,
             left: 0.78,

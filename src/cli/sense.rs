@@ -1,4 +1,4 @@
-//! `toposlam sense IMAGE...`: what the sensing module sees in panoramic images. Section 3.
+//! `toposlam sense IMAGE...`: the scene in each panoramic image. Section 3.
 
 use std::{
     collections::BTreeMap,
@@ -14,42 +14,44 @@ use super::{
     Failure, Outcome, input,
     json::print_object,
     output, picture_file,
-    scene::{SceneLine, in_words},
+    scene::{SceneLine, rows},
+    text::print_hanging,
 };
 
-/// Tell what is to be seen in panoramic images: hallway, junction and marker
+/// Find hallway, junction and marker in panoramic images
 ///
-/// From one image of the robot's camera (PNG or JPEG), how it lies in a hallway, or which junction it
-/// is at, entered from where, with its centre lines; or that the image does not tell, and why; and
-/// where the marker lies.
+/// Each image is a PNG or JPEG of the robot's camera. The result is one of three: the robot's place in
+/// a hallway; a junction with its doors and centre lines; or unknown, with a reason. If the marker is
+/// in view, its position is reported too.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps
 
-Angles are relative to the robot's heading, counter-clockwise; doors stand clockwise from the entry.")]
+Angles are relative to the robot's heading, counter-clockwise. Doors are listed
+clockwise from the entry door.")]
 pub(super) struct SenseArguments {
-    /// The images
+    /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
-    /// The calibration of the camera
+    /// Camera calibration
     #[arg(long, value_name = "FILE")]
     calibration: PathBuf,
-    /// The colours of the building, as `toposlam train` learned them
+    /// Colours of the building, from `toposlam train`
     #[arg(long, value_name = "FILE")]
     colours: PathBuf,
-    /// The folder for a picture of each step of sensing, for each image
+    /// Folder for a picture of each processing stage of each image
     #[arg(long, value_name = "DIR")]
     stages: Option<PathBuf>,
-    /// Print one JSON object for each image
+    /// Print one JSON object per image
     #[arg(long)]
     json: bool,
-    /// The file to write [default: standard output]
+    /// Output file: .txt, .json or .jsonl [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
-/// What `--json` prints for an image.
+/// The JSON line of an image.
 #[derive(Serialize)]
 struct Line {
     schema: u32,
@@ -107,7 +109,10 @@ impl SenseArguments {
                 let image = path.display().to_string();
                 print_object(out, &Line { schema: 1, image, scene: SceneLine::from(&scene) })?;
             } else {
-                writeln!(out, "{}: {}", path.display(), in_words(&scene))?;
+                writeln!(out, "{}", path.display())?;
+                for (label, text) in rows(&scene) {
+                    print_hanging(out, &format!("  {label:<12}"), &text)?;
+                }
             }
             out.flush()?;
         }
@@ -115,7 +120,7 @@ impl SenseArguments {
     }
 }
 
-/// How the pictures of the steps of each image begin: as the image is called, without its ending.
+/// The names of the images without their endings. The pictures of their stages start with them.
 fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failure> {
     let mut names: BTreeMap<OsString, &Path> = BTreeMap::new();
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_owned();
@@ -123,7 +128,8 @@ fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failur
         if let Some(other) = names.insert(name(path), path)
             && wanted
         {
-            let cause = format!("its pictures would be called as those of {}", other.display());
+            let cause =
+                format!("its pictures would have the same names as those of {}", other.display());
             return Err(Failure::in_file(path, cause));
         }
     }

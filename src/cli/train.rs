@@ -1,4 +1,4 @@
-//! `toposlam train`: the colours of a building, learned from labelled images of it. Section 3.
+//! `toposlam train`: learns the colours of a building from labelled images of it. Section 3.
 
 mod report;
 
@@ -21,50 +21,51 @@ use toposlam_vision::{
 use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
 use report::{LeftOut, TrainingReport, Validation};
 
-/// Learn the colours of a building from labelled images of it: floor, stripe, marker
+/// Learn the colours of a building's floor, stripe and marker from labelled images
 ///
-/// Each image of the robot's camera (PNG or JPEG) has its labels in a PNG of the same name and size,
-/// in which every pixel has one of five colours:
-///
-///   floor (0,255,0)  stripe (255,0,0)  marker (0,0,255)  other (0,0,0)  ignore (255,255,255)
-///
-/// Floor, stripe and marker must be there. What lies beyond 3 m, on the robot's body or outside of the
-/// mirror is ignored anyway. Images that are too dark or too bright to tell the light by the floor are
-/// left out, and named.
+/// Each image of the robot's camera (PNG or JPEG) has a PNG of the same name and size that labels
+/// every pixel by its colour. Floor, stripe and marker must occur. Pixels beyond 3 m, on the robot's
+/// body and outside the mirror are ignored. Images that are too dark or too bright are left out and
+/// reported.
 #[derive(clap::Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "\
-Example, without a camera: render images and their labels, learn from them, and sense.
+#[command(after_help = "\
+Colours of labels:
+  floor (0,255,0)   stripe (255,0,0)   marker (0,0,255)
+  other (0,0,0)     ignore (255,255,255)
+
+Example, with rendered images and labels:
   mkdir -p images labels
-  for n in 1 2 3 4 5 6 7; do toposlam render worlds/shape-8.toml --marker --pose 0,$n,$((50 * n)) \\
-    --seed $n --out images/$n.png --labels labels/$n.png; done
+  for n in 1 2 3 4 5 6 7; do
+    toposlam render worlds/shape-8.toml --marker --pose 0,$n,$((50 * n)) \\
+      --seed $n --out images/$n.png --labels labels/$n.png
+  done
   toposlam calibrate images/*.png --out camera.toml
-  toposlam train --images images --labels labels --calibration camera.toml --out colours.toml
-  toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 --out view.png
-  toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps"
-)]
+  toposlam train --images images --labels labels --calibration camera.toml \\
+    --out colours.toml
+  toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 \\
+    --out view.png
+  toposlam sense view.png --calibration camera.toml --colours colours.toml")]
 pub(super) struct TrainArguments {
-    /// The folder of the images: .png, .jpg and .jpeg
+    /// Folder of the images: .png, .jpg and .jpeg
     #[arg(long, value_name = "DIR")]
     images: PathBuf,
-    /// The folder of their labels: .png
+    /// Folder of the labels: .png
     #[arg(long, value_name = "DIR")]
     labels: PathBuf,
-    /// The calibration of the camera
+    /// Camera calibration
     #[arg(long, value_name = "FILE")]
     calibration: PathBuf,
-    /// The file to write: .toml
+    /// Output file: .toml
     #[arg(long, value_name = "COLOURS")]
     out: PathBuf,
-    /// Where the stripe between floor and wall is
+    /// Place of the stripe between floor and wall
     #[arg(long, value_name = "WHERE", default_value = "floor")]
     stripe: On,
-    /// How wide the stripe is: across the floor, or up the wall
+    /// Width of the stripe, across the floor or up the wall
     #[arg(long, value_name = "METRES", default_value_t = 0.05)]
     stripe_width: f64,
-    /// Into how many parts the images are divided, each of which is told by what the others teach
-    /// [default: 5, or one for each image if there are fewer]
+    /// Number of parts for cross-validation: each part is classified with the colours learned from the
+    /// others [default: 5, or the number of images if that is less]
     #[arg(long, value_name = "K")]
     folds: Option<usize>,
     /// Print one JSON object
@@ -80,10 +81,10 @@ enum On {
     Wall,
 }
 
-/// The usual number of parts.
+/// The default number of parts.
 const FOLDS: usize = 5;
 
-/// An image, and its labels.
+/// An image and its labels.
 struct Pair {
     image: PathBuf,
     labels: PathBuf,
@@ -144,7 +145,7 @@ impl TrainArguments {
         Ok(Stripe { kind, width })
     }
 
-    /// Each image with its labels, by name.
+    /// Pairs each image with its labels by name.
     fn pairs(&self) -> Result<Vec<Pair>, Failure> {
         let images = by_stem(&self.images, &["png", "jpg", "jpeg"])?;
         let mut labels = by_stem(&self.labels, &["png"])?;
@@ -174,7 +175,7 @@ impl TrainArguments {
         }
     }
 
-    /// Refuses parts that there cannot be, before long work begins.
+    /// Returns an error for an impossible number of parts, before the long work begins.
     fn check_folds(&self, images: usize) -> Result<(), Failure> {
         match self.folds {
             Some(folds) if folds < 2 || folds > images => {
@@ -184,7 +185,7 @@ impl TrainArguments {
         }
     }
 
-    /// Refuses labels without a class that is needed to sense.
+    /// Returns an error if a class is missing that sensing needs.
     fn check_classes(&self, training: &Training) -> Result<(), Failure> {
         if training.images() == 0 {
             return Err(Failure::in_file(&self.images, "every image was left out"));
@@ -201,8 +202,7 @@ impl TrainArguments {
         }
     }
 
-    /// How well it is learned. What was asked for must be possible; what was not is left out, with the
-    /// reason, where it is not.
+    /// Cross-validates. If the number of parts was not given and is impossible, returns the reason.
     fn validation(&self, training: &Training) -> Result<Validation, Failure> {
         let images = training.images();
         let folds = self.folds.unwrap_or(FOLDS.min(images));
@@ -219,21 +219,23 @@ impl TrainArguments {
 }
 
 fn too_few(folds: usize, images: usize) -> String {
-    let images_told = counted(images, "image");
+    let images_counted = counted(images, "image");
     if images < 2 {
-        return format!("{images_told} cannot be divided; there must be at least 2");
+        return format!("{images_counted} cannot be divided; there must be at least 2");
     }
-    format!("{images_told} cannot be divided into {folds}; there can be from 2 to {images} parts")
+    format!(
+        "{images_counted} cannot be divided into {folds}; there can be from 2 to {images} parts"
+    )
 }
 
-/// The files in a folder that have one of these endings, by their names without it.
+/// The files in a folder with one of these endings, by name without the ending.
 fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf>, Failure> {
     let unreadable =
         |error| Failure::in_file(folder, format!("cannot be read as a folder: {error}"));
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        // What begins with a dot is not for people: other programs leave their own pictures there.
+        // Skip hidden files: other programs keep their own images there.
         let hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
         let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
         let fits = ending.is_some_and(|ending| endings.contains(&ending.as_str()));
@@ -253,14 +255,14 @@ fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf
     Ok(files)
 }
 
-/// The label mask of this name.
+/// The path of a label image.
 fn named(folder: &Path, stem: &OsStr) -> PathBuf {
     let mut name = stem.to_owned();
     name.push(".png");
     folder.join(name)
 }
 
-/// Learns from an image, or answers why it teaches nothing.
+/// Learns from an image, or returns why it was left out.
 fn learn(
     training: &mut Training,
     camera: &Camera,

@@ -1,4 +1,4 @@
-//! `toposlam calibrate IMAGE...`, on rendered images of a camera whose numbers are known.
+//! `toposlam calibrate IMAGE...`, on rendered images of a known camera.
 
 use std::{fs, path::Path, sync::LazyLock};
 
@@ -8,11 +8,11 @@ use toposlam_vision::camera::{Camera, OpticsModel, SphericalMirror, calibration}
 
 use super::{folder, names_in, objects, run, said, stderr, stdout};
 
-/// Places in shape 8, none of which looks like another.
+/// Poses in shape 8 with different views.
 const POSES: [&str; 6] =
     ["0.1,2.3,95", "0.05,5.1,70", "2.9,7.9,200", "4.1,6.5,280", "2.3,0.1,355", "1.9,4.1,33"];
 
-/// Images of one rig, and what each pixel of the first shows.
+/// Images of one rig, and the class of each pixel of the first.
 struct Images {
     files: Vec<String>,
     labels: RgbImage,
@@ -27,7 +27,7 @@ fn rendered(look: &str) -> Images {
         let seed = number.to_string();
         let mut arguments = vec!["render", "worlds/shape-8.toml", "--pose", pose, "--look", look];
         arguments.extend(["--seed", &seed, "--size", "640x480", "--out", path]);
-        // The rig is the same throughout; all else is as it comes.
+        // The rig stays the same. Everything else follows from the seed.
         for effect in ["strut-bearing=100", "struts=3", "lens=0.014"] {
             arguments.extend(["--effect", effect]);
         }
@@ -58,7 +58,7 @@ fn calibrate<'a>(images: &'a [String], more: &[&'a str]) -> Vec<&'a str> {
     [&["calibrate"], &images[..], more].concat()
 }
 
-/// The camera of a calibration file that was written.
+/// Reads the camera of a calibration file.
 fn read(path: &Path) -> Camera {
     let beside = path.parent().unwrap();
     let mut read = |name: &str| fs::read(beside.join(name));
@@ -76,7 +76,7 @@ fn close(found: &SphericalMirror, expected: &SphericalMirror) {
 }
 
 #[test]
-fn the_rim_is_found_within_a_pixel_and_the_robot_hidden_by_the_mask() {
+fn the_rim_is_found_within_a_pixel_and_the_mask_hides_the_robot() {
     for (images, name) in [(&*LABORATORY, "laboratory"), (&*THEATRE, "theatre")] {
         let folder = folder(&format!("calibrated-{name}"));
         let [out, mask, fit] = ["camera.toml", "mask.png", "fit.png"].map(|name| folder.join(name));
@@ -134,7 +134,7 @@ fn one_image_is_enough_for_the_rim() {
 }
 
 #[test]
-fn a_rim_that_the_images_border_crops_is_found_by_its_arcs() {
+fn a_rim_cut_off_by_the_border_is_found_by_its_arcs() {
     let folder = folder("calibrate-cropped");
     let files: Vec<String> = LABORATORY
         .files
@@ -148,15 +148,15 @@ fn a_rim_that_the_images_border_crops_is_found_by_its_arcs() {
         })
         .collect();
     let out = folder.join("camera.toml");
-    let told = said(calibrate(&files, &["--out", out.to_str().unwrap()]));
-    assert!(told.starts_with("centre  ") && told.lines().count() == 3, "{told}");
+    let text = said(calibrate(&files, &["--out", out.to_str().unwrap()]));
+    assert!(text.starts_with("centre  ") && text.lines().count() == 3, "{text}");
     let expected = truth();
     let [u, v] = expected.centre;
     close(&mirror(&read(&out)), &SphericalMirror { centre: [u - 30.0, v - 60.0], ..expected });
 }
 
 #[test]
-fn what_is_known_comes_from_the_start_and_the_arguments() {
+fn known_values_come_from_the_start_file_and_the_options() {
     let folder = folder("calibrate-known");
     let start = folder.join("start.toml");
     fs::write(
@@ -178,7 +178,7 @@ fn what_is_known_comes_from_the_start_and_the_arguments() {
 }
 
 #[test]
-fn what_cannot_be_calibrated_is_refused_with_one_message_and_nothing_written() {
+fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
     let folder = folder("calibrate-refused");
     let inputs = super::folder("calibrate-refused-inputs");
     let input = |name: &str, bytes: &[u8]| {

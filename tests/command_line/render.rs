@@ -9,10 +9,10 @@ use super::{folder, names_in, run, said, stderr};
 
 const PLAN: &str = "worlds/shape-8.toml";
 
-fn refused(arguments: &[&str], told: &str) {
+fn refused(arguments: &[&str], message: &str) {
     let output = run([&["render"], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    assert!(stderr(&output).contains(told), "{}", stderr(&output));
+    assert!(stderr(&output).contains(message), "{}", stderr(&output));
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn the_same_command_writes_the_same_files() {
 }
 
 #[test]
-fn a_jpeg_is_written_where_the_name_says_so() {
+fn the_ending_of_the_name_selects_jpeg() {
     let folder = folder("render-jpeg");
     let out = folder.join("view.jpg");
     said(["render", PLAN, "--out", out.to_str().unwrap()]);
@@ -57,7 +57,7 @@ fn a_jpeg_is_written_where_the_name_says_so() {
 }
 
 #[test]
-fn the_camera_is_that_of_its_calibration() {
+fn the_image_is_that_of_the_calibrated_camera() {
     let folder = folder("render-calibration");
     let [file, default, calibrated, small] =
         ["camera.toml", "default.png", "calibrated.png", "small.png"].map(|name| folder.join(name));
@@ -69,7 +69,7 @@ fn the_camera_is_that_of_its_calibration() {
     let calibration = ["--calibration", file.to_str().unwrap()];
     assert_eq!(render(&calibrated, &calibration).dimensions(), (800, 600));
     let sized = [&calibration[..], &["--size", "640x480"]].concat();
-    // A camera in another size is the same camera.
+    // The same camera with another image size.
     let (one, other) = (render(&small, &sized), render(&default, &["--size", "640x480"]));
     assert_eq!(one.dimensions(), (640, 480));
     let off = one.iter().zip(other.iter()).filter(|(one, other)| one.abs_diff(**other) > 2);
@@ -77,7 +77,7 @@ fn the_camera_is_that_of_its_calibration() {
 }
 
 #[test]
-fn what_cannot_be_rendered_is_told_and_nothing_is_written() {
+fn invalid_input_is_refused_and_nothing_is_written() {
     let folder = folder("render-refused");
     let out = folder.join("view.png");
     let out = ["--out", out.to_str().unwrap()];

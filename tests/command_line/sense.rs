@@ -13,7 +13,7 @@ use toposlam_vision::camera::{Camera, calibration};
 use super::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [640, 480];
-/// A PNG of 69 bytes whose head promises two thousand million.
+/// A PNG of 69 bytes whose header claims 16384 x 16384 pixels.
 const PROMISES_MUCH: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/image/error-promises-much");
 
@@ -76,7 +76,7 @@ fn written(name: &str, bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_hallway_and_a_junction_are_told_as_the_design_page_has_it() {
+fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
     // In the hallway to the ne corner; and on the way into the marked corner, 0.4 m before it.
     let hallway = rendered("hallway.png", "2,4.1,5");
     let corner = rendered("corner.jpg", "0.4,8,180");
@@ -128,13 +128,17 @@ fn a_hallway_and_a_junction_are_told_as_the_design_page_has_it() {
 }
 
 #[test]
-fn people_get_words_and_a_picture_of_each_step() {
+fn the_text_has_labelled_rows_and_each_stage_has_a_picture() {
     let image = rendered("words.png", "0.4,8,180");
     let steps = folder("sense_steps");
     let text = said(sense(&[&image], &["--stages", steps.to_str().unwrap()]));
-    assert!(text.starts_with(&format!("{image}: L, 0.4")), "{text}");
-    assert!(text.contains("; doors straight behind, 90 degrees to the left; "), "{text}");
-    assert!(text.trim_end().ends_with(", along door 1"), "{text}");
+    assert!(text.starts_with(&format!("{image}\n  place       L, 0.4")), "{text}");
+    let doors = "\n  doors       straight behind, 90 degrees to the left\n";
+    assert!(text.contains(doors), "{text}");
+    assert!(text.contains("\n  confidence  "), "{text}");
+    let [.., marker] = &text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+    assert!(marker.starts_with("  marker      ") && marker.ends_with(", along door 1"), "{text}");
+    assert!(text.lines().skip(1).all(|line| line.chars().count() <= 80), "{text}");
     let names = names_in(&steps);
     let expected = ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
     assert_eq!(names, expected.map(|step| format!("words-{step}.png")));
@@ -157,7 +161,7 @@ fn a_useless_image_is_unknown_with_the_reason() {
         (state >> 24) as u8
     };
     let noise = RgbImage::from_fn(SIZE[0], SIZE[1], |_, _| Rgb([level(), level(), level()]));
-    // Where all is of one colour, it is that of the floor.
+    // An image of one colour is taken for floor.
     let cases = [
         (of("black.png", [0; 3]), "no-floor"),
         (of("white.png", [255; 3]), "no-floor"),
@@ -165,21 +169,21 @@ fn a_useless_image_is_unknown_with_the_reason() {
         (of("wall.png", [206, 190, 158]), "few-walls"),
     ];
     let images = cases.each_ref().map(|(path, _)| path.as_str());
-    let told = objects(&said(sense(&images, &["--json"])));
-    assert_eq!(told.len(), cases.len());
-    for (object, (path, reason)) in told.iter().zip(&cases) {
+    let lines = objects(&said(sense(&images, &["--json"])));
+    assert_eq!(lines.len(), cases.len());
+    for (object, (path, reason)) in lines.iter().zip(&cases) {
         assert_eq!(
             (&object["image"], &object["scene"]),
             (&path.as_str().into(), &"unknown".into())
         );
         assert_eq!(object["reason"], *reason, "{object}");
         assert!(object["marker"].is_null(), "{object}");
-        assert_eq!(said(sense(&[path], &[])), format!("{path}: unknown: {reason}\n"));
+        assert_eq!(said(sense(&[path], &[])), format!("{path}\n  place       unknown: {reason}\n"));
     }
 }
 
 #[test]
-fn what_is_no_image_of_the_camera_is_refused_with_the_reason() {
+fn other_files_than_images_of_the_camera_are_refused_with_the_reason() {
     let png = fs::read(rendered("whole.png", "2,4,0")).unwrap();
     let jpeg = fs::read(rendered("whole.jpg", "2,4,0")).unwrap();
     let small = RgbImage::new(320, 240);
@@ -213,7 +217,7 @@ fn what_is_no_image_of_the_camera_is_refused_with_the_reason() {
     }
 }
 
-/// Runs with one of the two files changed, and answers the message that refuses it.
+/// Runs with one of the two files changed. Returns the error message without the file name.
 fn refusal(changed: &str, from: &str, to: &str) -> String {
     let image = rendered("image.png", "2,4,0");
     let [mut calibration, mut colours] = [FILES.calibration.clone(), FILES.colours.clone()];
@@ -223,14 +227,14 @@ fn refusal(changed: &str, from: &str, to: &str) -> String {
     *file = written(&format!("changed-{changed}"), text.replace(from, to).as_bytes());
     let message = format!("error: {file}: ");
     let output = run(["sense", &image, "--calibration", &calibration, "--colours", &colours]);
-    let told = stderr(&output);
-    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{told}");
-    assert_eq!(told.lines().count(), 1, "{told}");
-    told.strip_prefix(&message).unwrap_or_else(|| panic!("{told}")).trim_end().to_owned()
+    let text = stderr(&output);
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{text}");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text.strip_prefix(&message).unwrap_or_else(|| panic!("{text}")).trim_end().to_owned()
 }
 
 #[test]
-fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
+fn an_invalid_calibration_is_refused_with_the_allowed_values() {
     let cases = [
         ("camera_height = 0.9", "", "line 1, column 2: camera: the key `camera_height` is missing"),
         (
@@ -267,7 +271,7 @@ fn a_calibration_that_is_no_camera_is_refused_with_what_can_be() {
 }
 
 #[test]
-fn colours_that_were_never_learned_are_refused_with_what_can_be() {
+fn invalid_colours_are_refused_with_the_allowed_values() {
     let cases = [
         (
             "version = 1",
@@ -295,7 +299,7 @@ fn colours_that_were_never_learned_are_refused_with_what_can_be() {
 }
 
 #[test]
-fn steps_of_images_that_are_called_alike_are_refused() {
+fn stages_of_images_with_the_same_name_are_refused() {
     let (one, other) = (rendered("twice.png", "2,4,0"), rendered("twice.jpg", "2,4,0"));
     let steps = folder("sense_alike");
     let output = run(sense(&[&one, &other], &["--stages", steps.to_str().unwrap()]));

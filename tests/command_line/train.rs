@@ -16,7 +16,7 @@ use toposlam_vision::{
 use super::{folder, names_in, objects, run, said, stderr, stdout};
 
 const SIZE: [u32; 2] = [320, 240];
-/// A PNG of 69 bytes whose head promises two thousand million.
+/// A PNG of 69 bytes whose header claims 16384 x 16384 pixels.
 const PROMISES_MUCH: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/image/error-promises-much");
 const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
@@ -25,7 +25,7 @@ const CLASSES: [&str; 4] = ["floor", "stripe", "marker", "other"];
 #[derive(Clone)]
 struct Set(PathBuf);
 
-/// Seven images of shape 8 on the way to its marked corner, of both kinds of file.
+/// Seven PNG and JPEG images of shape 8 on the way to its marked corner.
 static RENDERED: LazyLock<Set> = LazyLock::new(|| {
     let set = Set::empty("train");
     for n in 1..=7 {
@@ -47,7 +47,7 @@ impl Set {
         Self(folder)
     }
 
-    /// So many of the rendered images, to be changed.
+    /// A copy of some of the rendered images.
     fn copy(name: &str, images: usize) -> Self {
         let set = Self::empty(name);
         for inside in ["images", "labels"] {
@@ -78,7 +78,7 @@ impl Set {
         RgbImage::from_pixel(size[0], size[1], Rgb(colour)).save(self.0.join(name)).unwrap();
     }
 
-    /// The arguments that learn from this set.
+    /// Arguments that learn from this set.
     fn train(&self, more: &[&str]) -> Vec<String> {
         let named = ["images", "labels", "camera.toml", "colours.toml"].map(|name| self.path(name));
         let flags = ["--images", "--labels", "--calibration", "--out"].map(str::to_owned);
@@ -87,7 +87,7 @@ impl Set {
         ["train".to_owned()].into_iter().chain(pairs).chain(more).collect()
     }
 
-    /// The one object of `--json`.
+    /// The JSON object.
     fn report(&self, more: &[&str]) -> Value {
         let text = said(self.train(&[&["--json"], more].concat()));
         let [report]: [Value; 1] = objects(&text).try_into().unwrap();
@@ -98,7 +98,7 @@ impl Set {
         ColourModel::read(&fs::read(self.0.join("colours.toml")).unwrap()).unwrap()
     }
 
-    /// The one message that refuses this set; nothing is written.
+    /// The error message. Nothing is written.
     fn refusal(&self, more: &[&str]) -> String {
         let output = run(self.train(more));
         let message = stderr(&output);
@@ -111,7 +111,7 @@ impl Set {
 
 // paper: sense.classify, marker-sense.colour
 #[test]
-fn every_class_of_a_rendered_building_is_told_from_the_others() {
+fn every_class_of_a_rendered_building_is_recognized() {
     let set = Set::copy("train-json", 7);
     let report = set.report(&[]);
     assert_eq!((&report["images"], &report["folds"]), (&json!(7), &json!(5)));
@@ -119,14 +119,14 @@ fn every_class_of_a_rendered_building_is_told_from_the_others() {
     assert_eq!(report["stripe"], json!({ "kind": "floor", "width": 0.05 }));
     for (figures, class) in report["classes"].as_array().unwrap().iter().zip(CLASSES) {
         assert_eq!(figures["class"], class);
-        // In so small a picture floor and wall blend with the stripe, and look like it.
+        // In such a small image, mixed pixels of floor and wall look like the stripe.
         for (figure, least) in [("recall", 0.97), ("precision", 0.70)] {
             assert!(figures[figure].as_f64().unwrap() > least, "{class}: {report}");
         }
-        // Every pixel is told once, by what the other parts teach.
+        // Every pixel is classified once, with the colours learned from the other parts.
         let row = report["confusion"][class].as_object().unwrap();
-        let told: Vec<&str> = row.keys().map(String::as_str).collect();
-        assert_eq!(told, [&CLASSES[..], &["unknown"]].concat());
+        let predicted: Vec<&str> = row.keys().map(String::as_str).collect();
+        assert_eq!(predicted, [&CLASSES[..], &["unknown"]].concat());
         let all: u64 = row.values().map(|pixels| pixels.as_u64().unwrap()).sum();
         assert!(all > 0 && figures["pixels"] == all, "{class}: {report}");
         let right = row[class].as_f64().unwrap() / all as f64;
@@ -138,25 +138,28 @@ fn every_class_of_a_rendered_building_is_told_from_the_others() {
 }
 
 #[test]
-fn people_get_a_table() {
+fn the_text_is_a_table() {
     let set = Set::copy("train-table", 7);
     let text = said(set.train(&["--folds", "7", "--stripe", "wall", "--stripe-width", "0.1"]));
     let stripe = Stripe { kind: StripeKind::OnWall, width: 0.1 };
     assert_eq!(set.model().stripe, stripe);
     assert!(text.starts_with("stripe  a baseboard on the wall, 0.1 m wide\nimages  7\n"), "{text}");
-    assert!(text.contains(" in 7 parts:\n"), "{text}");
+    assert!(text.contains("\nCross-validation in 7 parts:\n"), "{text}");
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let table: Vec<_> = text.lines().skip(5).map(words).collect();
-    assert_eq!(table[0].join(" "), "images pixels floor stripe marker other unknown right");
-    assert_eq!(table.len(), 5, "{text}");
-    for (row, class) in table[1..].iter().zip(CLASSES) {
+    assert_eq!(table[0].join(" "), "class images pixels right");
+    assert_eq!(table.len(), 12, "{text}");
+    for (row, class) in table[1..5].iter().zip(CLASSES) {
         assert_eq!((row[0].as_str(), row.last().unwrap().as_str()), (class, "%"), "{text}");
     }
-    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    for (row, class) in table[8..].iter().zip(CLASSES) {
+        assert!(row[0] == class && row.contains(&class.to_owned()), "{text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }
 
 #[test]
-fn the_same_images_teach_the_same() {
+fn the_same_images_give_the_same_colours() {
     let [one, other] = ["train-one", "train-other"].map(|name| Set::copy(name, 5));
     let learned = |set: &Set| (said(set.train(&[])), set.model().to_toml());
     let first = learned(&one);
@@ -165,7 +168,7 @@ fn the_same_images_teach_the_same() {
 }
 
 #[test]
-fn what_was_learned_serves_to_sense() {
+fn sensing_works_with_the_learned_colours() {
     let set = Set::copy("train-sense", 7);
     said(set.train(&[]));
     // In the hallway, between two junctions; and 0.6 m before the marked corner, which turns to the right.
@@ -184,7 +187,7 @@ fn what_was_learned_serves_to_sense() {
 }
 
 #[test]
-fn one_image_teaches_and_is_not_cross_validated() {
+fn one_image_is_enough_but_is_not_cross_validated() {
     // The last image shows the marker.
     let set = Set::copy("train-single", 7);
     for name in names_in(&set.0.join("images")).iter().filter(|name| *name != "7.png") {
@@ -208,7 +211,7 @@ fn one_image_teaches_and_is_not_cross_validated() {
 }
 
 #[test]
-fn an_image_without_light_is_left_out_and_named() {
+fn images_that_are_too_dark_or_bright_are_left_out_and_reported() {
     let set = Set::copy("train-dark", 7);
     for (name, level) in [("black", 0), ("white", 255)] {
         set.paint(&format!("images/{name}.png"), SIZE, [level; 3]);
@@ -223,20 +226,20 @@ fn an_image_without_light_is_left_out_and_named() {
     let left_out = [(black, dark), (white, burnt)];
     let left_out = left_out.map(|(image, reason)| json!({ "image": image, "reason": reason }));
     assert_eq!((&report["images"], &report["left_out"]), (&json!(7), &json!(left_out)));
-    let told = said(set.train(&[]));
-    assert!(told.contains("\nimages  7, and 2 left out\n"), "{told}");
-    // They teach nothing else.
+    let text = said(set.train(&[]));
+    assert!(text.contains("\nimages  7, and 2 left out\n"), "{text}");
+    // The colours are the same as without them.
     let model = set.model();
     said(RENDERED.train(&[]));
     assert_eq!(model, RENDERED.model());
 }
 
-/// Breaks a set, and answers how the message that refuses it begins.
+/// Breaks a set. Returns the beginning of the error message.
 type Breaking = fn(&Set) -> String;
 
 #[test]
 #[expect(clippy::too_many_lines, reason = "a list")]
-fn what_cannot_be_learned_from_is_refused_with_its_file() {
+fn invalid_images_and_labels_are_refused_with_the_file() {
     let cases: [(&str, Breaking); 19] = [
         ("no-image", |set| {
             fs::remove_dir_all(set.0.join("images")).unwrap();
@@ -357,7 +360,7 @@ fn what_cannot_be_learned_from_is_refused_with_its_file() {
     }
 }
 
-/// Labels that ignore what has this colour, and the message that it is missing.
+/// Sets one label colour to ignore. Returns the message that the class is missing.
 fn relabelled(set: &Set, colour: [u8; 3], missing: &str) -> String {
     for name in names_in(&set.0.join("labels")) {
         let path = set.0.join("labels").join(name);
@@ -371,7 +374,7 @@ fn relabelled(set: &Set, colour: [u8; 3], missing: &str) -> String {
 }
 
 #[test]
-fn what_cannot_be_asked_for_is_refused_with_what_can() {
+fn invalid_options_are_refused_with_the_allowed_values() {
     let set = Set::copy("train-arguments", 7);
     let cases: [(&[&str], &str); 6] = [
         (
@@ -417,8 +420,8 @@ fn what_cannot_be_asked_for_is_refused_with_what_can() {
 }
 
 #[test]
-fn parts_that_leave_a_class_unknown_are_told() {
-    // Of two images one has no stripe: neither part can be told by the other.
+fn a_class_that_occurs_in_one_part_only_is_reported() {
+    // One of the two images has no stripe, so that neither part can be classified from the other.
     let set = Set::copy("train-parts", 7);
     for name in names_in(&set.0.join("images"))
         .iter()

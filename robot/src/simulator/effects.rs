@@ -20,7 +20,7 @@ pub struct Knob {
     /// The name on the command line.
     pub name: &'static str,
     /// What it changes.
-    pub of: EffectScope,
+    pub scope: EffectScope,
     /// What it is, and in which unit.
     pub about: &'static str,
     /// The value at which there is no effect.
@@ -69,7 +69,7 @@ macro_rules! knobs {
         /// All knobs.
         pub const KNOBS: &[Knob] = &[$(Knob {
             name: $name,
-            of: EffectScope::$of,
+            scope: EffectScope::$of,
             about: $about,
             plain: $plain,
             allowed: $allowed,
@@ -157,7 +157,7 @@ impl Effects {
     #[must_use]
     pub fn of_another_picture(&self, rng: &mut impl Rng) -> Self {
         let mut effects = self.clone();
-        effects.draw(rng, |knob| knob.of == EffectScope::Picture);
+        effects.draw(rng, |knob| knob.scope == EffectScope::Picture);
         effects
     }
 
@@ -237,7 +237,7 @@ mod tests {
             // Whether the robot sees itself is not left to chance.
             assert_eq!(
                 same,
-                knob.of == EffectScope::Building || knob.name == "body",
+                knob.scope == EffectScope::Building || knob.name == "body",
                 "{}",
                 knob.name
             );

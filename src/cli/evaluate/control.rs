@@ -1,4 +1,4 @@
-//! `toposlam evaluate control`: Algorithm 2 through every door of every junction, held against the
+//! `toposlam evaluate control`: compares Algorithm 2, through every door of every junction, with the
 //! specification. Section 4.
 
 use std::{io::Write, time::Instant};
@@ -8,7 +8,7 @@ use toposlam_robot::evaluation::traversals::{
     JudgedTraversal, TraversalOutcome as Made, TraversalSampler,
 };
 
-use super::robots::{RandomPlans, RobotArguments, failed, share, share_json};
+use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
@@ -17,24 +17,25 @@ use crate::cli::{
     use_threads,
 };
 
-/// Measure driving: does each door of each junction lead where the specification says?
+/// Measure driving: does every door of every junction lead where it should?
 ///
-/// Each traversal begins at a junction, near its turning point, in one of its entries, and takes one
-/// of its doors. It is right if the robot reaches the junction and comes in by the door that the
-/// embedded graph says, and perceives there what the specification says.
+/// Each traversal starts near the turning point of a junction, at one of its entry doors, and leaves by
+/// one of its doors. It is right if the robot enters the junction by the door that the embedded graph
+/// specifies, and perceives what the specification predicts.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam evaluate control                                  thousands of traversals, in a second or two
-  toposlam evaluate control --images --traversals 200        with rendered pictures
+  toposlam evaluate control                             takes a few seconds
+  toposlam evaluate control --images --traversals 200   with rendered images
   toposlam evaluate control --plan worlds/shape-6.toml --noise 2 --json
 
-Exit codes: 0 each traversal is right, 1 one is not, 2 bad usage or input, 3 not all were made.")]
+Exit codes: 0 every traversal is right, 1 one is not, 2 bad usage or input,
+3 not all were made.")]
 pub(super) struct EvaluateControlArguments {
-    /// How many traversals: all doors of all junctions, again and again
+    /// Number of traversals; they go through all doors of all junctions repeatedly
     #[arg(long, default_value_t = 20_000, value_name = "N")]
     traversals: u64,
-    /// How many random plans, where no plan is given
+    /// Number of random plans, if no plan is given
     #[arg(long, default_value_t = 40, value_name = "N")]
     plans: u64,
     #[command(flatten)]
@@ -46,15 +47,15 @@ impl EvaluateControlArguments {
         use_threads(self.robots.threads)?;
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
-        let eyes = self.robots.eyes()?;
+        let sensors = self.robots.sensors()?;
         let begun = Instant::now();
         let progress = Progress::new("traversals", "traversals")?;
-        let judged = traversals.judged(0..self.traversals, eyes.as_ref(), &progress);
+        let judged = traversals.judged(0..self.traversals, sensors.as_ref(), &progress);
         progress.finish();
         if self.robots.json {
-            self.tell_json(&judged, &traversals, out)?;
+            self.print_json(&judged, &traversals, out)?;
         } else {
-            self.tell(&judged, &traversals, out)?;
+            self.print(&judged, &traversals, out)?;
         }
         eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(if judged.iter().any(|traversal| traversal.outcome != Made::Right) {
@@ -66,7 +67,7 @@ impl EvaluateControlArguments {
         })
     }
 
-    fn tell(
+    fn print(
         &self,
         judged: &[JudgedTraversal],
         traversals: &TraversalSampler,
@@ -74,10 +75,10 @@ impl EvaluateControlArguments {
     ) -> Result<(), Failure> {
         let doors = grouped(traversals.cases() as u128);
         let plans = counted(traversals.plans(), "floor plan");
-        writeln!(out, "Control by {}, seed {}", self.robots.sight(), self.robots.seed)?;
-        writeln!(out, "  {doors} doors, counted from each entry, in {plans}")?;
+        writeln!(out, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
+        writeln!(out, "  {doors} pairs of entry door and exit door in {plans}")?;
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
-            failed(out, named(traversal), &traversal.outcome)?;
+            print_failure(out, named(traversal), &traversal.outcome)?;
         }
         let (wrong, gave_up) = tally(judged);
         writeln!(out, "  wrong    {}", share(wrong, judged.len()))?;
@@ -85,16 +86,16 @@ impl EvaluateControlArguments {
         let mean = |sum: f64| sum / judged.len().max(1) as f64;
         let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
         let pictures = mean(judged.iter().map(|traversal| traversal.pictures as f64).sum());
-        writeln!(out, "  {pictures:.1} pictures and {seconds:.1} s of simulated time each")?;
+        writeln!(out, "  {pictures:.1} images and {seconds:.1} s of simulated time per traversal")?;
         let verdict = match (judged.is_empty(), wrong + gave_up) {
             (true, _) => "nothing was measured",
-            (_, 0) => "holds: each door leads where the specification says",
+            (_, 0) => "holds: every door leads where it should",
             _ => "violated",
         };
         Ok(writeln!(out, "{verdict}")?)
     }
 
-    fn tell_json(
+    fn print_json(
         &self,
         judged: &[JudgedTraversal],
         traversals: &TraversalSampler,
@@ -119,7 +120,7 @@ impl EvaluateControlArguments {
     }
 }
 
-/// How many were wrong, and how many given up.
+/// The number of traversals that were wrong, and that were given up.
 fn tally(judged: &[JudgedTraversal]) -> (usize, usize) {
     let count = |is: fn(&Made) -> bool| judged.iter().filter(|made| is(&made.outcome)).count();
     (count(|made| matches!(made, Made::Wrong(_))), count(|made| matches!(made, Made::GaveUp(_))))
@@ -131,7 +132,7 @@ fn named(judged: &JudgedTraversal) -> String {
     let graph = plan.graph();
     let junction = |dart| &plan.junction(graph.vertex(dart)).name;
     format!(
-        "traversal {}, in {} by door {} of {}, having come from {}",
+        "traversal {} in {}, door {} of {}, entered from {}",
         traversal.number,
         traversal.plan_name,
         traversal.door.0,

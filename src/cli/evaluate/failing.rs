@@ -1,4 +1,4 @@
-//! Views on which sensing fails: their pictures, step by step, and what was asked and answered.
+//! Views on which sensing fails: a picture of each processing stage, the truth and the scene.
 
 use std::{collections::BTreeMap, io::Write, path::Path};
 
@@ -21,11 +21,11 @@ use crate::cli::{
     Failure, json::print_object, output, picture_file, scene::SceneLine, text::counted,
 };
 
-/// Pictures of no more views are written, nor of more visits: the first of those that are wrong, then
-/// the first of those that are unknown.
+/// The most views, and the most visits, of which pictures are written: first the wrong ones, then the
+/// unknown ones.
 const MOST: usize = 40;
 
-/// Writes what failed to a folder; answers how much, in words.
+/// Writes the views and visits that failed to a folder. Returns their number in words.
 pub(super) fn write(
     folder: &Path,
     judge: &Judge,
@@ -62,7 +62,7 @@ pub(super) fn write(
     Ok(format!("{views} and {} that failed", counted(failed_visits.len(), "visit")))
 }
 
-/// Whether a view is one that should be looked at: not right where it should be, or wrong anywhere.
+/// Whether a view failed: it is not right in a hallway or before a junction, or wrong anywhere.
 fn fails(judged: &JudgedView) -> bool {
     let asked = matches!(judged.zone(), Zone::Hallway | Zone::Before);
     judged.verdict.is_wrong()
@@ -70,7 +70,7 @@ fn fails(judged: &JudgedView) -> bool {
         || judged.marker == MarkerVerdict::Phantom
 }
 
-/// Writes the picture of a view, of each step, and what was asked and answered.
+/// Writes the image of a view, a picture of each stage, the floor plan and the scene.
 pub(super) fn write_view(
     folder: &Path,
     judge: &Judge,
@@ -117,7 +117,7 @@ fn mark(calibration: Calibration) -> &'static str {
     }
 }
 
-/// Prints one view for people: what it is, what was answered, and how that compares.
+/// Prints one view: its settings, its scene and the verdict.
 pub(super) fn print(
     out: &mut dyn Write,
     judged: &JudgedView,
@@ -135,12 +135,12 @@ fn print_line(
     print_object(out, &Line::new(judged, calibration, visit))
 }
 
-/// A view, and what was answered.
+/// The JSON line of a view.
 #[derive(Serialize)]
 struct Line<'a> {
     schema: u32,
     view: u64,
-    /// Where it is a picture of a visit, the number of the visit.
+    /// The number of the visit, if the view is part of one.
     #[serde(skip_serializing_if = "Option::is_none")]
     visit: Option<u64>,
     calibration: &'static str,
@@ -153,7 +153,7 @@ struct Line<'a> {
     marker: Option<MarkerLine>,
     effects: BTreeMap<&'static str, f64>,
     truth: String,
-    /// To the turning point of the junction.
+    /// Distance to the turning point of the junction, in metres.
     distance: Option<f64>,
     said: String,
     verdict: String,

@@ -1,4 +1,4 @@
-//! What an evaluation prints: figures with their targets, confusions, and what failures have in common.
+//! The output of `evaluate vision`: figures with targets, a confusion matrix, and groups of failures.
 
 use std::io::{self, Write};
 
@@ -10,25 +10,23 @@ use toposlam_robot::evaluation::{
     quantile::Quantile,
     rendered_view::WhichEffects,
     report::{ErrorUnit, Errors, Rate, TargetStatus, VisionReport},
-    scene_class::SceneClass,
     view_sampler::ViewSampler,
 };
 
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
-    text::grouped,
-    text::{print_hanging, print_rows},
+    text::{grouped, print_hanging, print_rows},
 };
 
-/// What is measured.
+/// The views and visits that are measured.
 pub(super) struct EvaluationHeader<'a> {
     pub(super) views: u64,
     pub(super) visits: u64,
     pub(super) source: &'a ViewSampler,
 }
 
-/// Prints as it goes.
+/// Prints results as they come, and counts the targets that are not met.
 pub(super) struct Printer<'o> {
     out: &'o mut dyn Write,
     json: bool,
@@ -36,7 +34,7 @@ pub(super) struct Printer<'o> {
     empty: usize,
 }
 
-/// So many of what halves the views are shown.
+/// The number of pairs of groups that are printed.
 const HALVES: usize = 10;
 
 impl<'o> Printer<'o> {
@@ -50,7 +48,7 @@ impl<'o> Printer<'o> {
             source.sizes.iter().map(|[width, height]| format!("{width}x{height}")).collect();
         let mut plans: Vec<_> = source.plans.iter().map(|(name, _)| name.as_str()).collect();
         if source.random_plans {
-            plans.push("random ones");
+            plans.push("random plans");
         }
         let looks: Vec<_> = source.looks.iter().map(|look| look.name).collect();
         let effects = match source.effects {
@@ -71,7 +69,7 @@ impl<'o> Printer<'o> {
         writeln!(self.out, "Sensing on {views} views and {visits} visits, seed {seed}")?;
         print_hanging(self.out, "  floor plans  ", &plans.join(", "))?;
         print_hanging(self.out, "  looks        ", &looks.join(", "))?;
-        writeln!(self.out, "  pictures     {}", sizes.join(", "))?;
+        writeln!(self.out, "  image sizes  {}", sizes.join(", "))?;
         writeln!(self.out, "  effects      {effects}")?;
         Ok(())
     }
@@ -91,21 +89,17 @@ impl<'o> Printer<'o> {
         };
         writeln!(self.out, "\n{title}\n")?;
         let rates: Vec<_> = report.rates.iter().map(rate_row).collect();
-        let heads = ["of", "what", "  seen", "     of", "     rate", "  at most", "   target", ""];
+        let heads = ["of", "  seen", "     of", "     rate", "  at most", "what"];
         print_rows(self.out, heads, &rates)?;
         if !report.errors.is_empty() {
             writeln!(self.out)?;
             let errors: Vec<_> = report.errors.iter().map(errors_row).collect();
             let [median, p95, p99, most] =
-                Quantile::ALL.map(|quantile| format!("{:>9}", called(quantile)));
-            let heads = ["of", "error of", "  cases", &median, &p95, &p99, &most, "target", ""];
+                Quantile::ALL.map(|quantile| format!("{:>6}", called(quantile)));
+            let heads = ["of", "  cases", &median, &p95, &p99, &most, "error of"];
             print_rows(self.out, heads, &errors)?;
         }
-        writeln!(
-            self.out,
-            "\n  What was there (rows), and what sensing said, of hallways and of junctions"
-        )?;
-        writeln!(self.out, "  up to their turning points:\n")?;
+        writeln!(self.out, "\n  True class, and the reported classes with their counts:\n")?;
         confusion(self.out, report)?;
         Ok(())
     }
@@ -176,10 +170,7 @@ impl<'o> Printer<'o> {
         if groups.iter().all(|group| group.failed == 0) {
             return Ok(());
         }
-        writeln!(
-            self.out,
-            "\n  How often such views are not right, by what they have in common:\n"
-        )?;
+        writeln!(self.out, "\n  Views that are not right, by what they have in common:\n")?;
         let rows: Vec<_> = groups.iter().filter(|group| !group.is_half).map(group_row).collect();
         print_rows(self.out, ["by", "", "failed", "     of", "    rate"], &rows)?;
         let halves: Vec<_> = groups.iter().filter(|group| group.is_half).collect();
@@ -208,7 +199,7 @@ impl<'o> Printer<'o> {
             Outcome::Violated if missed == 1 => "violated: a target is missed".to_owned(),
             Outcome::Violated => format!("violated: {missed} targets are missed"),
             Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
-            Outcome::Incomplete => format!("incomplete: {empty} targets without any case"),
+            Outcome::Incomplete => format!("incomplete: {empty} targets have no case"),
         };
         writeln!(self.out, "\n{verdict}")?;
         Ok(())
@@ -250,10 +241,11 @@ struct ErrorsLine<'a> {
 fn group_row(group: &FailureGroup) -> [String; 5] {
     let FailureGroup { by, what, failed, of, .. } = group;
     let name = (*by).to_owned();
+    let [failed, of] = [*failed, *of].map(|count| grouped(count as u128));
     [name, what.clone(), format!("{failed:>6}"), format!("{of:>7}"), percent(group.rate())]
 }
 
-/// By how much the rates of two groups differ.
+/// The difference of the rates of two groups.
 fn difference([below, above]: &[&FailureGroup; 2]) -> f64 {
     (above.rate() - below.rate()).abs()
 }
@@ -264,66 +256,55 @@ fn pair_row([below, above]: [&FailureGroup; 2]) -> [String; 4] {
     [below.by.to_owned(), below.what.clone(), below_rate, above_rate]
 }
 
-fn rate_row(rate: &Rate) -> [String; 8] {
+fn rate_row(rate: &Rate) -> [String; 6] {
     let figure = |share: Option<f64>| share.map_or_else(|| format!("{:>9}", "-"), percent);
     [
         rate.subject.name().to_owned(),
-        rate.what.to_owned(),
-        format!("{:>6}", rate.seen),
-        format!("{:>7}", rate.cases),
+        format!("{:>6}", grouped(rate.seen as u128)),
+        format!("{:>7}", grouped(rate.cases as u128)),
         figure(rate.rate()),
         figure(Some(rate.upper_bound()).filter(|_| rate.cases > 0)),
-        rate.limit.map_or_else(String::new, percent),
-        standing(rate.limit.map(|_| rate.standing())),
+        match rate.limit {
+            None => rate.what.to_owned(),
+            Some(limit) => {
+                let (target, status) = (percent(limit), status(rate.standing()));
+                format!("{}; target {}: {status}", rate.what, target.trim_start())
+            }
+        },
     ]
 }
 
-fn errors_row(errors: &Errors) -> [String; 9] {
-    let (_, short) = unit(errors.unit);
-    let [median, p95, p99, most] = Quantile::ALL.map(|quantile| match errors.quantile(quantile) {
-        None => format!("{:>9}", "-"),
-        Some(error) => format!("{:>9}", format!("{error:.2} {short}")),
+fn errors_row(errors: &Errors) -> [String; 7] {
+    let [median, p95, p99, most] = Quantile::ALL.map(|quantile| {
+        let error = errors.quantile(quantile).map(|error| format!("{error:.2}"));
+        format!("{:>6}", error.as_deref().unwrap_or("-"))
     });
+    let (unit, short) = unit(errors.unit);
+    let mut what = format!("{}, {unit}", errors.what);
     let limits = errors.limits.iter();
     let limits = limits.map(|&(quantile, limit)| format!("{} {limit} {short}", called(quantile)));
-    let target = limits.collect::<Vec<_>>().join(", ");
-    let asked = (!errors.limits.is_empty()).then(|| errors.standing());
-    let (subject, what) = (errors.subject.name().to_owned(), errors.what.to_owned());
-    let cases = format!("{:>7}", errors.sample.count());
-    [subject, what, cases, median, p95, p99, most, target, standing(asked)]
+    let targets: Vec<_> = limits.collect();
+    if !targets.is_empty() {
+        what += &format!("; target {}: {}", targets.join(", "), status(errors.standing()));
+    }
+    let cases = format!("{:>7}", grouped(errors.sample.count() as u128));
+    [errors.subject.name().to_owned(), cases, median, p95, p99, most, what]
 }
 
+/// Prints the reported classes for each true class.
 fn confusion(out: &mut dyn Write, report: &VisionReport) -> io::Result<()> {
-    let classes: Vec<_> = SceneClass::all().collect();
-    write!(out, "  {:<14}", "")?;
-    for class in &classes {
-        write!(out, "  {class:>8}", class = short(*class))?;
-    }
-    writeln!(out)?;
     for (is, said) in &report.confusion {
-        write!(out, "  {is:<14}")?;
-        for class in &classes {
-            let count = said.get(class).copied().unwrap_or_default();
-            let count = if count == 0 { ".".to_owned() } else { count.to_string() };
-            write!(out, "  {count:>8}")?;
-        }
-        writeln!(out)?;
+        let said = said.iter().map(|(class, &count)| format!("{class} {}", grouped(count as u128)));
+        print_hanging(out, &format!("  {is:<14}"), &said.collect::<Vec<_>>().join(", "))?;
     }
     Ok(())
 }
 
-/// The name of a class, in eight letters.
-fn short(class: SceneClass) -> String {
-    let name = class.to_string().replace("t-stem-", "t-st-").replace("t-by-stem", "t-stem");
-    name.chars().take(8).collect()
-}
-
-fn standing(standing: Option<TargetStatus>) -> String {
-    match standing {
-        None => String::new(),
-        Some(TargetStatus::Met) => "met".to_owned(),
-        Some(TargetStatus::Empty) => "no case".to_owned(),
-        Some(TargetStatus::Missed) => "missed".to_owned(),
+fn status(status: TargetStatus) -> &'static str {
+    match status {
+        TargetStatus::Met => "met",
+        TargetStatus::Empty => "no case",
+        TargetStatus::Missed => "missed",
     }
 }
 
@@ -332,7 +313,7 @@ fn percent(share: f64) -> String {
     format!("{:>9}", format!("{:.3} %", 100.0 * share))
 }
 
-/// What a quantile is called.
+/// The name of a quantile.
 fn called(quantile: Quantile) -> &'static str {
     match quantile {
         Quantile::Median => "median",
@@ -342,7 +323,7 @@ fn called(quantile: Quantile) -> &'static str {
     }
 }
 
-/// A unit's name, and its sign.
+/// A unit's name and abbreviation.
 fn unit(unit: ErrorUnit) -> (&'static str, &'static str) {
     match unit {
         ErrorUnit::Degrees => ("degrees", "deg"),

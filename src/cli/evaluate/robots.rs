@@ -1,4 +1,4 @@
-//! What evaluations of driving have in common: the plans, the robots, how they see.
+//! Options and output that `evaluate control` and `evaluate runs` share.
 
 use std::{fmt::Display, io::Write, path::PathBuf, sync::Arc};
 
@@ -21,53 +21,53 @@ use crate::cli::{
     appearance::{ImageSize, looks},
     noise,
     progress::Progress,
-    text::grouped,
+    text::{grouped, print_indented},
 };
 
-/// Which robots, and where.
+/// The robots, their floor plans and their sensing.
 #[derive(clap::Args)]
 pub(super) struct RobotArguments {
-    /// From which everything follows that is left to chance
+    /// Random seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) seed: u64,
-    /// Floor plans; may be given more than once [default: those of worlds/, and random ones]
+    /// Floor plans (repeatable) [default: those of worlds/, and random ones]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     plan: Vec<PathBuf>,
-    /// With rendered pictures, which sensing reads; without, scenes are told as often right and as
-    /// exactly as sensing was measured to be
+    /// Render images and sense them; without it, scenes are drawn with the measured error rates of
+    /// sensing
     #[arg(long)]
     images: bool,
-    /// With --images: width and height of the pictures
+    /// With --images: image size in pixels
     #[arg(long, value_name = "SIZE", default_value = "640x480")]
     size: ImageSize,
-    /// With --images: what the buildings look like; may be given more than once [default: every look]
+    /// With --images: look of the buildings (repeatable) [default: every look]
     #[arg(long, value_name = "NAME", value_parser = looks())]
     look: Vec<&'static BuildingLook>,
-    /// How inexact wheels and odometry are, and without images sensing: 0 not at all, 1 as by default
+    /// Multiple of the default noise of wheels and odometry, and of sensing without images
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
     pub(super) noise: f64,
-    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
-    /// Print JSON objects, one a line
+    /// Print JSON objects, one per line
     #[arg(long)]
     pub(super) json: bool,
 }
 
-/// A plan with its name.
+/// A plan's name and the plan.
 pub(super) type NamedPlan = (String, Arc<FloorPlan>);
 
-/// Which plans nobody drew.
+/// Random plans.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RandomPlans {
-    /// Any, so many.
+    /// This many, of any size.
     Any(u64),
-    /// So many, with from 5 to 25 junctions in turn.
+    /// This many, with 5 to 25 junctions in turn.
     Large(u64),
 }
 
 impl RobotArguments {
-    /// The plans: those given, or those of `worlds/` with at most so many junctions, and random ones.
+    /// The given plans; or those of `worlds/` with at most `most` junctions, and random ones.
     pub(super) fn plans(
         &self,
         random: RandomPlans,
@@ -93,31 +93,31 @@ impl RobotArguments {
         Ok(named)
     }
 
-    /// Cameras and sensing, where there are pictures.
-    pub(super) fn eyes(&self) -> Result<Option<LearnedSensors>, Failure> {
+    /// Rigs and sensors, if images are rendered.
+    pub(super) fn sensors(&self) -> Result<Option<LearnedSensors>, Failure> {
         if !self.images {
             return Ok(None);
         }
         let looks = if self.look.is_empty() { LOOKS.iter().collect() } else { self.look.clone() };
         let progress = Progress::new("learning colours", "looks")?;
         let camera = Camera::superscout().sized(self.size.pixels());
-        let eyes = LearnedSensors::new(&camera, &looks, &progress);
+        let sensors = LearnedSensors::new(&camera, &looks, &progress);
         progress.finish();
-        eyes.map(Some).map_err(unmeasured)
+        sensors.map(Some).map_err(unmeasured)
     }
 
-    /// How the robots see, in words.
-    pub(super) fn sight(&self) -> String {
+    /// How the robots sense, in words.
+    pub(super) fn sensing(&self) -> String {
         if self.images {
             let [width, height] = self.size.pixels();
-            format!("pictures of {width}x{height}")
+            format!("rendered images of {width}x{height}")
         } else {
-            "scenes told as sensing was measured to tell them".to_owned()
+            "scenes with the measured error rates".to_owned()
         }
     }
 }
 
-/// How often something happened, in words: with what it may be at most, in 95 of 100 such trials.
+/// A count, its rate, and the upper bound of the rate with a confidence of 95 %.
 pub(super) fn share(seen: usize, cases: usize) -> String {
     let percent = |part: f64| 100.0 * part;
     format!(
@@ -137,11 +137,11 @@ pub(super) fn share_json(kind: &str, seen: usize, cases: usize) -> serde_json::V
     })
 }
 
-/// Prints a line that stands out.
-pub(super) fn failed(
+/// Prints a case that failed, and why.
+pub(super) fn print_failure(
     out: &mut dyn Write,
     what: impl Display,
     how: impl Display,
 ) -> Result<(), Failure> {
-    writeln!(out, "  {what}: {how}").map_err(Failure::from)
+    print_indented(out, "  ", 4, &format!("{what}: {how}")).map_err(Failure::from)
 }

@@ -1,5 +1,4 @@
-//! `toposlam evaluate runs`: whole buildings mapped by a simulated robot, held against the
-//! specification. Section 6.
+//! `toposlam evaluate runs`: compares whole runs of a simulated robot with the specification. Section 6.
 
 use std::{io::Write, time::Instant};
 
@@ -10,57 +9,59 @@ use toposlam_robot::{
     simulator::{FAULTS, FaultKind},
 };
 
-use super::robots::{RandomPlans, RobotArguments, failed, share, share_json};
+use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
     progress::Progress,
-    text::print_rows,
-    text::{counted, grouped},
+    text::{counted, grouped, print_rows},
     use_threads,
 };
 
-/// Measure whole runs: is each building mapped right, with the moves that the specification makes?
+/// Measure whole runs: is every building mapped right, in the specified number of moves?
 ///
-/// A run is right if the map is isomorphic to the floor plan, the robot is where it believes to be,
-/// each move led where the specification says and each percept was right, and there were exactly as
-/// many moves as `toposlam explore` makes in the plan's embedded graph.
+/// A run is right if the map is isomorphic to the floor plan, the robot's pose in the map is true,
+/// every move and every percept is as specified, and the number of moves is that of `toposlam explore`
+/// in the plan's embedded graph.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam evaluate runs                                     hundreds of runs, in half a minute
-  toposlam evaluate runs --images --plans 10 --starts 3      with rendered pictures, in a quarter of an hour
-  toposlam evaluate runs --faults --plans 100                in each run something goes wrong
+  toposlam evaluate runs                                 takes half a minute
+  toposlam evaluate runs --images --plans 10 --starts 3  with rendered images,
+                                                         takes 15 minutes
+  toposlam evaluate runs --faults --plans 100            one fault in each run
 
-With --faults a run may also be given up, if the robot says what was contradictory. It is no violation
-if a robot that was carried, unseen, to a place that looks and goes on alike has a wrong map.
+With --faults, a run may also be given up if the robot reports a contradiction.
+A wrong map is no violation if the robot was carried to a place that it cannot
+distinguish from the right one.
 
-Exit codes: 0 each run is right, 1 one is not, 2 bad usage or input, 3 not all were made.")]
+Exit codes: 0 every run is right, 1 one is not, 2 bad usage or input, 3 not all
+were made.")]
 pub(super) struct EvaluateRunsArguments {
-    /// How many random plans, with 5 to 25 junctions, where no plan is given; with --images any
+    /// Number of random plans with 5 to 25 junctions, if no plan is given; with --images, of any size
     #[arg(long, default_value_t = 200, value_name = "N")]
     plans: u64,
-    /// From how many starts each plan is mapped
+    /// Number of starts in each plan
     #[arg(long, default_value_t = 3, value_name = "N")]
     starts: usize,
-    /// How many runs [default: one from each start]
+    /// Number of runs [default: one from each start]
     #[arg(long, value_name = "N")]
     runs: Option<u64>,
-    /// In each run one thing goes wrong
+    /// Inject one fault into each run
     #[arg(long)]
     faults: bool,
     #[command(flatten)]
     robots: RobotArguments,
 }
 
-/// With pictures, plans have no more junctions: else a run takes minutes.
+/// The most junctions of a plan with rendered images, in which a run would take minutes.
 const MOST_WITH_IMAGES: usize = 12;
 
 impl EvaluateRunsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.robots.threads)?;
-        let eyes = self.robots.eyes()?;
-        let (random, most) = match eyes {
+        let sensors = self.robots.sensors()?;
+        let (random, most) = match sensors {
             None => (RandomPlans::Large(self.plans), usize::MAX),
             Some(_) => (RandomPlans::Any(self.plans), MOST_WITH_IMAGES),
         };
@@ -72,17 +73,17 @@ impl EvaluateRunsArguments {
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
-        let judged = runs.judged(0..wanted, eyes.as_ref(), &progress);
+        let judged = runs.judged(0..wanted, sensors.as_ref(), &progress);
         progress.finish();
         let violations = judged.iter().filter(|run| self.violates(run)).count();
         if json {
-            self.tell_json(&judged, violations, out)?;
+            self.print_json(&judged, violations, out)?;
         } else {
-            let sight = self.robots.sight();
-            writeln!(out, "Whole runs by {sight}, seed {seed}")?;
+            let sensing = self.robots.sensing();
+            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
             let plans = counted(count, "floor plan");
             writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
-            self.tell(&judged, violations, out)?;
+            self.print(&judged, violations, out)?;
         }
         eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(if violations > 0 {
@@ -94,12 +95,12 @@ impl EvaluateRunsArguments {
         })
     }
 
-    /// Whether a run is not as it must be: without faults right, else not wrong without knowing it.
+    /// Whether a run fails: without faults it must be right, with faults it must not be wrong unnoticed.
     fn violates(&self, run: &JudgedRun) -> bool {
         if self.faults { run.is_violation() } else { run.ending != RunOutcome::Right }
     }
 
-    fn tell(
+    fn print(
         &self,
         judged: &[JudgedRun],
         violations: usize,
@@ -109,7 +110,7 @@ impl EvaluateRunsArguments {
             judged.iter().filter(|run| !self.faults || matches!(run.ending, RunOutcome::Wrong(_)))
         {
             if run.ending != RunOutcome::Right {
-                failed(out, named(run), &run.ending)?;
+                print_failure(out, named(run), &run.ending)?;
             }
         }
         if self.faults {
@@ -126,17 +127,17 @@ impl EvaluateRunsArguments {
         let pictures: u64 = judged.iter().map(|run| run.pictures).sum();
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
         let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
-        writeln!(out, "  {moves} moves, {pictures} pictures, {hours:.1} hours of simulated time")?;
+        writeln!(out, "  {moves} moves, {pictures} images, {hours:.1} hours of simulated time")?;
         let verdict = match (judged.is_empty(), violations, self.faults) {
             (true, ..) => "nothing was measured",
-            (_, 0, false) => "holds: each map is right, and each move as specified",
-            (_, 0, true) => "holds: each map is right, or the robot gave up, or it was carried",
+            (_, 0, false) => "holds: every map is right, and every move is as specified",
+            (_, 0, true) => "holds: every map is right, or the robot gave up or was carried",
             _ => "violated",
         };
         Ok(writeln!(out, "{verdict}")?)
     }
 
-    fn tell_json(
+    fn print_json(
         &self,
         judged: &[JudgedRun],
         violations: usize,
@@ -168,7 +169,7 @@ impl EvaluateRunsArguments {
     }
 }
 
-/// How many were right, given up, wrong.
+/// The number of runs that were right, given up, wrong.
 fn tally<'r>(runs: impl Iterator<Item = &'r JudgedRun>) -> [usize; 3] {
     runs.fold([0; 3], |mut tally, run| {
         let ending = match run.ending {

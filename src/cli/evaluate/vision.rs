@@ -1,4 +1,4 @@
-//! `toposlam evaluate vision`: scenes of rendered views, held against the floor plan.
+//! `toposlam evaluate vision`: compares the scenes of rendered views with the floor plan.
 
 use std::{
     io::Write,
@@ -35,58 +35,60 @@ use crate::cli::{
     use_threads,
 };
 
-/// Measure what sensing makes of rendered views, against the truth of the floor plan
+/// Measure sensing on rendered views against the floor plan
 ///
-/// Views are drawn from floor plans, random ones too: at junctions, from 1.5 m before to 0.3 m past
-/// the turning point, and anywhere in hallways; up to 0.3 m aside and turned by up to 25 degrees; in
-/// buildings of every look. Within 0.5 m of a turning point the truth is the junction, from 1.5 m on
-/// it is the hallway; between them either answer is right, if it is the right junction. A visit is
-/// a run of pictures on one approach, decided when two agree.
+/// Views are random poses in given and random floor plans, in buildings of every look. They lie at
+/// junctions, from 1.5 m before to 0.3 m past the turning point, or anywhere in hallways. The robot is
+/// up to 0.3 m off the middle and turned by up to 25 degrees.
+///
+/// Within 0.5 m of a turning point the right answer is the junction, beyond 1.5 m it is the hallway.
+/// In between, both the hallway and the right junction count as right. A visit is a series of images
+/// on one approach to a junction. It is decided when two images agree.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  toposlam evaluate vision                                   a thousand views, in a minute or two
+  toposlam evaluate vision                            takes one or two minutes
   toposlam evaluate vision --views 20000 --calibration-errors --json
-  toposlam evaluate vision --plan worlds/shape-8.toml --size 640x480 --out failing
-  toposlam evaluate vision --view 17 --out seventeen         one view, step by step
+  toposlam evaluate vision --plan worlds/shape-8.toml --out failing
+  toposlam evaluate vision --view 17 --out seventeen  one view, stage by stage
 
-Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 not all was measured.")]
+Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 not
+everything was measured.")]
 pub(super) struct EvaluateVisionArguments {
-    /// How many views
+    /// Number of views
     #[arg(long, default_value_t = 1000, value_name = "N")]
     views: u64,
-    /// How many visits [default: a twentieth of the views]
+    /// Number of visits [default: a twentieth of the views]
     #[arg(long, value_name = "N")]
     visits: Option<u64>,
-    /// From which all views follow
+    /// Random seed
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
-    /// Width and height of the pictures [default: 1280x960 and 640x480 in turn]
+    /// Image size in pixels [default: 1280x960 and 640x480 in turn]
     #[arg(long, value_name = "SIZE")]
     size: Option<ImageSize>,
-    /// What the buildings look like; may be given more than once [default: every look]
+    /// Look of the buildings (repeatable) [default: every look]
     #[arg(long, value_name = "NAME", value_parser = looks())]
     look: Vec<&'static BuildingLook>,
-    /// Floor plans; may be given more than once [default: those of worlds/, and random ones]
+    /// Floor plans (repeatable) [default: those of worlds/, and random ones]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     plan: Vec<PathBuf>,
-    /// Which effects there are
+    /// Effects that make images harder to read
     #[arg(long, default_value = "default", value_name = "WHICH")]
     effects: EffectsChoice,
-    /// Measure all views and visits again with a camera that is not as its calibration says: 5 pixels,
-    /// 2 cm and 1 degree off
+    /// Measure everything again with a camera that is 5 pixels, 2 cm and 1 degree off its calibration
     #[arg(long)]
     calibration_errors: bool,
-    /// Measure just the view of this number
+    /// Measure only the view with this number
     #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits", "json"])]
     view: Option<u64>,
-    /// The folder for pictures of each step of the views that fail, or of the one view
+    /// Folder for a picture of each processing stage of the views that fail, or of the one view
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads, up to 1024; the result does not depend on them [default: all processors]
+    /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Print one JSON object for each figure
+    /// Print one JSON object per figure
     #[arg(long)]
     json: bool,
 }
@@ -162,7 +164,7 @@ impl EvaluateVisionArguments {
         Ok((judged, visits))
     }
 
-    /// Just one view.
+    /// Measures one view.
     fn one(
         &self,
         views: &ViewSampler,
@@ -170,7 +172,7 @@ impl EvaluateVisionArguments {
         out: &mut dyn Write,
     ) -> Result<Outcome, Failure> {
         let view = views.view(number).map_err(unmeasured)?;
-        // Only what this view needs.
+        // Learn only the colours that this view needs.
         let views =
             ViewSampler { sizes: vec![view.image], looks: vec![view.look], ..views.clone() };
         let calibrations = self.calibrations();
@@ -197,7 +199,7 @@ impl EvaluateVisionArguments {
         }
     }
 
-    /// Where the views come from.
+    /// The sampler of the views.
     fn source(&self) -> Result<ViewSampler, Failure> {
         let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
         Ok(ViewSampler {
@@ -230,7 +232,7 @@ pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure
     Ok((world.name, Arc::new(plan)))
 }
 
-/// What nobody asked for wrongly.
+/// A failure that is not the user's.
 pub(super) fn unmeasured(error: impl std::fmt::Display) -> Failure {
     Failure::at("evaluate", error)
 }

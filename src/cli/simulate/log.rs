@@ -60,7 +60,7 @@ impl SimulateArguments {
         option("--calibration", self.calibration.as_ref().map(path));
         option("--size", self.size.map(|size| size.name().to_owned()));
         option("--colours", self.colours.as_ref().map(path));
-        for (name, value) in self.appearance.told() {
+        for (name, value) in self.appearance.arguments() {
             option(name, Some(value));
         }
         let unless =

@@ -1,4 +1,4 @@
-//! What training prints: how much of each class was seen, and how well it is told.
+//! The output of training: the pixels of each class, and the result of cross-validation.
 
 use std::{io::Write, path::PathBuf};
 
@@ -6,9 +6,13 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, StripeKind, Training};
 
-use crate::cli::{Failure, json::print_object, text::grouped, text::print_rows};
+use crate::cli::{
+    Failure,
+    json::print_object,
+    text::{grouped, print_hanging, print_rows},
+};
 
-/// What was learned from, and how well.
+/// The result of training.
 pub(super) struct TrainingReport<'t> {
     pub(super) training: &'t Training,
     pub(super) left_out: Vec<LeftOut>,
@@ -16,17 +20,17 @@ pub(super) struct TrainingReport<'t> {
     pub(super) validation: Validation,
 }
 
-/// An image that teaches nothing, and why.
+/// An image that was left out, and why.
 pub(super) struct LeftOut {
     pub(super) image: PathBuf,
     pub(super) cause: ExampleError,
 }
 
-/// How well images are told by what others teach.
+/// The result of cross-validation.
 pub(super) enum Validation {
-    /// In so many parts.
+    /// With this number of parts.
     Folds(usize, Confusion),
-    /// Not known.
+    /// Not validated.
     None { why: String },
 }
 
@@ -45,16 +49,12 @@ impl TrainingReport<'_> {
         writeln!(out)?;
         match &self.validation {
             Validation::Folds(folds, confusion) => {
-                writeln!(
-                    out,
-                    "What pixels are (rows), and what they are told to be by the other images, in \
-                     {folds} parts:\n"
-                )?;
+                writeln!(out, "Cross-validation in {folds} parts:\n")?;
                 self.print_confusion(out, confusion)
             }
             Validation::None { why } => {
                 let rows = PixelClass::LEARNED.map(|class| self.seen(class));
-                print_rows(out, ["", "images", "    pixels"], &rows)?;
+                print_rows(out, ["class", "images", "    pixels"], &rows)?;
                 Ok(writeln!(out, "\nnot cross-validated: {why}")?)
             }
         }
@@ -67,21 +67,23 @@ impl TrainingReport<'_> {
     }
 
     fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), Failure> {
-        let [floor, stripe, marker, other, unknown] =
-            Confusion::GIVEN.map(|class| format!("{:>10}", class.name()));
-        let heads =
-            ["", "images", "    pixels", &floor, &stripe, &marker, &other, &unknown, "    right"];
-        let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(&class, told)| {
+        let rows = PixelClass::LEARNED.map(|class| {
             let [name, images, pixels] = self.seen(class);
-            let [floor, stripe, marker, other, unknown] =
-                told.map(|pixels| format!("{:>10}", grouped(pixels.into())));
-            let right = confusion.recall(class).map_or_else(
-                || format!("{:>9}", "-"),
-                |share| format!("{:>9}", format!("{:.2} %", 100.0 * share)),
-            );
-            [name, images, pixels, floor, stripe, marker, other, unknown, right]
+            let recall = confusion.recall(class);
+            let recall = recall.map_or("-".to_owned(), |share| format!("{:.2} %", 100.0 * share));
+            [name, images, pixels, format!("{recall:>9}")]
         });
-        Ok(print_rows(out, heads, &rows.collect::<Vec<_>>())?)
+        print_rows(out, ["class", "images", "    pixels", "    right"], &rows)?;
+        writeln!(out, "\nTrue class, and the predicted classes with their pixels:\n")?;
+        for (class, predicted) in PixelClass::LEARNED.iter().zip(&confusion.pixels) {
+            let predicted =
+                Confusion::GIVEN.iter().zip(predicted).filter(|(_, pixels)| **pixels > 0);
+            let predicted = predicted
+                .map(|(class, &pixels)| format!("{} {}", class.name(), grouped(pixels.into())));
+            let texts = predicted.collect::<Vec<_>>().join(", ");
+            print_hanging(out, &format!("  {:<8}", class.name()), &texts)?;
+        }
+        Ok(())
     }
 
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
@@ -124,13 +126,13 @@ struct Line {
     images: usize,
     left_out: Vec<Value>,
     folds: Option<usize>,
-    /// Of each class, how many pixels were told to be of which.
+    /// For each true class, the number of pixels in each predicted class.
     confusion: Option<Value>,
     classes: [ClassFigures; 4],
     stripe: Value,
 }
 
-/// How much of a class there is, and how well it is told.
+/// The pixels of a class, and how well they are classified.
 #[derive(Serialize)]
 struct ClassFigures {
     class: &'static str,
@@ -140,12 +142,12 @@ struct ClassFigures {
     precision: Option<f64>,
 }
 
-/// A row for each class that pixels are, in it a number for each that they are told to be.
+/// For each true class, the number of pixels in each predicted class.
 fn confusion_json(confusion: &Confusion) -> Value {
-    let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(is, told)| {
-        let columns = Confusion::GIVEN.iter().zip(told);
+    let rows = PixelClass::LEARNED.iter().zip(&confusion.pixels).map(|(is, predicted)| {
+        let columns = Confusion::GIVEN.iter().zip(predicted);
         let row: Map<_, _> =
-            columns.map(|(told, &pixels)| (told.name().to_owned(), pixels.into())).collect();
+            columns.map(|(class, &pixels)| (class.name().to_owned(), pixels.into())).collect();
         (is.name().to_owned(), Value::Object(row))
     });
     Value::Object(rows.collect())
