@@ -9,23 +9,30 @@ use toposlam_model::{
     enumerate::Class,
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
-    percept::{Percept, Sighting},
-    trace::{Claim, Trace, TraceEvent, WorldSearch, anywhere, follow, smallest},
+    percept::Percept,
+    trace::{Claim, Trace, TraceEvent, TraceEventKind, WorldSearch, anywhere, follow, smallest},
     world::GraphWorld,
 };
 use toposlam_robot::{
     conform::{
-        ConformConfig, Event as LogEvent, Events, Evidence, Kind, KnownWorld, Perceived, Quirks,
-        RunDriver, Source, extract, judge,
+        CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, KnownWorld, Quirks,
+        RunDriver, RunEvents, extract, judge,
     },
     evaluation::random_plan::random_plan_with,
     log::{
+        arrival_message, door_message,
         messages::{self, ProjectMessage, Stamp},
         reader::Log,
         topic_map::TopicMap,
         writer::LogWriter,
     },
+    record::Arrival,
 };
+
+/// An arrival of which only this is known.
+fn arrival(percept: Percept, number: Option<u32>) -> Arrival {
+    Arrival { number, percept, form: None, entry: None }
+}
 
 fn main() {
     divan::main();
@@ -34,10 +41,10 @@ fn main() {
 /// A run of Algorithm 1 in a plan with so many junctions.
 fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     let graph = plan.graph();
-    let mut events = vec![TraceEvent::Perceived(GraphWorld::new(graph, Dart(0)).sensed())];
+    let mut events = vec![TraceEventKind::Percept(GraphWorld::new(graph, Dart(0)).sensed())];
     let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
         if let MappingEvent::Moved { door, percept } = event {
-            events.extend([TraceEvent::Left(door), TraceEvent::Perceived(percept)]);
+            events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(percept)]);
         }
     };
     let mut exploration = Exploration::new(graph.dart_count());
@@ -51,21 +58,16 @@ fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
 fn a_run(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
-    let event = |(place, event): (usize, TraceEvent)| LogEvent {
-        source: Source { time: place as u64, ..Source::default() },
-        kind: match event {
-            TraceEvent::Perceived(percept) => Kind::Perceived(Perceived {
-                percept,
-                number: None,
-                form: None,
-                entry: None,
-                entry_off: None,
-            }),
-            TraceEvent::Left(door) => Kind::Left { door, number: None, off: None },
+    let event = |event: TraceEvent| CheckedEvent {
+        source: EventSource { time: event.id as u64, ..EventSource::default() },
+        kind: match event.kind {
+            TraceEventKind::Percept(percept) => {
+                CheckedKind::Arrival { arrival: arrival(percept, None), entry_off: None }
+            }
+            TraceEventKind::Door(door) => CheckedKind::Door { door, number: None, off: None },
         },
     };
-    let events =
-        Events { events: trace.events().enumerate().map(event).collect(), ..Events::default() };
+    let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
     let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
@@ -79,23 +81,17 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     let plan = random_plan_with(1, 100).unwrap();
     let trace = trace(&plan).up_to(9_999);
     let mut log = LogWriter::new(Vec::new()).unwrap();
-    for (place, event) in trace.events().enumerate() {
-        let (time, moves) = (place as u64 * 1_000_000_000, place as u32 / 2);
-        match event {
-            TraceEvent::Perceived(Percept { degree, sighting }) => {
-                let marker = match sighting {
-                    Sighting::Pointing(door) => door.0.cast_signed(),
-                    _ => -1,
-                };
-                let (form, entry) = ([false; 4], f64::NAN);
-                let stamp = Stamp::of(time);
-                let told = messages::Percept { stamp, r#move: moves, degree, marker, form, entry };
-                log.write(messages::Percept::TOPIC, time, &told).unwrap();
+    for event in trace.events() {
+        let (time, moves) = (event.id as u64 * 1_000_000_000, event.id as u32 / 2);
+        let stamp = Stamp::of(time);
+        match event.kind {
+            TraceEventKind::Percept(percept) => {
+                let message = arrival_message(stamp, &arrival(percept, Some(moves)));
+                log.write(messages::Percept::TOPIC, time, &message).unwrap();
             }
-            TraceEvent::Left(door) => {
-                let (stamp, r#move) = (Stamp::of(time), moves + 1);
-                let told = messages::Door { stamp, r#move, door: door.0 };
-                log.write(messages::Door::TOPIC, time, &told).unwrap();
+            TraceEventKind::Door(door) => {
+                let message = door_message(stamp, Some(moves + 1), door);
+                log.write(messages::Door::TOPIC, time, &message).unwrap();
             }
         }
     }
@@ -109,7 +105,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         let mapping = TopicMap::unambiguous(&log);
         let gathered = extract(&log, &mapping, Evidence::Told, None, true, &()).unwrap();
         let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
-        assert!(judgement.divergence.is_none() && judgement.places.len() == 10_000);
+        assert!(judgement.divergence.is_none() && judgement.trace.len() == 10_000);
     });
 }
 

@@ -5,9 +5,9 @@ use std::{collections::HashMap, fmt};
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::{algorithm2::Command, odometry::Odometry, scene::Scene},
+    driving::{algorithm2::Command, scene::Scene},
     mapping::{Exploration, MappingError},
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Percept},
 };
 use toposlam_vision::sensing::Sensor;
 
@@ -16,9 +16,7 @@ use crate::{
     log::{
         entries::{Content, Entries},
         error::LogError,
-        map_of, messages,
         reader::Log,
-        scene_of,
         topic_map::{Role, TopicMap, TopicMapError},
     },
     record::{Event, EventKind, Frame, MapRecord, RunObserver},
@@ -115,12 +113,6 @@ pub enum ReplayError {
          check the run of another robot with `toposlam conform`"
     )]
     Nothing,
-    /// A scene is invalid.
-    #[error("message {message}: invalid scene")]
-    Scene {
-        /// The number of the message, counted from 1.
-        message: u64,
-    },
 }
 
 /// Runs the off-line version on a log.
@@ -146,9 +138,7 @@ pub fn replay(
     let mut robot = ReplayedRobot {
         entries: log.entries(&bound),
         frames,
-        start,
         next: None,
-        odometry: Odometry::default(),
         recorded: RecordedResults::default(),
         failure: None,
     };
@@ -176,9 +166,7 @@ struct ReplayedRobot<'l> {
     entries: Entries<'l>,
     /// What frames are made of: images or scenes.
     frames: Role,
-    start: u64,
     next: Option<Frame>,
-    odometry: Odometry,
     recorded: RecordedResults,
     failure: Option<ReplayError>,
 }
@@ -195,36 +183,23 @@ impl ReplayedRobot<'_> {
                     return;
                 }
             };
-            let taken = entry.stamp.nanoseconds().saturating_sub(self.start) as f64 / 1e9;
-            let id = entry.number;
-            let frame = Frame { id, taken, odometry: self.odometry, ..Frame::default() };
-            match entry.content {
-                Content::Image(image) if self.frames == Role::Image => {
-                    self.next = Some(Frame { image: Some(image), ..frame });
+            let Content::Event(kind) = entry.content else { continue };
+            match kind {
+                EventKind::Frame(frame)
+                    if frame.image.is_some() == (self.frames == Role::Image) =>
+                {
+                    self.next = Some(frame);
                     return;
                 }
-                Content::Scene(scene) => {
-                    let Some(scene) = scene_of(&scene) else {
-                        self.failure = Some(ReplayError::Scene { message: id });
-                        return;
-                    };
-                    if self.frames == Role::Scene {
-                        self.next = Some(Frame { scene: Some(scene), ..frame });
-                        return;
-                    }
+                EventKind::Frame(Frame { scene: Some(scene), .. }) => {
                     self.recorded.scenes.insert(last, scene);
                 }
-                Content::Odometry(odometry) => self.odometry = odometry,
-                Content::Command(messages::Command { turn, forward, .. }) => {
-                    self.recorded.commands.insert(last, Command { turn, forward });
+                EventKind::Command { command: Some(command), .. } => {
+                    self.recorded.commands.insert(last, command);
                 }
-                Content::Percept(percept) => {
-                    let sighting = u32::try_from(percept.marker)
-                        .map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door)));
-                    self.recorded.percepts.push(Percept { degree: percept.degree, sighting });
-                }
-                Content::Door(door) => self.recorded.doors.push(Door(door.door)),
-                Content::Map(map) => self.recorded.map = Some(map_of(&map)),
+                EventKind::Arrival(arrival) => self.recorded.percepts.push(arrival.percept),
+                EventKind::Door { door, .. } => self.recorded.doors.push(door),
+                EventKind::Map(map) => self.recorded.map = Some(map),
                 _ => {}
             }
         }
@@ -363,7 +338,8 @@ mod tests {
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
         setting.keeps_track = true;
         let mut log = Vec::new();
-        let mut recorder = Recorder::new(&mut log, &messages::Run::default(), None).unwrap();
+        let mut recorder =
+            Recorder::new(&mut log, &crate::log::messages::Run::default(), None).unwrap();
         let run = run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200);
         recorder.finish().unwrap();
         (Log::of_bytes(log).unwrap(), run.exploration)

@@ -11,6 +11,7 @@ use toposlam_robot::{
         reader::Log,
         topic_map::{Role, TopicMap, TopicMapError},
     },
+    record::{EventId, EventKind},
 };
 use toposlam_vision::{
     annotate,
@@ -135,7 +136,7 @@ impl OpenLog {
     }
 
     /// The last image up to a message, with its scene drawn over it if it is known.
-    pub(super) fn picture(&self, message: u64) -> Option<Vec<u8>> {
+    pub(super) fn picture(&self, last_message: EventId) -> Option<Vec<u8>> {
         let annotated = self.log.topics().iter().position(|topic| topic.name == ANNOTATED);
         let mapping = match annotated {
             Some(_) => TopicMap::of(Role::Image, ANNOTATED),
@@ -145,11 +146,12 @@ impl OpenLog {
         let mut last = None;
         for entry in self.log.entries(&bound) {
             match entry.ok()? {
-                entry if entry.number > message => break,
+                entry if entry.id > last_message => break,
                 entry => last = Some(entry.content),
             }
         }
-        let Some(Content::Image(picture)) = last else { return None };
+        let Some(Content::Event(EventKind::Frame(frame))) = last else { return None };
+        let picture = frame.image?;
         if let (Some(file), true) = (picture.file(), annotated.is_some() || self.sensing.is_none())
         {
             return Some(file.to_vec());

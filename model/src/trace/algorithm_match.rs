@@ -5,7 +5,7 @@ use std::{collections::HashSet, fmt, mem};
 
 use thiserror::Error;
 
-use super::{AlgorithmCoverage, Trace};
+use super::{AlgorithmCoverage, Trace, TraceEvent};
 use crate::{
     embedded_graph::Dart,
     mapping::{
@@ -38,8 +38,9 @@ pub enum Choosing {
     Default,
     /// Others, which Algorithm 1 leaves open.
     Other {
-        /// The first event, from 0, that the default choices would not have.
-        from: usize,
+        /// The id of the first event that the default choices would not have; `None` if they would go on
+        /// after the last one.
+        from: Option<usize>,
     },
 }
 
@@ -57,8 +58,8 @@ pub enum Reached {
 /// The first event of a trace that no run of Algorithm 1 has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Departure {
-    /// Which event, from 0.
-    pub event: usize,
+    /// The event.
+    pub event: TraceEvent,
     /// What Algorithm 1 would have done there, for each choice that leads there; each once.
     pub allowed: Vec<Allowed>,
 }
@@ -211,9 +212,10 @@ pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * world.moves,
         _ => 2 * world.moves + 1,
     };
-    let (reached, script) = found.unwrap_or_else(|| search.departure());
+    let from = (from < trace.len()).then(|| trace.event(from).id);
+    let (reached, script) = found.unwrap_or_else(|| search.departure(trace));
     let choosing = match &reached {
-        Reached::Departure(departure) if departure.event == from => Choosing::Default,
+        Reached::Departure(departure) if Some(departure.event.id) == from => Choosing::Default,
         _ => Choosing::Other { from },
     };
     let mut followed = Followed { choosing, reached, exploration, coverage, script: Some(script) };
@@ -404,8 +406,8 @@ impl Search {
     }
 
     /// Where the ways ended that came farthest.
-    fn departure(self) -> (Reached, Vec<MappingChoice>) {
-        let departure = Departure { event: self.farthest, allowed: self.allowed };
+    fn departure(self, trace: &Trace) -> (Reached, Vec<MappingChoice>) {
+        let departure = Departure { event: trace.event(self.farthest), allowed: self.allowed };
         (Reached::Departure(departure), self.script)
     }
 }
@@ -422,7 +424,7 @@ mod tests {
         mapping::{Choices, FACING, Journey, MappingEvent},
         percept::Sighting,
         trace::{
-            TraceEvent,
+            TraceEventKind,
             tests::{explored, lollipop, walked},
         },
         world::GraphWorld,
@@ -461,7 +463,7 @@ mod tests {
         let followed = follow(&trace, Claim::Whole, 100);
         let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
-        assert_eq!(departure.event, 3);
+        assert_eq!(departure.event.id, 3);
         assert_eq!(
             allowed,
             [
@@ -478,9 +480,10 @@ mod tests {
         let mut doors = explored(&graph, Dart(0)).doors().to_vec();
         let moves = doors.len();
         doors.push(Door(0));
-        let followed = follow(&walked(&graph, Dart(0), &doors), Claim::Whole, 100);
+        let trace = walked(&graph, Dart(0), &doors);
+        let followed = follow(&trace, Claim::Whole, 100);
         let done = Allowed { door: None, purpose: Purpose::Done };
-        let departure = Departure { event: 2 * moves + 1, allowed: vec![done] };
+        let departure = Departure { event: trace.event(2 * moves + 1), allowed: vec![done] };
         assert_eq!(followed.reached, Reached::Departure(departure));
         assert!(followed.exploration.map().complete().is_some());
     }
@@ -489,9 +492,9 @@ mod tests {
     fn a_start_without_the_marker_departs_at_once() {
         let percept = Percept { degree: 2, sighting: Sighting::Nothing };
         let followed =
-            follow(&Trace::new([TraceEvent::Perceived(percept)]).unwrap(), Claim::Part, 100);
+            follow(&Trace::new([TraceEventKind::Percept(percept)]).unwrap(), Claim::Part, 100);
         let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
-        assert_eq!(departure.event, 0);
+        assert_eq!(departure.event.id, 0);
         let contradiction = Contradiction::Start { perceived: percept };
         assert_eq!(departure.allowed[0].purpose, Purpose::Contradicted(contradiction));
     }
@@ -556,7 +559,7 @@ mod tests {
             let Reached::Departure(departure) = follow(&false_door, Claim::Whole, 100).reached else {
                 panic!("it is followed")
             };
-            prop_assert_eq!(departure.event, 2 * moves + 1);
+            prop_assert_eq!(departure.event.id, 2 * moves + 1);
             let taken = trace.doors()[moves];
             prop_assert!(departure.allowed.iter().any(|allowed| allowed.door == Some(taken)));
         }

@@ -1,6 +1,6 @@
 //! A trace against a known world: all the poses that fit what was perceived so far. Section 2.1.
 
-use super::{Trace, TraceEvent};
+use super::{Trace, TraceEvent, TraceEventKind};
 use crate::{
     embedded_graph::EmbeddedGraph,
     marker::Marker,
@@ -24,8 +24,10 @@ pub struct Poses {
 /// An event that fits no way in which the robot may stand.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
-    /// Which event, from 0.
-    pub event: usize,
+    /// The event.
+    pub event: TraceEvent,
+    /// The number of moves before it.
+    pub moves: usize,
     /// Each way in which the robot may have stood before it (at a percept: in which it has come to
     /// stand), and why the event does not fit it.
     pub candidates: Vec<(State, MisfitReason)>,
@@ -65,15 +67,15 @@ pub fn poses(
     let mut states = starts.to_vec();
     let mut left = Vec::with_capacity(trace.len());
     let mut alone = Vec::with_capacity(trace.len());
-    for (number, event) in trace.events().enumerate() {
-        let judged = |&state: &State| (state, after(graph, marker, state, event));
+    for (index, event) in trace.events().enumerate() {
+        let judged = |&state: &State| (state, after(graph, marker, state, event.kind));
         let judged: Vec<_> = states.iter().map(judged).collect();
         let fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
         if fit.is_empty() {
             let why =
                 |(state, after): (State, Result<State, MisfitReason>)| Some((state, after.err()?));
             let candidates = judged.into_iter().filter_map(why).collect();
-            let misfit = Some(Misfit { event: number, candidates });
+            let misfit = Some(Misfit { event, moves: index / 2, candidates });
             return Poses { left, alone, states, misfit };
         }
         left.push(fit.len());
@@ -88,16 +90,16 @@ fn after(
     graph: &EmbeddedGraph,
     marker: &impl Marker,
     state: State,
-    event: TraceEvent,
+    event: TraceEventKind,
 ) -> Result<State, MisfitReason> {
     let Some(facing) = state.placed else { return Ok(state) };
     let mut world = GraphWorld::with_marker(graph, marker, facing).at(state);
     match event {
-        TraceEvent::Perceived(percept) => {
+        TraceEventKind::Percept(percept) => {
             let expected = world.sensed();
             if percept == expected { Ok(state) } else { Err(MisfitReason::Percept { expected }) }
         }
-        TraceEvent::Left(door) => match world.traverse(door) {
+        TraceEventKind::Door(door) => match world.traverse(door) {
             Ok(()) => Ok(world.state()),
             Err(Refused::NoSuchDoor { degree, .. }) => Err(MisfitReason::NoSuchDoor { degree }),
             Err(_) => Ok(state),
@@ -123,11 +125,11 @@ mod tests {
         let graph = lollipop();
         // Without a marker, from the end of the tail: 8 poses, one with degree 1.
         let trace = walked(&graph, Dart(0), &[Door(0), Door(1), Door(1)]);
-        let bare = trace.events().map(|event| match event {
-            TraceEvent::Perceived(percept) => {
-                TraceEvent::Perceived(Percept { sighting: Sighting::Nothing, ..percept })
+        let bare = trace.events().map(|event| match event.kind {
+            TraceEventKind::Percept(percept) => {
+                TraceEventKind::Percept(Percept { sighting: Sighting::Nothing, ..percept })
             }
-            door @ TraceEvent::Left(_) => door,
+            door @ TraceEventKind::Door(_) => door,
         });
         let bare = Trace::new(bare).unwrap();
         let found = poses(&graph, &NoMarker, &anywhere(&graph, &NoMarker), &bare);
@@ -146,13 +148,13 @@ mod tests {
         trace.percepts[1].degree = 2;
         let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
         let expected = Percept { degree: 3, sighting: Sighting::Nothing };
-        assert_eq!(misfit.event, 2);
+        assert_eq!(misfit.event.id, 2);
         assert_eq!(misfit.candidates[0].1, MisfitReason::Percept { expected });
         trace.percepts[1].degree = 3;
         trace.doors[1] = Door(3);
         let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
         assert_eq!(
-            (misfit.event, misfit.candidates[0].1),
+            (misfit.event.id, misfit.candidates[0].1),
             (3, MisfitReason::NoSuchDoor { degree: 3 })
         );
     }

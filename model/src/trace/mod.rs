@@ -20,80 +20,101 @@ pub use world_search::{SmallestWorld, WorldSearch, smallest};
 
 use crate::percept::{Door, Percept};
 
-/// What a robot perceived and which doors it took, in turn; it begins with the percept at the start.
-///
-/// Its events are numbered from 0: event `2i` is the percept after `i` moves, event `2i + 1` the door
-/// of the next move.
+/// What a robot perceived and the doors that it took, in turn, beginning with the percept at the start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
     percepts: Vec<Percept>,
     doors: Vec<Door>,
+    /// Of each event.
+    ids: Vec<usize>,
 }
 
-/// Something that a robot perceived or did.
+/// An event of a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TraceEvent {
-    /// It stood at a vertex and perceived this.
-    Perceived(Percept),
-    /// It left by this door.
-    Left(Door),
+pub struct TraceEvent {
+    /// The number of the recorded event that it came from, counted from 0.
+    pub id: usize,
+    /// What happened.
+    pub kind: TraceEventKind,
 }
 
-/// Events that do not take turns.
+/// What a robot perceived or did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceEventKind {
+    /// It perceived this at a vertex.
+    Percept(Percept),
+    /// It left by this door.
+    Door(Door),
+}
+
+/// Events that do not alternate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TraceOrderError {
-    /// There is none.
+    /// There is no event.
     #[error("there is no event")]
     Empty,
-    /// A percept where a door is due.
+    /// A percept follows a percept.
     #[error("a percept follows a percept: no door was taken in between")]
     NoDoor {
-        /// Which event, from 0.
+        /// The id of the second.
         event: usize,
     },
-    /// A door where a percept is due.
+    /// A door follows a door, or is the first event.
     #[error("a door is taken where no percept has come since the last one")]
     NoPercept {
-        /// Which event, from 0.
+        /// The id of the door.
         event: usize,
     },
 }
 
 impl Trace {
-    /// A trace of events that take turns.
+    /// A trace of events that are numbered from 0.
     ///
     /// # Errors
-    /// The first event that is not in turn.
-    pub fn new(events: impl IntoIterator<Item = TraceEvent>) -> Result<Self, TraceOrderError> {
-        let (mut percepts, mut doors) = (Vec::new(), Vec::new());
-        for (number, event) in events.into_iter().enumerate() {
-            match event {
-                TraceEvent::Perceived(_) if number % 2 == 1 => {
-                    return Err(TraceOrderError::NoDoor { event: number });
+    /// Returns the first event that is out of turn.
+    pub fn new(kinds: impl IntoIterator<Item = TraceEventKind>) -> Result<Self, TraceOrderError> {
+        let kinds = kinds.into_iter().enumerate();
+        Self::from_events(kinds.map(|(id, kind)| TraceEvent { id, kind }))
+    }
+
+    /// A trace of events whose ids increase.
+    ///
+    /// # Errors
+    /// Returns the first event that is out of turn.
+    pub fn from_events(
+        events: impl IntoIterator<Item = TraceEvent>,
+    ) -> Result<Self, TraceOrderError> {
+        let mut trace = Self { percepts: Vec::new(), doors: Vec::new(), ids: Vec::new() };
+        for TraceEvent { id, kind } in events {
+            let standing = trace.percepts.len() > trace.doors.len();
+            match kind {
+                TraceEventKind::Percept(_) if standing => {
+                    return Err(TraceOrderError::NoDoor { event: id });
                 }
-                TraceEvent::Left(_) if number % 2 == 0 => {
-                    return Err(TraceOrderError::NoPercept { event: number });
+                TraceEventKind::Door(_) if !standing => {
+                    return Err(TraceOrderError::NoPercept { event: id });
                 }
-                TraceEvent::Perceived(percept) => percepts.push(percept),
-                TraceEvent::Left(door) => doors.push(door),
+                TraceEventKind::Percept(percept) => trace.percepts.push(percept),
+                TraceEventKind::Door(door) => trace.doors.push(door),
             }
+            trace.ids.push(id);
         }
-        if percepts.is_empty() { Err(TraceOrderError::Empty) } else { Ok(Self { percepts, doors }) }
+        if trace.ids.is_empty() { Err(TraceOrderError::Empty) } else { Ok(trace) }
     }
 
     /// The number of events; never 0.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "it is never empty")]
     pub fn len(&self) -> usize {
-        self.percepts.len() + self.doors.len()
+        self.ids.len()
     }
 
     /// The events in order.
     pub fn events(&self) -> impl Iterator<Item = TraceEvent> + '_ {
-        (0..self.len()).map(|number| self.event(number))
+        (0..self.len()).map(|index| self.event(index))
     }
 
-    /// What was perceived: at the start, and after each move.
+    /// The percepts: at the start, and after each move.
     #[must_use]
     pub fn percepts(&self) -> &[Percept] {
         &self.percepts
@@ -105,29 +126,42 @@ impl Trace {
         &self.doors
     }
 
-    /// The trace up to and with an event.
+    /// The trace up to and including an event.
     #[must_use]
-    pub fn up_to(&self, event: usize) -> Self {
-        let percepts = self.percepts.len().min(event / 2 + 1);
-        let doors = self.doors.len().min(event.div_ceil(2));
-        Self { percepts: self.percepts[..percepts].to_vec(), doors: self.doors[..doors].to_vec() }
-    }
-
-    /// An event of the trace, below its length.
-    fn event(&self, number: usize) -> TraceEvent {
-        if number.is_multiple_of(2) {
-            TraceEvent::Perceived(self.percepts[number / 2])
-        } else {
-            TraceEvent::Left(self.doors[number / 2])
+    pub fn up_to(&self, index: usize) -> Self {
+        let percepts = self.percepts.len().min(index / 2 + 1);
+        let doors = self.doors.len().min(index.div_ceil(2));
+        Self {
+            percepts: self.percepts[..percepts].to_vec(),
+            doors: self.doors[..doors].to_vec(),
+            ids: self.ids[..percepts + doors].to_vec(),
         }
     }
 
-    /// The trace without the moves from one to another: after so many moves the robot does what it
-    /// did after so many others. What it perceives in between is the later percept.
+    /// An event by its index; the last one if there are fewer.
+    #[must_use]
+    pub fn event(&self, index: usize) -> TraceEvent {
+        let index = index.min(self.len() - 1);
+        let kind = if index.is_multiple_of(2) {
+            TraceEventKind::Percept(self.percepts[index / 2])
+        } else {
+            TraceEventKind::Door(self.doors[index / 2])
+        };
+        TraceEvent { id: self.ids[index], kind }
+    }
+
+    /// The index of the first event with this id or a larger one.
+    #[must_use]
+    pub fn index_of(&self, id: usize) -> usize {
+        self.ids.partition_point(|&one| one < id)
+    }
+
+    /// The trace without the moves `from..to`. The later percept takes the place of the earlier one.
     fn without(&self, from: usize, to: usize) -> Self {
         let percepts = [&self.percepts[..from], &self.percepts[to..]].concat();
         let doors = [&self.doors[..from], &self.doors[to..]].concat();
-        Self { percepts, doors }
+        let ids = [&self.ids[..2 * from], &self.ids[2 * to..]].concat();
+        Self { percepts, doors, ids }
     }
 }
 
@@ -144,10 +178,10 @@ pub(crate) mod tests {
     /// What a robot perceives on a walk from a start.
     pub(crate) fn walked(graph: &EmbeddedGraph, facing: Dart, doors: &[Door]) -> Trace {
         let mut world = GraphWorld::new(graph, facing);
-        let mut events = vec![TraceEvent::Perceived(world.sensed())];
+        let mut events = vec![TraceEventKind::Percept(world.sensed())];
         for &door in doors {
             world.traverse(door).unwrap();
-            events.extend([TraceEvent::Left(door), TraceEvent::Perceived(world.sensed())]);
+            events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
         }
         Trace::new(events).unwrap()
     }
@@ -179,9 +213,9 @@ pub(crate) mod tests {
 
     #[test]
     fn percepts_and_doors_take_turns() {
-        let percept = TraceEvent::Perceived(Percept { degree: 1, sighting: Sighting::Nothing });
-        let door = TraceEvent::Left(Door::BACK);
-        let trace = |events: &[TraceEvent]| Trace::new(events.iter().copied());
+        let percept = TraceEventKind::Percept(Percept { degree: 1, sighting: Sighting::Nothing });
+        let door = TraceEventKind::Door(Door::BACK);
+        let trace = |events: &[TraceEventKind]| Trace::new(events.iter().copied());
         assert_eq!(trace(&[]), Err(TraceOrderError::Empty));
         assert_eq!(trace(&[door]), Err(TraceOrderError::NoPercept { event: 0 }));
         assert_eq!(trace(&[percept, percept]), Err(TraceOrderError::NoDoor { event: 1 }));
@@ -190,9 +224,10 @@ pub(crate) mod tests {
         for length in 1..=whole.len() {
             let trace = trace(&whole[..length]).unwrap();
             assert_eq!(trace.len(), length);
-            assert_eq!(trace.events().collect::<Vec<_>>(), whole[..length]);
+            assert_eq!(trace.events().map(|event| event.kind).collect::<Vec<_>>(), whole[..length]);
             for event in 0..length {
                 assert_eq!(trace.up_to(event).len(), event + 1);
+                assert_eq!((trace.event(event).id, trace.index_of(event)), (event, event));
             }
         }
     }

@@ -60,7 +60,7 @@ mod tests {
         let why = misfit(&trace).unwrap().candidates[0].1;
         let shows = |trace: &Trace| {
             misfit(trace).is_some_and(|misfit| {
-                misfit.event + 1 == trace.len() && misfit.candidates[0].1 == why
+                misfit.event.id == trace.event(trace.len()).id && misfit.candidates[0].1 == why
             })
         };
         let short = shortened(&trace, shows);

@@ -412,7 +412,7 @@ mod tests {
         isomorphism::code,
         marker::Directional,
         trace::{
-            Claim, TraceEvent, follow, poses,
+            Claim, TraceEventKind, follow, poses,
             tests::{explored, lollipop, walked},
         },
         world::{GraphWorld, State},
@@ -453,8 +453,8 @@ mod tests {
 
     #[test]
     fn a_ring_of_three_explains_a_walk_round_a_ring_of_four_without_a_marker() {
-        let corner = TraceEvent::Perceived(Percept { degree: 2, sighting: Sighting::Nothing });
-        let trace = Trace::new([corner, TraceEvent::Left(Door(1))].repeat(4)).unwrap();
+        let corner = TraceEventKind::Percept(Percept { degree: 2, sighting: Sighting::Nothing });
+        let trace = Trace::new([corner, TraceEventKind::Door(Door(1))].repeat(4)).unwrap();
         for (class, edges) in [(Class::Multigraph, 1), (Class::Simple, 3)] {
             let SmallestWorld::World { graph, marker } =
                 smallest(&trace, None, search(class, 9), &())
@@ -478,10 +478,10 @@ mod tests {
     #[test]
     fn there_is_one_marker() {
         let percept = |degree| {
-            TraceEvent::Perceived(Percept { degree, sighting: Sighting::Pointing(Door::BACK) })
+            TraceEventKind::Percept(Percept { degree, sighting: Sighting::Pointing(Door::BACK) })
         };
         // An end and a corner are not one vertex.
-        let trace = Trace::new([percept(1), TraceEvent::Left(Door(0)), percept(2)]).unwrap();
+        let trace = Trace::new([percept(1), TraceEventKind::Door(Door(0)), percept(2)]).unwrap();
         let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
         assert_eq!(found, SmallestWorld::None { event: 2 });
     }
@@ -534,11 +534,11 @@ mod tests {
             let facing = Dart(marked.index(graph.dart_count()) as u32);
             let mut world = GraphWorld::new(&graph, facing);
             world = world.clone().at(State { pose: Dart(0), ..world.state() });
-            let mut events = vec![TraceEvent::Perceived(world.sensed())];
+            let mut events = vec![TraceEventKind::Percept(world.sensed())];
             for step in walk {
                 let door = Door(u32::from(step) % world.sensed().degree);
                 crate::world::World::traverse(&mut world, door).unwrap();
-                events.extend([TraceEvent::Left(door), TraceEvent::Perceived(world.sensed())]);
+                events.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
             }
             let trace = Trace::new(events).unwrap();
             let edges = match smallest(&trace, None, search(class, 5), &()) {

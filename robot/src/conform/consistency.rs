@@ -2,18 +2,17 @@
 
 use toposlam_model::{
     driving::visit::JunctionShape,
-    embedded_graph::Dart,
-    mapping::PartialMap,
     trace::{Followed, Reached, Trace},
 };
 
 use super::{
     divergence::{DivergenceCause, OFF},
-    events::{Ending, Events, Kind, Perceived},
+    events::{CheckedKind, RunEvents},
     known_world::KnownWorld,
 };
+use crate::record::{Arrival, MapRecord, RunEnding};
 
-impl Events {
+impl RunEvents {
     /// What each event contradicts by itself, in order.
     pub(super) fn own_faults(&self) -> Vec<(usize, DivergenceCause)> {
         let mut faults = Vec::new();
@@ -21,8 +20,8 @@ impl Events {
         for (place, event) in self.events.iter().enumerate() {
             let mut fault = |cause| faults.push((place, cause));
             match &event.kind {
-                Kind::Perceived(perceived) => {
-                    let Perceived { percept, number, form, entry_off, .. } = perceived;
+                CheckedKind::Arrival { arrival, entry_off } => {
+                    let Arrival { percept, number, form, .. } = arrival;
                     if let Some(told) = number.filter(|&told| told != moves) {
                         fault(DivergenceCause::Number { expected: moves, told });
                     }
@@ -34,21 +33,21 @@ impl Events {
                         fault(DivergenceCause::Entry { off });
                     }
                 }
-                Kind::Left { number, off, .. } => {
+                CheckedKind::Door { number, off, .. } => {
                     moves += 1;
                     if let Some(told) = number.filter(|&told| told != moves) {
                         fault(DivergenceCause::Number { expected: moves, told });
                     }
                     // Where a robot went aside, an event of its own says so.
                     let own = self.events.get(place + 1).map(|event| &event.kind);
-                    let told = matches!(own, Some(Kind::Aside { .. }));
+                    let told = matches!(own, Some(CheckedKind::Aside { .. }));
                     if let Some(off) = off.filter(|&off| off > OFF && !told) {
                         fault(DivergenceCause::Aside { off });
                     }
                 }
-                Kind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
-                Kind::TurnedBack => fault(DivergenceCause::TurnedBack),
-                Kind::Undecided => fault(DivergenceCause::Undecided),
+                CheckedKind::Aside { off } => fault(DivergenceCause::Aside { off: *off }),
+                CheckedKind::TurnedBack => fault(DivergenceCause::TurnedBack),
+                CheckedKind::Undecided => fault(DivergenceCause::Undecided),
             }
         }
         faults
@@ -68,7 +67,8 @@ impl Events {
                 faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
             }
             (Reached::Mapped, Some(graph)) => {
-                if self.map.as_ref().is_some_and(|told| *told != in_numbers(map)) {
+                let found = MapRecord::of(followed.exploration.journey());
+                if self.map.as_ref().is_some_and(|recorded| !recorded.same_map(&found)) {
                     faults.push(DivergenceCause::Map);
                 }
                 if known.is_some_and(|known| !known.has(graph)) {
@@ -82,39 +82,23 @@ impl Events {
 
     /// Whether the log says that the map was complete at its end.
     pub(super) fn is_said_whole(&self) -> bool {
-        self.ending.as_ref().is_some_and(Ending::is_mapped)
+        self.end.as_ref().is_some_and(|end| end.ending == RunEnding::Mapped)
     }
 
     /// Whether the log says another number of moves than it has.
     pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
         let made = trace.percepts().len() - 1;
-        let told = self.ending.as_ref()?.moves;
-        (made != told as usize).then_some(DivergenceCause::Moves { made, told })
+        let told = self.end.as_ref()?.moves;
+        (made as u64 != told).then_some(DivergenceCause::Moves { made, told })
     }
 
     /// Whether this is all of a run; of one that Algorithm 1 drives, to its end.
     pub(super) fn is_whole(&self, driven: bool) -> bool {
-        let ended = match (&self.head, &self.ending) {
-            (_, Some(ending)) => ending.is_mapped() || !driven,
-            (Some(_), None) => false,
-            // A log of somebody else's does not tell.
-            (None, None) => true,
+        let ended = match &self.end {
+            Some(_) => self.is_said_whole() || !driven,
+            // Logs of other programs have neither a head nor an end.
+            None => !self.has_head,
         };
         ended && !self.truncated
     }
-}
-
-impl Ending {
-    fn is_mapped(&self) -> bool {
-        self.ending == "mapped"
-    }
-}
-
-/// A map as a log tells it.
-fn in_numbers(map: &PartialMap) -> (Vec<u32>, Vec<i32>) {
-    let degrees = map.vertices().map(|vertex| map.degree(vertex)).collect();
-    let opposite = |dart: u32| {
-        map.opposite(Dart(dart)).and_then(|other| i32::try_from(other.0).ok()).unwrap_or(-1)
-    };
-    (degrees, (0..map.dart_count() as u32).map(opposite).collect())
 }

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
-use toposlam_model::trace::{Departure, Misfit, TraceOrderError};
+use toposlam_model::trace::{Departure, Misfit, TraceEventKind, TraceOrderError};
 
 /// Where a run first does something that the specification does not.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +110,7 @@ pub enum DivergenceCause {
         /// How many it has.
         made: usize,
         /// How many it says.
-        told: u32,
+        told: u64,
     },
 }
 
@@ -125,18 +125,10 @@ impl DivergenceCause {
             Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
             Self::Entry { .. } | Self::Undecided | Self::NoWorld { .. } => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map | Self::WrongMap => FaultClass::Algorithm,
-            Self::World(misfit) => {
-                if misfit.event.is_multiple_of(2) {
-                    FaultClass::Perception
-                } else {
-                    FaultClass::Algorithm
-                }
-            }
-            Self::Algorithm(departure) => {
-                if departure.event.is_multiple_of(2) {
-                    FaultClass::Perception
-                } else {
-                    FaultClass::Algorithm
+            Self::World(Misfit { event, .. }) | Self::Algorithm(Departure { event, .. }) => {
+                match event.kind {
+                    TraceEventKind::Percept(_) => FaultClass::Perception,
+                    TraceEventKind::Door(_) => FaultClass::Algorithm,
                 }
             }
         }
@@ -153,11 +145,15 @@ impl DivergenceCause {
             Self::Entry { .. } => "entry",
             Self::TurnedBack => "turned-back",
             Self::Undecided => "undecided",
-            Self::World(misfit) if misfit.event % 2 == 0 => "percept",
-            Self::World(_) => "no-such-door",
+            Self::World(misfit) => match misfit.event.kind {
+                TraceEventKind::Percept(_) => "percept",
+                TraceEventKind::Door(_) => "no-such-door",
+            },
             Self::NoWorld { .. } => "no-world",
-            Self::Algorithm(departure) if departure.event % 2 == 0 => "contradiction",
-            Self::Algorithm(_) => "door",
+            Self::Algorithm(departure) => match departure.event.kind {
+                TraceEventKind::Percept(_) => "contradiction",
+                TraceEventKind::Door(_) => "door",
+            },
             Self::Unfinished { .. } => "unfinished",
             Self::Map => "map",
             Self::WrongMap => "wrong-map",
@@ -223,10 +219,12 @@ impl fmt::Display for DivergenceCause {
             Self::NoWorld { edges } => {
                 write!(out, "no world with at most {edges} edges explains the log up to here")
             }
-            Self::Algorithm(departure) if departure.event % 2 == 0 => {
-                write!(out, "what is perceived contradicts what was perceived before")
-            }
-            Self::Algorithm(_) => write!(out, "no run of Algorithm 1 takes this door here"),
+            Self::Algorithm(departure) => out.write_str(match departure.event.kind {
+                TraceEventKind::Percept(_) => {
+                    "what is perceived contradicts what was perceived before"
+                }
+                TraceEventKind::Door(_) => "no run of Algorithm 1 takes this door here",
+            }),
             Self::Unfinished { unexplored } => {
                 write!(
                     out,

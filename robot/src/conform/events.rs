@@ -1,179 +1,130 @@
-//! What happened in a recorded run, as far as the specification knows it: percepts and doors, and what
-//! a robot should not do. Raw measurements stay beside their discrete labels.
+//! The events of a recorded run that are checked: arrivals, doors, and what a robot should not do. The
+//! measurements stay beside their discrete values.
 
 use thiserror::Error;
 use toposlam_model::{
-    driving::visit::JunctionShape,
-    percept::{Door, Percept},
-    trace::{Trace, TraceEvent, TraceOrderError},
+    percept::Door,
+    trace::{Trace, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
-/// Where in the log something stands.
+use crate::record::{Arrival, EventId, MapRecord, RunEnd};
+
+/// The log message that an event came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Source {
+pub struct EventSource {
     /// When it was written, in nanoseconds.
     pub time: u64,
-    /// Which message of the file it is, counted from 1.
-    pub message: u64,
-    /// Where its record begins in the file, in bytes.
+    /// Its number.
+    pub id: EventId,
+    /// The offset of its record in the file, in bytes.
     pub offset: u64,
 }
 
-/// An event.
+/// An event that is checked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Event {
-    /// Where it stands in the log.
-    pub source: Source,
+pub struct CheckedEvent {
+    /// Where it came from.
+    pub source: EventSource,
     /// What happened.
-    pub kind: Kind,
+    pub kind: CheckedKind,
 }
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum CheckedKind {
     /// The robot stood at a junction.
-    Perceived(Perceived),
+    Arrival {
+        /// What it perceived.
+        arrival: Arrival,
+        /// The angle between the entry door and the direction that the robot came from by odometry, in
+        /// radians; `None` if it is not known.
+        entry_off: Option<f64>,
+    },
     /// The robot left a junction.
-    Left {
-        /// By which door.
-        door: Door,
-        /// Which move the log says that it is, counted from 1.
+    Door {
+        /// The number of the move in the log, counted from 1.
         number: Option<u32>,
-        /// By how much it then drove in another direction than that of the door, in radians, as odometry
-        /// has it; `None` where it does not tell.
+        /// The door.
+        door: Door,
+        /// The angle between the door and the direction in which the robot drove by odometry, in radians;
+        /// `None` if it is not known.
         off: Option<f64>,
     },
-    /// The robot drove off in a direction that is that of no door.
+    /// The robot left a junction in a direction without a door.
     Aside {
-        /// By how much it is off the nearest, in radians.
+        /// The angle to the nearest door, in radians.
         off: f64,
     },
     /// The robot turned back without having been at a junction.
     TurnedBack,
-    /// The robot was at a junction that its pictures did not tell.
+    /// The robot was at a junction that could not be recognised in its images.
     Undecided,
 }
 
-/// What a robot perceived at a junction, and what that was made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Perceived {
-    /// The percept.
-    pub percept: Percept,
-    /// After how many moves the log says that it was.
-    pub number: Option<u32>,
-    /// Which of the four directions, clockwise from the entry door, are doors, if that is known.
-    pub form: Option<JunctionShape>,
-    /// The direction of the entry door in the frame of odometry, in radians, if that is known.
-    pub entry: Option<f64>,
-    /// By how much that differs from where odometry says that the robot came from, in radians.
-    pub entry_off: Option<f64>,
-}
-
-/// What a log says of itself at its beginning.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Head {
-    /// The name of the world.
-    pub world: String,
-    /// Its hash.
-    pub world_hash: String,
-    /// Where the robot starts.
-    pub start: String,
-    /// The kind of marker.
-    pub marker: String,
-}
-
-/// How a log says that its run ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Ending {
-    /// `mapped`, `gave-up` or `stopped`.
-    pub ending: String,
-    /// Why, where it gave up.
-    pub cause: String,
-    /// The moves made.
-    pub moves: u32,
-}
-
-/// All that is judged of a log.
+/// The part of a run that is checked.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Events {
-    /// What happened, in order.
-    pub events: Vec<Event>,
-    /// What the log says of itself, if it does.
-    pub head: Option<Head>,
-    /// How it says that it ended, if it does.
-    pub ending: Option<Ending>,
-    /// The last map in it: the degrees of its vertices, and of each dart the other end, -1 where that
-    /// is unexplored.
-    pub map: Option<(Vec<u32>, Vec<i32>)>,
-    /// Whether the log was cut off.
+pub struct RunEvents {
+    /// The events in order.
+    pub events: Vec<CheckedEvent>,
+    /// Whether the log has a head.
+    pub has_head: bool,
+    /// How the run ended, if that is recorded.
+    pub end: Option<RunEnd>,
+    /// The last recorded map.
+    pub map: Option<MapRecord>,
+    /// Whether the log is truncated.
     pub truncated: bool,
 }
 
-/// Events that are earlier than those before them.
+/// An event that is earlier than the one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("event {event} is at {:.3} s, before the one ahead of it at {:.3} s", seconds(*.time), seconds(*.before))]
+#[error("event {event} is at {:.3} s, before the one ahead of it at {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
 pub struct OutOfOrder {
-    /// Which event, counted from 1.
+    /// Its number, counted from 1.
     pub event: usize,
-    /// Its time.
+    /// Its time, in nanoseconds.
     pub time: u64,
-    /// That of the event before it.
+    /// The time of the event before it.
     pub before: u64,
 }
 
-/// Nanoseconds in seconds.
-fn seconds(time: u64) -> f64 {
-    time as f64 / 1e9
-}
-
-impl Events {
-    /// The trace of the percepts and doors, and for each of its events which of these it is, from 0.
+impl RunEvents {
+    /// The trace of the arrivals and doors. The id of an event is its index here.
     ///
     /// # Errors
-    /// Where percepts and doors do not take turns: the first that does not, by its place here.
-    pub fn trace(&self) -> Result<(Trace, Vec<usize>), TraceOrderError> {
-        let mut places = Vec::new();
-        let mut taken = Vec::new();
-        for (place, event) in self.events.iter().enumerate() {
-            let event = match &event.kind {
-                Kind::Perceived(perceived) => TraceEvent::Perceived(perceived.percept),
-                Kind::Left { door, .. } => TraceEvent::Left(*door),
-                Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided => continue,
+    /// Returns the first event that is out of turn.
+    pub fn trace(&self) -> Result<Trace, TraceOrderError> {
+        let event = |(id, event): (usize, &CheckedEvent)| {
+            let kind = match &event.kind {
+                CheckedKind::Arrival { arrival, .. } => TraceEventKind::Percept(arrival.percept),
+                CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
+                CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {
+                    return None;
+                }
             };
-            places.push(place);
-            taken.push(event);
-        }
-        let at = |event: usize| places.get(event).copied().unwrap_or(event);
-        match Trace::new(taken) {
-            Ok(trace) => Ok((trace, places)),
-            Err(TraceOrderError::Empty) => Err(TraceOrderError::Empty),
-            Err(TraceOrderError::NoDoor { event }) => {
-                Err(TraceOrderError::NoDoor { event: at(event) })
-            }
-            Err(TraceOrderError::NoPercept { event }) => {
-                Err(TraceOrderError::NoPercept { event: at(event) })
-            }
-        }
+            Some(TraceEvent { id, kind })
+        };
+        Trace::from_events(self.events.iter().enumerate().filter_map(event))
     }
 
-    /// Whether each event is no earlier than those before it.
+    /// Checks that no event is earlier than the one before it.
     ///
     /// # Errors
-    /// The first that is.
-    pub fn in_order(&self) -> Result<(), OutOfOrder> {
-        for (place, two) in self.events.windows(2).enumerate() {
+    /// Returns the first event that is.
+    pub fn check_order(&self) -> Result<(), OutOfOrder> {
+        for (index, two) in self.events.windows(2).enumerate() {
             let [before, time] = [two[0].source.time, two[1].source.time];
             if time < before {
-                return Err(OutOfOrder { event: place + 2, time, before });
+                return Err(OutOfOrder { event: index + 2, time, before });
             }
         }
         Ok(())
     }
 
-    /// The events up to and with one, from 0.
+    /// The events up to and including one, by its index.
     #[must_use]
-    pub fn up_to(&self, event: usize) -> Self {
-        let events = self.events.iter().take(event + 1).cloned().collect();
-        Self { events, head: self.head.clone(), ..Self::default() }
+    pub fn up_to(&self, index: usize) -> Self {
+        let events = self.events.iter().take(index + 1).cloned().collect();
+        Self { events, has_head: self.has_head, ..Self::default() }
     }
 }

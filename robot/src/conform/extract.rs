@@ -7,11 +7,11 @@ use toposlam_model::driving::{
     odometry::Odometry,
     scene::{Scene, wrapped},
 };
-use toposlam_vision::sensing::{Sensor, WrongSize};
+use toposlam_vision::sensing::Sensor;
 
 use super::{
     InferredEvents, RecordedEvents,
-    events::{Ending, Event, Events, Head, Source},
+    events::{CheckedEvent, EventSource, RunEvents},
 };
 use crate::{
     log::{
@@ -19,10 +19,9 @@ use crate::{
         error::LogError,
         messages,
         reader::Log,
-        scene_of,
         topic_map::{Role, TopicMap, TopicMapError},
     },
-    record::CameraImage,
+    record::{EventKind, Frame, FrameSensor, SensingError},
 };
 
 /// What events are made of.
@@ -40,7 +39,7 @@ pub enum Evidence {
 #[derive(Clone, Debug)]
 pub struct ExtractedRun {
     /// The events, and what the log says of itself.
-    pub events: Events,
+    pub events: RunEvents,
     /// What they are made of.
     pub evidence: Evidence,
     /// The head of the log, where it has one.
@@ -57,7 +56,7 @@ pub struct ExtractedRun {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Where it, or its scene, stands in the log.
-    pub source: Source,
+    pub source: EventSource,
     /// What it shows.
     pub scene: Scene,
     /// Where the robot was when it was taken.
@@ -90,7 +89,7 @@ pub enum ExtractError {
         /// Which message, counted from 1.
         message: u64,
         /// What is wrong with it.
-        cause: WrongSize,
+        cause: SensingError,
     },
     /// A percept or a door says that it was before the one ahead of it.
     #[error("message {message}: the events are out of order: it is of {:.3} s, the one before it of {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
@@ -101,12 +100,6 @@ pub enum ExtractError {
         time: u64,
         /// When the one before it was.
         before: u64,
-    },
-    /// A scene that is none.
-    #[error("message {message}: there is no such scene")]
-    Scene {
-        /// Which message, counted from 1.
-        message: u64,
     },
 }
 
@@ -166,13 +159,13 @@ pub fn extract(
     let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
     let bound = mapping.only(asked).bind(log)?;
     let mut gathering = Extraction {
-        telling: RecordedEvents::default(),
+        recorded: RecordedEvents::default(),
         track: Vec::new(),
         seen: Vec::new(),
         waiting: Vec::new(),
         run: None,
         last: 0,
-        events: Events { truncated: log.truncation().is_some(), ..Events::default() },
+        events: RunEvents { truncated: log.truncation().is_some(), ..RunEvents::default() },
         sensors,
         watch,
         pictures: 0,
@@ -182,14 +175,14 @@ pub fn extract(
         gathering.take(entry?)?;
     }
     gathering.look()?;
-    let Extraction { telling, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
+    let Extraction { recorded, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
         Some(Seen { source, scene, odometry })
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
     events.events = match evidence {
-        Evidence::Told => telling.finish(),
+        Evidence::Told => recorded.finish(),
         Evidence::Scenes | Evidence::Pictures => derived(&seen, marked),
     };
     Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable })
@@ -197,7 +190,7 @@ pub fn extract(
 
 /// The events of what was seen.
 #[must_use]
-pub fn derived(seen: &[Seen], marked: bool) -> Vec<Event> {
+pub fn derived(seen: &[Seen], marked: bool) -> Vec<CheckedEvent> {
     let mut derivation = InferredEvents::new(marked);
     for Seen { source, scene, odometry } in seen {
         derivation.see(*source, scene, odometry);
@@ -206,17 +199,17 @@ pub fn derived(seen: &[Seen], marked: bool) -> Vec<Event> {
 }
 
 struct Extraction<'w, W> {
-    telling: RecordedEvents,
+    recorded: RecordedEvents,
     /// Where the robot was, and when.
     track: Vec<(u64, Odometry)>,
     /// What was seen, and when the picture was taken.
-    seen: Vec<(Source, u64, Scene)>,
-    /// Pictures that have not been looked at.
-    waiting: Vec<(Source, u64, CameraImage)>,
+    seen: Vec<(EventSource, u64, Scene)>,
+    /// Frames that have not been sensed, with their times.
+    waiting: Vec<(EventSource, u64, Frame)>,
     run: Option<messages::Run>,
     /// When the last percept or door was.
     last: u64,
-    events: Events,
+    events: RunEvents,
     /// One for each thread.
     sensors: Vec<Sensor>,
     watch: &'w W,
@@ -226,48 +219,39 @@ struct Extraction<'w, W> {
 
 impl<W: Looking> Extraction<'_, W> {
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
-        let Entry { time, offset, number, stamp, content, .. } = entry;
-        let source = Source { time, message: number, offset };
+        let Entry { time, offset, id, stamp, content, .. } = entry;
         let stamp = stamp.nanoseconds();
-        if matches!(content, Content::Percept(_) | Content::Door(_)) {
+        let kind = match content {
+            Content::Run(run) => {
+                self.events.has_head = true;
+                self.run = Some(run);
+                return Ok(());
+            }
+            Content::Hypothesis(_) => return Ok(()),
+            Content::Event(kind) => kind,
+        };
+        if matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. }) {
             let before = std::mem::replace(&mut self.last, stamp);
             if stamp < before {
-                return Err(ExtractError::OutOfOrder { message: number, time: stamp, before });
+                return Err(ExtractError::OutOfOrder { message: id.0, time: stamp, before });
             }
         }
-        match content {
-            Content::Percept(percept) => self.telling.perceived(source, &percept),
-            Content::Door(door) => self.telling.left(source, &door),
-            Content::Odometry(odometry) => {
-                self.telling.moved(odometry);
-                self.track.push((stamp, odometry));
-            }
-            Content::Scene(told) => {
-                let scene = scene_of(&told).ok_or(ExtractError::Scene { message: number })?;
+        let source = EventSource { time, id, offset };
+        self.recorded.observe(source, &kind);
+        match kind {
+            EventKind::Odometry(odometry) => self.track.push((stamp, odometry)),
+            EventKind::Frame(Frame { scene: Some(scene), .. }) => {
                 self.seen.push((source, stamp, scene));
             }
-            Content::Image(picture) => {
-                self.waiting.push((source, stamp, picture));
+            EventKind::Frame(frame) => {
+                self.waiting.push((source, stamp, frame));
                 if self.waiting.len() >= TOGETHER {
                     self.look()?;
                 }
             }
-            Content::Run(run) => {
-                self.events.head = Some(Head {
-                    world: run.world.clone(),
-                    world_hash: run.world_hash.clone(),
-                    start: run.start.clone(),
-                    marker: run.marker.clone(),
-                });
-                self.run = Some(run);
-            }
-            Content::End(messages::End { moves, ending, cause, .. }) => {
-                self.events.ending = Some(Ending { ending, cause, moves });
-            }
-            Content::Map(messages::Map { degrees, opposite, .. }) => {
-                self.events.map = Some((degrees, opposite));
-            }
-            Content::Motion { .. } | Content::Command(_) | Content::Hypothesis(_) => {}
+            EventKind::End(end) => self.events.end = Some(end),
+            EventKind::Map(map) => self.events.map = Some(map),
+            _ => {}
         }
         Ok(())
     }
@@ -282,29 +266,23 @@ impl<W: Looking> Extraction<'_, W> {
         }
         let share = self.waiting.len().div_ceil(self.sensors.len());
         let shares = self.sensors.par_iter_mut().zip(self.waiting.par_chunks(share));
-        let look = |(sensor, pictures): (&mut Sensor, &[(Source, u64, CameraImage)])| {
-            pictures.iter().map(|(_, _, picture)| sense(sensor, picture)).collect::<Vec<_>>()
+        let look = |(sensor, frames): (&mut Sensor, &[(EventSource, u64, Frame)])| {
+            // Without its pixels, which would be kept until all are sensed.
+            let scenes = frames.iter().map(|(_, _, frame)| sensor.scene(&frame.without_pixels()));
+            scenes.collect::<Vec<_>>()
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
         self.watch.looked(seen.len() as u64);
         self.pictures += seen.len() as u64;
         for ((source, time, _), scene) in self.waiting.drain(..).zip(seen) {
-            let message = source.message;
             match scene {
-                None => self.unreadable += 1,
-                Some(scene) => {
-                    let scene = scene.map_err(|cause| ExtractError::Size { message, cause })?;
-                    self.seen.push((source, time, scene));
-                }
+                Err(SensingError::Image(_)) => self.unreadable += 1,
+                Err(cause) => return Err(ExtractError::Size { message: source.id.0, cause }),
+                Ok(scene) => self.seen.push((source, time, scene)),
             }
         }
         Ok(())
     }
-}
-
-/// What a picture shows; `None` where it is no image.
-fn sense(sensor: &mut Sensor, picture: &CameraImage) -> Option<Result<Scene, WrongSize>> {
-    Some(sensor.sense(picture.pixels().ok()?))
 }
 
 /// Where a robot was at a time, between the two readings nearest to it.

@@ -13,9 +13,10 @@ use toposlam_model::{
 };
 
 use super::{
-    events::{Event, Kind, Perceived, Source},
+    events::{CheckedEvent, CheckedKind, EventSource},
     recorded_events::direction,
 };
+use crate::record::Arrival;
 
 /// A junction is visited when its turning point comes as near as this, in metres.
 pub const NEAR: f64 = 0.3;
@@ -29,7 +30,7 @@ const AWAY: f64 = 0.6;
 /// Makes events of scenes as they come.
 #[derive(Clone, Debug)]
 pub struct InferredEvents {
-    events: Vec<Event>,
+    events: Vec<CheckedEvent>,
     approach: Option<Approach>,
     /// What was seen since the last junction.
     seen: JunctionEstimate,
@@ -41,7 +42,7 @@ pub struct InferredEvents {
 #[derive(Clone, Debug)]
 struct Approach {
     /// Of its first scene.
-    source: Source,
+    source: EventSource,
     visit: JunctionEstimate,
     /// The direction of the entry door in the frame of odometry.
     entry: f64,
@@ -49,7 +50,7 @@ struct Approach {
     turning_point: [f64; 2],
     /// How near the turning point came, in metres, and in which scene.
     nearest: f64,
-    visited: Source,
+    visited: EventSource,
 }
 
 impl InferredEvents {
@@ -61,7 +62,7 @@ impl InferredEvents {
     }
 
     /// What sensing tells of the next picture, and where the robot was when it was taken.
-    pub fn see(&mut self, source: Source, scene: &Scene, odometry: &Odometry) {
+    pub fn see(&mut self, source: EventSource, scene: &Scene, odometry: &Odometry) {
         match &scene.place {
             Place::Unknown(_) => {}
             Place::Hallway(_) => self.in_hallway(source, scene, odometry),
@@ -71,14 +72,14 @@ impl InferredEvents {
 
     /// The events, once no more pictures come.
     #[must_use]
-    pub fn finish(mut self) -> Vec<Event> {
+    pub fn finish(mut self) -> Vec<CheckedEvent> {
         if let Some(approach) = self.approach.take().filter(Approach::is_visit) {
             self.visited(&approach);
         }
         self.events
     }
 
-    fn in_hallway(&mut self, source: Source, scene: &Scene, odometry: &Odometry) {
+    fn in_hallway(&mut self, source: EventSource, scene: &Scene, odometry: &Odometry) {
         if let Some(approach) = self.approach.take() {
             if !approach.is_over(odometry) {
                 // A junction that is still ahead was taken for a hallway. The marker shows all the same.
@@ -93,7 +94,7 @@ impl InferredEvents {
         } else if let Some(before) = self.hallway
             && wrapped(odometry.heading - before).abs() > FRAC_PI_2
         {
-            self.push(source, Kind::TurnedBack);
+            self.push(source, CheckedKind::TurnedBack);
             self.seen = JunctionEstimate::default();
         }
         self.hallway = Some(odometry.heading);
@@ -101,7 +102,7 @@ impl InferredEvents {
     }
 
     /// The robot has left a junction, or its neighbourhood.
-    fn leave(&mut self, source: Source, approach: &Approach, heading: f64) {
+    fn leave(&mut self, source: EventSource, approach: &Approach, heading: f64) {
         if approach.is_visit() {
             let Some((form, entry)) = self.visited(approach) else { return };
             let off = |door: u32| {
@@ -111,20 +112,20 @@ impl InferredEvents {
             let nearest = (0..form.degree()).filter_map(off);
             let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0));
             let Some((off, door)) = nearest else { return };
-            self.push(source, Kind::Left { door, number: None, off: Some(off) });
+            self.push(source, CheckedKind::Door { door, number: None, off: Some(off) });
             if off > ASIDE {
-                self.push(source, Kind::Aside { off });
+                self.push(source, CheckedKind::Aside { off });
             }
         } else if wrapped(heading - approach.entry).abs() < FRAC_PI_2 {
-            self.push(source, Kind::TurnedBack);
+            self.push(source, CheckedKind::TurnedBack);
         } else {
-            self.push(approach.source, Kind::Undecided);
+            self.push(approach.source, CheckedKind::Undecided);
         }
     }
 
     fn at_junction(
         &mut self,
-        source: Source,
+        source: EventSource,
         scene: &Scene,
         junction: &JunctionView,
         odometry: &Odometry,
@@ -160,23 +161,17 @@ impl InferredEvents {
     fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
         let Approach { visit, entry, visited, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
-            self.push(*visited, Kind::Undecided);
+            self.push(*visited, CheckedKind::Undecided);
             return None;
         };
-        let entry_off = None;
-        let kind = Kind::Perceived(Perceived {
-            percept,
-            number: None,
-            form: Some(form),
-            entry: Some(*entry),
-            entry_off,
-        });
+        let arrival = Arrival { number: None, percept, form: Some(form), entry: Some(*entry) };
+        let kind = CheckedKind::Arrival { arrival, entry_off: None };
         self.push(*visited, kind);
         Some((form, *entry))
     }
 
-    fn push(&mut self, source: Source, kind: Kind) {
-        self.events.push(Event { source, kind });
+    fn push(&mut self, source: EventSource, kind: CheckedKind) {
+        self.events.push(CheckedEvent { source, kind });
     }
 }
 
@@ -210,6 +205,7 @@ mod tests {
 
     use super::*;
     use crate::conform::{Seen, derived, shorten_frames};
+    use crate::record::EventId;
 
     /// What a robot sees that looks along x and has come along it; the junction has a door behind it and
     /// one to its left.
@@ -234,7 +230,7 @@ mod tests {
     /// Places that are seen from somewhere, in turn.
     fn seen(places: &[(Place, [f64; 2], f64)]) -> Vec<Seen> {
         let seen = |(message, (place, position, heading)): (usize, &(Place, [f64; 2], f64))| Seen {
-            source: Source { time: message as u64, message: message as u64, offset: 0 },
+            source: EventSource { time: message as u64, id: EventId(message as u64), offset: 0 },
             scene: Scene { place: place.clone(), marker: None },
             odometry: Odometry { position: *position, heading: *heading },
         };
@@ -242,12 +238,12 @@ mod tests {
     }
 
     fn kinds(places: &[(Place, [f64; 2], f64)], marked: bool) -> Vec<&'static str> {
-        let name = |event: &Event| match event.kind {
-            Kind::Perceived(_) => "percept",
-            Kind::Left { .. } => "door",
-            Kind::Aside { .. } => "aside",
-            Kind::TurnedBack => "turned back",
-            Kind::Undecided => "undecided",
+        let name = |event: &CheckedEvent| match event.kind {
+            CheckedKind::Arrival { .. } => "percept",
+            CheckedKind::Door { .. } => "door",
+            CheckedKind::Aside { .. } => "aside",
+            CheckedKind::TurnedBack => "turned back",
+            CheckedKind::Undecided => "undecided",
         };
         derived(&seen(places), marked).iter().map(name).collect()
     }
@@ -264,7 +260,9 @@ mod tests {
         let places = [visit(), vec![away]].concat();
         assert_eq!(kinds(&places, false), ["percept", "door"]);
         let events = derived(&seen(&places), false);
-        let Kind::Left { door, off: Some(off), .. } = events[1].kind else { panic!("{events:?}") };
+        let CheckedKind::Door { door, off: Some(off), .. } = events[1].kind else {
+            panic!("{events:?}")
+        };
         assert_eq!(door, Door(1));
         assert!(off < 1e-9);
         // What cannot be made out, and a hallway beside the turning point, change nothing.
@@ -321,7 +319,7 @@ mod tests {
         let least = shorten_frames(&seen, events.last().unwrap()).unwrap();
         // Two pictures of the junction, and where the robot went.
         assert_eq!(least.len(), 3);
-        assert!(matches!(derived(least, false).last().unwrap().kind, Kind::Aside { .. }));
+        assert!(matches!(derived(least, false).last().unwrap().kind, CheckedKind::Aside { .. }));
         // A percept does not show in what was seen alone.
         assert_eq!(shorten_frames(&seen, &events[0]), None);
     }

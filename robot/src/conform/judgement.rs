@@ -17,7 +17,7 @@ use toposlam_model::{
 
 use super::{
     divergence::{Divergence, DivergenceCause, FaultClass},
-    events::{Event, Events, Kind, OutOfOrder, Perceived},
+    events::{CheckedEvent, CheckedKind, OutOfOrder, RunEvents},
     known_world::KnownWorld,
     quirks::Quirks,
 };
@@ -48,11 +48,9 @@ pub enum RunDriver {
 #[derive(Clone, Debug)]
 pub struct Judgement {
     /// What was judged; where quirks were tolerated, as it should have been.
-    pub events: Events,
-    /// Its percepts and doors, and which events they are; up to where they no longer take turns.
+    pub events: RunEvents,
+    /// Its arrivals and doors, up to the first that is out of turn. The ids are indices of `events`.
     pub trace: Trace,
-    /// Which event each of the trace is, from 0.
-    pub places: Vec<usize>,
     /// The first event that does not fit.
     pub divergence: Option<Divergence>,
     /// How the robot may stand in the known world.
@@ -125,18 +123,18 @@ pub enum JudgeError {
 /// # Errors
 /// Where there is no event, and where they are out of order.
 pub fn judge(
-    mut events: Events,
+    mut events: RunEvents,
     question: &ConformConfig,
     quirks: &Quirks,
     watch: &impl Watch,
 ) -> Result<Judgement, JudgeError> {
-    events.in_order()?;
+    events.check_order()?;
     let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
     loop {
         let mut judgement = Judgement::new(&events, question, &tolerated, watch)?;
         let found = judgement.divergence.clone().and_then(|divergence| {
             let quirk = quirks.tolerating(&divergence)?;
-            amend(&mut events, &divergence, &judgement.places).then_some((divergence, quirk))
+            amend(&mut events, &divergence).then_some((divergence, quirk))
         });
         let Some(found) = found else {
             judgement.tolerated = tolerated;
@@ -147,7 +145,7 @@ pub fn judge(
 }
 
 /// Makes of an event what it should have been; `false` where that is not known.
-fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool {
+fn amend(events: &mut RunEvents, divergence: &Divergence) -> bool {
     let expected = match &divergence.cause {
         DivergenceCause::World(misfit) => expected_by(misfit),
         DivergenceCause::Algorithm(departure) => expected_after(departure),
@@ -156,12 +154,11 @@ fn amend(events: &mut Events, divergence: &Divergence, places: &[usize]) -> bool
         _ => return true,
     };
     let Some(expected) = expected else { return false };
-    let place = places.iter().copied().find(|&place| place == divergence.event);
-    match place.and_then(|place| events.events.get_mut(place)).map(|event| &mut event.kind) {
-        Some(Kind::Perceived(perceived)) => {
-            perceived.percept = expected;
+    match events.events.get_mut(divergence.event).map(|event| &mut event.kind) {
+        Some(CheckedKind::Arrival { arrival, .. }) => {
+            arrival.percept = expected;
             // What it looked like is what is tolerated.
-            perceived.form = None;
+            arrival.form = None;
             true
         }
         _ => false,
@@ -190,13 +187,13 @@ fn expected_after(departure: &Departure) -> Option<Percept> {
 
 impl Judgement {
     fn new(
-        events: &Events,
+        events: &RunEvents,
         question: &ConformConfig,
         tolerated: &[(Divergence, usize)],
         watch: &impl Watch,
     ) -> Result<Self, JudgeError> {
         let mut found = Found { tolerated, first: None };
-        let (trace, places) = match events.trace() {
+        let trace = match events.trace() {
             Ok(all) => all,
             Err(TraceOrderError::Empty) => return Err(JudgeError::Empty),
             Err(
@@ -214,7 +211,6 @@ impl Judgement {
             found.note(place, cause);
         }
         let len = events.events.len();
-        let at = |event: usize| places.get(event).copied().unwrap_or(len);
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
@@ -224,14 +220,13 @@ impl Judgement {
             coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
             trace,
-            places: places.clone(),
         };
         let trace = &judgement.trace;
         if let Some(known) = &question.world {
             let poses = poses(known.graph, &known.marker, &known.states, trace);
             if let Some(misfit) = &poses.misfit {
                 let culprit = known.culprit(trace, misfit);
-                found.note_as(at(misfit.event), DivergenceCause::World(misfit.clone()), culprit);
+                found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), culprit);
             }
             judgement.poses = Some(poses);
         }
@@ -241,7 +236,7 @@ impl Judgement {
             let followed = follow(trace, claim, question.dart_bound);
             match &followed.reached {
                 Reached::Departure(departure) => {
-                    found.note(at(departure.event), DivergenceCause::Algorithm(departure.clone()));
+                    found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
                 }
                 Reached::Mapped => explored = followed.exploration.map().complete().cloned(),
                 Reached::EndOfTrace => {}
@@ -276,7 +271,7 @@ impl Judgement {
             };
             if let SmallestWorld::None { event } = smallest {
                 // It is the fault of an event, if of any, before which all is explained.
-                found.note(at(event.min(trace.len() - 1)), DivergenceCause::NoWorld { edges });
+                found.note(trace.event(event).id, DivergenceCause::NoWorld { edges });
             }
             judgement.smallest = Some(smallest);
         }
@@ -308,12 +303,6 @@ impl Judgement {
             _ => 0,
         }
     }
-
-    /// The event of the trace that an event is, or the next one that is one.
-    #[must_use]
-    pub fn in_trace(&self, event: usize) -> usize {
-        self.places.partition_point(|&place| place < event)
-    }
 }
 
 /// The first divergence, of those that are not tolerated.
@@ -343,11 +332,13 @@ impl Found<'_> {
 const BEYOND: usize = 4;
 
 /// How often each kind of junction was perceived, from each of its entries.
-fn junctions(events: &Events) -> BTreeMap<JunctionShape, u64> {
+fn junctions(events: &RunEvents) -> BTreeMap<JunctionShape, u64> {
     let mut counts = BTreeMap::new();
-    for Event { kind, .. } in &events.events {
-        if let Kind::Perceived(Perceived { form: Some(form), .. }) = kind {
-            *counts.entry(*form).or_default() += 1;
+    for CheckedEvent { kind, .. } in &events.events {
+        if let CheckedKind::Arrival { arrival, .. } = kind
+            && let Some(form) = arrival.form
+        {
+            *counts.entry(form).or_default() += 1;
         }
     }
     counts

@@ -6,7 +6,7 @@ use toposlam_model::{
     mapping::FACING,
     marker::Marker,
     percept::Percept,
-    trace::{Misfit, MisfitReason, Trace, TraceEvent, poses},
+    trace::{Misfit, MisfitReason, Trace, TraceEventKind, poses},
     world::State,
 };
 
@@ -27,10 +27,10 @@ impl KnownWorld<'_> {
     /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
     /// perceived this one thing wrongly, it is motion's.
     pub(super) fn culprit(&self, trace: &Trace, misfit: &Misfit) -> FaultClass {
-        if !misfit.event.is_multiple_of(2) {
+        let TraceEventKind::Percept(perceived) = misfit.event.kind else {
             return FaultClass::Algorithm;
-        }
-        let moves = misfit.event / 2;
+        };
+        let moves = misfit.moves;
         let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
             let MisfitReason::Percept { expected } = why else { return None };
             Some(self.fitting(&ahead(trace, moves, expected), &[state]))
@@ -39,8 +39,7 @@ impl KnownWorld<'_> {
         let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
         let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
         let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
-        let came_elsewhere =
-            self.fitting(&ahead(trace, moves, trace.percepts()[moves]), &elsewhere);
+        let came_elsewhere = self.fitting(&ahead(trace, moves, perceived), &elsewhere);
         if came_elsewhere > perceived_wrongly { FaultClass::Motion } else { FaultClass::Perception }
     }
 
@@ -62,8 +61,8 @@ const AHEAD: usize = 12;
 
 /// What follows some moves, with another first percept.
 fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
-    let first = TraceEvent::Perceived(first);
-    let rest = trace.events().skip(2 * moves + 1).take(AHEAD);
+    let first = TraceEventKind::Percept(first);
+    let rest = trace.events().skip(2 * moves + 1).take(AHEAD).map(|event| event.kind);
     // They take turns as before, whatever the first percept is.
     Trace::new(std::iter::once(first).chain(rest)).unwrap_or_else(|_| trace.clone())
 }

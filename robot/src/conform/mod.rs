@@ -16,7 +16,7 @@ mod shorten;
 mod tests;
 
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
-pub use events::{Ending, Event, Events, Head, Kind, OutOfOrder, Perceived, Source};
+pub use events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents};
 pub use extract::{Evidence, ExtractError, ExtractedRun, Looking, Seen, derived, extract};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{

@@ -8,11 +8,11 @@ use std::{
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped, visit::JunctionShape},
-    percept::{Door, Percept, Sighting},
+    percept::Door,
 };
 
-use super::events::{Event, Kind, Perceived, Source};
-use crate::log::{entries::UNTOLD, messages};
+use super::events::{CheckedEvent, CheckedKind, EventSource};
+use crate::record::{Arrival, EventKind};
 
 /// Odometry tells a direction over so many metres. Over many more it drifts.
 const TOLD: f64 = 1.0;
@@ -20,7 +20,7 @@ const TOLD: f64 = 1.0;
 /// Makes events of percepts, doors and odometry as they come.
 #[derive(Clone, Debug, Default)]
 pub struct RecordedEvents {
-    events: Vec<Event>,
+    events: Vec<CheckedEvent>,
     /// Where the robot was of late, by its wheels: as far back as a direction needs.
     way: VecDeque<Odometry>,
     /// That the robot left a junction lately, where, by which event and in which direction.
@@ -28,13 +28,24 @@ pub struct RecordedEvents {
 }
 
 impl RecordedEvents {
-    /// The robot is there by its wheels.
-    pub fn moved(&mut self, odometry: Odometry) {
+    /// The next event of the log.
+    pub fn observe(&mut self, source: EventSource, kind: &EventKind) {
+        match kind {
+            EventKind::Odometry(odometry) => self.moved(*odometry),
+            EventKind::Arrival(arrival) => self.arrived(source, *arrival),
+            EventKind::Door { number, door } => self.left(source, *number, *door),
+            _ => {}
+        }
+    }
+
+    fn moved(&mut self, odometry: Odometry) {
         if let Some((from, event, direction)) = self.left
             && from.distance(&odometry) >= TOLD
         {
             self.left = None;
-            if let Some(Event { kind: Kind::Left { off, .. }, .. }) = self.events.get_mut(event) {
+            if let Some(CheckedEvent { kind: CheckedKind::Door { off, .. }, .. }) =
+                self.events.get_mut(event)
+            {
                 *off = Some(wrapped(way(&from, &odometry) - direction).abs());
             }
         }
@@ -44,39 +55,28 @@ impl RecordedEvents {
         self.way.push_back(odometry);
     }
 
-    /// The robot stands at a junction.
-    pub fn perceived(&mut self, source: Source, message: &messages::Percept) {
-        let sighting = u32::try_from(message.marker)
-            .map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door)));
-        let form = message.form.iter().any(|&door| door).then_some(JunctionShape(message.form));
+    fn arrived(&mut self, source: EventSource, arrival: Arrival) {
         let now = self.way.back();
         let came_from = if self.events.is_empty() {
             // At the start the robot stands with its back to the entry door.
             now.map(|now| now.whither(PI))
         } else {
             let ends = self.way.front().zip(now);
-            let told = ends.filter(|(from, now)| from.distance(now) >= TOLD);
-            told.map(|(from, now)| way(now, from))
+            let far_enough = ends.filter(|(from, now)| from.distance(now) >= TOLD);
+            far_enough.map(|(from, now)| way(now, from))
         };
-        let entry = message.entry.is_finite().then_some(message.entry);
-        let entry_off = entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
-        let kind = Kind::Perceived(Perceived {
-            percept: Percept { degree: message.degree, sighting },
-            number: known(message.r#move),
-            form,
-            entry,
-            entry_off,
-        });
-        self.events.push(Event { source, kind });
+        let entry_off =
+            arrival.entry.zip(came_from).map(|(entry, from)| wrapped(entry - from).abs());
+        self.events
+            .push(CheckedEvent { source, kind: CheckedKind::Arrival { arrival, entry_off } });
     }
 
-    /// The robot leaves by a door.
-    pub fn left(&mut self, source: Source, message: &messages::Door) {
-        let door = Door(message.door);
+    fn left(&mut self, source: EventSource, number: Option<u32>, door: Door) {
         let direction = match self.events.last().map(|event| &event.kind) {
-            Some(Kind::Perceived(Perceived { form: Some(form), entry: Some(entry), .. })) => {
-                direction(*form, *entry, door)
-            }
+            Some(CheckedKind::Arrival {
+                arrival: Arrival { form: Some(form), entry: Some(entry), .. },
+                ..
+            }) => direction(*form, *entry, door),
             _ => None,
         };
         let now = self.way.back().copied();
@@ -84,13 +84,13 @@ impl RecordedEvents {
         // What comes next is the way from here.
         self.way.clear();
         self.way.extend(now);
-        let kind = Kind::Left { door, number: known(message.r#move), off: None };
-        self.events.push(Event { source, kind });
+        self.events
+            .push(CheckedEvent { source, kind: CheckedKind::Door { door, number, off: None } });
     }
 
     /// The events.
     #[must_use]
-    pub fn finish(self) -> Vec<Event> {
+    pub fn finish(self) -> Vec<CheckedEvent> {
         self.events
     }
 }
@@ -99,11 +99,6 @@ impl RecordedEvents {
 fn way(from: &Odometry, to: &Odometry) -> f64 {
     let [x, y] = [0, 1].map(|axis| to.position[axis] - from.position[axis]);
     y.atan2(x)
-}
-
-/// A number of moves, where the log tells it.
-fn known(number: u32) -> Option<u32> {
-    (number != UNTOLD).then_some(number)
 }
 
 /// The direction in the frame of odometry in which a door of a junction leads.
@@ -116,27 +111,34 @@ pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::percept::{Percept, Sighting};
+
     use super::*;
 
-    fn percept(number: u32, form: [bool; 4], entry: f64) -> messages::Percept {
-        let degree = form.iter().map(|&door| u32::from(door)).sum();
-        messages::Percept { r#move: number, degree, marker: -1, form, entry, ..Default::default() }
+    fn arrival(number: u32, form: [bool; 4], entry: f64) -> EventKind {
+        let form = JunctionShape(form);
+        let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
+        let (number, form, entry) = (Some(number), Some(form), Some(entry));
+        EventKind::Arrival(Arrival { number, percept, form, entry })
     }
 
-    /// A robot that comes to a T by its stem, says that it leaves by a door, and drives somewhere.
+    /// A robot that comes to a T by its stem, leaves by a door as the log says, and drives somewhere.
     fn offs(door: u32, to: [f64; 2], entry: f64) -> (Option<f64>, Option<f64>) {
-        let mut telling = RecordedEvents::default();
-        let at = |position| Odometry { position, heading: 0.0 };
-        telling.moved(at([0.0, 0.0]));
-        telling.perceived(Source::default(), &percept(0, [true, true, false, true], PI));
-        let message = messages::Door { r#move: 1, door, ..Default::default() };
-        telling.left(Source::default(), &message);
-        telling.moved(at(to));
-        telling.perceived(Source::default(), &percept(1, [true; 4], entry));
-        let events = telling.finish();
-        let Kind::Left { off, .. } = events[1].kind else { panic!("{events:?}") };
-        let Kind::Perceived(perceived) = &events[2].kind else { panic!("{events:?}") };
-        (off, perceived.entry_off)
+        let mut recorded = RecordedEvents::default();
+        let at = |position| EventKind::Odometry(Odometry { position, heading: 0.0 });
+        for kind in [
+            at([0.0, 0.0]),
+            arrival(0, [true, true, false, true], PI),
+            EventKind::Door { number: Some(1), door: Door(door) },
+            at(to),
+            arrival(1, [true; 4], entry),
+        ] {
+            recorded.observe(EventSource::default(), &kind);
+        }
+        let events = recorded.finish();
+        let CheckedKind::Door { off, .. } = events[1].kind else { panic!("{events:?}") };
+        let CheckedKind::Arrival { entry_off, .. } = events[2].kind else { panic!("{events:?}") };
+        (off, entry_off)
     }
 
     #[test]

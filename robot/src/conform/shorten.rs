@@ -4,22 +4,23 @@ use std::mem::discriminant;
 
 use toposlam_model::{
     enumerate::Watch,
-    trace::{Trace, TraceEvent, shortened},
+    trace::{Trace, TraceEvent, TraceEventKind, shortened},
 };
 
 use super::{
     divergence::{Divergence, DivergenceCause},
-    events::{Event, Events, Kind, Perceived, Source},
+    events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
     extract::{Seen, derived},
     judgement::{ConformConfig, Judgement, RunDriver, judge},
     quirks::Quirks,
 };
+use crate::record::Arrival;
 
 /// A log that diverges in the same way as a longer one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShortenedRun {
     /// Its events.
-    pub events: Events,
+    pub events: RunEvents,
     /// Whether it diverges by itself, in whatever world and whoever drives.
     pub by_itself: bool,
 }
@@ -37,7 +38,7 @@ pub fn shorten_run(
 ) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
     let anyone = ConformConfig { world: None, driver: RunDriver::Anyone, ..question.clone() };
-    let judged = |events: &Events, question: &ConformConfig| {
+    let judged = |events: &RunEvents, question: &ConformConfig| {
         let judgement = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
         judgement.divergence.filter(|found| alike(found, divergence))
     };
@@ -45,7 +46,7 @@ pub fn shorten_run(
         DivergenceCause::World(_)
         | DivergenceCause::Algorithm(_)
         | DivergenceCause::NoWorld { .. } => {
-            let last = judgement.places.iter().position(|&place| place == divergence.event)?;
+            let last = trace_index(&judgement.trace, divergence.event)?;
             let shows = |trace: &Trace| {
                 let events = of_trace(trace);
                 let at = events.events.len() - 1;
@@ -53,7 +54,7 @@ pub fn shorten_run(
             };
             let cut = judgement.trace.up_to(last);
             let short = shortened(&cut, shows);
-            let events = Events { head: judgement.events.head.clone(), ..of_trace(&short) };
+            let events = RunEvents { has_head: judgement.events.has_head, ..of_trace(&short) };
             judged(&events, question).map(|_| ShortenedRun { events, by_itself: false })
         }
         DivergenceCause::Unfinished { .. }
@@ -76,13 +77,16 @@ pub fn shorten_run(
 /// The least that was seen of which the event at a place among those derived from all is derived; `None`
 /// where it cannot be derived but with all, or is none that shows in what was seen alone.
 #[must_use]
-pub fn shorten_frames<'s>(seen: &'s [Seen], event: &Event) -> Option<&'s [Seen]> {
-    let alone = matches!(event.kind, Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided);
+pub fn shorten_frames<'s>(seen: &'s [Seen], event: &CheckedEvent) -> Option<&'s [Seen]> {
+    let alone = matches!(
+        event.kind,
+        CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided
+    );
     let end = seen.partition_point(|seen| seen.source <= event.source);
     let shows = |first: &usize| {
         let events = derived(&seen[*first..end], false);
-        let is = |kind: &Kind| discriminant(kind) == discriminant(&event.kind);
-        let stands = |event: &Event| matches!(event.kind, Kind::Perceived(_));
+        let is = |kind: &CheckedKind| discriminant(kind) == discriminant(&event.kind);
+        let stands = |event: &CheckedEvent| matches!(event.kind, CheckedKind::Arrival { .. });
         events.last().is_some_and(|last| is(&last.kind)) && events.iter().any(stands)
     };
     let first = (0..end).rev().take(FAR).find(shows).filter(|_| alone)?;
@@ -105,40 +109,45 @@ fn alike(one: &Divergence, other: &Divergence) -> bool {
 }
 
 /// Events of percepts and doors alone, a second apart.
-fn of_trace(trace: &Trace) -> Events {
-    let event = |(place, event): (usize, TraceEvent)| {
-        let moves = place as u32 / 2;
-        let source = Source { time: place as u64 * 1_000_000_000, ..Source::default() };
-        let kind = match event {
-            TraceEvent::Perceived(percept) => Kind::Perceived(Perceived {
-                percept,
-                number: Some(moves),
-                form: None,
-                entry: None,
-                entry_off: None,
-            }),
-            TraceEvent::Left(door) => Kind::Left { door, number: Some(moves + 1), off: None },
+fn of_trace(trace: &Trace) -> RunEvents {
+    let event = |(index, event): (usize, TraceEvent)| {
+        let moves = index as u32 / 2;
+        let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
+        let kind = match event.kind {
+            TraceEventKind::Percept(percept) => {
+                let arrival = Arrival { percept, number: Some(moves), form: None, entry: None };
+                CheckedKind::Arrival { arrival, entry_off: None }
+            }
+            TraceEventKind::Door(door) => {
+                CheckedKind::Door { door, number: Some(moves + 1), off: None }
+            }
         };
-        Event { source, kind }
+        CheckedEvent { source, kind }
     };
-    Events { events: trace.events().enumerate().map(event).collect(), ..Events::default() }
+    RunEvents { events: trace.events().enumerate().map(event).collect(), ..RunEvents::default() }
 }
 
-impl Events {
-    /// The events from one to another, as if the run began there; `None` where it cannot.
+/// The index in a trace of the event with this id.
+fn trace_index(trace: &Trace, id: usize) -> Option<usize> {
+    let index = trace.index_of(id);
+    (trace.event(index).id == id).then_some(index)
+}
+
+impl RunEvents {
+    /// The events from one to another, as if the run began there; `None` if it cannot begin there.
     fn from(&self, first: usize, last: usize) -> Option<Self> {
-        let Kind::Perceived(Perceived { number, .. }) = &self.events.get(first)?.kind else {
+        let CheckedKind::Arrival { arrival, .. } = &self.events.get(first)?.kind else {
             return None;
         };
-        let before = number.unwrap_or(0);
+        let before = arrival.number.unwrap_or(0);
         let mut events = self.events[first..=last].to_vec();
         for event in &mut events {
-            if let Kind::Perceived(Perceived { number, .. }) | Kind::Left { number, .. } =
-                &mut event.kind
+            if let CheckedKind::Arrival { arrival: Arrival { number, .. }, .. }
+            | CheckedKind::Door { number, .. } = &mut event.kind
             {
                 *number = number.map(|number| number.wrapping_sub(before));
             }
         }
-        Some(Self { events, head: self.head.clone(), ..Self::default() })
+        Some(Self { events, has_head: self.has_head, ..Self::default() })
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use toposlam_model::{
-    driving::{odometry::Odometry, scene::Scene},
+    driving::{odometry::Odometry, visit::JunctionShape},
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
@@ -18,8 +18,10 @@ use toposlam_model::{
 use super::*;
 use crate::{
     evaluation::{plans, random_plan::random_plan_with, run_sampler::starts_of},
-    log::messages,
-    record::{self, Arrival, EventKind, Frame, NoSensor, RunObserver},
+    record::{
+        Arrival, Event, EventId, EventKind, Frame, MapRecord, NoSensor, RunEnd, RunEnding,
+        RunObserver,
+    },
     robot::Reckoned,
     run::run,
     simulator::SimulationConfig,
@@ -30,85 +32,53 @@ const DARTS: usize = 400;
 /// What a log of a simulated run would hold.
 #[derive(Clone, Debug, Default)]
 struct Log {
-    lines: Vec<(Reckoned, Line)>,
+    /// Scenes, arrivals and doors.
+    lines: Vec<(Reckoned, EventKind)>,
     /// Of the last frame.
     odometry: Odometry,
 }
 
-#[derive(Clone, Debug)]
-enum Line {
-    Percept(messages::Percept),
-    Door(messages::Door),
-    Scene(Scene),
-}
-
 impl Log {
-    fn moves(&self) -> u32 {
-        self.lines.iter().filter(|(_, line)| matches!(line, Line::Door(_))).count() as u32
+    fn moves(&self) -> u64 {
+        self.lines.iter().filter(|(_, line)| matches!(line, EventKind::Door { .. })).count() as u64
     }
 
-    fn told(&self) -> Events {
-        let mut telling = RecordedEvents::default();
+    fn recorded(&self) -> RunEvents {
+        let mut recorded = RecordedEvents::default();
         for (message, (reckoned, line)) in self.lines.iter().enumerate() {
-            telling.moved(reckoned.odometry);
             let source = source(message, reckoned);
-            match line {
-                Line::Percept(percept) => telling.perceived(source, percept),
-                Line::Door(door) => telling.left(source, door),
-                Line::Scene(_) => {}
-            }
+            recorded.observe(source, &EventKind::Odometry(reckoned.odometry));
+            recorded.observe(source, line);
         }
-        let ending =
-            Ending { ending: "mapped".to_owned(), cause: String::new(), moves: self.moves() };
-        let head = Some(Head::default());
-        Events { events: telling.finish(), head, ending: Some(ending), ..Events::default() }
+        let end = Some(RunEnd { moves: self.moves(), ending: RunEnding::Mapped });
+        RunEvents { events: recorded.finish(), has_head: true, end, ..RunEvents::default() }
     }
 
-    fn derived(&self) -> Vec<Event> {
-        let mut derivation = InferredEvents::new(true);
+    fn inferred(&self) -> Vec<CheckedEvent> {
+        let mut inferred = InferredEvents::new(true);
         for (message, (reckoned, line)) in self.lines.iter().enumerate() {
-            if let Line::Scene(scene) = line {
-                derivation.see(source(message, reckoned), scene, &reckoned.odometry);
+            if let EventKind::Frame(Frame { scene: Some(scene), .. }) = line {
+                inferred.see(source(message, reckoned), scene, &reckoned.odometry);
             }
         }
-        derivation.finish()
+        inferred.finish()
     }
 }
 
-fn source(message: usize, reckoned: &Reckoned) -> Source {
+fn source(message: usize, reckoned: &Reckoned) -> EventSource {
     let time = (reckoned.time * 1e9).round() as u64;
-    Source { time, message: message as u64 + 1, offset: 0 }
+    EventSource { time, id: EventId(message as u64 + 1), offset: 0 }
 }
 
 impl RunObserver for Log {
-    fn event(&mut self, event: &record::Event) {
-        let line = match &event.kind {
-            EventKind::Frame(Frame { scene: Some(scene), odometry, .. }) => {
-                self.odometry = *odometry;
-                Line::Scene(scene.clone())
-            }
-            EventKind::Door { door, .. } => {
-                let r#move = self.moves() + 1;
-                Line::Door(messages::Door { r#move, door: door.0, ..Default::default() })
-            }
-            EventKind::Arrival(Arrival { percept, form, entry, .. }) => {
-                let marker = match percept.sighting {
-                    Sighting::Pointing(door) => door.0.cast_signed(),
-                    _ => -1,
-                };
-                Line::Percept(messages::Percept {
-                    r#move: self.moves(),
-                    degree: percept.degree,
-                    marker,
-                    form: form.unwrap().0,
-                    entry: entry.unwrap(),
-                    ..Default::default()
-                })
-            }
+    fn event(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Frame(frame) if frame.scene.is_some() => self.odometry = frame.odometry,
+            EventKind::Door { .. } | EventKind::Arrival(_) => {}
             _ => return,
-        };
-        self.lines
-            .push((Reckoned { time: event.time as f64 / 1e9, odometry: self.odometry }, line));
+        }
+        let reckoned = Reckoned { time: event.time as f64 / 1e9, odometry: self.odometry };
+        self.lines.push((reckoned, event.kind.clone()));
     }
 }
 
@@ -136,7 +106,7 @@ fn without_world() -> ConformConfig<'static> {
     ConformConfig { world: None, driver: RunDriver::Algorithm1, search, dart_bound: DARTS }
 }
 
-fn judged(events: &Events, question: &ConformConfig) -> Judgement {
+fn judged(events: &RunEvents, question: &ConformConfig) -> Judgement {
     judge(events.clone(), question, &Quirks::default(), &()).unwrap()
 }
 
@@ -144,7 +114,7 @@ fn judged(events: &Events, question: &ConformConfig) -> Judgement {
 fn good_logs_of_every_plan_conform() {
     for (name, plan) in plans().unwrap() {
         for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(2) {
-            let events = log(&plan, facing, seed as u64).told();
+            let events = log(&plan, facing, seed as u64).recorded();
             for question in [question(&plan, Some(facing)), question(&plan, None), without_world()]
             {
                 let judgement = judged(&events, &question);
@@ -159,10 +129,10 @@ fn good_logs_of_every_plan_conform() {
 }
 
 /// Percepts and doors, without what they were made of.
-fn bare(events: &[Event]) -> Vec<(Option<Percept>, Option<Door>)> {
-    let bare = |event: &Event| match &event.kind {
-        Kind::Perceived(perceived) => (Some(perceived.percept), None),
-        Kind::Left { door, .. } => (None, Some(*door)),
+fn bare(events: &[CheckedEvent]) -> Vec<(Option<Percept>, Option<Door>)> {
+    let bare = |event: &CheckedEvent| match &event.kind {
+        CheckedKind::Arrival { arrival, .. } => (Some(arrival.percept), None),
+        CheckedKind::Door { door, .. } => (None, Some(*door)),
         other => panic!("{other:?} in a good run"),
     };
     events.iter().map(bare).collect()
@@ -173,7 +143,11 @@ fn pictures_and_motion_tell_the_same_percepts_and_doors_as_the_robot() {
     for (name, plan) in plans().unwrap() {
         for (seed, facing) in starts_of(&plan).into_iter().enumerate() {
             let log = log(&plan, facing, seed as u64);
-            assert_eq!(bare(&log.derived()), bare(&log.told().events), "{name} from {facing:?}");
+            assert_eq!(
+                bare(&log.inferred()),
+                bare(&log.recorded().events),
+                "{name} from {facing:?}"
+            );
         }
     }
 }
@@ -186,9 +160,9 @@ proptest! {
         let plan = Arc::new(random_plan_with(seed, 12).unwrap());
         if let Some(&facing) = starts_of(&plan).first() {
             let log = log(&plan, facing, seed);
-            let judgement = judged(&log.told(), &question(&plan, Some(facing)));
+            let judgement = judged(&log.recorded(), &question(&plan, Some(facing)));
             prop_assert_eq!(judgement.divergence, None);
-            prop_assert_eq!(bare(&log.derived()), bare(&log.told().events));
+            prop_assert_eq!(bare(&log.inferred()), bare(&log.recorded().events));
         }
     }
 }
@@ -239,7 +213,7 @@ enum Shows {
 impl Log {
     /// Where the events are among the lines.
     fn places(&self) -> Vec<usize> {
-        let is_event = |line: &Line| !matches!(line, Line::Scene(_));
+        let is_event = |line: &EventKind| !matches!(line, EventKind::Frame(_));
         (0..self.lines.len()).filter(|&place| is_event(&self.lines[place].1)).collect()
     }
 
@@ -251,34 +225,40 @@ impl Log {
         let time = self.lines[place].0.time;
         let before = event.checked_sub(1).map(|before| self.lines[places[before]].0.time);
         match (mutation, &mut self.lines[place].1) {
-            (Degree, Line::Percept(percept)) => {
+            (Degree, EventKind::Arrival(Arrival { percept, .. })) => {
                 percept.degree = percept.degree % 3 + 1 + u32::from(percept.degree == 3 && by > 2);
             }
-            (Marker, Line::Percept(percept)) => {
-                percept.marker = if percept.marker < 0 { (by % 3).cast_signed() } else { -1 };
+            (Marker, EventKind::Arrival(Arrival { percept, .. })) => {
+                percept.sighting = match percept.sighting {
+                    Sighting::Nothing => Sighting::Pointing(toposlam_model::percept::Door(by % 3)),
+                    _ => Sighting::Nothing,
+                };
             }
-            (Entry, Line::Percept(percept)) => {
-                percept.entry += f64::from(1 + by % 3) * std::f64::consts::FRAC_PI_2;
+            (Entry, EventKind::Arrival(Arrival { entry: Some(entry), .. })) => {
+                *entry += f64::from(1 + by % 3) * std::f64::consts::FRAC_PI_2;
             }
-            (Form, Line::Percept(percept)) => {
-                let before = percept.form;
-                percept.form = [before[0], before[3], before[2], before[1]];
-                if percept.form == before {
+            (Form, EventKind::Arrival(Arrival { form: Some(JunctionShape(form)), .. })) => {
+                let before = *form;
+                *form = [before[0], before[3], before[2], before[1]];
+                if *form == before {
                     return Shows::NotOne;
                 }
-                let Some(Line::Door(door)) = places.get(event + 1).map(|&next| &self.lines[next].1)
-                else {
+                let next = places.get(event + 1).map(|&next| &self.lines[next].1);
+                let Some(EventKind::Door { door, .. }) = next else {
                     return Shows::Never("no door is left by after the last percept");
                 };
-                return match door.door {
+                return match door.0 {
                     0 => Shows::Never("the entry door is where it was"),
                     // The door that is taken is no longer where the robot goes.
                     _ => Shows::At(event + 1),
                 };
             }
-            (Door, Line::Door(door)) => door.door = (door.door + 1 + by % 2) % 3,
-            (Number, Line::Percept(percept)) => percept.r#move ^= 1 + by,
-            (Number, Line::Door(door)) => door.r#move ^= 1 + by,
+            (Door, EventKind::Door { door, .. }) => door.0 = (door.0 + 1 + by % 2) % 3,
+            (
+                Number,
+                EventKind::Arrival(Arrival { number: Some(number), .. })
+                | EventKind::Door { number: Some(number), .. },
+            ) => *number ^= 1 + by,
             (Dropped, _) => {
                 self.lines.remove(place);
             }
@@ -315,9 +295,9 @@ impl Log {
 }
 
 /// At which event a log is told not to conform, from 0.
-fn told_at(log: &Log, moves: u32, question: &ConformConfig) -> Option<usize> {
-    let mut events = log.told();
-    events.ending.as_mut().unwrap().moves = moves;
+fn told_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usize> {
+    let mut events = log.recorded();
+    events.end.as_mut().unwrap().moves = moves;
     match judge(events, question, &Quirks::default(), &()) {
         Err(JudgeError::OutOfOrder(out)) => Some(out.event - 1),
         Err(JudgeError::Empty) => Some(0),
@@ -367,8 +347,13 @@ fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() 
     let question = question(&plan, Some(facing));
     let end = good.places().len();
     assert_eq!(told_at(&good, good.moves() + 1, &question), Some(end));
-    let mut events = good.told();
-    events.map = Some((vec![2], vec![1, 0]));
+    let mut events = good.recorded();
+    events.map = Some(MapRecord {
+        moves: 0,
+        degrees: vec![2],
+        opposite: [1, 0].map(|dart| Some(Dart(dart))).to_vec(),
+        robot: Dart(0),
+    });
     let divergence = judged(&events, &question).divergence.unwrap();
     assert_eq!((divergence.event, divergence.cause), (end, DivergenceCause::Map));
 }
@@ -377,12 +362,12 @@ fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() 
 fn half_a_run_is_incomplete_and_one_that_says_that_it_is_whole_diverges() {
     let (_, plan) = plans().unwrap().swap_remove(2);
     let facing = starts_of(&plan)[0];
-    let good = log(&plan, facing, 1).told();
+    let good = log(&plan, facing, 1).recorded();
     let question = question(&plan, Some(facing));
     let half = good.up_to(4);
     assert_eq!(judged(&half, &question).verdict(), ConformVerdict::Incomplete);
-    let ending = Ending { moves: 2, ..good.ending.clone().unwrap() };
-    let whole = Events { ending: Some(ending), ..half };
+    let end = RunEnd { moves: 2, ending: RunEnding::Mapped };
+    let whole = RunEvents { end: Some(end), ..half };
     let divergence = judged(&whole, &question).divergence.unwrap();
     assert!(matches!(divergence.cause, DivergenceCause::Unfinished { .. }), "{divergence:?}");
 }
@@ -404,23 +389,16 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
         kinds
     };
     let events = |percepts: &[Percept]| {
-        let mut telling = RecordedEvents::default();
-        for (moves, percept) in percepts.iter().enumerate() {
-            let marker = match percept.sighting {
-                Sighting::Pointing(door) => door.0.cast_signed(),
-                _ => -1,
-            };
-            let (r#move, entry) = (moves as u32, f64::NAN);
-            let degree = percept.degree;
-            let percept = messages::Percept { r#move, degree, marker, entry, ..Default::default() };
-            telling.perceived(Source::default(), &percept);
-            if let Some(door) = told.get(moves) {
-                let door =
-                    messages::Door { r#move: r#move + 1, door: door.0, ..Default::default() };
-                telling.left(Source::default(), &door);
+        let mut recorded = RecordedEvents::default();
+        let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
+        for (moves, &percept) in percepts.iter().enumerate() {
+            let number = Some(moves as u32);
+            observe(EventKind::Arrival(Arrival { number, percept, form: None, entry: None }));
+            if let Some(&door) = told.get(moves) {
+                observe(EventKind::Door { number: Some(moves as u32 + 1), door });
             }
         }
-        Events { events: telling.finish(), ..Events::default() }
+        RunEvents { events: recorded.finish(), ..RunEvents::default() }
     };
     let question = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, Some(facing)) };
     let right = walk(&told);
@@ -456,10 +434,10 @@ fn a_quirk_is_tolerated_and_counted() {
     assert_eq!(told_at(&log, moves, &question), Some(percept));
     let text = "[[quirk]]\nname = \"glare\"\ncause = \"percept\"\nreason = \"the window\"";
     let quirks = Quirks::read(text).unwrap();
-    let judgement = judge(log.told(), &question, &quirks, &()).unwrap();
+    let judgement = judge(log.recorded(), &question, &quirks, &()).unwrap();
     assert_eq!((judgement.verdict(), judgement.tolerated.len()), (ConformVerdict::Conforms, 1));
     let elsewhere = Quirks::read(&format!("{text}\nevent = 1")).unwrap();
-    let judgement = judge(log.told(), &question, &elsewhere, &()).unwrap();
+    let judgement = judge(log.recorded(), &question, &elsewhere, &()).unwrap();
     assert_eq!(judgement.verdict(), ConformVerdict::Diverged);
 }
 
@@ -493,7 +471,7 @@ proptest! {
         let event = event.index(log.places().len());
         log.mutate(event, mutation, 1);
         let question = question(&plan, Some(facing));
-        let Ok(judgement) = judge(log.told(), &question, &Quirks::default(), &()) else {
+        let Ok(judgement) = judge(log.recorded(), &question, &Quirks::default(), &()) else {
             return Ok(());
         };
         if let Some(ShortenedRun { events: short, by_itself }) = shorten_run(&judgement, &question, &()) {

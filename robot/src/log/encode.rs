@@ -1,4 +1,6 @@
-//! What sensing, driving and mapping tell, as messages.
+//! The messages of the project: events are encoded here, and decoded.
+//!
+//! What a message does not have is -1 or [`UNKNOWN`] there, and `None` everywhere else.
 
 use toposlam_model::{
     driving::{
@@ -7,17 +9,20 @@ use toposlam_model::{
             self, CentreLine, HallwayStatus, HallwayView, JunctionView, MarkerView, Place, Reason,
             Unclear,
         },
+        visit::JunctionShape,
     },
     embedded_graph::{Dart, Vertex},
     mapping::MappingEvent,
-    percept::{Door, Sighting},
+    percept::{self, Sighting},
 };
 
-use super::messages::{Command, End, Hypothesis, Map, Percept, Scene, Stamp};
-use crate::record::{Arrival, MapRecord, RunEnd, RunEnding};
+use super::messages::{Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp};
+use crate::record::{Arrival, EventKind, MapRecord, RunEnd, RunEnding};
 
-/// Stands for none.
-const NONE: i32 = -1;
+/// Stands for none in a message.
+pub(super) const NONE: i32 = -1;
+/// Stands for an unknown number of moves in a message.
+const UNKNOWN: u32 = u32::MAX;
 
 /// A number of a dart, a door or a vertex.
 fn number(number: u32) -> i32 {
@@ -25,7 +30,7 @@ fn number(number: u32) -> i32 {
 }
 
 /// How many, as messages count.
-pub(super) fn count(count: u64) -> u32 {
+fn count(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
@@ -63,7 +68,7 @@ pub fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
 }
 
 /// The scene that a message tells; `None` where there is no such scene.
-pub(crate) fn scene_of(told: &Scene) -> Option<scene::Scene> {
+pub(super) fn scene_of(told: &Scene) -> Option<scene::Scene> {
     let place = match told.place.as_str() {
         "hallway" => Place::Hallway(HallwayView {
             heading: told.heading,
@@ -94,7 +99,7 @@ pub(crate) fn scene_of(told: &Scene) -> Option<scene::Scene> {
     let marker = told.marker.then(|| MarkerView {
         position: told.marker_position,
         axis: told.marker_axis,
-        door: u32::try_from(told.marker_door).ok().map(Door),
+        door: u32::try_from(told.marker_door).ok().map(percept::Door),
     });
     Some(scene::Scene { place, marker })
 }
@@ -116,21 +121,67 @@ pub(super) fn command(stamp: Stamp, state: PathState, command: algorithm2::Comma
     Command { stamp, state: state.to_owned(), turn, forward }
 }
 
-/// What the robot perceives after so many moves.
-pub(super) fn percept(stamp: Stamp, moves: u64, arrival: &Arrival) -> Percept {
-    let Arrival { percept, form, entry, .. } = arrival;
+/// The command in a message. A state that is not known is [`PathState::Unknown`].
+pub(super) fn command_of(command: &Command) -> EventKind {
+    let state = match command.state.as_str() {
+        "leaving" => PathState::Leaving,
+        "hallway" => PathState::Hallway,
+        "junction" => PathState::Junction,
+        _ => PathState::Unknown,
+    };
+    let Command { turn, forward, .. } = *command;
+    EventKind::Command { state, command: Some(algorithm2::Command { turn, forward }) }
+}
+
+/// An arrival at a junction.
+#[must_use]
+pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
+    let Arrival { number: moves, percept, form, entry } = arrival;
     let marker = match percept.sighting {
         Sighting::Pointing(door) => number(door.0),
         _ => NONE,
     };
     Percept {
         stamp,
-        r#move: count(moves),
+        r#move: moves.unwrap_or(UNKNOWN),
         degree: percept.degree,
         marker,
         form: form.map_or([false; 4], |form| form.0),
         entry: entry.unwrap_or(f64::NAN),
     }
+}
+
+/// The arrival in a message.
+pub(super) fn arrival_of(message: &Percept) -> Arrival {
+    Arrival {
+        number: known(message.r#move),
+        percept: percept::Percept {
+            degree: message.degree,
+            sighting: sighting_of(message.marker.into()),
+        },
+        form: message.form.contains(&true).then_some(JunctionShape(message.form)),
+        entry: message.entry.is_finite().then_some(message.entry),
+    }
+}
+
+/// The sighting of a directional marker that points along a door; of none if there is no such door.
+pub(super) fn sighting_of(marker: i64) -> Sighting {
+    u32::try_from(marker).map_or(Sighting::Nothing, |door| Sighting::Pointing(percept::Door(door)))
+}
+
+/// The robot leaves by a door.
+#[must_use]
+pub fn door(stamp: Stamp, number: Option<u32>, door: percept::Door) -> Door {
+    Door { stamp, r#move: number.unwrap_or(UNKNOWN), door: door.0 }
+}
+
+/// The door in a message.
+pub(super) fn door_of(message: &Door) -> EventKind {
+    EventKind::Door { number: known(message.r#move), door: percept::Door(message.door) }
+}
+
+fn known(number: u32) -> Option<u32> {
+    (number != UNKNOWN).then_some(number)
 }
 
 /// A step of Algorithm 1 after so many moves; a move has its [`Percept`] instead.
@@ -180,7 +231,7 @@ pub(super) fn map(stamp: Stamp, map: &MapRecord) -> Map {
 }
 
 /// The map that a message has.
-pub(crate) fn map_of(map: &Map) -> MapRecord {
+pub(super) fn map_of(map: &Map) -> MapRecord {
     MapRecord {
         moves: map.r#move.into(),
         degrees: map.degrees.clone(),
@@ -197,6 +248,17 @@ pub(super) fn end(stamp: Stamp, end: &RunEnd) -> End {
         RunEnding::GaveUp(cause) => ("gave-up", cause.as_str()),
     };
     End { stamp, moves: count(end.moves), ending: ending.to_owned(), cause: cause.to_owned() }
+}
+
+/// The end in a message; `None` if it is not known how the run ended.
+pub(super) fn end_of(message: End) -> Option<RunEnd> {
+    let ending = match message.ending.as_str() {
+        "mapped" => RunEnding::Mapped,
+        "stopped" => RunEnding::Stopped,
+        "gave-up" => RunEnding::GaveUp(message.cause),
+        _ => return None,
+    };
+    Some(RunEnd { moves: message.moves.into(), ending })
 }
 
 #[cfg(test)]
@@ -225,7 +287,7 @@ mod tests {
         let places = places.chain([hallway(HallwayStatus::Clear), Place::Junction(junction)]);
         let marker = |door| MarkerView { position: [0.4, 0.0], axis: 0.2, door };
         for place in places {
-            for marker in [None, Some(marker(None)), Some(marker(Some(Door(1))))] {
+            for marker in [None, Some(marker(None)), Some(marker(Some(percept::Door(1))))] {
                 let seen = scene::Scene { place: place.clone(), marker };
                 assert_eq!(scene_of(&scene(Stamp::default(), &seen)), Some(seen));
             }

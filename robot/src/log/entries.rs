@@ -1,74 +1,53 @@
-//! What a log tells of a run, read through a mapping, in the order of time.
+//! The entries of a log by a topic map, in the order of time.
 
-use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+use std::collections::VecDeque;
+
+use toposlam_model::{
+    driving::{odometry::Odometry, scene::wrapped},
+    percept::{Door, Percept},
+};
 
 use super::{
     decode::decode,
+    encode,
     error::{LogError, LogErrorKind},
     from_value::FromValue,
     image::image_of,
     merge::{RawMessage, RawMessages},
-    messages::{Command, Door, End, Hypothesis, Map, Percept, Run, Scene, Stamp},
+    messages::{Hypothesis, Run, Stamp},
     reader::Log,
     standard::Quaternion,
     topic_map::{Bound, Carried, Part, Role},
     value::Value,
 };
-use crate::record::CameraImage;
+use crate::record::{Arrival, EventId, EventKind, Frame};
 
-/// Something that a log tells.
+/// Something that a log records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// When it was recorded, in nanoseconds.
     pub time: u64,
     /// Where it is in the file: see [`RawMessage::offset`].
     pub offset: u64,
-    /// The how-manyeth message of the log it is; the first is 1.
-    pub number: u64,
-    /// Which topic of the log it is on.
+    /// The number of its message in the log, counted from 1.
+    pub id: EventId,
+    /// The index of its topic.
     pub topic: usize,
-    /// When it was so, as the message says itself, by its `stamp` or `header.stamp`; otherwise when it
-    /// was recorded.
+    /// The `stamp` or `header.stamp` of the message; without one, when it was recorded.
     pub stamp: Stamp,
-    /// What it tells.
+    /// What is recorded.
     pub content: Content,
 }
 
-/// Stands for a number of moves that a log does not tell.
-pub const UNTOLD: u32 = u32::MAX;
-
-/// What an entry tells.
+/// What an entry records.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
-    /// What runs, and in what setting.
+    /// The head of the log.
     Run(Run),
-    /// The last entry of a log that is whole.
-    End(End),
-    /// What the camera sees.
-    Image(CameraImage),
-    /// Where the robot is by its wheels.
-    Odometry(Odometry),
-    /// What it is told to do: metres, and radians counter-clockwise, each second.
-    Motion {
-        /// Straight ahead.
-        forward: f64,
-        /// Turning.
-        turn: f64,
-    },
-    /// What sensing tells.
-    Scene(Scene),
-    /// What Algorithm 2 answers.
-    Command(Command),
-    /// What the robot perceives. Where the log has a message of its own for that: `move` and `marker` are
-    /// [`UNTOLD`] and -1 where they are not mapped, `form` is all false, and `entry` not a number.
-    Percept(Percept),
-    /// The door that it takes. Where the log has a message of its own for that, `move` is [`UNTOLD`] where
-    /// it is not mapped.
-    Door(Door),
     /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
-    /// The map.
-    Map(Map),
+    /// Any other event. A frame has an image or a scene, and the last odometry before it.
+    Event(EventKind),
 }
 
 /// The entries of a log.
@@ -76,16 +55,19 @@ pub struct Entries<'l> {
     log: &'l Log,
     bound: Bound,
     messages: RawMessages<'l>,
+    /// The last odometry.
+    odometry: Odometry,
     /// What the last message carries beyond its first.
-    next: Vec<Entry>,
+    next: VecDeque<Entry>,
 }
 
 impl Log {
-    /// What it tells through a mapping, in the order of time. Ends after the first error.
+    /// Its entries by a topic map, in the order of time. Ends after the first error.
     #[must_use]
     pub fn entries(&self, mapping: &Bound) -> Entries<'_> {
         let messages = self.read(&mapping.topics());
-        Entries { log: self, bound: mapping.clone(), messages, next: Vec::new() }
+        let (odometry, next) = (Odometry::default(), VecDeque::new());
+        Entries { log: self, bound: mapping.clone(), messages, odometry, next }
     }
 }
 
@@ -93,90 +75,89 @@ impl Iterator for Entries<'_> {
     type Item = Result<Entry, LogError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Some(entry) = self.next.pop() {
-            return Some(Ok(entry));
-        }
-        loop {
-            let message = match self.messages.next()? {
-                Ok(message) => message,
-                Err(error) => return Some(Err(error)),
-            };
-            match entries(self.log, &self.bound, &message) {
-                // The first one is taken from the end.
-                Ok(mut entries) => {
-                    entries.reverse();
-                    let first = entries.pop();
-                    self.next = entries;
-                    if let Some(first) = first {
-                        return Some(Ok(first));
-                    }
-                }
-                Err(error) => {
-                    self.messages.end();
-                    return Some(Err(error));
-                }
+        while self.next.is_empty() {
+            let read = self.messages.next()?.and_then(|message| self.decode(&message));
+            if let Err(error) = read {
+                self.messages.end();
+                return Some(Err(error));
             }
         }
+        self.next.pop_front().map(Ok)
     }
 }
 
-/// What one message tells.
-fn entries(log: &Log, bound: &Bound, message: &RawMessage) -> Result<Vec<Entry>, LogError> {
-    let Some(topic) = log.topics().get(message.topic) else { return Ok(Vec::new()) };
-    let Ok(definition) = &topic.definition else { return Ok(Vec::new()) };
-    let name = || topic.name.clone();
-    let value = decode(definition, &message.bytes).map_err(|error| {
-        let (number, topic) = (message.number, name());
-        LogErrorKind::Message { number, topic, error: Box::new(error) }.at(message.offset)
-    })?;
-    let stamp = stamp(&value, message.time);
-    let carried = bound.carried.iter().filter(|carried| carried.topic == message.topic);
-    let entries = carried.map(|carried| {
-        let content = content(carried, &value, stamp).map_err(|what| {
-            let (number, topic) = (message.number, name());
-            LogErrorKind::Content { number, topic, what }.at(message.offset)
+impl Entries<'_> {
+    /// Appends the entries of a message.
+    fn decode(&mut self, message: &RawMessage) -> Result<(), LogError> {
+        let Some(topic) = self.log.topics().get(message.topic) else { return Ok(()) };
+        let Ok(definition) = &topic.definition else { return Ok(()) };
+        let RawMessage { time, offset, number, .. } = *message;
+        let value = decode(definition, &message.bytes).map_err(|error| {
+            let topic = topic.name.clone();
+            LogErrorKind::Message { number, topic, error: Box::new(error) }.at(offset)
         })?;
-        let RawMessage { time, offset, number, topic, .. } = *message;
-        Ok(Entry { time, offset, number, topic, stamp, content })
-    });
-    entries.collect()
+        let stamp = stamp(&value, time);
+        let since_start = stamp.nanoseconds().saturating_sub(self.log.start().unwrap_or(0));
+        let taken = since_start as f64 / 1e9;
+        for carried in self.bound.carried.iter().filter(|carried| carried.topic == message.topic) {
+            let frame = Frame { id: number, taken, odometry: self.odometry, ..Frame::default() };
+            let content = content(carried, &value, frame).map_err(|what| {
+                let topic = topic.name.clone();
+                LogErrorKind::Content { number, topic, what }.at(offset)
+            })?;
+            if let Content::Event(EventKind::Odometry(odometry)) = content {
+                self.odometry = odometry;
+            }
+            let (id, topic) = (EventId(number), message.topic);
+            self.next.push_back(Entry { time, offset, id, topic, stamp, content });
+        }
+        Ok(())
+    }
 }
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
-    let told = ["stamp", "header.stamp"].into_iter().find_map(|path| value.at(path)?.stamp());
-    told.unwrap_or(Stamp::of(time))
+    let found = ["stamp", "header.stamp"].into_iter().find_map(|path| value.at(path)?.stamp());
+    found.unwrap_or(Stamp::of(time))
 }
 
-fn content(carried: &Carried, value: &Value<'_>, stamp: Stamp) -> Result<Content, String> {
-    Ok(match carried.role {
-        Role::Image => Content::Image(image_of(value)?),
-        Role::Odometry => Content::Odometry(odometry(carried, value)?),
-        Role::Motion => Content::Motion {
+fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content, String> {
+    Ok(Content::Event(match carried.role {
+        Role::Run => return Ok(Content::Run(own(value)?)),
+        Role::Hypothesis => return Ok(Content::Hypothesis(own(value)?)),
+        Role::Image => EventKind::Frame(Frame { image: Some(image_of(value)?), ..frame }),
+        Role::Scene => {
+            let scene = encode::scene_of(&own(value)?).ok_or("there is no such scene")?;
+            EventKind::Frame(Frame { scene: Some(scene), ..frame })
+        }
+        Role::Odometry => EventKind::Odometry(odometry(carried, value)?),
+        Role::Motion => EventKind::Motion {
             forward: number(carried, value, Part::Forward)? * carried.length.in_metres(),
             turn: number(carried, value, Part::Turn)? * carried.angle.in_radians(),
         },
-        Role::Percept if !carried.own => Content::Percept(Percept {
-            stamp,
-            r#move: whole(carried, value, Part::Move)?.unwrap_or(UNTOLD),
-            degree: whole(carried, value, Part::Degree)?.unwrap_or_default(),
-            marker: whole(carried, value, Part::Marker)?.unwrap_or(-1),
-            form: [false; 4],
-            entry: f64::NAN,
-        }),
-        Role::Door if !carried.own => Content::Door(Door {
-            stamp,
-            r#move: whole(carried, value, Part::Move)?.unwrap_or(UNTOLD),
-            door: whole(carried, value, Part::Door)?.unwrap_or_default(),
-        }),
-        Role::Percept => Content::Percept(own(value)?),
-        Role::Door => Content::Door(own(value)?),
-        Role::Run => Content::Run(own(value)?),
-        Role::Scene => Content::Scene(own(value)?),
-        Role::Command => Content::Command(own(value)?),
-        Role::Hypothesis => Content::Hypothesis(own(value)?),
-        Role::Map => Content::Map(own(value)?),
-        Role::End => Content::End(own(value)?),
-    })
+        Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)),
+        Role::Percept => {
+            let marker = whole::<i64>(carried, value, Part::Marker)?;
+            EventKind::Arrival(Arrival {
+                number: whole(carried, value, Part::Move)?,
+                percept: Percept {
+                    degree: whole(carried, value, Part::Degree)?.unwrap_or_default(),
+                    sighting: encode::sighting_of(marker.unwrap_or(encode::NONE.into())),
+                },
+                form: None,
+                entry: None,
+            })
+        }
+        Role::Door if carried.own => encode::door_of(&own(value)?),
+        Role::Door => EventKind::Door {
+            number: whole(carried, value, Part::Move)?,
+            door: Door(whole(carried, value, Part::Door)?.unwrap_or_default()),
+        },
+        Role::Command => encode::command_of(&own(value)?),
+        Role::Map => EventKind::Map(encode::map_of(&own(value)?)),
+        Role::End => {
+            EventKind::End(encode::end_of(own(value)?).ok_or("there is no such `ending`")?)
+        }
+    }))
 }
 
 fn own<M: FromValue>(value: &Value<'_>) -> Result<M, String> {

@@ -23,7 +23,6 @@ mod world_hash;
 pub mod writer;
 
 pub use container::{Format, MOST_GROWTH};
-pub use encode::scene as scene_message;
-pub(crate) use encode::{map_of, scene_of};
+pub use encode::{arrival as arrival_message, door as door_message, scene as scene_message};
 pub use merge::{RawMessage, RawMessages};
 pub use world_hash::world_hash;

@@ -42,8 +42,6 @@ pub struct Recorder<W: Write> {
     camera: Option<Camera>,
     /// The time of the last event, in nanoseconds.
     now: u64,
-    /// The number of moves begun.
-    moves: u64,
     /// The last command of the wheels.
     twist: Twist,
 }
@@ -58,7 +56,7 @@ impl<W: Write> Recorder<W> {
         out.note(NOTE, &entries(run))?;
         out.write(messages::Run::TOPIC, 0, run)?;
         out.flush()?;
-        Ok(Self { out, error: None, camera, now: 0, moves: 0, twist: Twist::default() })
+        Ok(Self { out, error: None, camera, now: 0, twist: Twist::default() })
     }
 
     /// Closes the log.
@@ -118,14 +116,10 @@ impl<W: Write> RunObserver for Recorder<W> {
                     self.write_own(&encode::command(stamp, *state, *command));
                 }
             }
-            EventKind::Door { door, .. } => {
-                self.moves += 1;
-                let r#move = encode::count(self.moves);
-                self.write_own(&messages::Door { stamp, r#move, door: door.0 });
+            EventKind::Door { number, door } => {
+                self.write_own(&encode::door(stamp, *number, *door));
             }
-            EventKind::Arrival(arrival) => {
-                self.write_own(&encode::percept(stamp, self.moves, arrival));
-            }
+            EventKind::Arrival(arrival) => self.write_own(&encode::arrival(stamp, arrival)),
             EventKind::Hypothesis { moves, event } => {
                 if let Some(step) = encode::hypothesis(stamp, *moves, *event) {
                     self.write_own(&step);

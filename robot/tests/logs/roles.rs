@@ -3,13 +3,19 @@
 use std::{collections::BTreeMap, io::Cursor};
 
 use mcap::{WriteOptions, records::MessageHeader};
-use toposlam_robot::log::{
-    entries::{Content, Entry, UNTOLD},
-    messages::Stamp,
-    reader::Log,
-    topic_map::{Guess, Role, TopicMap, guess},
+use toposlam_model::{
+    driving::visit::JunctionShape,
+    percept::{Door, Percept, Sighting},
 };
-use toposlam_robot::record::CameraImage;
+use toposlam_robot::{
+    log::{
+        entries::{Content, Entry},
+        messages::Stamp,
+        reader::Log,
+        topic_map::{Guess, Role, TopicMap, guess},
+    },
+    record::{Arrival, CameraImage, EventKind},
+};
 
 /// A topic: its name, the type and the definition of its messages, and what these say, one a second.
 pub(crate) type Topic = (&'static str, &'static str, &'static str, Vec<Vec<u8>>);
@@ -124,17 +130,23 @@ fn what_is_usual_needs_no_mapping_file() {
         ]
     );
     let [image, odometry, motion, percept] = &entries(&log, &mapping)[..] else { panic!() };
-    assert_eq!(image.content, Content::Image(CameraImage::encoded(*b"JPEG")));
+    let Content::Event(EventKind::Frame(frame)) = &image.content else { panic!() };
+    assert_eq!(frame.image, Some(CameraImage::encoded(*b"JPEG")));
     assert_eq!((image.time, image.stamp), (1_000_000_000, Stamp { sec: 7, nanosec: 5 }));
-    let Content::Odometry(at) = &odometry.content else { panic!() };
+    let Content::Event(EventKind::Odometry(at)) = &odometry.content else { panic!() };
     assert_eq!(at.position, [1.0, 2.0]);
     assert!((at.heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-    assert_eq!(motion.content, Content::Motion { forward: 0.25, turn: -1.0 });
+    let forward = EventKind::Motion { forward: 0.25, turn: -1.0 };
+    assert_eq!(motion.content, Content::Event(forward));
     // A twist does not say when it was.
     assert_eq!(motion.stamp, Stamp { sec: 1, nanosec: 0 });
-    let Content::Percept(percept) = &percept.content else { panic!() };
-    assert_eq!((percept.r#move, percept.degree, percept.marker), (3, 2, -1));
-    assert_eq!((percept.form, percept.entry), ([true, false, true, false], 0.5));
+    let arrival = Arrival {
+        number: Some(3),
+        percept: Percept { degree: 2, sighting: Sighting::Nothing },
+        form: Some(JunctionShape([true, false, true, false])),
+        entry: Some(0.5),
+    };
+    assert_eq!(percept.content, Content::Event(EventKind::Arrival(arrival)));
     assert_eq!(percept.stamp, Stamp { sec: 9, nanosec: 1 });
 }
 
@@ -147,16 +159,21 @@ fn messages_of_others_are_read_through_paths_and_units() {
         [door]\ntopic = \"/junction\"\ndoor = \"exits\"\n";
     let entries = entries(&log, &TopicMap::read(mapping.as_bytes()).unwrap());
     let [percept, door, odometry, lost, _] = &entries[..] else { panic!("{entries:?}") };
-    let Content::Percept(percept) = &percept.content else { panic!() };
-    assert_eq!((percept.r#move, percept.degree, percept.marker), (UNTOLD, 4, 2));
-    assert!(percept.entry.is_nan() && percept.form == [false; 4]);
-    let Content::Door(door) = &door.content else { panic!() };
-    assert_eq!((door.door, door.stamp), (4, Stamp { sec: 1, nanosec: 0 }));
-    let Content::Odometry(at) = &odometry.content else { panic!() };
+    let arrival = Arrival {
+        number: None,
+        percept: Percept { degree: 4, sighting: Sighting::Pointing(Door(2)) },
+        form: None,
+        entry: None,
+    };
+    assert_eq!(percept.content, Content::Event(EventKind::Arrival(arrival)));
+    let leaves = EventKind::Door { number: None, door: Door(4) };
+    assert_eq!(door.content, Content::Event(leaves));
+    assert_eq!(door.stamp, Stamp { sec: 1, nanosec: 0 });
+    let Content::Event(EventKind::Odometry(at)) = &odometry.content else { panic!() };
     assert!((at.position[0] - 0.254).abs() < 1e-12 && (at.position[1] + 0.508).abs() < 1e-12);
     assert!((at.heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-    let Content::Percept(lost) = &lost.content else { panic!() };
-    assert_eq!(lost.marker, -1);
+    let Content::Event(EventKind::Arrival(lost)) = &lost.content else { panic!() };
+    assert_eq!(lost.percept.sighting, Sighting::Nothing);
 }
 
 #[test]
@@ -267,7 +284,7 @@ fn a_message_that_does_not_say_what_it_should_is_told_with_its_number() {
     assert!(wrong(raw("bayer", [2, 1], 6, &[0; 6]), mapping).contains("\"bayer\" cannot be read"));
     let log = Log::of_bytes(log_of(&[raw("bgr8", [2, 1], 8, &[1, 2, 3, 4, 5, 6, 0, 0])])).unwrap();
     let entries = entries(&log, &TopicMap::read(mapping.as_bytes()).unwrap());
-    let Content::Image(image) = &entries[0].content else { panic!() };
-    let pixels = image.pixels().unwrap();
+    let Content::Event(EventKind::Frame(frame)) = &entries[0].content else { panic!() };
+    let pixels = frame.image.as_ref().unwrap().pixels().unwrap();
     assert_eq!((pixels.dimensions(), &pixels.as_raw()[..]), ((2, 1), &[3, 2, 1, 6, 5, 4][..]));
 }

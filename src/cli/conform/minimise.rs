@@ -2,18 +2,20 @@
 
 use std::{f64::consts::PI, path::Path};
 
-use toposlam_model::{driving::odometry::Odometry, percept::Sighting};
+use toposlam_model::driving::odometry::Odometry;
 use toposlam_robot::{
     conform::{
-        Event, Events, Kind, Perceived, Seen, ShortenedRun, direction, shorten_frames, shorten_run,
+        CheckedEvent, CheckedKind, RunEvents, Seen, ShortenedRun, direction, shorten_frames,
+        shorten_run,
     },
     log::{
-        entries::UNTOLD,
+        arrival_message, door_message,
         messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
         recorder::ODOM,
         scene_message, standard,
         writer::{LogWriteError, LogWriter},
     },
+    record::Arrival,
 };
 
 use super::{ConformArguments, Failure, Judged};
@@ -21,7 +23,7 @@ use crate::cli::output;
 
 /// A shorter log.
 pub(super) struct Minimised {
-    pub(super) events: Events,
+    pub(super) events: RunEvents,
     /// The command that judges it, where it was written.
     pub(super) command: Option<String>,
 }
@@ -82,19 +84,19 @@ impl ConformArguments {
     }
 }
 
-/// Events as a log tells them: percepts, doors, and odometry where a door was not the one that was
+/// RunEvents as a log tells them: percepts, doors, and odometry where a door was not the one that was
 /// taken, or the entry not where the robot came from.
-fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
+fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
     let mut told = Told::default();
-    for Event { source, kind } in &events.events {
+    for CheckedEvent { source, kind } in &events.events {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
         match kind {
-            Kind::Perceived(perceived) => {
-                if let Some(way) = told.way(perceived) {
+            CheckedKind::Arrival { arrival, entry_off } => {
+                if let Some(way) = told.way(arrival, *entry_off) {
                     // By where the robot is and where it came from odometry tells the entry door.
                     for forward in [0.0, ON] {
                         let there =
@@ -105,18 +107,17 @@ fn write(events: &Events, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
                         }
                     }
                 }
-                log.write(Percept::TOPIC, time, &percept(stamp, perceived))?;
-                told = Told { perceived: Some(perceived.clone()), left: None };
+                log.write(Percept::TOPIC, time, &arrival_message(stamp, arrival))?;
+                told = Told { arrival: Some(*arrival), left: None };
             }
-            Kind::Left { door, number, off } => {
-                let r#move = number.unwrap_or(UNTOLD);
-                log.write(Door::TOPIC, time, &Door { stamp, r#move, door: door.0 })?;
-                let standing = told.perceived.as_ref();
-                let entered = standing.and_then(|p| Some((p.form?, p.entry?)));
+            CheckedKind::Door { door, number, off } => {
+                log.write(Door::TOPIC, time, &door_message(stamp, *number, *door))?;
+                let entered =
+                    told.arrival.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
                 let leads = entered.and_then(|(form, entry)| direction(form, entry, *door));
                 told.left = leads.zip(*off);
             }
-            Kind::Aside { .. } | Kind::TurnedBack | Kind::Undecided => {}
+            CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {}
         }
     }
     log.finish()
@@ -146,33 +147,17 @@ fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
 /// What was told of the last junction.
 #[derive(Default)]
 struct Told {
-    perceived: Option<Perceived>,
+    arrival: Option<Arrival>,
     /// The direction of the door that was taken, and by how much the robot drove aside of it.
     left: Option<(f64, f64)>,
 }
 
 impl Told {
-    /// In which direction the robot drove to where it perceives something; `None` where it does not
-    /// matter.
-    fn way(&self, now: &Perceived) -> Option<f64> {
+    /// The direction in which the robot drove to an arrival; `None` if it does not matter.
+    fn way(&self, now: &Arrival, entry_off: Option<f64>) -> Option<f64> {
         let by_door = self.left.map(|(leads, off)| leads + off);
-        let by_entry = now.entry.zip(now.entry_off).map(|(entry, off)| entry + off + PI);
+        let by_entry = now.entry.zip(entry_off).map(|(entry, off)| entry + off + PI);
         by_door.or(by_entry)
-    }
-}
-
-fn percept(stamp: Stamp, perceived: &Perceived) -> Percept {
-    let Perceived { percept, number, form, entry, .. } = perceived;
-    Percept {
-        stamp,
-        r#move: number.unwrap_or(UNTOLD),
-        degree: percept.degree,
-        marker: match percept.sighting {
-            Sighting::Pointing(door) => i32::try_from(door.0).unwrap_or(i32::MAX),
-            _ => -1,
-        },
-        form: form.map_or([false; 4], |form| form.0),
-        entry: entry.unwrap_or(f64::NAN),
     }
 }
 

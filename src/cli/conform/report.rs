@@ -15,9 +15,10 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        ConformVerdict, Divergence, DivergenceCause, Event, Evidence, Kind, Perceived, Quirks,
+        CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, Quirks,
     },
     evaluation::scene_class::FORMS,
+    record::{Arrival, RunEnding},
 };
 
 use super::{Judged, minimise::Minimised};
@@ -40,7 +41,7 @@ impl Judged {
         let picture = divergence.filter(|_| shown).and_then(|divergence| {
             let events = &self.judgement.events.events;
             let at = events.get(divergence.event).or(events.last())?;
-            self.opened.picture(at.source.message)
+            self.opened.picture(at.source.id)
         });
         let (shorter, command) = shorter.map_or((Vec::new(), None), |shorter| {
             let events = shorter.events.events.iter().map(|event| what(&event.kind));
@@ -68,13 +69,17 @@ impl Judged {
             remarks.push(format!("the log is {truncation}"));
         }
         let events = &self.judgement.events;
-        match (&events.head, &events.ending) {
-            (_, Some(ending)) if ending.ending != "mapped" => {
-                let cause = if ending.cause.is_empty() { "" } else { ": " };
-                remarks.push(format!("the run {}{cause}{}", ended(&ending.ending), ending.cause));
+        match events.end.as_ref().map(|end| &end.ending) {
+            Some(RunEnding::Mapped) => {}
+            Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
+            Some(RunEnding::GaveUp(cause)) => {
+                let colon = if cause.is_empty() { "" } else { ": " };
+                remarks.push(format!("the run was given up{colon}{cause}"));
             }
-            (Some(_), None) => remarks.push("the log does not tell how the run ended".to_owned()),
-            _ => {}
+            None if events.has_head => {
+                remarks.push("the log does not tell how the run ended".to_owned());
+            }
+            None => {}
         }
         if let Some(SmallestWorld::Unfinished { edges }) = self.judgement.smallest {
             remarks.push(format!(
@@ -134,21 +139,20 @@ impl Judged {
             _ => facts.push(("world", "not known".to_owned())),
         }
         if let Some(followed) = &judgement.followed {
-            let from = |event: usize| judgement.places.get(event).map_or(0, |place| place + 1);
             let choices = match followed.choosing {
                 Choosing::Default => "those of Algorithm 1, with the default choices".to_owned(),
-                Choosing::Other { from: event } if event >= judgement.places.len() => {
+                Choosing::Other { from: None } => {
                     "some that Algorithm 1 may take; by its default choices it would go on"
                         .to_owned()
                 }
-                Choosing::Other { from: event } => format!(
+                Choosing::Other { from: Some(event) } => format!(
                     "some that Algorithm 1 may take; not its default choices from event {} on",
-                    from(event)
+                    event + 1
                 ),
             };
             let doors = match &followed.reached {
                 Reached::Departure(departure) => {
-                    format!("{choices}; up to event {}", from(departure.event).saturating_sub(1))
+                    format!("{choices}; up to event {}", departure.event.id)
                 }
                 _ => choices,
             };
@@ -163,13 +167,13 @@ impl Judged {
         let judgement = &self.judgement;
         let begun = self.opened.log.start().unwrap_or(0);
         let mut before = String::new();
-        let line = |(number, event): (usize, &Event)| {
-            let in_trace = judgement.places.binary_search(&number).ok();
+        let line = |(number, event): (usize, &CheckedEvent)| {
+            let index = judgement.trace.index_of(number);
+            // After a door it is not known where the robot is until it arrives.
+            let in_trace = matches!(event.kind, CheckedKind::Arrival { .. }).then_some(index);
             let there = judgement.poses.as_ref().zip(self.known.as_ref()).zip(in_trace);
             let there = there.and_then(|((poses, known), event)| {
                 Some(match (poses.alone.get(event)?, poses.left.get(event)?) {
-                    // A door tells where the robot is to come.
-                    _ if event % 2 == 1 => return None,
                     (Some(state), _) => known.pose(state.pose),
                     (None, left) => format!("{left} poses fit"),
                 })
@@ -197,7 +201,7 @@ impl Judged {
         DivergenceReport {
             event: divergence.event + 1,
             time: time.saturating_sub(begun) as f64 / 1e9,
-            message: event.map(|event| (event.source.message, event.source.offset)),
+            message: event.map(|event| (event.source.id.0, event.source.offset)),
             culprit: divergence.culprit,
             cause: divergence.cause.name(),
             what: event.map_or("the end of the log".to_owned(), |event| what(&event.kind)),
@@ -276,15 +280,6 @@ impl Judged {
     }
 }
 
-/// How a run ended that did not map its world.
-fn ended(ending: &str) -> &str {
-    match ending {
-        "gave-up" => "was given up",
-        "stopped" => "was stopped",
-        other => other,
-    }
-}
-
 fn map_in_words(map: &PartialMap) -> String {
     let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
     let size = format!("{}, {}", vertices(map.vertex_count()), counted(known, "edge"));
@@ -296,19 +291,19 @@ fn map_in_words(map: &PartialMap) -> String {
 }
 
 /// An event in words.
-pub(super) fn what(kind: &Kind) -> String {
+pub(super) fn what(kind: &CheckedKind) -> String {
     match kind {
-        Kind::Perceived(Perceived { percept, form, .. }) => {
+        CheckedKind::Arrival { arrival: Arrival { percept, form, .. }, .. } => {
             let name = form.and_then(|form| FORMS.iter().find(|(known, _)| *known == form));
             let kind = name.map_or(String::new(), |(_, name)| format!(" ({name})"));
             format!("percept: {}{kind}", in_words(percept))
         }
-        Kind::Left { door, .. } => format!("door {}", door.0),
-        Kind::Aside { off } => {
+        CheckedKind::Door { door, .. } => format!("door {}", door.0),
+        CheckedKind::Aside { off } => {
             format!("drove off {:.0} degrees aside of every door", off.to_degrees())
         }
-        Kind::TurnedBack => "turned back".to_owned(),
-        Kind::Undecided => "a junction that was not made out".to_owned(),
+        CheckedKind::TurnedBack => "turned back".to_owned(),
+        CheckedKind::Undecided => "a junction that was not made out".to_owned(),
     }
 }
 
