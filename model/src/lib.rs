@@ -1,7 +1,7 @@
 //! The executable specification of deterministic topological SLAM, after Wang, Jenkin and Dymond,
 //! "Deterministic Topological Visual SLAM".
 //!
-//! From the ground up, each room importing only from those above it in this list:
+//! The modules, bottom up. Each imports only from those above it in this list:
 //!
 //! * [`embedded_graph`]: darts, `opposite`, `clockwise` (Section 2.1);
 //! * [`percept`]: degrees, doors, sightings, door sequences (Section 2.1);
@@ -9,13 +9,13 @@
 //! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
 //! * [`enumerate`]: every start and every world of a size, once;
-//! * [`world`]: the trait that is all that a robot can sense and do;
+//! * [`world`]: the trait with everything that a robot can sense and do;
 //! * [`format`](mod@format): world files, plantri's codes, DOT: bytes in, types out;
-//! * [`ambiguity`]: worlds that a marker cannot tell apart, with witnesses (Section 2.2);
-//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and what they stand on (Section 2.3);
-//! * [`driving`]: what sensing tells of a place (Sections 3 and 4);
-//! * [`check`]: an algorithm on every start, judged;
-//! * [`trace`]: recorded explorations, judged.
+//! * [`ambiguity`]: worlds that a marker does not distinguish, with witnesses (Section 2.2);
+//! * [`mapping`]: Algorithm 1, the movable marker algorithm, and their parts (Section 2.3);
+//! * [`driving`]: scenes, junction estimates and Algorithm 2 (Sections 3 and 4);
+//! * [`check`]: runs an algorithm, or any explorer, on every start, and judges the maps;
+//! * [`trace`]: checks recorded explorations.
 //!
 //! ```
 //! use toposlam_model::{

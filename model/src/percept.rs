@@ -45,7 +45,7 @@ pub enum Sighting {
     Nothing,
     /// The directional marker is here and points along this door.
     Pointing(Door),
-    /// So many undirected markers that look alike are here; at least one.
+    /// This number of undirected markers that look alike are here; at least one.
     Lying(u32),
     /// Of two markers that look different, the first is here.
     First,
@@ -78,7 +78,7 @@ impl fmt::Display for Sighting {
     }
 }
 
-/// What is sensed on arriving at a vertex, and nothing else.
+/// Everything that is sensed on arriving at a vertex.
 // paper: percept.degree, percept.featureless
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percept {
@@ -98,8 +98,8 @@ impl fmt::Display for Percept {
 }
 
 impl Percept {
-    /// The same vertex as perceived by a robot that has come in by the door `entry` instead. What
-    /// lies on the edge of another entry cannot be told, and is taken for nothing.
+    /// The percept of the same vertex for a robot that came in by the door `entry` instead. A mark on
+    /// that edge is not known, and left out.
     #[inline]
     #[must_use]
     pub fn seen_from(self, entry: Door) -> Self {
@@ -184,9 +184,9 @@ mod tests {
         }
     }
 
-    /// A mark on an edge is noticed by whoever has just come over it.
+    /// A mark on an edge is noticed by a robot that has just traversed it.
     #[test]
-    fn what_lies_on_the_edge_of_another_entry_is_taken_for_nothing() {
+    fn a_mark_on_the_edge_of_another_entry_is_left_out() {
         for sighting in [Sighting::Passed, Sighting::PassedAlong, Sighting::PassedAgainst] {
             let percept = Percept { degree: 3, sighting };
             assert_eq!(percept.seen_from(Door::BACK), percept);
@@ -196,10 +196,10 @@ mod tests {
     }
 
     #[test]
-    fn a_percept_is_told_in_words() {
-        let told = |degree, sighting| Percept { degree, sighting }.to_string();
-        assert_eq!(told(1, Sighting::Nothing), "1 door");
-        assert_eq!(told(3, Sighting::Pointing(Door(1))), "3 doors, marker along door 1");
+    fn a_percept_is_written_in_words() {
+        let text = |degree, sighting| Percept { degree, sighting }.to_string();
+        assert_eq!(text(1, Sighting::Nothing), "1 door");
+        assert_eq!(text(3, Sighting::Pointing(Door(1))), "3 doors, marker along door 1");
     }
 
     #[test]

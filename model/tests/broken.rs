@@ -170,7 +170,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
     let caught = FLAWS.map(smallest_failure);
     // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
     let bound = |darts: u32| {
-        format!("more than {darts} darts (edge ends) are known and there is no end in sight")
+        format!("more than {darts} darts (edge ends) are known, and the map is not complete")
     };
     let new = |degree: u32| u32::MAX - degree;
     let expected = [

@@ -108,7 +108,7 @@ impl Broken {
             return validate_back_link(edge, vertex, search, world, observer);
         }
         search.pick_up(world, observer)?;
-        if let Some(only) = search.raise_back_links(vertex) {
+        if let Some(only) = search.list_back_links(vertex) {
             return Ok(only);
         }
         if !matches!(self.0, Flaw::FirstDartIsIt) {
@@ -201,7 +201,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
         words
     };
     let endless = |darts: u32| {
-        format!("more than {darts} darts (edge ends) are known and there is no end in sight")
+        format!("more than {darts} darts (edge ends) are known, and the map is not complete")
     };
     let nothing_here = "there is no marker here that could be picked up";
     let expected = [

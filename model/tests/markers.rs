@@ -160,7 +160,7 @@ fn a_name_that_no_marker_has_is_refused_with_those_that_there_are() {
     }
     assert_eq!(
         named("chalk").unwrap_err().to_string(),
-        "`chalk` is no marker; there are none, undirected, directional, undirected-edge, \
+        "`chalk` is not a marker; the markers are none, undirected, directional, undirected-edge, \
          directed-edge, two-identical, two-distinct, movable"
     );
 }

@@ -45,7 +45,7 @@ fn a_file_that_is_not_a_world_is_an_error_with_its_place() {
         (
             "three.toml",
             b"[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]\n",
-            ": line 1, column 2: doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+            ": line 1, column 2: doors: edge `e` occurs 3 times (a, a, b); an edge has two ends",
         ),
         (
             "pieces.toml",
@@ -173,7 +173,7 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
             &["compare", WORLD, WORLD, "--start", "sw:se", "--start", "sw:se", "--start", "sw:se"],
             "--start: there are two worlds; give it at most twice",
         ),
-        (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is nothing that a robot can do"),
+        (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is not an action"),
         (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
         (&["compare", WORLD, WORLD, "--walk", "pick-up"], "action 1: there is no marker here that"),
         (&["counterexample", "--edges", "0"], "--edges: a world has at least one edge"),

@@ -1,4 +1,4 @@
-//! The ways to make an embedded graph, each of which validates. Section 2.1.
+//! The constructors of embedded graphs. Each validates its input. Section 2.1.
 
 use std::collections::HashMap;
 
@@ -6,10 +6,10 @@ use super::{
     Dart, EmbeddedGraph, GraphError, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
 };
 
-/// A dart that has not yet met its opposite.
+/// The opposite of a dart that is not known yet.
 const UNPAIRED: Dart = Dart(u32::MAX);
 
-/// How many vertices an error lists.
+/// The most vertices that an error lists.
 const SHOWN: usize = 8;
 
 impl EmbeddedGraph {
@@ -18,8 +18,8 @@ impl EmbeddedGraph {
     /// from it.
     ///
     /// # Errors
-    /// The [`GraphError`] that tells why they are not `opposite` and `clockwise` of a connected graph
-    /// with at least one edge.
+    /// Returns an error if they are not `opposite` and `clockwise` of a connected graph with at least
+    /// one edge.
     pub fn from_permutations(
         opposite: &[u32],
         clockwise: &[u32],
@@ -66,7 +66,7 @@ impl EmbeddedGraph {
     /// in the order of the lists, darts in the order in which the lists name their far ends.
     ///
     /// # Errors
-    /// The [`ListError`] that names the first offending vertex and neighbour.
+    /// Returns an error that names the first invalid vertex and neighbour.
     pub fn from_neighbour_lists<N: AsRef<str>>(lists: &[(N, Vec<N>)]) -> Result<Self, ListError> {
         let number = number_vertices(lists)?;
         let mut end_at: HashMap<(usize, usize), Dart> = HashMap::new();
@@ -110,7 +110,7 @@ impl EmbeddedGraph {
     /// lists name their edges.
     ///
     /// # Errors
-    /// The [`ListError`] that names the first offending vertex or edge.
+    /// Returns an error that names the first invalid vertex or edge.
     pub fn from_edge_lists<N: AsRef<str>>(lists: &[(N, Vec<N>)]) -> Result<Self, ListError> {
         number_vertices(lists)?;
         let mut ends: HashMap<&str, Vec<(usize, Dart)>> = HashMap::new();
@@ -142,8 +142,7 @@ impl EmbeddedGraph {
         Self::from_lists(lists, opposite)
     }
 
-    /// The graph whose vertices have the lists' lengths as degrees, checked for size and
-    /// connection.
+    /// The graph with the lists' lengths as degrees. Its size and connection are checked.
     fn from_lists<N: AsRef<str>>(
         lists: &[(N, Vec<N>)],
         opposite: Vec<Dart>,

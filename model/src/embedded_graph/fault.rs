@@ -1,7 +1,6 @@
-//! What can be wrong with two arrays that claim to be an embedded graph. Section 2.1.
+//! The errors of two arrays that are not an embedded graph. Section 2.1.
 //!
-//! The checks work on plain slices and answer with a small copyable value; the wording is in
-//! [`Display`](std::fmt::Display), out of the way.
+//! The checks work on plain slices and return a small copyable value.
 
 use thiserror::Error;
 
@@ -17,7 +16,7 @@ pub enum GraphError {
     #[error("there are more edges than can be numbered")]
     TooManyEdges,
     /// The two arrays have different lengths.
-    #[error("`opposite` speaks of {opposite} darts and `clockwise` of {clockwise}")]
+    #[error("`opposite` has {opposite} darts and `clockwise` has {clockwise}")]
     LengthsDiffer {
         /// The length of `opposite`.
         opposite: usize,
@@ -25,7 +24,7 @@ pub enum GraphError {
         clockwise: usize,
     },
     /// `opposite` names a dart that does not exist.
-    #[error("the opposite of dart {dart} is {opposite}, which is no dart")]
+    #[error("the opposite of dart {dart} is {opposite}, which is not a dart")]
     OppositeOutOfRange {
         /// The dart.
         dart: u32,
@@ -47,7 +46,7 @@ pub enum GraphError {
         opposite: u32,
     },
     /// `clockwise` names a dart that does not exist.
-    #[error("clockwise from dart {dart} stands {clockwise}, which is no dart")]
+    #[error("clockwise from dart {dart} is {clockwise}, which is not a dart")]
     ClockwiseOutOfRange {
         /// The dart.
         dart: u32,
@@ -55,22 +54,22 @@ pub enum GraphError {
         clockwise: u32,
     },
     /// Two darts have the same successor around their vertex.
-    #[error("clockwise from dart {dart} stands {clockwise}, as from an earlier dart")]
+    #[error("clockwise from dart {dart} is {clockwise}, as from an earlier dart")]
     ClockwiseRepeated {
         /// The second of the two darts.
         dart: u32,
         /// The successor that both claim.
         clockwise: u32,
     },
-    /// The graph falls into pieces.
+    /// The graph is not connected.
     #[error("dart {dart} cannot be reached from dart 0: the world is not connected")]
     NotConnected {
-        /// The least dart out of reach.
+        /// The least dart that cannot be reached.
         dart: u32,
     },
 }
 
-/// Why a graph cannot have so many darts; `None` if it can.
+/// The error if a graph cannot have this number of darts.
 #[must_use]
 pub fn size_fault(darts: usize) -> Option<GraphError> {
     match darts / 2 {
@@ -80,7 +79,7 @@ pub fn size_fault(darts: usize) -> Option<GraphError> {
     }
 }
 
-/// Why `opposite` is not an involution without fixed points on its own indices; `None` if it is.
+/// The error if `opposite` is not an involution without fixed points on its own indices.
 #[must_use]
 pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
     let mut dart = 0;
@@ -101,8 +100,8 @@ pub fn opposite_fault(opposite: &[u32]) -> Option<GraphError> {
     None
 }
 
-/// Why `clockwise` is not a permutation of its own indices; `None` if it is. `taken` is scratch
-/// space, all `false`, at least as long as `clockwise`.
+/// The error if `clockwise` is not a permutation of its own indices. `taken` is scratch space, all
+/// `false`, at least as long as `clockwise`.
 #[must_use]
 pub fn clockwise_fault(clockwise: &[u32], taken: &mut [bool]) -> Option<GraphError> {
     let mut dart = 0;

@@ -1,19 +1,19 @@
 //! An embedded graph in the making: vertices with free darts, joined one edge at a time.
 //!
-//! For the rooms that build graphs step by step and take care that nobody sees an unfinished one.
+//! For the modules of this crate that build graphs step by step. They never expose an unfinished one.
 
 use super::{Dart, Darts, EmbeddedGraph, Vertex};
 
-/// Stands as the opposite of a free dart.
+/// The opposite of a free dart.
 const FREE: Dart = Dart(u32::MAX);
 
 impl EmbeddedGraph {
-    /// No vertex at all, yet.
+    /// A graph without vertices, to be built.
     pub(crate) fn unfinished() -> Self {
         Self { darts_of: Vec::new(), vertex: Vec::new(), opposite: Vec::new(), around: Vec::new() }
     }
 
-    /// Back to no vertex at all; keeps the memory.
+    /// Removes all vertices and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.darts_of.clear();
         self.vertex.clear();
@@ -21,7 +21,7 @@ impl EmbeddedGraph {
         self.around.clear();
     }
 
-    /// Makes room for so many vertices and darts.
+    /// Reserves memory for this number of vertices and darts.
     pub(crate) fn reserve(&mut self, vertices: usize, darts: usize) {
         self.darts_of.reserve_exact(vertices);
         self.vertex.reserve_exact(darts);

@@ -1,4 +1,4 @@
-//! What can be wrong with lists of names that claim to be an embedded graph.
+//! The errors of lists of names that are not an embedded graph.
 
 use thiserror::Error;
 
@@ -14,11 +14,11 @@ pub enum ListError {
         vertex: String,
     },
     /// A neighbour list names something that has no list.
-    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is no vertex")]
+    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex")]
     UnknownNeighbour {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: String,
-        /// The name that is no vertex.
+        /// The name that is not a vertex.
         neighbour: String,
     },
     /// A vertex lists a neighbour that does not list it back.
@@ -26,7 +26,7 @@ pub enum ListError {
         "vertex `{vertex}` lists the neighbour `{neighbour}`, which does not list `{vertex}` back"
     )]
     OneSided {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: String,
         /// The neighbour.
         neighbour: String,
@@ -37,7 +37,7 @@ pub enum ListError {
          parallel edges need edge names, in [doors]"
     )]
     RepeatedNeighbour {
-        /// Whose list it is.
+        /// The vertex with the list.
         vertex: String,
         /// The neighbour.
         neighbour: String,
@@ -48,20 +48,20 @@ pub enum ListError {
         /// The vertex.
         vertex: String,
     },
-    /// An edge name does not stand exactly twice.
-    #[error("edge `{edge}` stands {times} times ({places}); an edge has two ends")]
+    /// An edge name does not occur exactly twice.
+    #[error("edge `{edge}` occurs {times} times ({places}); an edge has two ends")]
     NotTwoEnds {
         /// The edge.
         edge: String,
-        /// How often it stands.
+        /// The number of times that it occurs.
         times: usize,
-        /// The vertices in whose lists it stands, the first few.
+        /// The first few vertices with lists that contain it.
         places: String,
     },
-    /// The graph falls into pieces.
+    /// The graph is not connected.
     #[error("the world is not connected: vertex `{vertex}` cannot be reached from `{from}`")]
     NotConnected {
-        /// The first vertex out of reach.
+        /// The first vertex that cannot be reached.
         vertex: String,
         /// The first vertex of all.
         from: String,

@@ -138,7 +138,7 @@ impl EmbeddedGraph {
     }
 
     /// The dart that stands `index` places clockwise from the vertex's first; the inverse of
-    /// [`index`](Self::index). `None` where the vertex has no so many darts.
+    /// [`index`](Self::index). `None` if the vertex has fewer darts.
     #[must_use]
     pub fn dart(&self, vertex: Vertex, index: u32) -> Option<Dart> {
         let darts = self.darts_of[vertex.at()];

@@ -17,9 +17,9 @@ pub enum Class {
     Planar,
 }
 
-/// A name that no class has.
+/// The error for a name that no class has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is no class of worlds; there are multigraph, simple, corridor and planar")]
+#[error("`{0}` is not a class of worlds; the classes are multigraph, simple, corridor and planar")]
 pub struct UnknownClass(String);
 
 impl Class {
@@ -76,7 +76,7 @@ mod tests {
         assert_eq!(names.map(str::parse), Class::ALL.map(Ok));
         assert_eq!(
             "tree".parse::<Class>().unwrap_err().to_string(),
-            "`tree` is no class of worlds; there are multigraph, simple, corridor and planar"
+            "`tree` is not a class of worlds; the classes are multigraph, simple, corridor and planar"
         );
     }
 }

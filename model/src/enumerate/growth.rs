@@ -11,10 +11,10 @@ pub(super) const MAX_EDGES: usize = 32;
 /// The most darts.
 pub(super) const DARTS: usize = 2 * MAX_EDGES;
 
-/// Stands as the opposite of a free dart.
+/// The opposite of a free dart.
 pub(super) const FREE: u8 = u8::MAX;
 
-/// How many edges the beginnings have by which an enumeration is parted.
+/// The number of edges in the beginnings that divide an enumeration into parts.
 pub(super) const BEGINNING: usize = 4;
 
 /// The first steps of a history of growth.
@@ -46,11 +46,11 @@ pub(super) struct Growth {
     darts: usize,
     /// The free darts, as bits.
     free: u64,
-    /// The code so far: a word an edge, as in `isomorphism::Code`, but in a byte.
+    /// The code so far: a word an edge, as in `isomorphism::StartCode`, but in a byte.
     pub(super) words: [u8; MAX_EDGES],
     pub(super) edges: usize,
-    /// The darts, as bits, whose code so far is not yet greater than that of dart 0, but could
-    /// still become less. Dart 0 is not among them.
+    /// The darts, as bits, with a code so far that could still become less than that of dart 0. Dart 0
+    /// is not among them.
     pub(super) rivals: u64,
 }
 
@@ -94,14 +94,14 @@ impl Growth {
         }
     }
 
-    /// The first steps of the history, of which there have been no more than [`BEGINNING`].
+    /// The first steps of the history, at most [`BEGINNING`].
     pub(super) fn beginning(&self) -> Beginning {
         let mut words = [0; BEGINNING];
         words[..self.edges].copy_from_slice(&self.words[..self.edges]);
         Beginning { degree: self.degree[0], words, edges: self.edges as u8 }
     }
 
-    /// Takes the first steps of a history again.
+    /// Repeats the first steps of a history.
     pub(super) fn resume(&mut self, beginning: Beginning) {
         self.add_vertex(beginning.degree as usize);
         for &word in &beginning.words[..beginning.edges as usize] {
@@ -117,7 +117,7 @@ impl Growth {
         }
     }
 
-    /// Grows on in every way until there are `edges` edges, and shows each result.
+    /// Grows in every way until there are `edges` edges, and visits each result.
     pub(super) fn grow_to(
         &mut self,
         edges: usize,
@@ -298,7 +298,7 @@ impl Growth {
         self.edges -= 1;
     }
 
-    /// Shows a finished growth as an embedded graph, made in the memory of the one before.
+    /// Visits a finished growth as an embedded graph, in the memory of the one before.
     pub(super) fn show(
         &self,
         graph: &mut EmbeddedGraph,

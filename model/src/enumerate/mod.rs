@@ -2,9 +2,8 @@
 //!
 //! Darts are numbered in the order in which a robot meets them (see [`code`](crate::isomorphism)):
 //! the lowest dart with a free end is joined to a later free dart, or to the first dart of a new
-//! vertex. Each start has exactly one such history, so nothing is made twice and nothing is thrown
-//! away. An embedded graph is taken at its least start; a history that cannot become least is given
-//! up as soon as that shows.
+//! vertex. Each start has exactly one such history, so nothing is made twice or discarded. An embedded
+//! graph is enumerated at its least start; a history that cannot become least is abandoned early.
 
 mod class;
 mod growth;
@@ -22,7 +21,7 @@ pub(crate) use watch::in_parts;
 use crate::embedded_graph::EmbeddedGraph;
 use growth::{BEGINNING, Beginning, Growth, MAX_EDGES};
 
-/// What is enumerated.
+/// The objects that are enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Each {
     /// Every start, once; its facing dart is dart 0.
@@ -39,18 +38,18 @@ pub struct Enumeration {
     each: Each,
 }
 
-/// A number of edges for which there is nothing to enumerate, or too much.
+/// The error for a number of edges that cannot be enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SizeError {
     /// No edges.
     #[error("a world has at least one edge")]
     NoEdge,
-    /// More than the enumeration can hold, and than anyone could wait for.
+    /// More than the enumeration can represent.
     #[error("worlds with {0} edges are too many to enumerate; the limit is {MAX_EDGES}")]
     TooManyEdges(usize),
 }
 
-/// What the enumeration shows at each step.
+/// An enumerated graph.
 #[derive(Clone, Copy, Debug)]
 pub struct EnumeratedGraph<'g> {
     /// The embedded graph; darts are numbered as met from the start, which faces dart 0.
@@ -59,8 +58,8 @@ pub struct EnumeratedGraph<'g> {
     pub automorphisms: u32,
 }
 
-/// A part of an enumeration: all histories that begin alike. The parts are disjoint, and together
-/// they are the whole.
+/// A part of an enumeration: all histories with the same first steps. The parts are disjoint, and
+/// together they are complete.
 #[derive(Clone, Copy, Debug)]
 pub struct EnumerationPart {
     whole: Enumeration,
@@ -71,7 +70,7 @@ impl Enumeration {
     /// An enumeration of a class.
     ///
     /// # Errors
-    /// Where the number of edges is 0 or more than 32.
+    /// Returns an error if the number of edges is 0 or more than 32.
     pub fn new(each: Each, class: Class, edges: usize) -> Result<Self, SizeError> {
         match edges {
             0 => Err(SizeError::NoEdge),
@@ -86,7 +85,7 @@ impl Enumeration {
         self.class
     }
 
-    /// The parts of the enumeration, in its order; they do not depend on who works on them.
+    /// The parts of the enumeration, in its order. They do not depend on the number of threads.
     #[must_use]
     pub fn parts(&self) -> Vec<EnumerationPart> {
         let mut parts = Vec::new();
@@ -98,7 +97,7 @@ impl Enumeration {
         parts
     }
 
-    /// Shows everything, in order, until `visit` breaks off.
+    /// Visits everything, in order, until `visit` breaks.
     pub fn for_each(
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,
@@ -110,7 +109,7 @@ impl Enumeration {
 }
 
 impl EnumerationPart {
-    /// Shows all that belongs to the part, in order, until `visit` breaks off.
+    /// Visits everything in the part, in order, until `visit` breaks.
     pub fn for_each(
         &self,
         visit: &mut impl FnMut(EnumeratedGraph) -> ControlFlow<()>,

@@ -4,13 +4,13 @@ use std::cmp::Ordering;
 
 use super::growth::{DARTS, FREE, Growth, new_vertex};
 
-/// Stands as the number of a dart not met yet.
+/// The number of a dart that was not met yet.
 const UNMET: u8 = u8::MAX;
 
 impl Growth {
     /// Whether no other dart has a lesser code than dart 0, as far as the codes are decided.
-    /// Strikes out the rivals whose code is greater. When the growth is finished, those that are
-    /// left have the same code.
+    /// Removes the rivals with a greater code. When the growth is finished, the rivals that are left
+    /// have the same code.
     pub(super) fn may_be_least(&mut self) -> bool {
         let mut open = self.rivals;
         while open != 0 {

@@ -1,24 +1,23 @@
-//! Long work on many worlds: done in parts, at once where there are threads for it, and watched.
+//! Long work on many worlds: done in parts, in parallel if there are threads, with progress.
 
-/// Watches long work, from several threads at once, and may break it off.
+/// Watches long work, from several threads at once, and may stop it.
 pub trait Watch: Sync {
     /// The number of parts of the work.
     fn parts(&self, _count: usize) {}
 
-    /// One of them is done, and with it so many cases.
+    /// One part is done, with this number of cases.
     fn part_done(&self, _cases: u64) {}
 
-    /// Whether to break off.
+    /// Whether to stop.
     fn stop(&self) -> bool {
         false
     }
 }
 
-/// Nobody watches.
+/// Watches nothing.
 impl Watch for () {}
 
-/// Works on the parts of a whole and merges the results in the order of the parts, whoever worked on
-/// them. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.
+/// Works on the parts and merges the results in the order of the parts. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.
 pub(crate) fn in_parts<P: Sync, R: Send>(
     parts: &[P],
     watch: &impl Watch,

@@ -1,4 +1,4 @@
-//! The floor of a plan: the rectangles of its hallways, and what of them may meet. Section 2.4.
+//! The floor of a plan: the rectangles of its hallways, and where they may meet. Section 2.4.
 
 use super::{FloorPlan, FloorPlanError, Hallway, TOLERANCE};
 use crate::embedded_graph::Vertex;
@@ -13,7 +13,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// The smallest rectangle that holds both positions.
+    /// The smallest rectangle that contains both positions.
     fn around(one: [f64; 2], other: [f64; 2]) -> Self {
         Self {
             least: [one[0].min(other[0]), one[1].min(other[1])],
@@ -68,7 +68,7 @@ impl FloorPlan {
     }
 }
 
-/// Refuses junctions that are too close, and floors that meet other than at a shared junction.
+/// Rejects junctions that are too close, and floors that meet outside a shared junction.
 pub(super) fn check(plan: &FloorPlan) -> Result<(), FloorPlanError> {
     junctions_off_foreign_hallways(plan)?;
     floors_apart(plan)?;
@@ -95,7 +95,7 @@ fn junctions_off_foreign_hallways(plan: &FloorPlan) -> Result<(), FloorPlanError
 fn floors_apart(plan: &FloorPlan) -> Result<(), FloorPlanError> {
     let floors: Vec<_> = plan.hallways.iter().copied().zip(plan.floor()).collect();
     for (number, &(hallway, floor)) in floors.iter().enumerate() {
-        // A gap that rounding has made is none.
+        // A gap caused by rounding does not count.
         let floor = floor.widened(TOLERANCE);
         for &(earlier, earlier_floor) in &floors[..number] {
             // Hallways that share a junction leave it in different directions, so that their

@@ -1,4 +1,4 @@
-//! Floor plans: hallways with geometry, and the embedded graph that they are. Section 2.4.
+//! Floor plans: hallways with geometry, and their embedded graph. Section 2.4.
 //!
 //! Hallways run along the axes, x to the east and y to the north, and meet at junctions that are
 //! dead ends, Ls or Ts. Clockwise is clockwise seen from above.
@@ -13,7 +13,7 @@ pub use floor::Rectangle;
 
 use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 
-/// Lengths that differ by no more are the same, in metres.
+/// The largest difference between equal lengths, in metres.
 const TOLERANCE: f64 = 1e-6;
 
 /// Where a door of a junction leads, in clockwise order from north.
@@ -56,8 +56,7 @@ impl Direction {
         }
     }
 
-    /// Along which axis, and whither, one gets from one position to another; `None` where there is
-    /// no such axis.
+    /// The direction from one position to another; `None` if it is not along an axis.
     fn between(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
         let [x, y] = [to[0] - from[0], to[1] - from[1]];
         match (x.abs() <= TOLERANCE, y.abs() <= TOLERANCE) {
@@ -70,7 +69,7 @@ impl Direction {
     }
 }
 
-/// The three kinds of junction that a robot can tell apart.
+/// The three kinds of junctions.
 // paper: env.junction-types
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JunctionKind {
@@ -89,7 +88,7 @@ pub struct Junction {
     pub name: String,
     /// Where its turning point is, in metres, x to the east and y to the north.
     pub position: [f64; 2],
-    /// How many doors it has, and how they stand.
+    /// The number and arrangement of its doors.
     pub kind: JunctionKind,
 }
 
@@ -121,7 +120,7 @@ impl FloorPlan {
     /// stand clockwise from north. Checking the floors is quadratic in the size of the plan.
     ///
     /// # Errors
-    /// The first thing that does not fit, with the junctions and hallways that are at fault.
+    /// Returns the first error, with the names of its junctions and hallways.
     pub fn new(
         hallway_width: f64,
         junctions: &[(String, [f64; 2])],
@@ -183,7 +182,7 @@ impl FloorPlan {
         &self.hallways
     }
 
-    /// The embedded graph that the plan is; it lies in the plane.
+    /// The embedded graph of the plan. It is planar.
     // paper: env.hallways
     #[must_use]
     pub fn graph(&self) -> &EmbeddedGraph {
@@ -197,7 +196,7 @@ impl FloorPlan {
     }
 }
 
-/// The hallways as vertices; refuses junctions and hallways that are ill-formed by themselves.
+/// The hallways as pairs of vertices. Rejects junctions and hallways that are invalid by themselves.
 fn between_known_junctions(
     junctions: &[(String, [f64; 2])],
     hallways: &[(String, String)],
@@ -263,7 +262,7 @@ fn doors(
     Ok(doors)
 }
 
-/// What kind of junction has these doors.
+/// The kind of junction with these doors.
 fn kind(name: &str, doors: &[Option<Vertex>; 4]) -> Result<JunctionKind, FloorPlanError> {
     let junction = || name.to_owned();
     match doors.iter().flatten().count() {

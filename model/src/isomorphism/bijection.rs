@@ -2,24 +2,23 @@
 
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
-/// Where each dart of one embedded graph goes in another.
+/// The image of each dart of one embedded graph in another.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bijection(Vec<Dart>);
 
-/// Stands as the image of a dart that has none yet.
+/// The image of a dart that has none yet.
 const NONE: Dart = Dart(u32::MAX);
 
 impl Bijection {
-    /// The given images, in the order of the darts' numbers; [`verify`](Self::verify) tells whether
-    /// they are an isomorphism.
+    /// The given images, in the order of the darts' numbers. Whether they are an isomorphism is for
+    /// [`verify`](Self::verify) to check.
     #[must_use]
     pub fn claimed(images: Vec<Dart>) -> Self {
         Self(images)
     }
 
-    /// The only candidate for an isomorphism of two starts: facing goes to facing, and whatever
-    /// stands clockwise from a dart, or opposite to it, goes to what stands so from its image.
-    /// [`verify`](Self::verify) tells whether it is one. Linear time.
+    /// The only candidate for an isomorphism of two starts: it maps facing to facing and keeps
+    /// `clockwise` and `opposite`. [`verify`](Self::verify) checks whether it is one. Linear time.
     #[must_use]
     pub fn of_starts(from: (&EmbeddedGraph, Dart), to: (&EmbeddedGraph, Dart)) -> Self {
         let mut candidate = Candidate::default();
@@ -27,24 +26,24 @@ impl Bijection {
         candidate.bijection
     }
 
-    /// Where the dart goes; `None` for a dart beyond those that the bijection speaks of.
+    /// The image of a dart; `None` if the dart does not exist.
     #[must_use]
     pub fn image(&self, dart: Dart) -> Option<Dart> {
         self.0.get(dart.at()).copied()
     }
 
-    /// Where each dart goes, in the order of their numbers.
+    /// The image of each dart, in the order of their numbers.
     #[must_use]
     pub fn images(&self) -> &[Dart] {
         &self.0
     }
 
-    /// Whether this is an isomorphism from one embedded graph to the other. Knows nothing of how it
-    /// was found.
+    /// Whether this is an isomorphism from one embedded graph to the other. The check is independent
+    /// of how the bijection was found.
     ///
-    /// It looks at every dart: that its image exists, and that `opposite` and `clockwise` are kept.
+    /// It checks for every dart that its image exists, and that `opposite` and `clockwise` are kept.
     /// This makes it a bijection too: the images are closed under both, so in a connected graph they
-    /// are all of its darts, and there are as many of the one as of the other.
+    /// are all of its darts, and both graphs have the same number of darts.
     // paper: world.isomorphic
     #[must_use]
     pub fn verify(&self, from: &EmbeddedGraph, to: &EmbeddedGraph) -> bool {
@@ -80,7 +79,7 @@ impl Candidate {
         image.resize(from.dart_count(), NONE);
         self.reached.clear();
         self.reached.push((facing, facing_image));
-        // Vertex by vertex: all darts around it, and then what is opposite to each.
+        // Vertex by vertex: all darts around it, and then the opposite of each.
         let mut next = 0;
         while let Some(&(entry, entry_image)) = self.reached.get(next) {
             next += 1;

@@ -9,7 +9,7 @@ use crate::{
     union_find::UnionFind,
 };
 
-/// What is the same for all isomorphic embedded graphs, and where it is found in this one.
+/// The canonical form of an embedded graph: equal for isomorphic graphs, with its place in this one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Canonical {
     /// The least of the codes of the graph's starts: equal for two embedded graphs exactly when
@@ -19,7 +19,7 @@ pub struct Canonical {
     pub order: Vec<Dart>,
     /// The number of automorphisms. The graph has `2m / automorphisms` starts.
     pub automorphisms: usize,
-    /// For each dart the least dart that an automorphism takes it to; one dart an orbit is its own.
+    /// For each dart, the least dart of its orbit under automorphisms.
     pub orbit: Vec<Dart>,
 }
 
@@ -27,7 +27,7 @@ pub struct Canonical {
 ///
 /// All starts compete, word by word, and drop out at the first greater word. Two starts with the
 /// same code are an automorphism, which then spares the rest of its orbits; so a graph with many
-/// automorphisms is no slower. Close to linear time but for graphs that are almost symmetric.
+/// automorphisms is no slower. Close to linear time, except for graphs that are almost symmetric.
 #[must_use]
 pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut best = Numbering::new(graph);
@@ -38,7 +38,7 @@ pub fn canonical(graph: &EmbeddedGraph) -> Canonical {
     let mut tried = vec![false; graph.dart_count()];
     tried[0] = true;
     for dart in graph.darts().skip(1) {
-        // An automorphism takes it to a dart that has competed already.
+        // An automorphism maps it to a dart that has competed already.
         if std::mem::replace(&mut tried[orbits.find(dart.0) as usize], true) {
             continue;
         }

@@ -2,7 +2,7 @@
 //!
 //! The darts are numbered as a robot meets them: those of the start vertex clockwise from the
 //! facing dart; then, dart by dart, the other end of its edge, and if that is at a vertex not met
-//! before, the darts there, clockwise from it. The code is what is found at each dart in turn.
+//! before, the darts there, clockwise from it. The code has a word for each edge in that order.
 
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
@@ -58,7 +58,7 @@ pub(super) struct Numbering {
     number: Vec<u32>,
     stamp: Vec<u32>,
     current: u32,
-    /// How many darts of `order` have been looked behind.
+    /// The number of darts of `order` with a known other end.
     done: usize,
 }
 
@@ -73,7 +73,7 @@ impl Numbering {
         }
     }
 
-    /// Starts anew, and answers the first word.
+    /// Starts again, and returns the first word.
     pub(super) fn begin(&mut self, graph: &EmbeddedGraph, facing: Dart) -> u32 {
         // One numbering is begun at most once for each of fewer than 2^32 darts.
         self.current += 1;

@@ -1,4 +1,4 @@
-//! Are two embedded graphs isomorphic, mirror images, or what is the first difference?
+//! Compares two embedded graphs: they are isomorphic, mirror images, or there is a first difference.
 
 use std::fmt;
 
@@ -71,7 +71,7 @@ impl fmt::Display for Difference {
 /// The isomorphism of one embedded graph onto another, or the first difference.
 ///
 /// # Errors
-/// The [`Difference`], where they are not isomorphic.
+/// Returns the first [`Difference`] if they are not isomorphic.
 // paper: fig1.different
 pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijection, Difference> {
     let different = || Difference::between(one, other);
@@ -84,14 +84,14 @@ pub fn isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Result<Bijecti
     }
 }
 
-/// What a comparison by rare darts can say.
+/// The result of a comparison by rare darts.
 enum Verdict {
     Same(Bijection),
     Different,
     TooManyCandidates,
 }
 
-/// How many candidates are tried one by one, each in linear time.
+/// The most candidates that are tried one by one, each in linear time.
 const CANDIDATES: usize = 16;
 
 /// Darts whose surroundings look alike have the same colour; an isomorphism keeps colours, so a dart
@@ -139,13 +139,13 @@ fn colours(graph: &EmbeddedGraph) -> Vec<u64> {
 }
 
 /// The isomorphism of one embedded graph onto the [mirror image](EmbeddedGraph::mirror_image) of
-/// the other; `None` where they are not mirror images.
+/// the other; `None` if they are not mirror images.
 #[must_use]
 pub fn mirror_isomorphism(one: &EmbeddedGraph, other: &EmbeddedGraph) -> Option<Bijection> {
     isomorphism(one, &other.mirror_image()).ok()
 }
 
-/// Dart by dart along the least starts, where these have the same code.
+/// Dart by dart along the least starts, if these have the same code.
 fn bijection(one: &Canonical, other: &Canonical) -> Option<Bijection> {
     (one.code == other.code).then(|| {
         let mut image = vec![Dart(0); one.order.len()];

@@ -1,12 +1,12 @@
 //! Algorithm 1: mapping with a single directional immovable marker. Section 2.3.
 //!
-//! The numbers are those of the printed lines. The state, and the small steps that are taken here,
-//! are [`Exploration`]'s.
+//! The numbers are those of the printed lines. The state and the small steps are those of
+//! [`Exploration`].
 
 use super::{Choices, Exploration, MappingChoice, MappingError, MappingEvent, Observer};
 use crate::{embedded_graph::Dart, world::World};
 
-/// How the trial of a hypothesis ended.
+/// The result of the validation of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValidationResult {
     /// The percepts did not match; the robot is back where it was.
@@ -53,7 +53,7 @@ pub fn step<W: World>(
     step_with(exploration, choice, world, observer, try_path)
 }
 
-/// [`step`], with another way to try a hypothesis: so the tests break it.
+/// [`step`], with another function for lines 10 to 17. Tests break the algorithm with it.
 ///
 /// # Errors
 /// See [`map_world`].
@@ -94,11 +94,11 @@ pub fn step_with<W: World, O: Observer<W>>(
     Ok(())
 }
 
-/// Lines 10 to 17: follows the path that leads to the marker if the hypothesis is true, for as long
-/// as the robot perceives along it what it should.
+/// Lines 10 to 17: follows the path that leads to the marker if the hypothesis is true, as long as
+/// the percepts along it are as expected.
 ///
 /// # Errors
-/// The world's own, or a contradiction on the way back.
+/// Returns an error if the world does, or if it contradicts itself on the way back.
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17, alg1.validation
 pub fn try_path<W: World>(
     exploration: &mut Exploration,

@@ -1,4 +1,5 @@
-//! How a world can fail an algorithm: it breaks, it contradicts itself, or it has no end.
+//! The errors of a run: the world fails, it contradicts itself, a step is invalid, or the bound is
+//! reached.
 
 use std::fmt;
 
@@ -15,14 +16,14 @@ pub enum MappingError<E> {
     /// Sensing or moving failed.
     #[error(transparent)]
     World(E),
-    /// What was perceived cannot be so in any world.
+    /// No world has these percepts.
     #[error("the world contradicts itself: {0}")]
     Contradiction(Contradiction),
     /// A step was not valid in the state of the run, or a choice was not open.
     #[error("invalid step: {0}")]
     InvalidStep(InvalidStep),
     /// More darts are known than the bound allows.
-    #[error("more than {bound} darts (edge ends) are known and there is no end in sight")]
+    #[error("more than {bound} darts (edge ends) are known, and the map is not complete")]
     Bound {
         /// The bound.
         bound: usize,
@@ -70,26 +71,25 @@ pub enum InvalidStep {
     UnknownVertex(Vertex),
 }
 
-/// A percept that cannot be, after all that was perceived before. Vertices and darts are those of
-/// the map.
+/// A percept that contradicts the earlier ones. Vertices and darts are those of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Contradiction {
     /// At the start the directional marker must be seen pointing along door 0.
     #[error("at the start the marker must point along door 0, but there is {}", Seen(perceived))]
     Start {
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// At the start the movable marker must lie.
     #[error("at the start the marker must lie, but there is {}", Seen(perceived))]
     StartWithoutMarker {
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// A vertex with no door, or a marker that points along a door that is not there.
     #[error("no vertex looks like this: {}", Seen(perceived))]
     Impossible {
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// A known place looks different.
@@ -102,9 +102,9 @@ pub enum Contradiction {
         vertex: Vertex,
         /// The index of the dart by which it was entered.
         index: u32,
-        /// What the map says.
+        /// The percept by the map.
         expected: Percept,
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// The marker is seen at the far end of an unexplored edge, where no unexplored dart of the
@@ -119,7 +119,7 @@ pub enum Contradiction {
         vertex: Vertex,
         /// The index of its dart.
         index: u32,
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// A marker is seen at the far end of an unexplored edge while the robot carries it.
@@ -133,7 +133,7 @@ pub enum Contradiction {
         vertex: Vertex,
         /// The index of its dart.
         index: u32,
-        /// What was perceived.
+        /// The percept.
         perceived: Percept,
     },
     /// Both ends of an unexplored edge are at known vertices, but no unexplored dart of the one
@@ -153,10 +153,10 @@ pub enum Contradiction {
     /// left there.
     #[error("on the way back there should be {} but there is {}", Seen(expected), Seen(perceived))]
     WayBack {
-        /// What was perceived there on the way out, turned to the new entry, with the marker if the
-        /// robot left it there.
+        /// The percept there on the way out, seen from the new entry, with the marker if the robot left
+        /// it there.
         expected: Percept,
-        /// What was perceived on the way back.
+        /// The percept on the way back.
         perceived: Percept,
     },
 }

@@ -15,31 +15,31 @@ use crate::{
     world::World,
 };
 
-/// How many darts may be known before a run is given up, where nobody says otherwise: a world of
-/// more than 8,000 edges, or one without end.
+/// The default bound on known darts. A run in a world with more than 8,000 edges, or with infinitely
+/// many, ends with an error.
 pub const DEFAULT_DART_BOUND: usize = 1 << 14;
 
-/// The state of a run of Algorithm 1: the robot's journey, and its hypotheses about where it is.
+/// The state of a run of Algorithm 1: the robot's journey, and the hypotheses about its place.
 #[derive(Clone, Debug)]
 pub struct Exploration {
     journey: Journey,
     here: Here,
     /// H, from the farthest to the nearest.
     hypotheses: Vec<Dart>,
-    /// The percept at each vertex left since setting out, and the door by which it was left.
+    /// The percept at each vertex since the path began, and the door taken there.
     trail: Vec<(Percept, Door)>,
     to_marker: BreadthFirstTree,
-    /// Whether `to_marker` is that of the present map.
+    /// Whether `to_marker` fits the present map.
     to_marker_is_current: bool,
 }
 
-/// How the robot stands where it is.
+/// The robot at its vertex.
 #[derive(Clone, Copy, Debug)]
 struct Here {
-    /// What it perceives, with doors counted from its reference dart.
+    /// Its percept, with doors counted from its reference dart.
     percept: Percept,
-    /// The door, counted from the reference dart, by which it has really come in. It differs from
-    /// [`Door::BACK`] when the robot is back from a rejected hypothesis.
+    /// The door, counted from the reference dart, by which it really came in. It differs from
+    /// [`Door::BACK`] after a rejected hypothesis.
     entry: Door,
 }
 
@@ -57,12 +57,12 @@ impl Exploration {
         }
     }
 
-    /// Changes how many darts later runs may come to know.
+    /// Sets the bound on known darts for later runs.
     pub fn set_bound(&mut self, bound: usize) {
         self.journey.set_bound(bound);
     }
 
-    /// The robot's journey: what it knows, where it is in it, and how far it went.
+    /// The robot's journey: its map, its pose in the map and its moves.
     #[inline]
     #[must_use]
     pub fn journey(&self) -> &Journey {
@@ -76,8 +76,8 @@ impl Exploration {
         self.journey.map()
     }
 
-    /// The robot's pose in the map: the dart by which it has come in. At line 8, when it is at no
-    /// known place, the last known one.
+    /// The robot's pose in the map: the dart by which it came in. At line 8, where its place is not
+    /// known, the last known pose.
     #[inline]
     #[must_use]
     pub fn robot(&self) -> Dart {
@@ -109,7 +109,7 @@ impl Exploration {
     /// Lines 1 to 3: the directional marker lies at v0, S is v0, and U is its edges.
     ///
     /// # Errors
-    /// The world's own; where the marker is not seen as it must be; the bound.
+    /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
     // paper: alg1.1, alg1.2, alg1.3
     pub fn begin<W: World>(
         &mut self,
@@ -134,7 +134,7 @@ impl Exploration {
         self.journey.edge.is_some()
     }
 
-    /// All choices of which the run waits for one. There is none when the map is complete.
+    /// The open choices: the run waits for one of them. There is none when the map is complete.
     pub fn open_choices(&self) -> impl DoubleEndedIterator<Item = MappingChoice> + use<> {
         let edges =
             if self.is_at_line_8() { Vec::new() } else { self.map().unexplored().collect() };
@@ -158,7 +158,7 @@ impl Exploration {
     }
 
     /// Lines 6 and 7: goes through the known map to the known end of an unexplored edge, follows it
-    /// to its unknown end, and raises the hypotheses about that: each unexplored dart by which the
+    /// to its unknown end, and lists the hypotheses about that: each unexplored dart by which the
     /// robot may have come in, except those that its percept contradicts at once.
     ///
     /// # Errors
@@ -175,7 +175,7 @@ impl Exploration {
         self.journey.explore(edge, PartialMap::expected, world, observer)?;
         let percept = self.journey.arrival;
         self.stand(percept);
-        self.raise_hypotheses(edge)?;
+        self.list_hypotheses(edge)?;
         let hypotheses = self.hypotheses.len();
         let contradicted = self.map().unexplored_count() as usize - 1 - hypotheses;
         let event = MappingEvent::Arrived { edge, percept, contradicted, hypotheses };
@@ -184,7 +184,7 @@ impl Exploration {
     }
 
     // paper: alg1.hypotheses
-    fn raise_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
+    fn list_hypotheses(&mut self, edge: Dart) -> Result<(), Contradiction> {
         let Self { journey: Journey { map, arrival, .. }, hypotheses, .. } = self;
         hypotheses.clear();
         let marked = arrival.sighting != Sighting::Nothing;
@@ -244,10 +244,10 @@ impl Exploration {
         self.trail.clear();
     }
 
-    /// Makes one move, and answers what the robot perceives after it.
+    /// Makes one move, and returns the percept after it.
     ///
     /// # Errors
-    /// The world's own; a percept that no vertex can give.
+    /// Returns an error if the world does, or if no vertex has the percept.
     #[inline]
     pub fn take<W: World>(
         &mut self,
@@ -267,7 +267,8 @@ impl Exploration {
     /// as before.
     ///
     /// # Errors
-    /// The world's own; where a place on the way back is not as it was on the way out.
+    /// Returns an error if the world does, or if a place on the way back is not as it was on the way
+    /// out.
     // paper: alg1.15
     pub fn retrace<W: World>(
         &mut self,
@@ -297,7 +298,7 @@ impl Exploration {
         self.stand(self.here.percept);
     }
 
-    /// The robot has come in where it perceives this.
+    /// The robot has come in, with this percept.
     #[inline]
     fn stand(&mut self, percept: Percept) {
         self.here = Here { percept, entry: Door::BACK };

@@ -1,4 +1,4 @@
-//! The robot's journey: what every mapping algorithm keeps of a run, and the steps that they share.
+//! The robot's journey: the part of the state, and the steps, that the mapping algorithms share.
 //! Section 2.3.
 
 use std::mem;
@@ -13,18 +13,17 @@ use crate::{
     world::World,
 };
 
-/// What the robot knows, where it is in it, and how far it went.
+/// The robot's map, its pose in the map and its moves.
 #[derive(Clone, Debug)]
 pub struct Journey {
     bound: usize,
     moves: u64,
     pub(super) map: PartialMap,
-    /// The dart of the map by which the robot has come in; when it is at no known place, the last
-    /// such.
+    /// The dart of the map by which the robot came in; if its place is not known, the last known pose.
     pub(super) robot: Dart,
     /// The known end of the edge that is being explored; none between two rounds.
     pub(super) edge: Option<Dart>,
-    /// What the robot perceived at its unknown end.
+    /// The percept at its unknown end.
     pub(super) arrival: Percept,
     pub(super) from_robot: BreadthFirstTree,
     /// Scratch: the darts on the way to somewhere known.
@@ -34,7 +33,7 @@ pub struct Journey {
 pub(super) const NOWHERE: Percept = Percept { degree: 0, sighting: Sighting::Nothing };
 
 impl Journey {
-    /// A journey during which the robot may come to know at most `bound` darts.
+    /// A journey with at most `bound` known darts.
     pub(super) fn new(bound: usize) -> Self {
         Self {
             bound: bound.min(2 * MAX_EDGES),
@@ -59,8 +58,8 @@ impl Journey {
         &self.map
     }
 
-    /// The robot's pose in the map: the dart by which it has come in. When it is at no known place,
-    /// the last known one.
+    /// The robot's pose in the map: the dart by which it came in. If its place is not known, the last
+    /// known pose.
     // paper: alg1.located
     #[inline]
     #[must_use]
@@ -162,7 +161,7 @@ impl Journey {
         Ok(())
     }
 
-    /// The darts by which the robot leaves the vertices on a shortest way to a known one.
+    /// The darts of a shortest path from the robot's vertex to a known one.
     pub(super) fn way_to(&mut self, target: Vertex) -> Result<Vec<Dart>, InvalidStep> {
         if target.at() >= self.map.vertex_count() {
             return Err(InvalidStep::UnknownVertex(target));
@@ -173,8 +172,8 @@ impl Journey {
         Ok(way)
     }
 
-    /// Leaves by an explored dart of the map, and answers the pose behind it and what the robot
-    /// perceives there; `None`, and nothing done, if the dart is not explored.
+    /// Leaves by an explored dart of the map, and returns the pose behind it and the percept there;
+    /// `None`, without a move, if the dart is not explored.
     #[inline]
     pub(super) fn leave_by<W: World>(
         &mut self,
@@ -187,7 +186,7 @@ impl Journey {
         Ok(Some((next, perceived)))
     }
 
-    /// The robot has come in by a dart of the map, if what it perceives is what it expected.
+    /// The robot has come in by a dart of the map, if the percept is the expected one.
     #[inline]
     pub(super) fn arrive(
         &mut self,
@@ -203,7 +202,7 @@ impl Journey {
         Ok(())
     }
 
-    /// Makes one move, and answers what the robot perceives after it.
+    /// Makes one move, and returns the percept after it.
     #[inline]
     pub(super) fn go<W: World>(
         &mut self,
@@ -249,8 +248,8 @@ impl Journey {
     }
 
     /// The edge that is being explored leads to a new vertex, whose other edges are unexplored. The
-    /// robot is still there; counted from the dart by which it first came in, it has now come in by
-    /// the door `entry`.
+    /// robot is still there. `entry` is the door by which it came in last, counted from the dart by
+    /// which it first came in.
     pub(super) fn add_place<W: World>(
         &mut self,
         entry: Door,

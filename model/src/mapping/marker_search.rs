@@ -1,4 +1,4 @@
-//! The state of the movable marker algorithm, and the small steps of which it is made. Section 2.3.
+//! The state of the movable marker algorithm, and the small steps that it consists of. Section 2.3.
 
 use super::{
     Choices, Contradiction, InvalidStep, Journey, MappingError, MappingEvent, MovableEvent,
@@ -10,27 +10,27 @@ use crate::{
     world::{MovableMarkerWorld, World},
 };
 
-/// The state of a run with a movable marker: the robot's journey, and where the marker may be.
+/// The state of a run with a movable marker: the robot's journey, and the candidates.
 #[derive(Clone, Debug)]
 pub struct MarkerSearch {
     journey: Journey,
-    /// The known vertices that the unknown end may be and that were not looked at yet; the next one
-    /// is the last.
+    /// The known vertices that the unknown end may be and that were not searched yet. The next one is
+    /// the last.
     candidates: Vec<Vertex>,
-    /// For each known vertex whether it is among them.
+    /// For each known vertex, whether it is a candidate.
     is_candidate: Vec<bool>,
-    /// The unexplored darts that may be the other end of the edge and were not tried yet; the next
-    /// one is the last.
+    /// The unexplored darts that may be the other end of the edge and were not tried yet. The next one
+    /// is the last.
     back_links: Vec<Dart>,
 }
 
-/// The percept of the same place with the marker lying there.
+/// The percept of the same place with the marker there.
 fn marked(place: Percept) -> Percept {
     Percept { sighting: Sighting::Lying(1), ..place }
 }
 
 impl MarkerSearch {
-    /// A state ready for a run that may come to know at most `bound` darts.
+    /// A state for a run with at most `bound` known darts.
     #[must_use]
     pub fn new(bound: usize) -> Self {
         Self {
@@ -41,12 +41,12 @@ impl MarkerSearch {
         }
     }
 
-    /// Changes how many darts later runs may come to know.
+    /// Sets the bound on known darts for later runs.
     pub fn set_bound(&mut self, bound: usize) {
         self.journey.set_bound(bound);
     }
 
-    /// The robot's journey: what it knows, where it is in it, and how far it went.
+    /// The robot's journey: its map, its pose in the map and its moves.
     #[must_use]
     pub fn journey(&self) -> &Journey {
         &self.journey
@@ -58,8 +58,8 @@ impl MarkerSearch {
         self.journey.map()
     }
 
-    /// The robot's pose in the map: the dart by which it has come in. When it is at the unknown end
-    /// of an edge, the last known one.
+    /// The robot's pose in the map: the dart by which it came in. At the unknown end of an edge, the
+    /// last known pose.
     #[must_use]
     pub fn robot(&self) -> Dart {
         self.journey.robot()
@@ -81,7 +81,7 @@ impl MarkerSearch {
     /// The robot picks the marker up at v0, S is v0, and U is its edges.
     ///
     /// # Errors
-    /// The world's own; where the marker is not seen as it must be; the bound.
+    /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
     pub fn begin<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
@@ -102,7 +102,7 @@ impl MarkerSearch {
     }
 
     /// Carries the marker through the known map to the known end of an unexplored edge, and over it
-    /// to its unknown end; and raises the candidates: the known vertices that this may be.
+    /// to its unknown end; and lists the candidates: the known vertices that this may be.
     ///
     /// # Errors
     /// Returns an error if the world does, if a known place is not as it was, if there is a second
@@ -119,7 +119,7 @@ impl MarkerSearch {
             let (vertex, index) = (self.map().vertex(edge), self.map().index(edge));
             return Err(Contradiction::SecondMarker { vertex, index, perceived: percept }.into());
         }
-        self.raise_candidates(self.map().vertex(edge));
+        self.list_candidates(self.map().vertex(edge));
         let candidates = self.candidates.len();
         self.report(MovableEvent::Arrived { edge, percept, candidates }, world, observer);
         Ok(())
@@ -128,7 +128,7 @@ impl MarkerSearch {
     /// The candidates: they look like the unknown end and have an unexplored dart; and, since the
     /// world has no loops and no parallel edges, they are neither the known end nor joined to it.
     /// In the order in which a depth-first walk of the shortest paths from the known end meets them.
-    fn raise_candidates(&mut self, known_end: Vertex) {
+    fn list_candidates(&mut self, known_end: Vertex) {
         let Self { journey: Journey { map, arrival, from_robot, .. }, .. } = self;
         let looks_like_it = |vertex| map.degree(vertex) == arrival.degree;
         self.is_candidate.clear();
@@ -148,13 +148,13 @@ impl MarkerSearch {
         }
     }
 
-    /// The known vertices that the unknown end may be and that were not looked at yet.
+    /// The candidates that were not searched yet.
     #[must_use]
     pub fn candidates(&self) -> &[Vertex] {
         &self.candidates
     }
 
-    /// Removes the next one of the candidates that the robot has not passed yet.
+    /// Removes the next candidate that the robot has not passed yet.
     pub fn next_candidate(&mut self) -> Option<Vertex> {
         while let Some(candidate) = self.candidates.pop() {
             if self.may_be(candidate) {
@@ -172,7 +172,7 @@ impl MarkerSearch {
     /// Drops the marker where the robot is.
     ///
     /// # Errors
-    /// The world's own.
+    /// Returns an error if the world does.
     pub fn drop_marker<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
@@ -186,7 +186,7 @@ impl MarkerSearch {
     /// Picks the marker up where the robot is.
     ///
     /// # Errors
-    /// The world's own.
+    /// Returns an error if the world does.
     pub fn pick_up<W: MovableMarkerWorld>(
         &mut self,
         world: &mut W,
@@ -213,11 +213,12 @@ impl MarkerSearch {
         Ok(())
     }
 
-    /// Goes through the known map to a candidate, unless the marker lies at one before; answers the
-    /// vertex at which it lies, where the robot then is.
+    /// Goes through the known map to a candidate. If the marker lies at a candidate on the way, the
+    /// robot stops there, and that vertex is returned.
     ///
     /// # Errors
-    /// The world's own; where a known place is not as it was, or the marker lies where it cannot be.
+    /// Returns an error if the world does, if a known place is not as it was, or if the marker lies
+    /// where it cannot be.
     pub fn look_for_marker<W: MovableMarkerWorld>(
         &mut self,
         candidate: Vertex,
@@ -270,7 +271,7 @@ impl MarkerSearch {
     /// Goes through the known map to a vertex, past no marker.
     ///
     /// # Errors
-    /// The world's own; where a known place is not as it was.
+    /// Returns an error if the world does, or if a known place is not as it was.
     pub fn travel_to<W: MovableMarkerWorld>(
         &mut self,
         vertex: Vertex,
@@ -280,9 +281,9 @@ impl MarkerSearch {
         self.journey.travel_to(vertex, PartialMap::unmarked, world, observer)
     }
 
-    /// Raises the unexplored darts of a vertex as those that may be the other end of the edge;
-    /// answers the only one, if it is.
-    pub fn raise_back_links(&mut self, vertex: Vertex) -> Option<Dart> {
+    /// Lists the unexplored darts of a vertex, one of which is the other end of the edge. Returns the
+    /// only one, if there is only one.
+    pub fn list_back_links(&mut self, vertex: Vertex) -> Option<Dart> {
         self.back_links.clear();
         self.back_links.extend(self.journey.map.unexplored_at(vertex).rev());
         match self.back_links[..] {
@@ -291,16 +292,17 @@ impl MarkerSearch {
         }
     }
 
-    /// Removes the next dart that may be the other end of the edge, in the order of their indices.
+    /// Removes the next dart that may be the other end of the edge, in the order of indices.
     pub fn next_back_link(&mut self) -> Option<Dart> {
         self.back_links.pop()
     }
 
-    /// Follows an unexplored dart of the vertex where the robot is. Confirmed, the marker is behind
-    /// it, and the robot has come there by the edge; rejected, the robot is back.
+    /// Follows an unexplored dart of the robot's vertex. If it is confirmed, the marker is behind it
+    /// and the robot is there; if it is rejected, the robot is back.
     ///
     /// # Errors
-    /// The world's own; where what is behind it cannot be, or the vertex is not as it was.
+    /// Returns an error if the world does, if the place behind the dart cannot be, or if the vertex is
+    /// not as it was.
     pub fn try_back_link<W: MovableMarkerWorld>(
         &mut self,
         dart: Dart,

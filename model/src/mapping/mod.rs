@@ -1,4 +1,4 @@
-//! Mapping a world with markers: Algorithm 1, the movable marker algorithm, and what they stand on.
+//! Mapping a world with markers: Algorithm 1, the movable marker algorithm, and their parts.
 //! Section 2.3.
 
 mod algorithm1;

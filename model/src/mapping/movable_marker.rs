@@ -2,9 +2,9 @@
 //! after the paper's reference 8: Dudek, Jenkin, Milios and Wilkes, "Robotic exploration as graph
 //! construction" (1991).
 //!
-//! Place validation tells whether the place just reached is new; where it is not, back-link
-//! validation tells by which of its edges it was entered. The state, and the small steps that are
-//! taken here, are [`MarkerSearch`]'s.
+//! Place validation finds out whether the place just reached is new. If it is not, back-link
+//! validation finds the edge by which it was entered. The state and the small steps are those of
+//! [`MarkerSearch`].
 
 use super::{Choices, Contradiction, MappingError, MarkerSearch, Observer, ValidationResult};
 use crate::{
@@ -12,12 +12,12 @@ use crate::{
     world::MovableMarkerWorld,
 };
 
-/// What a place just reached is.
+/// The place just reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachedPlace {
-    /// It was never reached before. The robot is there, with the marker in hand.
+    /// A new place. The robot is there and carries the marker.
     New,
-    /// It is a known vertex. The robot is there, with the marker at its feet.
+    /// A known vertex. The robot is there, and the marker lies there.
     Known(Vertex),
 }
 
@@ -76,7 +76,7 @@ pub fn explore_edge<W: MovableMarkerWorld>(
 /// Place validation: is the unknown end of the edge a new place, or which known vertex is it?
 ///
 /// # Errors
-/// The world's own, or a contradiction.
+/// Returns an error if the world does, or if it contradicts itself.
 // paper: movable.place, movable.new, movable.known
 pub fn validate_place<W: MovableMarkerWorld>(
     search: &mut MarkerSearch,
@@ -104,10 +104,10 @@ pub fn validate_place<W: MovableMarkerWorld>(
 }
 
 /// Back-link validation: which unexplored dart of the known vertex is the other end of `edge`?
-/// The robot is at the vertex, with the marker at its feet. Afterwards it carries the marker.
+/// The robot is at the vertex where the marker lies. Afterwards it carries the marker.
 ///
 /// # Errors
-/// The world's own, or a contradiction.
+/// Returns an error if the world does, or if it contradicts itself.
 // paper: movable.back-link
 pub fn validate_back_link<W: MovableMarkerWorld>(
     edge: Dart,
@@ -118,7 +118,7 @@ pub fn validate_back_link<W: MovableMarkerWorld>(
 ) -> Result<Dart, MappingError<W::Error>> {
     search.pick_up(world, observer)?;
     // An only unexplored dart of the vertex needs no validation.
-    if let Some(only) = search.raise_back_links(vertex) {
+    if let Some(only) = search.list_back_links(vertex) {
         return Ok(only);
     }
     // Carry the marker to vk, drop it there, and return without it.

@@ -1,4 +1,4 @@
-//! The events of a run, and who observes them.
+//! The events of a run, and their observers.
 
 use crate::{
     embedded_graph::{Dart, Vertex},
@@ -7,48 +7,48 @@ use crate::{
     world::Action,
 };
 
-/// What happens in a run, as it happens. Vertices and darts are those of the map.
+/// An event of a run. Vertices and darts are those of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MappingEvent {
     /// Lines 1 to 3: the marker lies at the start vertex.
     Started {
-        /// What the robot perceives there.
+        /// The percept there.
         percept: Percept,
     },
     /// One move.
     Moved {
         /// The door taken.
         door: Door,
-        /// What the robot perceives behind it.
+        /// The percept behind it.
         percept: Percept,
     },
     /// Lines 5 to 7: the robot stands at the unknown end of an edge.
     Arrived {
         /// The known end of the edge.
         edge: Dart,
-        /// What the robot perceives at the unknown one.
+        /// The percept at the unknown one.
         percept: Percept,
-        /// How many hypotheses the percept contradicts at once.
+        /// The number of hypotheses that the percept contradicts at once.
         contradicted: usize,
-        /// How many are left to be tried.
+        /// The number of hypotheses that are left.
         hypotheses: usize,
     },
-    /// Lines 13 to 15: a hypothesis fell, and the robot is back.
+    /// Lines 13 to 15: a hypothesis was rejected, and the robot is back.
     Rejected {
         /// The unexplored dart by which the robot would have come in.
         hypothesis: Dart,
-        /// How many moves its path was followed.
+        /// The number of moves along its path.
         followed: u32,
-        /// What should have been perceived at the last of them.
+        /// The expected percept after the last of them.
         expected: Percept,
-        /// What was.
+        /// The percept after the last of them.
         perceived: Percept,
     },
-    /// Lines 16 and 17: a hypothesis stood; the robot is at the marker.
+    /// Lines 16 and 17: a hypothesis was confirmed; the robot is at the marker.
     Confirmed {
         /// The unexplored dart by which the robot came in.
         hypothesis: Dart,
-        /// How many moves its path was followed.
+        /// The number of moves along its path.
         followed: u32,
     },
     /// Lines 18 to 20: an edge was added between known vertices.
@@ -65,7 +65,7 @@ pub enum MappingEvent {
         /// The new vertex.
         vertex: Vertex,
     },
-    /// What happens with a movable marker only.
+    /// An event of the movable marker algorithm.
     Movable(MovableEvent),
 }
 
@@ -76,7 +76,7 @@ impl MappingEvent {
         matches!(self, Self::Started { .. } | Self::LoopClosed { .. } | Self::VertexAdded { .. })
     }
 
-    /// What the robot did, if the event is something that it did.
+    /// The robot's action, if the event is one.
     #[must_use]
     pub fn action(self) -> Option<Action> {
         match self {
@@ -88,24 +88,23 @@ impl MappingEvent {
     }
 }
 
-/// What happens in a run with a movable marker, besides.
+/// An event that only runs with a movable marker have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovableEvent {
-    /// The robot stands at the unknown end of an edge, with the marker in hand.
+    /// The robot is at the unknown end of an edge and carries the marker.
     Arrived {
         /// The known end of the edge.
         edge: Dart,
-        /// What the robot perceives at the unknown one.
+        /// The percept at the unknown one.
         percept: Percept,
-        /// How many known vertices this may be.
+        /// The number of known vertices that this may be.
         candidates: usize,
     },
     /// The robot dropped the marker where it is.
     Dropped,
     /// The robot picked the marker up where it is.
     PickedUp,
-    /// Place validation: the marker is not at this known vertex, where the robot is. It is told of
-    /// those that the unknown end may be.
+    /// Place validation: the marker is not at this candidate, where the robot is.
     NotAt {
         /// The vertex.
         vertex: Vertex,
@@ -121,7 +120,7 @@ pub enum MovableEvent {
     NotBehind {
         /// The dart.
         dart: Dart,
-        /// What the robot perceived behind it.
+        /// The percept behind it.
         percept: Percept,
     },
     /// Back-link validation: the marker is behind this unexplored dart, and the robot is there.
@@ -133,9 +132,9 @@ pub enum MovableEvent {
 
 /// Observes a run in a world `W`.
 ///
-/// It gets the world, too: so an observer that lives in the world needs no shared ownership.
+/// It also gets the world, so that an observer inside the world needs no shared ownership.
 pub trait Observer<W: ?Sized> {
-    /// Something happened. The journey is as it is afterwards, except that at
+    /// Called after each event. The journey is as it is afterwards, except that at
     /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
     fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent);
 }

@@ -7,7 +7,7 @@ use crate::{
 
 /// The known part of the world.
 ///
-/// Vertices are numbered in the order of discovery; the darts of a vertex stand clockwise from the
+/// Vertices are numbered in the order of discovery; the darts of a vertex are numbered clockwise from the
 /// dart by which it was first entered, and at the start vertex, number 0, from the facing dart. A
 /// dart whose other end is not known is *unexplored*: together these are U.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -25,19 +25,19 @@ pub const FACING: Dart = Dart(0);
 pub(super) const START: Vertex = Vertex(0);
 
 impl PartialMap {
-    /// The map that knows nothing.
+    /// The empty map.
     pub(super) fn new() -> Self {
         Self { known: EmbeddedGraph::unfinished(), unexplored_at: Vec::new(), unexplored: 0 }
     }
 
-    /// Back to knowing nothing.
+    /// Makes the map empty.
     pub(super) fn clear(&mut self) {
         self.known.clear();
         self.unexplored_at.clear();
         self.unexplored = 0;
     }
 
-    /// Adds a vertex all of whose darts are unexplored.
+    /// Adds a vertex with unexplored darts only.
     pub(super) fn add_vertex(&mut self, degree: u32) -> Vertex {
         self.unexplored_at.push(degree);
         self.unexplored += degree;
@@ -155,8 +155,8 @@ impl PartialMap {
         Door::between(self.index(pose), self.index(to), degree)
     }
 
-    /// What the robot expects to perceive when it comes in by the dart `pose`, where the directional
-    /// marker lies at the start vertex.
+    /// The percept expected of a robot that comes in by the dart `pose`, if the directional marker lies
+    /// at the start vertex.
     #[inline]
     #[must_use]
     pub fn expected(&self, pose: Dart) -> Percept {
@@ -168,8 +168,7 @@ impl PartialMap {
         Percept { degree: self.known.degree_around(pose), sighting }
     }
 
-    /// What the robot expects to perceive when it comes in by the dart `pose`, at a vertex without a
-    /// marker.
+    /// The percept expected of a robot that comes in by the dart `pose`, at a vertex without a marker.
     #[inline]
     #[must_use]
     pub fn unmarked(&self, pose: Dart) -> Percept {

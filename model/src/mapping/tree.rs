@@ -7,7 +7,7 @@ use crate::{
     percept::Door,
 };
 
-/// A breadth-first tree of the known map, grown as far as somebody asked.
+/// A breadth-first tree of the known map, grown on demand.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BreadthFirstTree {
     /// For each vertex the number of edges to the root.
@@ -16,11 +16,11 @@ pub(super) struct BreadthFirstTree {
     up: Vec<Dart>,
     /// The vertices in the tree in the order in which they were reached.
     reached: Vec<Vertex>,
-    /// How many of `reached` have been looked around.
+    /// The number of `reached` vertices with all their neighbours in the tree.
     grown: usize,
 }
 
-/// Stands as the hops of a vertex that is not in the tree.
+/// The hops of a vertex that is not in the tree.
 const UNREACHED: u32 = u32::MAX;
 
 impl BreadthFirstTree {
@@ -35,7 +35,7 @@ impl BreadthFirstTree {
         self.reached.push(root);
     }
 
-    /// Forgets the tree: it no longer fits the map.
+    /// Discards the tree: it no longer fits the map.
     pub(super) fn clear(&mut self) {
         self.reached.clear();
     }
@@ -47,7 +47,7 @@ impl BreadthFirstTree {
         }
     }
 
-    /// Looks around one more vertex; `false` if there is none.
+    /// Adds the neighbours of one more vertex; `false` if there is none.
     fn grow(&mut self, map: &PartialMap) -> bool {
         let Some(&vertex) = self.reached.get(self.grown) else {
             return false;
@@ -71,8 +71,7 @@ impl BreadthFirstTree {
         while self.grow(map) {}
     }
 
-    /// Takes in a vertex just added to the map, to which only one edge leads: the whole tree stays
-    /// breadth-first.
+    /// Adds a vertex that was just added to the map with one edge. The tree stays breadth-first.
     pub(super) fn add_leaf(&mut self, map: &PartialMap, leaf: Vertex) {
         let entry = map.first_dart(leaf);
         if let Some(parent) = map.opposite(entry) {
@@ -81,8 +80,8 @@ impl BreadthFirstTree {
         }
     }
 
-    /// Whether the whole tree stays the same with a new edge between two of its vertices: so it is
-    /// if they are equally far from the root, since then neither is reached by way of the other.
+    /// Whether a new edge between two of its vertices leaves the whole tree as it is. It does if both
+    /// are equally far from the root: then neither is reached through the other.
     pub(super) fn stays_with(&self, map: &PartialMap, one: Dart, other: Dart) -> bool {
         self.hops(map.vertex(one)) == self.hops(map.vertex(other))
     }
@@ -114,7 +113,7 @@ impl BreadthFirstTree {
         self.hops[vertex.at()]
     }
 
-    /// Writes the darts by which a robot leaves the vertices on its way from the root to `target`.
+    /// Writes the darts of the path from the root to `target`.
     pub(super) fn path_from_root(
         &mut self,
         map: &PartialMap,
@@ -134,8 +133,7 @@ impl BreadthFirstTree {
         path.reverse();
     }
 
-    /// Writes the vertices of the tree as a depth-first walk of it meets them: each before those
-    /// beyond it, and the darts of a vertex in index order.
+    /// Writes the vertices of the tree in preorder, with the darts of a vertex in index order.
     pub(super) fn preorder(&self, map: &PartialMap, order: &mut Vec<Vertex>) {
         order.clear();
         let mut ahead: Vec<_> = self.reached.first().copied().into_iter().collect();

@@ -1,4 +1,5 @@
-//! What a marker adds to a percept, and what a robot can do with it. Sections 2.2 and 2.3.
+//! The kinds of markers: what they add to a percept, and whether a robot can move them. Sections 2.2
+//! and 2.3.
 //!
 //! A marker is placed once, by the facing dart of a start. A kind of marker is one file here, and
 //! one line in the list of [`MARKERS`].
@@ -38,31 +39,31 @@ markers! {
 
 /// A kind of marker.
 ///
-/// Two facing darts may place it alike: an undirected marker lies at a vertex, whichever of its
-/// darts was faced.
+/// Different facing darts may place it alike: an undirected marker lies at a vertex, and all darts of
+/// the vertex place it there.
 pub trait Marker: Sync {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     fn name(&self) -> &'static str;
 
-    /// What it is and when it is noticed, in a sentence.
+    /// A sentence about what it is and when it is noticed.
     fn about(&self) -> &'static str;
 
-    /// What it adds to the percept of a robot that has come in by the dart `pose`, where it was
-    /// placed by the facing dart.
+    /// What it adds to the percept of a robot that came in by the dart `pose`. The facing dart placed
+    /// it.
     fn sighting(&self, graph: &EmbeddedGraph, facing: Dart, pose: Dart) -> Sighting;
 
-    /// The first of the facing darts that place it just as this one does.
+    /// The first of the facing darts that place it as this one does.
     fn first_alike(&self, graph: &EmbeddedGraph, facing: Dart) -> Dart;
 
-    /// The poses in which the robot may begin, as far as the marker tells: all those, in the order
-    /// of their numbers, at which it is noticed where the robot begins.
+    /// The poses in which the robot may begin, given the marker: all poses at which it is noticed as
+    /// at the start, in the order of their numbers.
     fn starts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart>;
 
-    /// What lies where; nothing, where there is no marker to place.
+    /// The parts of the marker, and where they lie.
     fn parts(&self, graph: &EmbeddedGraph, facing: Dart) -> Vec<MarkerPart>;
 
-    /// Whether the robot can pick it up where it notices it, carry it, and drop it, which places it
-    /// as if it then faced the dart by which it has come in.
+    /// Whether the robot can pick it up where it notices it, carry it and drop it. A dropped marker is
+    /// placed as if the robot's entry dart were the facing dart.
     fn is_movable(&self) -> bool {
         false
     }
@@ -71,7 +72,7 @@ pub trait Marker: Sync {
 /// A part of a marker, and where it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerPart {
-    /// Lies at a vertex. Parts of another look can be told apart from it.
+    /// Lies at a vertex. Parts of different looks can be distinguished.
     At {
         /// The vertex.
         vertex: Vertex,
@@ -91,7 +92,7 @@ pub enum MarkerPart {
 pub enum MarkerLook {
     /// The usual one.
     One,
-    /// One that can be told apart from it.
+    /// A different one.
     Other,
 }
 
@@ -139,9 +140,9 @@ impl PartialEq for dyn Marker + '_ {
 
 impl Eq for dyn Marker + '_ {}
 
-/// A name that no marker has.
+/// The error for a name that no marker has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is no marker; there are {names}", names = names())]
+#[error("`{0}` is not a marker; the markers are {names}", names = names())]
 pub struct UnknownMarker(String);
 
 fn names() -> String {
@@ -151,7 +152,7 @@ fn names() -> String {
 /// The kind of marker with this name.
 ///
 /// # Errors
-/// Where there is none; the message lists those that there are.
+/// Returns an error if there is none. The message lists the names of all markers.
 pub fn named(name: &str) -> Result<&'static dyn Marker, UnknownMarker> {
     let marker = MARKERS.into_iter().find(|marker| marker.name() == name);
     marker.ok_or_else(|| UnknownMarker(name.to_owned()))

@@ -11,7 +11,7 @@ use crate::{
     percept::{Door, Percept, Sighting},
 };
 
-/// The robot tried to do what it cannot do.
+/// The error for an action that is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Refused {
     /// It chose a door that its vertex does not have.
@@ -36,17 +36,17 @@ pub enum Refused {
     },
 }
 
-/// Where the robot is, and where the marker is.
+/// The robot's pose, and the place of the marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct State {
-    /// The dart by which the robot has come in.
+    /// The dart by which the robot came in.
     pub pose: Dart,
     /// The facing dart that places the marker where it lies, the first of those alike; none while
     /// the robot carries it. Without a marker, dart 0.
     pub placed: Option<Dart>,
 }
 
-/// What a robot can do.
+/// An action of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Action {
     /// Leave by a door.
@@ -68,9 +68,9 @@ impl fmt::Display for Action {
     }
 }
 
-/// Not an action.
+/// The error for a text that is not an action.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is nothing that a robot can do; write a door's number, pick-up or drop")]
+#[error("`{0}` is not an action; write a door number, pick-up or drop")]
 pub struct UnknownAction(String);
 
 impl FromStr for Action {
@@ -116,13 +116,13 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         Self { graph, marker, state: State { pose: facing, placed }, moves: 0 }
     }
 
-    /// The same world with robot and marker where the state says.
+    /// The same world in another state.
     #[must_use]
     pub fn at(self, state: State) -> Self {
         Self { state, ..self }
     }
 
-    /// What the robot senses where it is: a graph can always be sensed.
+    /// The robot's percept: a graph can always be sensed.
     #[inline]
     #[must_use]
     pub fn sensed(&self) -> Percept {
@@ -130,7 +130,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
         Percept { degree, sighting: self.sighting() }
     }
 
-    /// What the robot can do: its doors, and what it can do with the marker.
+    /// The possible actions: the doors, and picking up or dropping the marker.
     pub fn actions(&self) -> impl Iterator<Item = Action> + use<M> {
         let doors = (0..self.graph.degree_around(self.state.pose)).map(|n| Action::Take(Door(n)));
         let handling = if self.can_pick_up() {
@@ -144,7 +144,7 @@ impl<'g, M: Marker> GraphWorld<'g, M> {
     /// Does one of the [`actions`](Self::actions).
     ///
     /// # Errors
-    /// Where it is not one of them.
+    /// Returns an error if it is not one of them.
     pub fn act(&mut self, action: Action) -> Result<(), Refused> {
         match action {
             Action::Take(door) => self.traverse(door),
@@ -185,7 +185,7 @@ impl<'g, M> GraphWorld<'g, M> {
         &self.marker
     }
 
-    /// Where the robot truly is.
+    /// The robot's pose in the graph.
     #[must_use]
     pub fn pose(&self) -> Dart {
         self.state.pose
@@ -197,7 +197,7 @@ impl<'g, M> GraphWorld<'g, M> {
         self.moves
     }
 
-    /// Where robot and marker truly are.
+    /// The robot's pose, and the place of the marker.
     #[must_use]
     pub fn state(&self) -> State {
         self.state

@@ -244,7 +244,7 @@ fn an_error_in_lists_has_their_vertex() {
         ),
         (
             "[clockwise]\na = [\"q\"]",
-            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `q`, which is no vertex",
+            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `q`, which is not a vertex",
         ),
         (
             "[clockwise]\na = [\"b\", \"b\"]\nb = [\"a\", \"a\"]",
@@ -257,7 +257,7 @@ fn an_error_in_lists_has_their_vertex() {
         ),
         (
             "[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]",
-            "line 1, column 2: doors: edge `e` stands 3 times (a, a, b); an edge has two ends",
+            "line 1, column 2: doors: edge `e` occurs 3 times (a, a, b); an edge has two ends",
         ),
         (
             "[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]",
