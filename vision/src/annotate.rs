@@ -1,16 +1,13 @@
 //! Pictures of each step of sensing. Section 3, Figures 6 to 9.
 
 use image::{Rgb, RgbImage};
-use imageproc::drawing::{
-    draw_filled_circle_mut, draw_hollow_circle_mut, draw_line_segment_mut, draw_polygon_mut,
-};
-use imageproc::point::Point;
 use toposlam_model::driving::scene::{CentreLine, MarkerView, Place, Scene};
 
 use crate::{
     camera::Camera,
     colour::PixelClass,
     corner::{Bend, CornerSource},
+    draw,
     ground_view::GroundView,
     params::{MARKER_LENGTH, MARKER_WIDTH},
     sensing::{SensingTrace, Sensor, WrongSize},
@@ -168,8 +165,7 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
         dot(&mut picture, junction.turning_point, 6, WHITE);
     }
     if let Some(marker) = &scene.marker {
-        let corners = rectangle(marker).map(at).map(|[u, v]| Point::new(u, v));
-        draw_polygon_mut(&mut picture, &corners, BLUE);
+        draw::convex_polygon(&mut picture, &rectangle(marker).map(at), BLUE);
     }
     picture
 }
@@ -188,8 +184,8 @@ pub fn over(image: &RgbImage, camera: &Camera, scene: &Scene) -> RgbImage {
                 [camera.ground_to_pixel(point(step)), camera.ground_to_pixel(point(step + 1))];
             if let [Some(from), Some(to)] = ends {
                 for [right, down] in PEN {
-                    let end = |[u, v]: [f64; 2]| ((u + right) as f32, (v + down) as f32);
-                    draw_line_segment_mut(&mut picture, end(from), end(to), colour);
+                    let end = |[u, v]: [f64; 2]| [(u + right) as f32, (v + down) as f32];
+                    draw::line(&mut picture, end(from), end(to), colour);
                 }
             }
         }
@@ -256,10 +252,10 @@ fn empty() -> RgbImage {
 /// The robot: its outline, and a line ahead.
 // paper: sense.contour
 fn body(picture: &mut RgbImage) {
-    let [u, v] = at([0.0; 2]);
+    let middle = at([0.0; 2]);
     let radius = (RADIUS / GroundView::SCALE) as i32;
-    draw_filled_circle_mut(picture, (u, v), radius, BODY);
-    draw_hollow_circle_mut(picture, (u, v), radius, WHITE);
+    draw::disc(picture, middle, radius, BODY);
+    draw::ring(picture, middle, radius, WHITE);
     line(picture, [0.0; 2], [RADIUS, 0.0], WHITE);
 }
 
@@ -271,25 +267,24 @@ fn at([x, y]: [f64; 2]) -> [i32; 2] {
 
 fn line(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
     let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
-    draw_line_segment_mut(picture, (from[0], from[1]), (to[0], to[1]), colour);
+    draw::line(picture, from, to, colour);
 }
 
 fn thick(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
     let [from, to] = [from, to].map(|end| at(end).map(|part| part as f32));
     for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
-        draw_line_segment_mut(picture, (from[0] + u, from[1] + v), (to[0] + u, to[1] + v), colour);
+        draw::line(picture, [from[0] + u, from[1] + v], [to[0] + u, to[1] + v], colour);
     }
 }
 
 fn dot(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
-    let [u, v] = at(point);
-    draw_filled_circle_mut(picture, (u, v), radius, colour);
+    draw::disc(picture, at(point), radius, colour);
 }
 
 fn ring(picture: &mut RgbImage, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
-    let [u, v] = at(point);
+    let middle = at(point);
     for radius in [radius - 1, radius] {
-        draw_hollow_circle_mut(picture, (u, v), radius, colour);
+        draw::ring(picture, middle, radius, colour);
     }
 }
 

@@ -1,9 +1,8 @@
 //! Straight lines through boundary points, by principal components. Section 3.
 
-use nalgebra::{Matrix2, SymmetricEigen};
-
 use crate::{
     cluster::{Cluster, distance, range},
+    least_squares::principal_component,
     params::LineParams,
 };
 
@@ -36,20 +35,21 @@ impl WallLine {
         let count = points.len() as f64;
         let sum = points.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
         let middle = sum.map(|part| part / count);
-        let mut scatter = Matrix2::zeros();
+        let mut scatter = [0.0; 3];
         for point in points {
             let [x, y] = [point[0] - middle[0], point[1] - middle[1]];
-            scatter += Matrix2::new(x * x, x * y, x * y, y * y);
+            for (sum, product) in scatter.iter_mut().zip([x * x, x * y, y * y]) {
+                *sum += product / count;
+            }
         }
-        let components = SymmetricEigen::new(scatter / count);
-        let major = components.eigenvalues.imax();
-        if components.eigenvalues[major] <= 0.0 {
+        let [a, b, c] = scatter;
+        let (vector, [major, minor]) = principal_component(a, b, c);
+        if major <= 0.0 {
             return None;
         }
-        let vector = components.eigenvectors.column(major);
         let onwards = vector[0] * (last[0] - first[0]) + vector[1] * (last[1] - first[1]);
         let along = if onwards < 0.0 { [-vector[0], -vector[1]] } else { [vector[0], vector[1]] };
-        let spread = components.eigenvalues[1 - major].max(0.0).sqrt();
+        let spread = minor.max(0.0).sqrt();
         let line =
             Self { middle, along, from: first, to: last, spread, points: points.len(), cluster: 0 };
         Some(Self { from: line.foot(first), to: line.foot(last), ..line })

@@ -1,10 +1,9 @@
 //! Outlines: the walls of a hallway or a junction, fitted to what the robot sees. Section 3.
 
-use nalgebra::{Matrix4, Vector4};
-
 use crate::{
     boundary::Boundary,
     cluster::range,
+    least_squares::NormalEquations,
     params::OutlineParams,
     wall::{Axis, WallFrame},
 };
@@ -156,11 +155,8 @@ impl Outline {
         frame: &WallFrame,
         params: &OutlineParams,
     ) -> (Square, WallFrame) {
-        let mut normal = Matrix4::zeros();
-        let mut right = Vector4::zeros();
         // What is not seen stays as it is: a pull of a thousandth of a point.
-        let pull = Vector4::new(1e-3, 1e-3, 1e-3, 1e-3);
-        normal += Matrix4::from_diagonal(&pull);
+        let mut equations = NormalEquations::<4>::with_pull(1e-3);
         for (_, point) in boundary.points() {
             let from_robot = range(point);
             let point = frame.framed(point);
@@ -180,16 +176,14 @@ impl Outline {
             // -turn x for a wall along x, and by turn y for one along y.
             let (along, across) = side.along.split();
             let by_turn = if along == 0 { point[0] } else { -point[1] };
-            let mut row = Vector4::new(by_turn, 0.0, 0.0, sign);
+            let mut row = [by_turn, 0.0, 0.0, sign];
             row[1 + across] = 1.0;
             let residual = point[across] - side.offset;
             // Pixels that are farther away cover more floor.
             let weight = 1.0 / (1.0 + from_robot.powi(4));
-            normal += weight * row * row.transpose();
-            right += weight * residual * row;
+            equations.add(weight, row, residual);
         }
-        let Some(inverse) = normal.cholesky() else { return (square, *frame) };
-        let moved = inverse.solve(&right);
+        let Some(moved) = equations.solve() else { return (square, *frame) };
         let square = Square {
             middle: [square.middle[0] + moved[1], square.middle[1] + moved[2]],
             half: square.half + moved[3],

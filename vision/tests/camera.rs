@@ -40,16 +40,21 @@ fn mirror(camera: &Camera) -> SphericalMirror {
 /// The floor that a pixel on the mirror shows, by ray tracing: from the pinhole at the origin to the
 /// sphere's surface, reflected there, to the floor.
 fn traced(mirror: &SphericalMirror, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
-    type Vector = nalgebra::Vector3<f64>;
-    let out = Vector::new(u - mirror.centre[0], mirror.centre[1] - v, mirror.focal).normalize();
-    let middle = Vector::new(0.0, 0.0, mirror.mirror_distance);
-    let along = out.dot(&middle);
-    let half_chord = mirror.mirror_radius.powi(2) - (middle - out * along).norm_squared();
-    let met = out * (along - (half_chord >= 0.0).then(|| half_chord.sqrt())?);
-    let normal = (met - middle).normalize();
-    let back = out - normal * (2.0 * out.dot(&normal));
-    let length = -(met.z + mirror.camera_height) / back.z;
-    (back.z < 0.0).then(|| [met.x + length * back.x, met.y + length * back.y])
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    // `a` and a multiple of `b`.
+    let sum = |a: [f64; 3], factor: f64, b: [f64; 3]| [0, 1, 2].map(|i| a[i] + factor * b[i]);
+    let unit = |a: [f64; 3]| a.map(|part| part / dot(a, a).sqrt());
+    let out = unit([u - mirror.centre[0], mirror.centre[1] - v, mirror.focal]);
+    let middle = [0.0, 0.0, mirror.mirror_distance];
+    let along = dot(out, middle);
+    let beside = sum(middle, -along, out);
+    let half_chord = mirror.mirror_radius.powi(2) - dot(beside, beside);
+    let met = out.map(|part| part * (along - half_chord.sqrt()));
+    let normal = unit(sum(met, -1.0, middle));
+    let back = sum(out, -2.0 * dot(out, normal), normal);
+    let length = -(met[2] + mirror.camera_height) / back[2];
+    (half_chord >= 0.0 && back[2] < 0.0)
+        .then(|| [met[0] + length * back[0], met[1] + length * back[1]])
 }
 
 // paper: hardware.height

@@ -1,9 +1,9 @@
 //! A calibration drawn over an image.
 
 use image::{Rgb, RgbImage};
-use imageproc::drawing::draw_line_segment_mut;
 
 use super::{Camera, OpticsModel, rim::Rim};
+use crate::draw;
 
 /// The rim and the horizon.
 const GREEN: Rgb<u8> = Rgb([0, 230, 80]);
@@ -69,6 +69,6 @@ fn closed(picture: &mut RgbImage, at: impl Fn(f64) -> Option<[f64; 2]>, colour: 
 }
 
 fn segment(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
-    let [from, to] = [from, to].map(|[u, v]| (u as f32, v as f32));
-    draw_line_segment_mut(picture, from, to, colour);
+    let [from, to] = [from, to].map(|end| end.map(|part| part as f32));
+    draw::line(picture, from, to, colour);
 }

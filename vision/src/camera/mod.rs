@@ -11,6 +11,7 @@ pub mod calibration;
 mod fit_picture;
 mod mask;
 mod mei;
+mod morphology;
 mod ocam;
 mod optics_file;
 pub mod rim;

@@ -12,10 +12,10 @@
 use std::f64::consts::TAU;
 
 use image::GrayImage;
-use nalgebra::{Matrix3, Vector3};
 use thiserror::Error;
 
 use super::length;
+use crate::least_squares::NormalEquations;
 
 /// A mirror's rim in images.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,24 +134,21 @@ impl Circle {
             sizes.sort_by(f64::total_cmp);
             let Some(median) = sizes.get(sizes.len() / 2) else { return self };
             let far = (4.685 * 1.4826 * median).max(0.5);
-            let (mut square, mut right) = (Matrix3::zeros(), Vector3::zeros());
+            let mut equations = NormalEquations::<3>::with_pull(0.0);
             for place in places {
                 let off = circle.off(place);
                 if off.abs() < far {
                     let weight = (1.0 - (off / far).powi(2)).powi(2);
                     let [across, down] = [0, 1].map(|axis| place.at[axis] - circle.centre[axis]);
                     let from_centre = length([across, down]).max(1.0);
-                    let slope = Vector3::new(across / from_centre, down / from_centre, 1.0);
-                    square += weight * slope * slope.transpose();
-                    right += weight * off * slope;
+                    let slope = [across / from_centre, down / from_centre, 1.0];
+                    equations.add(weight, slope, off);
                 }
             }
-            let Some(step) = square.cholesky().map(|root| root.solve(&right)) else {
-                return circle;
-            };
+            let Some(step) = equations.solve() else { return circle };
             circle.centre = [circle.centre[0] + step[0], circle.centre[1] + step[1]];
             circle.radius += step[2];
-            if step.norm() < 1e-6 {
+            if step.iter().map(|part| part * part).sum::<f64>().sqrt() < 1e-6 {
                 break;
             }
         }

@@ -10,15 +10,13 @@
 #![allow(clippy::cast_sign_loss, reason = "sizes are not negative")]
 
 use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
-use imageproc::{
-    distance_transform::Norm,
-    filter::gaussian_blur_f32,
-    morphology::{close, dilate, open},
-    region_labelling::{Connectivity, connected_components},
-};
 use thiserror::Error;
 
-use super::{Mask, length, rim::Rim};
+use super::{
+    Mask, length,
+    morphology::{Colours, close, dilate, open, pieces, smooth},
+    rim::Rim,
+};
 
 /// Why the pixels that never change cannot be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -90,11 +88,11 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
     let changes = Changes::between(slopes);
     let struts = Struts::in_all(slopes, disc);
     // The pixels around edges belong to them.
-    let edges = dilate(&close(&changes.stay, Norm::L2, 2), Norm::L2, 1);
+    let edges = dilate(&close(&changes.stay, 2), 1);
     let free = binary(width, height, |u, v| {
         disc.holds(u, v) && edges.get_pixel(u, v)[0] == 0 && !struts.hide(u, v, disc)
     });
-    let pieces = connected_components(&free, Connectivity::Four, Luma([0]));
+    let pieces = pieces(&free);
     let most = pieces.pixels().map(|piece| piece[0]).max().unwrap_or(0) as usize;
     let (mut sizes, mut changing) = (vec![0_u32; most + 1], vec![0_u32; most + 1]);
     for (piece, moved) in pieces.pixels().zip(changes.moved.pixels()) {
@@ -107,7 +105,7 @@ fn seen(slopes: &[Slopes], disc: &Disc) -> Result<GrayImage, UnchangingError> {
         piece > 0 && size > SMALL * all && f64::from(changing[piece]) > LEAST_CHANGING * size
     };
     let seen = binary(width, height, |u, v| alive(pieces.get_pixel(u, v)[0] as usize));
-    let seen = open(&close(&seen, Norm::L2, 1), Norm::L2, 2);
+    let seen = open(&close(&seen, 1), 2);
     let count = seen.pixels().filter(|pixel| pixel[0] > 0).count() as f64;
     if count < LEAST_SEEN * all { Err(UnchangingError::Still) } else { Ok(seen) }
 }
@@ -150,7 +148,7 @@ impl Slopes {
         let logarithms = ImageBuffer::from_fn(width, height, |u, v| {
             Rgb(image.get_pixel(u, v).0.map(|channel| (channel + BLACK).ln()))
         });
-        let smooth: Colours = gaussian_blur_f32(&logarithms, SIGMA);
+        let smooth = smooth(&logarithms, SIGMA);
         let at = |u: u32, v: u32| smooth.get_pixel(u.min(width - 1), v.min(height - 1)).0;
         let rise = |(u, v): (u32, u32)| {
             let (right, left) = (at(u + 1, v), at(u.max(1) - 1, v));
@@ -186,9 +184,6 @@ impl Slopes {
         sum.map(|sum| sum / count.max(1.0))
     }
 }
-
-/// Red, green and blue.
-type Colours = ImageBuffer<Rgb<f32>, Vec<f32>>;
 
 /// The mean of each square of pixels.
 fn shrunk(image: &RgbImage, factor: u32) -> Colours {
