@@ -1,5 +1,5 @@
-//! Collects the citations of the paper in the sources of all members of the workspace, so that
-//! `toposlam paper` can show them far from the sources.
+//! Collects the citations of the paper from the sources of all workspace members, so that the installed
+//! `toposlam paper` can list them.
 
 #[path = "src/paper/citation.rs"]
 #[expect(unreachable_pub, reason = "the library makes it public")]
@@ -17,13 +17,13 @@ fn main() -> ExitCode {
     match embed_citations() {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("the citations of the paper cannot be collected: {message}");
+            eprintln!("cannot collect the citations of the paper: {message}");
             ExitCode::FAILURE
         }
     }
 }
 
-/// Writes the library's `CITATIONS`.
+/// Writes the value of the library's `CITATIONS`.
 fn embed_citations() -> Result<(), String> {
     let root = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     for watched in ["Cargo.toml", "build.rs", "src", "tests"] {
@@ -55,7 +55,7 @@ fn embed_citations() -> Result<(), String> {
     fs::write(&out, constant).map_err(|error| at(&out.display().to_string(), &error))
 }
 
-/// The citation, as it is written in Rust.
+/// The citation as a Rust expression.
 fn literal(citation: &Citation) -> String {
     let Citation { id, file, line, kind } = citation;
     format!(
@@ -63,7 +63,7 @@ fn literal(citation: &Citation) -> String {
     )
 }
 
-/// Adds the files of Rust and of Coq in a folder of the workspace and below it.
+/// Adds the Rust and Coq files in a folder of the workspace, recursively.
 fn find_sources(root: &Path, folder_name: &str, sources: &mut Vec<String>) -> Result<(), String> {
     for name in folder(root, folder_name)? {
         let path = format!("{folder_name}/{name}");
