@@ -72,7 +72,7 @@ fn by_door(door: Option<Door>) -> String {
 /// its marker down along it.
 // paper: hardware.capture
 #[derive(Clone, Debug)]
-pub struct Explorer<R, S, O = ()> {
+pub struct RobotExplorer<R, S, O = ()> {
     robot: R,
     sensor: S,
     observer: O,
@@ -106,7 +106,7 @@ enum Unusable {
 /// The robot gives up after this many unusable frames in a row.
 const RETAKES: u32 = 6;
 
-impl<R: Robot, S: FrameSensor, O: RunObserver> Explorer<R, S, O> {
+impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
     /// A robot, its sensing, and its observer.
     pub fn new(robot: R, sensor: S, observer: O) -> Self {
         Self {
@@ -282,7 +282,7 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> Explorer<R, S, O> {
     }
 }
 
-impl<R: Robot, S: FrameSensor, O: RunObserver> World for Explorer<R, S, O> {
+impl<R: Robot, S: FrameSensor, O: RunObserver> World for RobotExplorer<R, S, O> {
     type Error = ExplorerError;
 
     fn percept(&mut self) -> Result<Percept, ExplorerError> {
@@ -352,7 +352,7 @@ mod tests {
 
     fn percept(pictures: &[Option<f64>]) -> (Result<Percept, ExplorerError>, usize) {
         let robot = Still { pictures: pictures.to_vec(), asked: 0 };
-        let mut explorer = Explorer::new(robot, NoSensor, ());
+        let mut explorer = RobotExplorer::new(robot, NoSensor, ());
         let percept = explorer.percept();
         (percept, explorer.robot().asked)
     }

@@ -12,7 +12,7 @@ use toposlam_model::{
 use toposlam_vision::sensing::Sensor;
 
 use crate::{
-    explorer::{Explorer, ExplorerError},
+    explorer::{ExplorerError, RobotExplorer},
     log::{
         entries::{Content, Entries},
         error::LogError,
@@ -143,7 +143,7 @@ pub fn replay(
         failure: None,
     };
     robot.advance();
-    let mut explorer = Explorer::new(robot, sensor, Results::default());
+    let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
     let mut exploration = Exploration::new(dart_bound);
     let error = explorer.map(&mut exploration).err();
     let (mut robot, results) = explorer.into_parts();

@@ -12,7 +12,7 @@ use toposlam_model::{
 };
 
 use crate::{
-    explorer::{Explorer, ExplorerError},
+    explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     record::{FrameSensor, RunObserver},
     recording::Recording,
@@ -102,7 +102,7 @@ pub fn run<'p>(
     dart_bound: usize,
 ) -> Run<'p> {
     let monitor = GroundTruthMonitor::new(plan, facing);
-    let mut explorer = Explorer::new(robot, sensor, (monitor, observer));
+    let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
     let mut exploration = Exploration::new(dart_bound);
     let error = explorer.map(&mut exploration).err();
     let (robot, (monitor, _)) = explorer.into_parts();
@@ -150,7 +150,7 @@ pub fn offline(
     sensor: impl FrameSensor,
     dart_bound: usize,
 ) -> Result<Exploration, MappingError<ExplorerError>> {
-    let mut explorer = Explorer::new(recording.robot(), sensor, ());
+    let mut explorer = RobotExplorer::new(recording.robot(), sensor, ());
     let mut exploration = Exploration::new(dart_bound);
     explorer.map(&mut exploration)?;
     Ok(exploration)

@@ -15,7 +15,7 @@ use toposlam_model::{
 
 use super::{LearnedSensors, parallel::made_in_turn, run_sampler::starts_of};
 use crate::{
-    explorer::{Explorer, ExplorerError},
+    explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     pose::Pose,
     robot::Robot,
@@ -161,7 +161,7 @@ fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
     let plan = case.config.plan.clone();
     let monitor = GroundTruthMonitor::at(&plan, case.config.marker, case.entry);
     let standing = monitor.standing(case.config.pose);
-    let mut explorer = Explorer::new(robot, sensor, monitor);
+    let mut explorer = RobotExplorer::new(robot, sensor, monitor);
     if let Some(standing) = standing {
         explorer = explorer.standing_at(standing);
     }

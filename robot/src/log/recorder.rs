@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::{
         evaluation::{plans, run_sampler::starts_of},
-        explorer::{Explorer, ExplorerError},
+        explorer::{ExplorerError, RobotExplorer},
         record::{CameraImage, DECODED, FrameSensor, NoSensor, SensingError},
         robot::{Reckoned, Robot, RobotError},
         run::{Run, run},
@@ -316,7 +316,7 @@ mod tests {
         let mut recorder = Recorder::new(&mut log, &messages::Run::default(), camera).unwrap();
         let mut page = Pixels::default();
         let decoded = DECODED.get();
-        let mut explorer = Explorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
+        let mut explorer = RobotExplorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
         explorer.map(&mut Exploration::new(200)).unwrap();
         assert!(page.0 > 60, "{}", page.0);
         assert_eq!(DECODED.get() - decoded, page.0);

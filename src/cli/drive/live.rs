@@ -14,7 +14,7 @@ use toposlam_model::{
     mapping::{Exploration, Journey, MappingEvent, Observer},
 };
 use toposlam_robot::{
-    explorer::Explorer,
+    explorer::RobotExplorer,
     log::{
         messages,
         recorder::{self, Recorder},
@@ -97,7 +97,7 @@ impl DriveArguments {
             None => Story::with_head(lines, &format!("A robot at {}.", self.ros), detail),
         };
         let mut narrator = Narrator { story, progress };
-        let mut explorer = Explorer::new(robot, sensor, (&mut log, &mut narrator));
+        let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
         let mut exploration = Exploration::new(self.max_darts);
         let error = explorer.map(&mut exploration).err();
         let (robot, _) = explorer.into_parts();
