@@ -37,9 +37,9 @@ kinds! {
     OverExposed "over-exposed" 3 "Pictures are burnt out.";
     Corrupt "corrupt" 3 "Pictures are damaged on their way.";
     Ignored "ignored" 2 "Commands are not carried out.";
-    Blocked "blocked" 1 "Something stands across the hallway ahead; the camera does not see it.";
+    Blocked "blocked" 1 "An obstacle ahead, unseen by the camera, stops the robot.";
     LightsOut "lights-out" 1 "The lights go out for good.";
-    Carried "carried" 1 "Somebody carries the robot elsewhere; odometry does not tell.";
+    Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
 
 /// A fault that cannot be read.
