@@ -1,40 +1,39 @@
-//! What the specification says of a log, as a person reads it: the verdict, where the run first diverged
-//! and what would have been allowed there, what led there, what was covered. Sections 2 and 6.
+//! Conformance reports for people: the verdict, the first divergence, what was allowed there, the events
+//! before it, the coverage. Sections 2 and 6.
 
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
-/// What is said of a log.
+/// The report on a log.
 #[derive(Clone, Debug)]
 pub struct LogReport {
-    /// The log's file.
+    /// The file of the log.
     pub log: String,
     /// The verdict.
     pub verdict: ConformVerdict,
-    /// Why the verdict is no better, or what is said besides; in sentences.
+    /// The reasons for the verdict, and further remarks, as sentences.
     pub remarks: Vec<String>,
-    /// What was judged, and against what, line by line: a name and what is said.
+    /// What was checked, and against what: lines of a name and a text.
     pub facts: Vec<(&'static str, String)>,
     /// Every event.
     pub events: Vec<EventLine>,
-    /// Where the run first diverged.
+    /// The first divergence.
     pub divergence: Option<DivergenceReport>,
-    /// How often each case was gone through, and whether it can be in the known world.
+    /// The specification cases, and how often the log covered each.
     pub coverage: Vec<CoveredCase>,
-    /// What was tolerated: the quirk's name, its reason, and at which events, counted from 1.
+    /// The tolerated divergences: the name of the quirk, its reason, and the events, counted from 1.
     pub tolerated: Vec<(String, String, Vec<usize>)>,
     /// A shorter log that diverges in the same way, event by event.
     pub shorter: Vec<String>,
-    /// The command that judges it, where it was written.
+    /// The command that checks it, if it was written.
     pub command: Option<String>,
-    /// What the camera saw when the run diverged, or last before it, as the bytes of a JPEG or PNG file.
+    /// The camera image at the divergence, or the last one before it, as a JPEG or PNG file.
     pub picture: Option<Vec<u8>>,
-    /// The known world, or the smallest that explains the log, as an SVG document.
+    /// The known world, or the smallest one that explains the log, as an SVG document.
     pub world: Option<String>,
 }
 
 impl LogReport {
-    /// How often each case was gone through in several logs together; one that can be in any of their
-    /// worlds can be.
+    /// The coverage of several logs together. A case is reachable if it is in the world of any log.
     #[must_use]
     pub fn coverage_of(reports: &[Self]) -> Vec<CoveredCase> {
         let mut together: Vec<CoveredCase> = Vec::new();
@@ -55,47 +54,47 @@ impl LogReport {
     }
 }
 
-/// An event, as a line.
+/// An event, as a line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventLine {
-    /// Which event, counted from 1.
+    /// The number of the event, from 1.
     pub number: usize,
-    /// When, in seconds since the first message.
+    /// Seconds since the first message.
     pub time: f64,
     /// What happened.
     pub what: String,
-    /// What is different after it: where the robot is, or in how many ways it may stand.
+    /// The state after it: where the robot is, or the number of poses that fit.
     pub then: String,
 }
 
-/// A divergence, as a person reads it.
+/// A divergence, in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DivergenceReport {
-    /// Which event, counted from 1; one more than there are, where one is missing at the end.
+    /// The number of the event, from 1; one more than there are if an event is missing at the end.
     pub event: usize,
-    /// When, in seconds since the first message.
+    /// Seconds since the first message.
     pub time: f64,
-    /// Which message of the log, counted from 1, and where it begins in the file; none at the end.
+    /// The number of the message in the log, from 1, and its position in the file; none at the end.
     pub message: Option<(u64, u64)>,
-    /// Whose fault it is.
+    /// The class of the fault.
     pub culprit: FaultClass,
-    /// A word for what does not fit.
+    /// The cause, one word.
     pub cause: &'static str,
     /// What happened.
     pub what: String,
-    /// Which condition is false.
+    /// The condition that is false.
     pub why: String,
-    /// What would have been allowed, and for whom.
+    /// What was allowed, and in which pose.
     pub allowed: Vec<String>,
 }
 
-/// A case and how often it was gone through.
+/// A specification case, and how often a log covered it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CoveredCase {
     /// Its name.
     pub case: String,
-    /// How often.
+    /// The number of times.
     pub count: u64,
-    /// Whether it can be gone through in the known world; `None` where none is known.
+    /// Whether the known world can reach it; `None` if no world is known.
     pub reachable: Option<bool>,
 }

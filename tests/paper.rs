@@ -101,7 +101,7 @@ fn an_unknown_id_and_a_missing_citation_are_faults() {
     assert_eq!(
         faults(&both),
         [
-            "tests/a.rs:1: `alg9.9` is no requirement of the paper",
+            "tests/a.rs:1: `alg9.9` is not a requirement of the paper",
             "alg2.4: done, but no test cites it",
         ]
     );

@@ -1,8 +1,8 @@
 //! Pages for a browser: a walk in two worlds at once ([`page`]), the run of a simulated robot
-//! ([`run_page`]), and what the specification says of logs ([`conform_page`]).
+//! ([`run_page`]), and conformance reports ([`conform_page`]).
 //!
-//! Each is one self-contained HTML document that asks nothing of the network. What happens in the
-//! browser is in `browser/`.
+//! Each is one self-contained HTML document that needs no network. Its HTML, CSS and scripts are in
+//! `browser/`.
 
 mod conform;
 mod run;
@@ -19,7 +19,7 @@ const PAGE_STYLE: &str = include_str!("browser/page.css");
 /// The beginning of the scripts of all pages.
 const PAGE_SCRIPT: &str = include_str!("browser/page.js");
 
-/// The template with each `{{place}}` filled. What is put in is not searched for places again.
+/// The template with each `{{place}}` replaced. The inserted text is not searched for places.
 fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();
@@ -31,7 +31,7 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     filled
 }
 
-/// JSON that can stand inside a `script` element: nothing in it ends the element or begins a comment.
+/// JSON for the inside of a `script` element: nothing in it ends the element or begins a comment.
 fn in_script(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }

@@ -1,31 +1,31 @@
-//! Citations of the paper in source text. The build script shares this file with the library: it
-//! runs it over all sources.
+//! Citations of the paper in source text. The build script uses this file, too, and runs it over all
+//! sources.
 
-/// Whether a citation says "here it is implemented" or "here it is checked".
+/// Whether the requirement is implemented or tested at the citation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CitationKind {
     /// In code.
     Code,
     /// In a test: in a file `tests.rs`, under a folder `tests`, in a lemma under a folder `lemmas`,
-    /// below the line `#[cfg(test)]` of a file, or in a file of Coq, at what is proved.
+    /// below the line `#[cfg(test)]` of a file, or in a Coq file, at a theorem.
     Test,
 }
 
 /// A place in the sources that cites a requirement of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Citation<'a> {
-    /// The id of the requirement, as it is written there.
+    /// The id of the requirement, as written.
     pub id: &'a str,
-    /// The file, from the root of the workspace, with `/` between folders.
+    /// The file, relative to the root of the workspace, with `/` between folders.
     pub file: &'a str,
     /// The line in the file; the first is 1.
     pub line: usize,
-    /// What is there: code or a test.
+    /// Code or a test.
     pub kind: CitationKind,
 }
 
 /// The citations in the text of a file, in their order. A citation is a comment of its own or at
-/// the end of a line: `// paper: id`, or several ids with commas between them; in a file of Coq,
+/// the end of a line: `// paper: id`, or several ids separated by commas; in a Coq file,
 /// `(* paper: id *)`.
 pub fn citations<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Citation<'a>> {
     let in_coq = file.rsplit('.').next() == Some("v");
@@ -61,7 +61,7 @@ fn in_coq_comment(source: &str) -> Option<&str> {
     source.split_once("(*")?.1.strip_suffix("*)")
 }
 
-/// Whether a string that began in this text has not ended in it.
+/// Whether a string begins in this text and does not end in it.
 fn is_in_string(text: &str) -> bool {
     (text.matches('"').count() - text.matches(r#"\""#).count()) % 2 == 1
 }

@@ -1,6 +1,6 @@
-//! The paper, traced: what it requires, where that is implemented and where it is tested.
+//! The requirements of the paper: where each is implemented and where it is tested.
 //!
-//! The requirements stand in `tests/paper.toml`. Sources cite them (see [`citations`]); those
+//! The requirements are in `tests/paper.toml`. Sources cite them (see [`citations`]); those
 //! citations were collected when this library was built, so that they can be shown far from the
 //! sources.
 

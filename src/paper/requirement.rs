@@ -7,34 +7,34 @@ use serde::Deserialize;
 /// Something that the paper defines, claims, prescribes or reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Requirement {
-    /// Its name in citations: lower-case words with dots between them.
+    /// Its id in citations: lower-case words separated by dots.
     pub id: String,
     /// The section of the paper, such as `2.3`.
     pub section: String,
     /// The line of Algorithm 1 or 2, for a requirement that is one.
     pub line: Option<u32>,
-    /// What is required, in our own words.
+    /// The requirement, in our own words.
     pub text: String,
-    /// A slip of the print, and what is right.
+    /// An error of the print, and its correction.
     pub erratum: Option<String>,
-    /// How far it has come.
+    /// Its status.
     pub status: Status,
 }
 
-/// How far a requirement has come.
+/// The status of a requirement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Implemented and tested: code and a test cite it.
     Done,
-    /// Not yet.
+    /// Not done yet.
     Open {
-        /// What comes first: ids of other requirements, or a few words. Never empty.
+        /// The prerequisites: ids of other requirements, or a few words. Never empty.
         after: Vec<String>,
     },
 }
 
 impl Requirement {
-    /// Whether the requirement stands in the given section, or in a part of it.
+    /// Whether the requirement is in the given section, or in a part of it.
     #[must_use]
     pub fn is_in(&self, section: &str) -> bool {
         self.section
@@ -43,7 +43,7 @@ impl Requirement {
     }
 }
 
-/// Why a table of requirements cannot be read.
+/// The reason why a table of requirements cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
     /// It is not TOML, or not of this form.
@@ -52,32 +52,32 @@ pub enum TableError {
     /// It has no requirement.
     #[error("the table has no requirement")]
     Empty,
-    /// An id is not lower-case words with dots between them.
-    #[error("`{0}` is no id: an id is two or more of [a-z0-9-]+ with dots between them")]
+    /// An id is not lower-case words separated by dots.
+    #[error("`{0}` is not an id: an id is two or more words of [a-z0-9-]+ separated by dots")]
     MalformedId(String),
     /// Two requirements have the same id.
-    #[error("the id `{0}` stands twice")]
+    #[error("the id `{0}` is repeated")]
     RepeatedId(String),
-    /// A section is not numbers with dots between them.
-    #[error("{id}: `{section}` is no section")]
+    /// A section is not numbers separated by dots.
+    #[error("{id}: `{section}` is not a section")]
     MalformedSection {
         /// The requirement.
         id: String,
-        /// What stands for its section.
+        /// The text of its section.
         section: String,
     },
-    /// A done requirement waits for something.
-    #[error("{0}: done, and yet `after` says what comes first")]
+    /// A done requirement has a prerequisite.
+    #[error("{0}: done, but it has an `after`")]
     DoneAfter(String),
-    /// An open requirement does not say what comes first.
-    #[error("{0}: open, and `after` does not say what comes first")]
+    /// An open requirement has no prerequisite.
+    #[error("{0}: open, but it has no `after`")]
     OpenAfterNothing(String),
-    /// What comes first looks like an id and is none.
+    /// A prerequisite looks like an id and is unknown.
     #[error("{id}: comes after `{after}`, which is not in the table")]
     UnknownAfter {
         /// The requirement.
         id: String,
-        /// What it waits for.
+        /// The unknown id.
         after: String,
     },
 }
@@ -86,7 +86,7 @@ pub enum TableError {
 ///
 /// # Errors
 ///
-/// Where the text is not such a table, or contradicts itself: see [`TableError`].
+/// Returns an error if the text is not such a table, or contradicts itself: see [`TableError`].
 pub fn requirements(text: &str) -> Result<Vec<Requirement>, TableError> {
     let table: Table = toml::from_str(text)?;
     let requirements = table
@@ -121,7 +121,7 @@ struct Table {
     requirement: Vec<Entry>,
 }
 
-/// A requirement as it is written.
+/// A requirement, as written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
@@ -161,7 +161,7 @@ impl Entry {
     }
 }
 
-/// Whether these are lower-case words with dots between them, at least two.
+/// Whether this is two or more lower-case words separated by dots.
 fn is_id(text: &str) -> bool {
     let of_a_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     text.contains('.')
@@ -176,7 +176,7 @@ mod tests {
         format!("[[requirement]]\nid = \"{id}\"\nsection = \"2.3\"\ntext = \"t\"\n{rest}\n")
     }
 
-    fn refusal(text: &str) -> String {
+    fn rejection(text: &str) -> String {
         requirements(text).unwrap_err().to_string()
     }
 
@@ -191,21 +191,22 @@ mod tests {
     }
 
     #[test]
-    fn what_contradicts_itself_is_refused_by_name() {
+    fn contradictions_are_rejected_by_name() {
         let done = "status = \"done\"";
-        assert!(refusal("").contains("no requirement"));
-        assert!(refusal(&entry("alg1.4", "status = \"nearly\"")).contains("nearly"));
-        assert!(refusal(&entry("alg1.4", "status = \"done\"\nwhy = 1")).contains("why"));
-        assert!(refusal(&entry("Alg1.4", done)).contains("`Alg1.4` is no id"));
+        assert!(rejection("").contains("no requirement"));
+        assert!(rejection(&entry("alg1.4", "status = \"nearly\"")).contains("nearly"));
+        assert!(rejection(&entry("alg1.4", "status = \"done\"\nwhy = 1")).contains("why"));
+        assert!(rejection(&entry("Alg1.4", done)).contains("`Alg1.4` is not an id"));
         assert!(
-            refusal(&(entry("a.b", done) + &entry("a.b", done))).contains("`a.b` stands twice")
+            rejection(&(entry("a.b", done) + &entry("a.b", done)))
+                .contains("the id `a.b` is repeated")
         );
-        assert!(refusal(&entry("a.b", "status = \"open\"")).starts_with("a.b: open"));
+        assert!(rejection(&entry("a.b", "status = \"open\"")).starts_with("a.b: open"));
         let waits = |status| entry("a.b", &format!("status = \"{status}\"\nafter = [\"c.d\"]"));
-        assert!(refusal(&waits("done")).starts_with("a.b: done"));
-        assert!(refusal(&waits("open")).contains("`c.d`, which is not in the table"));
+        assert!(rejection(&waits("done")).starts_with("a.b: done"));
+        assert!(rejection(&waits("open")).contains("`c.d`, which is not in the table"));
         let section = entry("a.b", done).replace("2.3", "two");
-        assert!(refusal(&section).contains("`two` is no section"));
+        assert!(rejection(&section).contains("`two` is not a section"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Requirements and citations, brought together; and whether they fit.
+//! Requirements and their citations, and whether they agree.
 
 use super::{Citation, CitationKind, Requirement, Status};
 
@@ -14,20 +14,20 @@ pub struct TracedRequirement<'a> {
 }
 
 impl TracedRequirement<'_> {
-    /// Whether the requirement is said to be done, and no code cites it.
+    /// Whether the requirement is done, but no code cites it.
     #[must_use]
     pub fn lacks_code(&self) -> bool {
         self.requirement.status == Status::Done && self.code.is_empty()
     }
 
-    /// Whether the requirement is said to be done, and no test cites it.
+    /// Whether the requirement is done, but no test cites it.
     #[must_use]
     pub fn lacks_tests(&self) -> bool {
         self.requirement.status == Status::Done && self.tests.is_empty()
     }
 }
 
-/// Every requirement with where it is cited, and the citations of what is no requirement.
+/// Every requirement with its citations, and the citations of unknown ids.
 #[derive(Clone, Debug)]
 pub struct PaperTrace<'a> {
     /// The requirements, in the order of their table.
@@ -37,7 +37,7 @@ pub struct PaperTrace<'a> {
 }
 
 impl<'a> PaperTrace<'a> {
-    /// Brings requirements and citations together.
+    /// Matches requirements and citations.
     #[must_use]
     pub fn new(requirements: &'a [Requirement], citations: &[Citation<'a>]) -> Self {
         let cited = |requirement: &Requirement, kind| {
@@ -63,10 +63,10 @@ impl<'a> PaperTrace<'a> {
         Self { rows, unknown }
     }
 
-    /// What does not fit, one line each: unknown ids first, then what done requirements lack.
+    /// The faults, one line each: unknown ids first, then done requirements without code or tests.
     pub fn faults(&self) -> impl Iterator<Item = String> {
         let unknown = self.unknown.iter().map(|Citation { id, file, line, .. }| {
-            format!("{file}:{line}: `{id}` is no requirement of the paper")
+            format!("{file}:{line}: `{id}` is not a requirement of the paper")
         });
         let lacking = self.rows.iter().filter_map(|row| {
             let what = match (row.lacks_code(), row.lacks_tests()) {
@@ -80,7 +80,7 @@ impl<'a> PaperTrace<'a> {
         unknown.chain(lacking)
     }
 
-    /// Whether every citation is of a requirement, and everything done is cited by code and by a
+    /// Whether every citation is of a requirement, and every done requirement is cited by code and by a
     /// test.
     #[must_use]
     pub fn holds(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use super::geometry::{Extent, Point};
 
-/// Straight steps by which one cubic is followed.
+/// Straight steps that approximate one cubic.
 const STEPS: usize = 14;
 
 /// A chain of cubics.
@@ -40,8 +40,8 @@ impl Curve {
         Self::new(from.at, vec![[controls[0], controls[1], to.at]])
     }
 
-    /// A smooth chain of cubics by way of the given points.
-    pub(super) fn by_way_of(from: DoorKnob, way: &[Point], to: DoorKnob) -> Self {
+    /// A smooth chain of cubics through the given points.
+    pub(super) fn through(from: DoorKnob, way: &[Point], to: DoorKnob) -> Self {
         let points: Vec<_> =
             [from.at].into_iter().chain(way.iter().copied()).chain([to.at]).collect();
         let last = points.len() - 1;
@@ -135,7 +135,7 @@ mod tests {
     fn a_curve_can_be_turned_around_and_cut_off() {
         let door = |x: f64, angle| DoorKnob::new(Point::new(x, 0.0), 1.0, angle);
         let way = [Point::new(3.0, 4.0), Point::new(9.0, -2.0)];
-        let curve = Curve::by_way_of(door(0.0, 0.0), &way, door(12.0, 1.0));
+        let curve = Curve::through(door(0.0, 0.0), &way, door(12.0, 1.0));
         let back = curve.reversed();
         let off = curve.trace.iter().zip(back.trace.iter().rev()).map(|(a, b)| a.distance(*b));
         assert!(off.fold(0.0, f64::max) < 1e-9);

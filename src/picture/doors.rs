@@ -1,31 +1,31 @@
-//! The directions of the doors around a disc: as near as the clockwise order allows to where the
-//! edges want to go.
+//! The directions of the doors around a disc: as near to the directions of the edges as the clockwise
+//! order allows.
 
 use std::f64::consts::TAU;
 
 use super::geometry::{turn, wrapped};
 
-/// How strongly the doors of one disc are drawn towards an even spread.
+/// The weight of an even spread of the doors of one disc.
 const SPREAD: f64 = 0.3;
-/// Directions from which the search for the best turn of the disc sets out.
-const SET_OUTS: usize = 72;
+/// Initial directions of the search for the best rotation of the disc.
+const INITIALS: usize = 72;
 /// Sweeps over the doors of one disc.
 const SWEEPS: usize = 80;
 
 /// The directions of the doors of one disc, in their clockwise order, at least `apart` from each
-/// other (or evenly spread, where there is no room for that). `wanted`: the direction that each
-/// edge would like; none for a loop that does not care.
+/// other (or evenly spread, if there is no room for that). `wanted`: the best direction for each edge;
+/// none for a loop.
 pub(super) fn door_directions(wanted: &[Option<f64>], apart: f64) -> Vec<f64> {
     let count = wanted.len();
     let apart = apart.min(0.85 * TAU / count as f64);
-    if let Some(directions) = in_order_already(wanted, apart) {
+    if let Some(directions) = in_order(wanted, apart) {
         return directions;
     }
     let mut best = (f64::INFINITY, Vec::new());
-    for set_out in 0..SET_OUTS {
-        let offset = TAU * set_out as f64 / SET_OUTS as f64;
+    for initial in 0..INITIALS {
+        let offset = TAU * initial as f64 / INITIALS as f64;
         let even = |index: usize| offset + TAU * index as f64 / count as f64;
-        // Of the many numbers that are the wanted direction, the nearest to the even spread.
+        // Modulo a full turn, the wanted direction nearest to the even spread.
         let targets: Vec<_> = wanted
             .iter()
             .enumerate()
@@ -42,8 +42,8 @@ pub(super) fn door_directions(wanted: &[Option<f64>], apart: f64) -> Vec<f64> {
     best.1.into_iter().map(wrapped).collect()
 }
 
-/// The wanted directions themselves, where they are in clockwise order and far enough apart.
-fn in_order_already(wanted: &[Option<f64>], apart: f64) -> Option<Vec<f64>> {
+/// The wanted directions themselves, if they are in clockwise order and far enough apart.
+fn in_order(wanted: &[Option<f64>], apart: f64) -> Option<Vec<f64>> {
     let directions = wanted.iter().copied().collect::<Option<Vec<f64>>>()?;
     if directions.len() == 1 {
         return Some(directions);
@@ -59,7 +59,7 @@ fn in_order_already(wanted: &[Option<f64>], apart: f64) -> Option<Vec<f64>> {
     (whole < 1.5 * TAU).then_some(directions)
 }
 
-/// Moves the angles to the least cost with their order and distance kept; answers the cost.
+/// Moves the angles to the least cost, and keeps their order and distance; returns the cost.
 fn settle(angles: &mut [f64], targets: &[Option<f64>], apart: f64) -> f64 {
     let count = angles.len();
     let even = TAU / count as f64;
@@ -79,7 +79,7 @@ fn settle(angles: &mut [f64], targets: &[Option<f64>], apart: f64) -> f64 {
                 let free = (pull + SPREAD * (low + high)) / (weight + 2.0 * SPREAD);
                 angles[index] = free.max(low + apart).min(high - apart);
             }
-            // All together: a turn of the whole disc.
+            // All together: a rotation of the whole disc.
             let (miss, cared) = misses(angles, targets);
             if cared > 0 {
                 let step = miss / f64::from(cared);
@@ -98,7 +98,7 @@ fn settle(angles: &mut [f64], targets: &[Option<f64>], apart: f64) -> f64 {
         .sum()
 }
 
-/// By how much, in sum, the angles fall short of their targets, and how many have one.
+/// The sum of the differences from the targets to the angles, and the number of targets.
 fn misses(angles: &[f64], targets: &[Option<f64>]) -> (f64, u32) {
     angles
         .iter()

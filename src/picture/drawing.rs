@@ -1,5 +1,4 @@
-//! The drawing: where discs, doors and curves are, before labels are put to it and it is written as
-//! SVG.
+//! The drawing: the places of discs, doors and curves, before labels are added and it is written as SVG.
 
 use crate::model::embedded_graph::{Dart, EmbeddedGraph};
 
@@ -15,7 +14,7 @@ use super::{
     ways::UnroutedEdge,
 };
 
-/// Everything at its place.
+/// The places of everything.
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
     pub(super) size: DrawingSize,
@@ -29,15 +28,15 @@ pub(super) struct Drawing {
     pub(super) ends: Vec<[usize; 2]>,
     /// The ink of each edge: 0, or one that no edge that it crosses has.
     pub(super) inks: Vec<usize>,
-    /// The ground, for floor plans.
+    /// For floor plans.
     pub(super) floor: Option<FloorScale>,
-    /// So many vertices are known; the others stand for unknown ends of edges.
+    /// The number of known vertices; the others stand for unknown ends of edges.
     pub(super) known: usize,
     /// A box that stays free, so that pictures of a series are equally large.
     pub(super) room: Extent,
 }
 
-/// What the picture shows of the ground.
+/// The scale of a floor plan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloorScale {
     /// Units of the picture in a metre.
@@ -46,7 +45,7 @@ pub(super) struct FloorScale {
     pub(super) width: f64,
 }
 
-/// The inks there are for edges that cross others.
+/// The number of inks for edges that cross others.
 pub(super) const INKS: usize = 7;
 
 impl Drawing {
@@ -119,7 +118,7 @@ impl Drawing {
         })
     }
 
-    /// The box around all that is drawn, but for labels.
+    /// The box around the drawing without labels.
     pub(super) fn extent(&self) -> Extent {
         let mut extent = self.room;
         for (centre, disc) in self.centres.iter().zip(&self.size.discs) {
@@ -136,7 +135,7 @@ impl Drawing {
     }
 }
 
-/// The direction of each dart's door: as its edge would leave, where the clockwise order allows.
+/// The direction of each dart's door: that of its edge, if the clockwise order allows.
 fn doors(graph: &EmbeddedGraph, layout: &Layout, size: &DrawingSize) -> Vec<f64> {
     let mut towards = vec![None; graph.dart_count()];
     for ((dart, other), bends) in graph.edges().zip(&layout.bends) {
@@ -158,7 +157,7 @@ fn doors(graph: &EmbeddedGraph, layout: &Layout, size: &DrawingSize) -> Vec<f64>
         .collect()
 }
 
-/// Inks by which curves that cross can be told apart.
+/// Inks that distinguish curves that cross.
 fn inks(curves: &[Curve]) -> Vec<usize> {
     let mut inks = vec![0; curves.len()];
     if curves.len() > 2 * layout::POLISHED {

@@ -24,7 +24,7 @@ impl Point {
         self.x * other.x + self.y * other.y
     }
 
-    /// Positive where `other` is clockwise of `self`.
+    /// Positive if `other` is clockwise of `self`.
     pub(super) fn cross(self, other: Self) -> f64 {
         self.x * other.y - self.y * other.x
     }
@@ -37,7 +37,7 @@ impl Point {
         self.y.atan2(self.x)
     }
 
-    /// The step of length 1 in the same direction; nothing where there is no direction.
+    /// The step of length 1 in the same direction; zero if there is no direction.
     pub(super) fn direction(self) -> Self {
         let length = self.length();
         if length > 0.0 { self * (1.0 / length) } else { Self::default() }
@@ -97,7 +97,7 @@ pub(super) fn turn(from: f64, to: f64) -> f64 {
     if rest >= TAU { 0.0 } else { rest }
 }
 
-/// Where the segments from `a` to `b` and from `c` to `d` cross in their insides.
+/// The point where the segments from `a` to `b` and from `c` to `d` cross in their interiors.
 #[expect(clippy::many_single_char_names, reason = "the usual names of the ends")]
 pub(super) fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
     let (along, other) = (b - a, d - c);
@@ -110,7 +110,7 @@ pub(super) fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> 
     ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)).then(|| a + along * t)
 }
 
-/// An upright box, empty until something is put in.
+/// An upright box, initially empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub(super) least: Point,
@@ -161,7 +161,7 @@ impl Extent {
             && other.least.y <= self.most.y
     }
 
-    /// How much area two boxes share.
+    /// The area of the intersection of two boxes.
     pub(super) fn shared_area(&self, other: &Self) -> f64 {
         let width = self.most.x.min(other.most.x) - self.least.x.max(other.least.x);
         let height = self.most.y.min(other.most.y) - self.least.y.max(other.least.y);

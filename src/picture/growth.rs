@@ -1,6 +1,6 @@
 //! The map as it grows. Section 2.3, Algorithm 1.
 //!
-//! Every stage is drawn where the last one puts it, so that a reader sees the map grow in its place.
+//! Every stage has the layout of the last one, so that the map grows in its place.
 //! An unexplored dart is the beginning of an edge that ends in a small open circle.
 
 use crate::model::{
@@ -16,10 +16,10 @@ use super::{
 
 /// The radius of the circle in which an unexplored edge ends.
 const OPEN: f64 = 5.0;
-/// How much of an unexplored edge is drawn, at most: in usual discs, and as a share of the whole edge.
+/// The greatest length that is drawn of an unexplored edge: in usual discs, and as a share of the edge.
 const STUB: [f64; 2] = [1.3, 0.36];
 
-/// A picture of each of these maps, which are the stages of one; none of a map that knows nothing.
+/// A picture of each of these maps, which are stages of one map; none of an empty map.
 pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
     let last = maps.last().and_then(Whole::new);
     let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
@@ -41,7 +41,7 @@ pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
     stages.iter_mut().map(svg).collect()
 }
 
-/// A map whose unexplored darts lead to vertices of their own, and how it is drawn.
+/// A map with a vertex for each unexplored dart, and its drawing.
 struct Whole<'a> {
     map: &'a PartialMap,
     drawing: Drawing,
@@ -82,7 +82,7 @@ impl<'a> Whole<'a> {
     }
 }
 
-/// A map with its open ends, drawn as a stage of the last one; by itself, if it is none.
+/// A map with its open ends, drawn as a stage of the last one, or alone if it is not one.
 fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
     let alone;
     let whole = if let Some(last) = last.filter(|last| last.grew_from(map)) {
@@ -126,8 +126,8 @@ fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawi
     Some((graph, drawing))
 }
 
-/// The map with a vertex for each unexplored dart, to which it leads. Known vertices and darts keep
-/// their numbers, the others follow in the order of their darts.
+/// The map with a vertex for each unexplored dart. Known vertices and darts keep their numbers, the others
+/// follow in the order of their darts.
 fn with_open_ends(map: &PartialMap) -> Option<EmbeddedGraph> {
     let mut opposite = Vec::new();
     let mut clockwise = Vec::new();
@@ -149,7 +149,7 @@ fn with_open_ends(map: &PartialMap) -> Option<EmbeddedGraph> {
     EmbeddedGraph::from_permutations(&joined, &clockwise).ok().map(|(graph, _)| graph)
 }
 
-/// The names of the known vertices, and none for the others.
+/// The names of the known vertices, and empty names for the others.
 fn names(graph: &EmbeddedGraph, known: usize) -> Vec<String> {
     let name = |vertex| if vertex < known { format!("v{vertex}") } else { String::new() };
     (0..graph.vertex_count()).map(name).collect()

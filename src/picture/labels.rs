@@ -1,5 +1,5 @@
-//! Where names stand that do not fit into a disc, and the names of edges: on their curves, clear of
-//! everything else as far as there is room.
+//! The places of names: of vertices, in or beside their discs; of edges, on their curves, clear of
+//! everything else if there is room.
 
 use std::f64::consts::TAU;
 
@@ -34,7 +34,7 @@ pub(super) struct Label {
     pub(super) kind: LabelKind,
 }
 
-/// From one line of a text to the next, in font sizes.
+/// The line height, in font sizes.
 pub(super) const LINE: f64 = 1.15;
 
 impl Label {
@@ -49,9 +49,9 @@ impl Label {
 
 /// The font size of names of edges.
 const EDGE_SIZE: f64 = 11.0;
-/// How far from a disc its name may stand.
+/// The distances of a name from its disc.
 const AWAY: [f64; 5] = [3.0, 8.0, 16.0, 28.0, 44.0];
-/// What it costs to cover a name that stands already, whatever is covered of it.
+/// The cost of covering any part of another name.
 const COVERED: f64 = 300.0;
 
 /// The labels of vertices and edges.
@@ -112,7 +112,7 @@ fn beside(centre: Point, reach: f64, name: &str, size: f64) -> Vec<Label> {
     places
 }
 
-/// The place that covers least; the first among equals.
+/// The place that covers the least; the first of several.
 fn roomiest(
     drawing: &Drawing,
     signs: &[Sign],
@@ -130,7 +130,7 @@ fn roomiest(
     best.map(|(_, label)| label)
 }
 
-/// How much the label covers of what is there already.
+/// The cost of what the label covers.
 fn covered(
     drawing: &Drawing,
     signs: &[Sign],

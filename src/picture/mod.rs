@@ -2,11 +2,10 @@
 //!
 //! A vertex is a disc; its doors are knobs on the border of the disc, in their clockwise order; an
 //! edge is a curve that leaves straight through its two doors. So the order can be read off the
-//! picture, even where edges have to cross. From the ground up: `geometry`, `text`, `doors` and
-//! `size`; the `layout` of the vertices and its `scale`; the `curves`, the `ways` that an edge may
-//! take and the `routes` that are chosen; `labels`; the `drawing` puts them together,
-//! the `signs` of the marker come upon it, and `svg` and `png` write it. `growth` draws a map while it is
-//! built, `run` a robot's way through a floor plan.
+//! picture, even if edges have to cross. Bottom up: `geometry`, `text`, `doors` and `size`; the `layout` of
+//! the vertices and its `scale`; the `curves`, the `ways` that an edge may take and the chosen `routes`;
+//! `labels`; the `drawing` combines them, `signs` adds the marker, and `svg` and `png` write it. `growth`
+//! draws a map while it is built, `run` a robot's way through a floor plan.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -48,35 +47,35 @@ pub use run::run_svg;
 pub(crate) use run::{Drawn, run_drawing};
 pub(crate) use text::escaped;
 
-/// What to draw.
+/// A picture of a world, to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPicture<'a> {
     /// The world.
     pub graph: &'a EmbeddedGraph,
     /// The name of each vertex.
     pub vertex_names: &'a [String],
-    /// The name of each dart's edge, where edges have names.
+    /// The name of each dart's edge, if edges have names.
     pub edge_names: Option<&'a [String]>,
     /// The facing dart, by which the marker is placed; without one, no marker is drawn.
     pub start: Option<Dart>,
     /// The kind of marker.
     pub marker: &'a dyn Marker,
-    /// Where the vertices are.
+    /// The positions of the vertices.
     pub placement: Placement<'a>,
-    /// Stands above the picture; may be empty.
+    /// The text above the picture; may be empty.
     pub title: &'a str,
-    /// Stands below the picture, the cost of exploring it for example; may be empty.
+    /// The text below the picture, for example the cost of the exploration; may be empty.
     pub caption: &'a str,
 }
 
 impl WorldPicture<'_> {
-    /// What lies where.
+    /// The parts of the marker.
     fn parts(&self) -> Vec<MarkerPart> {
         self.start.map_or_else(Vec::new, |facing| self.marker.parts(self.graph, facing))
     }
 
-    /// Where the marker is, in words; `None` where there is none.
-    pub(crate) fn where_the_marker_is(&self) -> Option<String> {
+    /// The place of the marker, in words; `None` if there is no marker.
+    pub(crate) fn marker_place(&self) -> Option<String> {
         let graph = self.graph;
         let name = |vertex: Vertex| {
             let known = self.vertex_names.get(vertex.at());
@@ -119,17 +118,17 @@ impl WorldPicture<'_> {
     }
 }
 
-/// Where the vertices of a picture are.
+/// The positions of the vertices of a picture.
 ///
-/// Positions that are not finite, or not one a vertex, count as [`Placement::Free`].
+/// If a position is not finite, or is missing, the placement counts as [`Placement::Free`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Placement<'a> {
-    /// Wherever the picture is clearest.
+    /// The program chooses the positions.
     #[default]
     Free,
-    /// At the given positions, in a unit that means nothing; x to the right, y up.
+    /// The given positions, in any unit; x to the right, y up.
     At(&'a [[f64; 2]]),
-    /// On the ground: the picture shows the hallways at their width, and a scale.
+    /// A floor plan: the picture shows the hallways at their width, and a scale.
     FloorPlan {
         /// Metres, x to the east, y to the north.
         positions: &'a [[f64; 2]],
@@ -139,7 +138,7 @@ pub enum Placement<'a> {
 }
 
 impl<'a> Placement<'a> {
-    /// The positions, where there are any.
+    /// The positions, if they are given.
     #[must_use]
     pub fn positions(self) -> Option<&'a [[f64; 2]]> {
         match self {
@@ -148,12 +147,12 @@ impl<'a> Placement<'a> {
         }
     }
 
-    /// The same place, if it tells where each of `count` vertices is.
+    /// The same placement if it has a finite position for each of `count` vertices, otherwise `Free`.
     fn of_all(self, count: usize) -> Self {
-        let told = self.positions().is_some_and(|positions| {
+        let complete = self.positions().is_some_and(|positions| {
             positions.len() == count && positions.iter().flatten().all(|at| at.is_finite())
         });
-        if told { self } else { Self::Free }
+        if complete { self } else { Self::Free }
     }
 }
 

@@ -1,26 +1,26 @@
-//! SVG to PNG, with the font that is shipped, and no other.
+//! SVG to PNG, with the built-in font only.
 
 use resvg::{tiny_skia, usvg};
 use thiserror::Error;
 
 use super::outlines::with_outlines;
 
-/// Pixels in a unit of a small picture.
+/// Pixels per unit of a small picture.
 const PIXELS: f32 = 2.0;
-/// The longest side of a usual image, in pixels; larger pictures get fewer pixels in a unit.
+/// The longest side of a usual image, in pixels; larger pictures get fewer pixels per unit.
 const USUAL: f32 = 2000.0;
-/// The longest side of any image: what would get less than a pixel in a unit may grow up to here.
+/// The longest side of any image, for pictures that would otherwise get less than a pixel per unit.
 const LONGEST: f32 = 4000.0;
 
-/// Why a picture could not be made.
+/// The reason why a picture could not be made.
 #[derive(Debug, Error)]
 pub enum PictureError {
-    /// The SVG is not one.
+    /// The text is not SVG.
     #[error("the SVG cannot be read: {0}")]
     Svg(#[from] usvg::Error),
     /// The image has no size, or one that does not fit in memory.
     #[error("an image of {width} x {height} pixels cannot be made")]
-    DrawingSize {
+    Size {
         /// In pixels.
         width: u32,
         /// In pixels.
@@ -31,11 +31,12 @@ pub enum PictureError {
     Png(String),
 }
 
-/// The SVG as a PNG image: two pixels in a unit, or as many as keep its longer side at 2000, but if
-/// that is less than one, then one, up to a side of 4000. Text is set in DejaVu Sans, whatever fonts the system has.
+/// The SVG as a PNG image with two pixels per unit. If its longer side would exceed 2000 pixels, there are
+/// fewer, down to one; if it would exceed 4000 pixels then, even fewer. Text is in DejaVu Sans, for any
+/// fonts of the system.
 ///
 /// # Errors
-/// Where the text is no SVG, or the image would have no pixels.
+/// Returns an error if the text is not SVG, or the image would have no pixels.
 pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
     let outlined = with_outlines(svg).map_err(usvg::Error::ParsingFailed)?;
     let tree = usvg::Tree::from_str(&outlined, &usvg::Options::default())?;
@@ -43,13 +44,13 @@ pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
     let scale = scale(size.width().max(size.height()));
     let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));
     let mut image =
-        tiny_skia::Pixmap::new(width, height).ok_or(PictureError::DrawingSize { width, height })?;
+        tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
     image.encode_png().map_err(|error| PictureError::Png(error.to_string()))
 }
 
-/// Pixels in a unit of a picture whose longer side is given.
+/// Pixels per unit of a picture with this longer side.
 fn scale(side: f32) -> f32 {
     PIXELS.min((USUAL / side).max((LONGEST / side).min(1.0)))
 }

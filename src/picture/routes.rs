@@ -1,5 +1,5 @@
-//! Which curve each edge takes: of several that leave through the right doors, the one that is
-//! short and smooth, clear of discs, and crosses little.
+//! The choice of a curve for each edge: of several that leave through the right doors, one that is short
+//! and smooth, clear of discs, and has few crossings.
 
 use super::{
     curves::Curve,
@@ -8,9 +8,9 @@ use super::{
     ways::{Discs, UnroutedEdge},
 };
 
-/// Edges up to which every curve is weighed against every other.
+/// The most edges for which every curve is compared with every other.
 const WEIGHED: usize = 200;
-/// How often every edge may choose anew.
+/// The number of times that every edge may choose again.
 const ROUNDS: usize = 4;
 
 /// Whether a drawing without crossings exists.
@@ -81,7 +81,7 @@ pub(super) fn routes(
     chosen
 }
 
-/// Where two curves cross.
+/// The crossings of two curves.
 pub(super) fn crossings(one: &Curve, other: &Curve) -> Vec<Point> {
     let mut places = Vec::new();
     if !one.extent.meets(&other.extent) {
@@ -105,7 +105,7 @@ struct Room<'a> {
 }
 
 impl Room<'_> {
-    /// What a curve costs whatever the others do.
+    /// The cost of a curve alone.
     fn cost_alone(&self, route: &UnroutedEdge, curve: &Curve) -> f64 {
         let base = self.discs.size.base;
         let mut cost = 0.16 * curve.length() / base;
@@ -153,7 +153,7 @@ impl Room<'_> {
         cost
     }
 
-    /// What a curve costs because of another.
+    /// The cost of a curve because of another.
     fn cost_against(&self, curve: &Curve, other: &Curve) -> f64 {
         let near = 0.36 * self.discs.size.base;
         if !curve.extent.widened(near).meets(&other.extent) {

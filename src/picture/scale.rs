@@ -1,5 +1,5 @@
-//! How many units of the picture a unit of the layout is: as few as leave room for discs, doors and
-//! the marker.
+//! The number of picture units in a unit of the layout: as few as leave room for discs, doors and the
+//! marker.
 
 use crate::model::embedded_graph::EmbeddedGraph;
 
@@ -9,22 +9,21 @@ use super::{
     size::{DrawingSize, Names},
 };
 
-/// What the scale is chosen for.
+/// The kind of layout for which the scale is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ScalePurpose {
     /// A layout whose usual edge has length 1.
     Usual,
-    /// Positions that are given.
+    /// Given positions.
     Given,
-    /// Positions that are given, of junctions that no foreign hallway comes near.
+    /// Given positions of junctions in a floor plan: no other hallway is near them.
     FloorPlan,
 }
 
-/// The longer side that given positions may have, in discs, however near two of them are.
+/// The greatest longer side for given positions, in discs, even if two of them are near.
 const LONGEST: f64 = 600.0;
 
-/// The longer side up to which given positions are drawn larger than they have to be, and how much
-/// larger at most.
+/// Given positions are drawn larger than necessary up to this longer side, and at most by this factor.
 const SMALL: [f64; 2] = [520.0, 1.4];
 
 /// Units of the picture in a unit of the layout.
@@ -46,7 +45,7 @@ pub(super) fn scale(
     }
 }
 
-/// As the nearest of the given positions demand.
+/// The scale that the nearest of the given positions need.
 fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[usize; 2]]) -> f64 {
     let reach = |vertex: usize| size.discs[vertex] + size.knob;
     let mut scale = 0.0_f64;
@@ -66,7 +65,7 @@ fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[
             }
         }
     }
-    // Along an edge: the marker fits between the doors, or there is room for a bow.
+    // Along an edge: room for the marker between the doors, or for a bow.
     let between = match purpose {
         ScalePurpose::FloorPlan => 24.0,
         _ => 1.2 * size.base,
@@ -83,9 +82,9 @@ fn given(places: &[Point], size: &DrawingSize, purpose: ScalePurpose, lines: &[[
     scale.max(larger).min(LONGEST * size.base / side)
 }
 
-/// As edges of length 1 look well, or larger where vertices are nearer than that.
+/// A good scale for edges of length 1, or a larger one if vertices are nearer than that.
 fn usual(graph: &EmbeddedGraph, places: &[Point], size: &DrawingSize, lines: &[[usize; 2]]) -> f64 {
-    // Curves that cross want more room than straight ones, names beside discs even more.
+    // Curves that cross need more room than straight ones, names beside discs even more.
     let discs = match (size.names, graph.genus()) {
         (Names::Beside, _) => 8.5,
         (_, 0) => 5.4,

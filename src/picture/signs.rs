@@ -1,4 +1,4 @@
-//! The signs of a marker: what lies where, drawn in red.
+//! The signs of a marker, drawn in red.
 
 use super::{
     WorldPicture,
@@ -21,7 +21,7 @@ pub(super) enum Sign {
     Bar { at: Point, direction: f64, scale: f64 },
 }
 
-/// How long a triangle is at scale 1.
+/// The length of a triangle at scale 1.
 pub(super) const ARROW: f64 = 12.0;
 
 /// The signs of the marker of a picture.
@@ -33,7 +33,7 @@ pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
             MarkerPart::At { vertex, look } => {
                 let centre = drawing.centres[vertex.at()];
                 let radius = drawing.size.discs[vertex.at()] + drawing.size.knob + 3.5;
-                // A second one at the same vertex lies around the first.
+                // A second marker at the same vertex is drawn around the first.
                 let there =
                     |sign: &&Sign| matches!(sign, Sign::Ring { centre: c, .. } if *c == centre);
                 let around = signs.iter().filter(there).count() as f64;
@@ -63,13 +63,13 @@ pub(super) fn signs(picture: &WorldPicture, drawing: &Drawing) -> Vec<Sign> {
     signs
 }
 
-/// Shares of an edge at which a mark may stand, the better ones first.
+/// Possible places of a mark, as shares of an edge, the better ones first.
 const SHARES: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
-/// So far from everything else a mark stands well.
+/// A mark at this distance from everything else has enough room.
 const CLEAR: f64 = 14.0;
 
-/// The place of a mark on a dart's edge, clear of other edges, discs and the edge's name as far as
-/// there is room; and the direction there away from the dart's vertex.
+/// The place of a mark on a dart's edge, clear of other edges, discs and the edge's name if there is room;
+/// and the direction there away from the dart's vertex.
 fn on_edge(picture: &WorldPicture, drawing: &Drawing, dart: Dart) -> Option<(Point, f64)> {
     let number = drawing.edges.iter().position(|&(one, other, _)| one == dart || other == dart)?;
     let (first, _, curve) = &drawing.edges[number];
@@ -99,7 +99,7 @@ fn on_edge(picture: &WorldPicture, drawing: &Drawing, dart: Dart) -> Option<(Poi
 }
 
 impl Sign {
-    /// The box that it fills.
+    /// The box of the sign.
     pub(super) fn extent(&self) -> Extent {
         match *self {
             Self::Ring { centre, radius, .. } => Extent::around(centre, radius + 1.5, radius + 1.5),
@@ -122,7 +122,7 @@ impl Sign {
         }
     }
 
-    /// The same sign as it stands in a legend.
+    /// The same sign for a legend.
     pub(super) fn small(self, at: Point) -> Self {
         let right = Point::new(6.0, 0.0);
         match self {
@@ -140,7 +140,7 @@ mod tests {
         embedded_graph::EmbeddedGraph, format::named_world::NamedWorld, marker::named,
     };
 
-    /// What is drawn for a marker, in a letter a sign, and what is said of it.
+    /// The signs of a marker, one letter each, and its text.
     fn drawn(world: &NamedWorld, marker: &str) -> (String, String) {
         let picture = WorldPicture { marker: named(marker).unwrap(), ..WorldPicture::from(world) };
         let letter = |sign: &Sign| match sign {
@@ -150,7 +150,7 @@ mod tests {
             Sign::Bar { .. } => '|',
         };
         let signs = signs(&picture, &Drawing::of(&picture));
-        (signs.iter().map(letter).collect(), picture.where_the_marker_is().unwrap_or_default())
+        (signs.iter().map(letter).collect(), picture.marker_place().unwrap_or_default())
     }
 
     #[test]

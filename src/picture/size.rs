@@ -1,5 +1,5 @@
-//! How large things are drawn, in picture units (pixels of an SVG at its natural size), and where
-//! the names of the vertices stand: all of them inside their discs, or all of them beside.
+//! The sizes of everything, in picture units (pixels of an SVG at its natural size), and the places of
+//! the names of the vertices: all inside their discs, or all beside them.
 
 use std::f64::consts::TAU;
 
@@ -7,16 +7,16 @@ use crate::model::embedded_graph::EmbeddedGraph;
 
 use super::{layout, text};
 
-/// Where the names of the vertices stand.
+/// The place of the names of the vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Names {
     /// In their discs, each in one line.
     Inside,
-    /// In their discs, each in two lines where it can be broken.
+    /// In their discs, each in two lines if it can be broken.
     Broken,
     /// Next to their discs.
     Beside,
-    /// Nowhere: there is no room.
+    /// No names: there is no room.
     Nowhere,
 }
 
@@ -25,29 +25,29 @@ pub(super) enum Names {
 pub(super) struct DrawingSize {
     /// The radius of a usual disc; other lengths are measured by it.
     pub(super) base: f64,
-    /// The radius of each vertex's disc: larger where many doors need room.
+    /// The radius of each vertex's disc: larger if many doors need room.
     pub(super) discs: Vec<f64>,
-    /// The radius of a door's knob; 0 where the graph is too large for knobs.
+    /// The radius of a door's knob; 0 if the graph is too large for knobs.
     pub(super) knob: f64,
     /// The font size of the names of vertices.
     pub(super) name: f64,
-    /// Where these names stand.
+    /// The place of these names.
     pub(super) names: Names,
 }
 
-/// Radii between which a usual disc may be.
+/// The least and the greatest radius of a usual disc.
 const DISC: [f64; 2] = [25.0, 44.0];
-/// A disc that is widened for names in one line; beyond it they are broken.
+/// The greatest radius of a disc for names in one line; longer names are broken.
 const ONE_LINE: f64 = 35.0;
 /// The radius of a disc without a name in it.
 const EMPTY: f64 = 19.0;
-/// Font sizes: the largest of a name in its disc, the one that is aimed at, and the smallest.
+/// Font sizes of a name in its disc: the largest, the usual one, and the smallest.
 const NAME: [f64; 3] = [15.0, 12.0, 9.5];
 /// The font size of names beside discs.
 const BESIDE: f64 = 12.0;
 /// The radius of a knob.
 const KNOB: f64 = 6.5;
-/// Between a name and the knobs to its left and right.
+/// The room between a name and the knobs to its left and right.
 const CLEAR: f64 = 2.0;
 
 impl DrawingSize {

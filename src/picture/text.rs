@@ -1,4 +1,4 @@
-//! How wide text is, and how it breaks into lines, in the font that is drawn with.
+//! The width of text in the font of the pictures, and its line breaks.
 
 /// The font's family, as the SVG names it.
 pub(super) const FAMILY: &str = "DejaVu Sans, sans-serif";
@@ -22,7 +22,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     f64::from(text.chars().map(advance).sum::<u32>()) * size / 1000.0
 }
 
-/// The text in lines that are at most as wide as given, broken at spaces where there are any.
+/// The text in lines of at most the given width, broken at spaces if there are any.
 pub(super) fn lines(text: &str, size: f64, widest: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {
@@ -55,7 +55,7 @@ pub(super) fn lines(text: &str, size: f64, widest: f64) -> Vec<String> {
     lines
 }
 
-/// A name in two lines as even as may be, broken behind a `-` or a `_`; in one where it has none.
+/// A name in two lines of similar length, broken after a `-` or a `_`; in one line if it has none.
 pub(super) fn in_two(name: &str) -> Vec<String> {
     let ends = name.char_indices().filter(|(_, letter)| ['-', '_'].contains(letter));
     let breaks = ends.map(|(at, _)| name.split_at(at + 1)).filter(|(_, rest)| !rest.is_empty());
@@ -66,8 +66,7 @@ pub(super) fn in_two(name: &str) -> Vec<String> {
     }
 }
 
-/// The text with what XML reads as markup written as references, and without the characters that
-/// XML does not allow.
+/// The text with XML's markup characters as references, and without characters that XML does not allow.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

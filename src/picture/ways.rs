@@ -9,7 +9,7 @@ use super::{
     size::DrawingSize,
 };
 
-/// An edge that wants a curve.
+/// An edge that needs a curve.
 #[derive(Clone, Debug)]
 pub(super) struct UnroutedEdge {
     /// The vertices at its ends.
@@ -20,7 +20,7 @@ pub(super) struct UnroutedEdge {
     pub(super) bends: Vec<Point>,
 }
 
-/// The discs among which edges find their ways.
+/// The discs between which the edges run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Discs<'a> {
     /// The middle of each.
@@ -37,7 +37,7 @@ impl Discs<'_> {
         })
     }
 
-    /// The curve that an edge takes where nothing is weighed.
+    /// The plain curve of an edge.
     pub(super) fn plain(&self, edge: &UnroutedEdge) -> Curve {
         let [from, to] = self.doors(edge);
         if edge.vertices[0] == edge.vertices[1] {
@@ -48,10 +48,10 @@ impl Discs<'_> {
             let handle = from.at.distance(to.at) / 3.0;
             return Curve::cubic(from, to, [handle, handle]);
         }
-        Curve::by_way_of(from, &edge.bends, to)
+        Curve::through(from, &edge.bends, to)
     }
 
-    /// All curves that are offered, the plain one first.
+    /// The candidates, the plain curve first.
     pub(super) fn candidates(&self, edge: &UnroutedEdge) -> Vec<Curve> {
         let mut curves = vec![self.plain(edge)];
         if !edge.bends.is_empty() {
@@ -60,7 +60,7 @@ impl Discs<'_> {
             for stretch in [1.0, 1.15, 1.3, 1.5] {
                 let bends = edge.bends.iter();
                 let way: Vec<_> = bends.map(|&bend| middle + (bend - middle) * stretch).collect();
-                curves.push(Curve::by_way_of(from, &way, to));
+                curves.push(Curve::through(from, &way, to));
             }
         }
         if edge.vertices[0] == edge.vertices[1] {
@@ -93,7 +93,7 @@ impl Discs<'_> {
                         centre + Point::polar(angle, radius + level * self.size.base)
                     })
                     .collect();
-                curves.push(Curve::by_way_of(from, &way, to));
+                curves.push(Curve::through(from, &way, to));
             }
         }
     }
@@ -113,7 +113,7 @@ impl Discs<'_> {
         for share in [0.3, 0.5, 0.7] {
             for bow in [-1.1, -0.8, -0.55, -0.35, -0.2, 0.2, 0.35, 0.55, 0.8, 1.1] {
                 let by = from.at + along * share + along.quarter_turn() * bow;
-                curves.push(Curve::by_way_of(from, &[by], to));
+                curves.push(Curve::through(from, &[by], to));
             }
         }
         let swings = [self.swings(edge, 0), self.swings(edge, 1)];
@@ -121,13 +121,13 @@ impl Discs<'_> {
             for second in &swings[1] {
                 let way: Vec<_> = first.iter().chain(second.iter().rev()).copied().collect();
                 if !way.is_empty() {
-                    curves.push(Curve::by_way_of(from, &way, to));
+                    curves.push(Curve::through(from, &way, to));
                 }
             }
         }
     }
 
-    /// Ways around the disc from which the edge leaves in the wrong direction.
+    /// Paths around the disc, for an edge that leaves it in the wrong direction.
     fn swings(&self, edge: &UnroutedEdge, end: usize) -> Vec<Vec<Point>> {
         let vertex = edge.vertices[end];
         let (centre, radius) = (self.centres[vertex], self.size.discs[vertex]);

@@ -1,4 +1,4 @@
-// All can be read without this: it copies commands, and opens what an address within the page names.
+// The page is readable without this script. It copies commands, and opens the target of a link.
 
 for (const button of document.querySelectorAll(".copy")) {
   const command = button.parentElement.querySelector("code");
@@ -10,7 +10,7 @@ for (const button of document.querySelectorAll(".copy")) {
       await navigator.clipboard.writeText(command.textContent);
       button.textContent = "Copied";
     } catch {
-      // The browser does not let us: the command is marked, so that a key copies it.
+      // The browser does not allow it: select the command, so that a key copies it.
       button.textContent = "Marked";
     }
     setTimeout(() => {
@@ -19,7 +19,7 @@ for (const button of document.querySelectorAll(".copy")) {
   });
 }
 
-/** Not every browser opens what is closed around the element that an address names. */
+/** Not every browser opens the closed elements around the target of a link. */
 function openNamed() {
   const named = document.getElementById(location.hash.slice(1));
   const closed = named?.closest("details:not([open])");

@@ -1,6 +1,6 @@
-// The floor: where the robot is, and of the drawing of the whole run what has happened so far.
+// The floor: the robot, and the part of the drawing that has happened so far.
 
-/** The largest font size of a name, in units of the drawing: it is not to cover what is beside it. */
+/** The largest font size of a name, in units of the drawing, so that it covers nothing beside it. */
 const LARGEST = 22;
 
 class Floor {
@@ -18,7 +18,7 @@ class Floor {
     });
     this.calls = all(".call, .badge").map((sign) => [sign, Number(sign.dataset.rounds)]);
     this.passes = all("[data-moves]").map((number) => [number, Number(number.dataset.moves)]);
-    // The shortest turns, so that the robot does not spin around where its heading jumps by 360.
+    // The shortest turns, so that the robot does not spin when its heading jumps by 360.
     let turn = 0;
     this.turns = rounds.map((round) => {
       turn += ((((round.turn - turn) % 360) + 540) % 360) - 180;
@@ -27,7 +27,7 @@ class Floor {
     this.names = all(".names text").map((name) => [name, Number(name.getAttribute("font-size"))]);
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
-    // Below the signs of calls: a cross where it stands is seen.
+    // Below the signs of calls, so that a cross at the robot's place is visible.
     this.svg.insertBefore(this.robot, this.svg.querySelector(":scope > .call"));
     new ResizeObserver(() => this.scale()).observe(this.svg);
     this.scale();
@@ -35,7 +35,7 @@ class Floor {
 
   /** What has to be seen is not drawn smaller than a reader can. */
   scale() {
-    // How many units of the drawing a pixel of the screen is.
+    // Units of the drawing per pixel of the screen.
     this.pixel = 1 / (this.svg.getScreenCTM()?.a || 1);
     this.svg.style.setProperty("--pixel", this.pixel);
     this.svg.classList.toggle("small", this.pixel > 1.6);

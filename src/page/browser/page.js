@@ -1,4 +1,4 @@
-// What the pages share.
+// Shared by all pages.
 
 const find = (selector) => document.querySelector(selector);
 

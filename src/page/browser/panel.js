@@ -14,7 +14,7 @@ class Panel {
     this.figure = figure;
     this.onDoor = onDoor;
     this.svg = figure.querySelector("svg");
-    // The title would pop up wherever the pointer rests.
+    // The title would pop up under the pointer.
     const title = this.svg.querySelector("title");
     this.svg.setAttribute("aria-label", title?.textContent ?? "");
     title?.remove();
@@ -25,14 +25,14 @@ class Panel {
       const [x, y, r] = ["cx", "cy", "r"].map((name) => Number(disc.getAttribute(name)));
       this.discs.set(Number(disc.dataset.vertex), { x, y, r });
     }
-    // By the dart by which a robot comes in: the edge that it has come along.
+    // For each entry dart, the edge along which a robot comes in.
     this.ways = new Map();
     for (const path of this.svg.querySelectorAll("path.edge")) {
       const [one, two] = path.dataset.darts.split(" ").map(Number);
       this.ways.set(two, { path, backward: false, opposite: one });
       this.ways.set(one, { path, backward: true, opposite: two });
     }
-    // A large world has no knobs. Each is followed by its number.
+    // A large world has no knobs. Each knob is followed by its number.
     const knobs = [...this.svg.querySelectorAll("circle.door")];
     this.knob = Number(knobs[0]?.getAttribute("r") ?? 0);
     this.numbers = new Map(knobs.map((it) => [Number(it.dataset.dart), [it, it.nextElementSibling]]));
@@ -61,7 +61,7 @@ class Panel {
     const [left, top] = ["x", "y"].map((side) => Math.min(...boxes.map((box) => box[side])));
     const width = Math.max(...boxes.map((box) => box.x + box.width)) - left;
     const height = Math.max(...boxes.map((box) => box.y + box.height)) - top;
-    // Room for what stands around a disc: the ring of a marker, the numbers of doors.
+    // Room around a disc for the ring of a marker and the numbers of doors.
     const room = 16;
     const box = [left - room, top - room, width + 2 * room, height + 2 * room];
     this.svg.setAttribute("viewBox", box.join(" "));
@@ -153,7 +153,7 @@ class Panel {
     const angles = doors.map(({ angle }) => angle).sort((one, two) => one - two);
     const gaps = angles.map((angle, at) => (angles[at + 1] ?? angles[0] + 2 * Math.PI) - angle);
     const half = Math.sin(Math.min(Math.PI, ...gaps) / 2);
-    // Many doors stand closer together: further out there is more room.
+    // Many doors are closer together: farther out there is more room.
     const wish = Math.max(1.6 * this.knob, 9 * pixel);
     const away = Math.min(Math.max(disc.r + wish / 4, wish / half), disc.r + 30 * pixel);
     const radius = Math.min(wish, away * half);
@@ -161,7 +161,7 @@ class Panel {
 
     const reach = Math.max(radius, 22 * pixel);
     const circle = (name, { x, y }, r) => drawn("circle", { class: name, cx: x, cy: y, r });
-    // A new group, so that it appears anew.
+    // A new group, so that its animation runs again.
     const group = drawn("g", { class: "own-doors" });
     group.append(...doors.map(({ at }) => circle("reach", at, reach)));
     for (const { action, dart, at } of doors) {
@@ -173,7 +173,7 @@ class Panel {
       door.classList.toggle("marked", dart === state.pointing);
       group.append(door);
     }
-    // A finger covers several doors: the nearest is meant.
+    // A finger covers several doors: choose the nearest.
     group.addEventListener("click", ({ clientX, clientY }) => {
       const point = new DOMPoint(clientX, clientY).matrixTransform(this.svg.getScreenCTM().inverse());
       const far = ({ at }) => distance(at, point);

@@ -1,4 +1,4 @@
-// What both robots have perceived: a row a step, the newest first.
+// The percepts of both robots: a row for each step, the newest first.
 
 class Percepts {
   constructor(section) {

@@ -1,4 +1,4 @@
-// The pairs that the robots can reach together: where they are, and where they have been.
+// The pairs of states that the robots can reach together: the current one, and the visited ones.
 
 class Relation {
   /** More pairs than this are not shown one by one. */
@@ -53,7 +53,7 @@ class Relation {
     this.count.replaceChildren("Now ", now, at === undefined ? ", which is not among them!" : met);
     if (!item) return;
     item.setAttribute("aria-current", "true");
-    // Scrolls the list alone, never the page.
+    // Scrolls only the list, never the page.
     const [box, here] = [this.list.getBoundingClientRect(), item.getBoundingClientRect()];
     if (here.top < box.top) this.list.scrollTop -= box.top - here.top + 8;
     if (here.bottom > box.bottom) this.list.scrollTop += here.bottom - box.bottom + 8;

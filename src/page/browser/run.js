@@ -1,9 +1,8 @@
-// The run: the slider, the buttons and the keys choose a picture, and all else shows how things were
-// when it was taken.
+// The run: the slider, the buttons and the keys choose a picture; the page shows the run at that time.
 
 const data = JSON.parse(find("#data").textContent);
 const { rounds, calls, story, pictures } = data;
-/** More junctions than this are not marked along the slider one by one. */
+/** The most junctions that are marked along the slider one by one. */
 const MARKS = 150;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -21,7 +20,7 @@ const lines = story.map((line) => {
 });
 find(".story").append(...lines);
 
-/** Where the lines begin that were told last. */
+/** The index of the first line of the latest event. */
 const toldFrom = [];
 for (const [at, { story: told }] of rounds.entries()) {
   const before = rounds[at - 1]?.story ?? 0;
@@ -86,7 +85,7 @@ function show(number, duration = 0) {
   slider.setAttribute("aria-valuetext", `picture ${at + 1} of ${rounds.length}, ${now}`);
   write(".number", `picture ${at + 1} of ${rounds.length}`);
   write(".now", now);
-  // Who cannot see the page hears where the run stands, but not while it plays.
+  // For screen readers: the current picture, but not while the run plays.
   if (timer === null) write("[role=status]", `${now}, ${round.state}: ${round.scene}`);
 }
 
@@ -117,7 +116,7 @@ function go(number) {
   show(number);
 }
 
-/** The picture at which the robot knew a junction, next in a direction. */
+/** The next picture, in a direction, at which the robot had decided a junction. */
 function junction(direction) {
   const places = [0, ...called.keys(), last].filter((place) => (place - at) * direction > 0);
   return direction > 0 ? Math.min(last, ...places) : Math.max(0, ...places);
@@ -155,7 +154,7 @@ if (last >= 0) {
   for (const [id, deed] of Object.entries(deeds)) find(`#${id}`).addEventListener("click", deed);
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    // Space presses a button that has the focus, as everywhere, and a list has keys of its own.
+    // Space presses a focused button, as usual, and a list has its own keys.
     if (event.target.closest("select") || (event.key === " " && event.target.closest("button"))) return;
     const deed = keyed(event);
     if (!deed) return;
@@ -166,7 +165,7 @@ if (last >= 0) {
   const marks = find(".marks");
   marks.setAttribute("viewBox", `0 0 ${Math.max(last, 1)} 1`);
   for (const [place, { conforms }] of called) {
-    // Too many would be a grey bar; those that matter stay.
+    // Too many marks would be a grey bar; the important ones stay.
     if (conforms && called.size > MARKS) continue;
     marks.append(drawn("path", { d: `M${place} 0V1`, class: conforms ? "" : "wrong" }));
   }

@@ -1,4 +1,4 @@
-// The walk: both robots do the same, by hand, at random, or as the walk that tells them apart.
+// The walk: both robots take the same actions, by hand, at random, or on the walk that tells them apart.
 
 const data = JSON.parse(find("#data").textContent);
 for (const { states } of data.sides) {
@@ -7,7 +7,7 @@ for (const { states } of data.sides) {
   }
 }
 
-/** How long a robot travels and then rests, in milliseconds. */
+/** The times that a robot travels and then rests, in milliseconds. */
 const BY_HAND = { travel: 420 };
 const AT_RANDOM = { travel: 260, rest: 120 };
 const TELLING = { travel: 800, rest: 450 };
@@ -21,7 +21,7 @@ const pairText = ([a, b]) => `${data.sides[0].states[a].text} ~ ${data.sides[1].
 const relation = data.relation && new Relation(find(".relation"), data.relation, pairText);
 const indices = data.sides.map(({ states }) => new Map(states.map((state, at) => [state, at])));
 
-/** The two states at each step so far, and what was done to get there. */
+/** The two states at each step so far, and the action before it. */
 const steps = [];
 const here = () => steps.at(-1).states;
 const pair = (states) => states.map((state, side) => indices[side].get(state));
@@ -39,7 +39,7 @@ function told({ action, states }) {
   return a === b ? `${when}: both perceive ${a}.` : `${when}: they differ. A: ${a}; B: ${b}.`;
 }
 
-/** Shows where the robots are now; with a `duration` they travel there. */
+/** Shows the robots' current states; with a `duration` they travel there. */
 function show(duration = 0) {
   const states = here();
   for (const [side, panel] of panels.entries()) {
@@ -59,7 +59,7 @@ function enter(action, states) {
   relation?.visit(pair(states));
 }
 
-/** Both robots do this, if both can; answers whether. */
+/** Both robots take this action, if both can; returns whether they did. */
 function act(action, { travel } = BY_HAND) {
   const next = here().map((state) => state.actions.get(action));
   const able = next.filter(Boolean).length;
@@ -91,11 +91,11 @@ function undo() {
   show();
 }
 
-// Walks that go by themselves.
+// Automatic walks.
 
 let timer = null;
 
-/** Does what `next` says until it says nothing. */
+/** Takes the actions of `next` until it returns none. */
 function play(next, pace) {
   const action = next();
   const went = action !== undefined && act(action, pace);
@@ -148,7 +148,7 @@ const buttons = new Map();
   find(".doors").append(...buttons.values());
 }
 
-/** What neither robot can do is hidden; what one of them cannot is there, but does not act. */
+/** An action that neither robot can take is hidden; one that only one of them can take is disabled. */
 function showActions() {
   for (const [action, button] of buttons) {
     const focused = document.activeElement === button;
@@ -171,7 +171,7 @@ for (const [action, key] of [["drop", "d"], ["pick-up", "p"]]) {
 
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  // Space presses a button that has the focus, as everywhere.
+  // Space presses a focused button, as usual.
   if (event.key === " " && event.target.closest("button")) return;
   const meant = keys.find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
   if (meant) meant[3]();
@@ -186,7 +186,7 @@ find("#restart").addEventListener("click", restart);
 find("#tell-apart").hidden = !data.walk?.length;
 find("#tell-apart").addEventListener("click", tellApart);
 
-// What the keys and the signs mean.
+// The legend of the keys and the signs.
 
 {
   const key = (name) => Object.assign(document.createElement("kbd"), { textContent: name });

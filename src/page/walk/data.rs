@@ -1,4 +1,4 @@
-//! What the page is told, as the JSON that its script reads.
+//! The data of the page, as JSON for its script.
 
 use serde_json::{Value, json};
 
@@ -39,7 +39,7 @@ fn side(side: &WalkSide) -> Value {
 
 fn state(side: &WalkSide, robot: &PlacedRobot, actions: &[(Action, usize)]) -> Value {
     let actions = actions.iter().map(|(action, to)| json!([action.to_string(), to]));
-    // A marker that stays where it is stands in the picture.
+    // A marker that stays in its place is in the picture.
     let marker = match robot.state().placed {
         _ if !robot.marker().is_movable() => Value::Null,
         Some(placed) => json!(robot.graph().vertex(placed).0),

@@ -1,6 +1,6 @@
 //! A page on which a reader walks two worlds at once: a robot in each, both sent through the same
-//! doors, and what each of them perceives. Section 2.2, Figure 1.
-//!
+//! doors, and the percepts of each. Section 2.2, Figure 1.
+
 mod data;
 mod side;
 
@@ -11,7 +11,7 @@ use crate::{
 };
 use side::WalkSide;
 
-/// What the page shows.
+/// The content of the page.
 #[derive(Clone, Copy)]
 pub struct WalkPage<'a> {
     /// The heading, such as "figure-1a and figure-1b, undirected marker".
@@ -22,12 +22,12 @@ pub struct WalkPage<'a> {
     pub worlds: [&'a NamedWorld; 2],
     /// The comparison of these two worlds.
     pub comparison: &'a Comparison<'a>,
-    /// Where the two robots begin: the darts by which they have come in.
+    /// The initial poses of the two robots: the darts by which they came in.
     pub poses: [Dart; 2],
 }
 
 const PAGE: &str = include_str!("../browser/walk.html");
-/// In the order in which they build on each other; they share one scope.
+/// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 5] = [
     PAGE_SCRIPT,
     include_str!("../browser/panel.js"),
@@ -47,8 +47,8 @@ pub fn page(page: &WalkPage) -> String {
         "style" => PAGE_STYLE.to_owned(),
         "name of A" => escaped(&page.worlds[0].name),
         "name of B" => escaped(&page.worlds[1].name),
-        "marker of A" => escaped(&one.where_the_marker_is()),
-        "marker of B" => escaped(&other.where_the_marker_is()),
+        "marker of A" => escaped(&one.marker_place()),
+        "marker of B" => escaped(&other.marker_place()),
         "picture of A" => one.picture(),
         "picture of B" => other.picture(),
         "data" => data::json(page, [&one, &other]),
@@ -67,7 +67,7 @@ mod tests {
         marker::{self, Marker},
     };
 
-    /// A chain of so many edges, begun at one end.
+    /// A chain with this number of edges; the start is one end.
     fn chain(name: &str, edges: usize) -> NamedWorld {
         let vertex = |n: usize| {
             let neighbours = [n.checked_sub(1), Some(n + 1).filter(|&next| next <= edges)];
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_text_wherever_they_stand() {
+    fn names_are_escaped_everywhere() {
         let nasty = "</script><!--<i>&\"{{data}}";
         let worlds = [chain(nasty, 1), chain("plain", 1)];
         let document = document(&marker::NoMarker, worlds.each_ref(), nasty);
@@ -100,7 +100,7 @@ mod tests {
         assert!(!document.contains("</script><"));
         assert_eq!(document.matches("</script>").count(), 2);
         assert_eq!(document.matches("<!--").count(), 1, "the template's own");
-        // What is put in is not searched for places.
+        // The inserted text is not searched for places.
         assert!(document.contains("{{data}}"));
         assert_eq!(data_of(&document)["sides"][0]["name"], nasty);
     }
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn the_data_tells_where_each_action_leads_and_how_the_worlds_differ() {
+    fn the_data_has_the_state_after_each_action_and_the_difference_of_the_worlds() {
         let worlds = [chain("one", 1), chain("two", 2)];
         let data = data_of(&document(&marker::Directional, worlds.each_ref(), ""));
         assert_eq!((&data["relation"], &data["walk"]), (&Value::Null, &json!(["0"])));
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_data_tells_the_pairs_that_the_robots_can_reach() {
+    fn the_data_has_the_pairs_that_the_robots_can_reach() {
         let worlds = [chain("one", 1), chain("other", 1)];
         let data = data_of(&document(&marker::Movable, worlds.each_ref(), ""));
         assert_eq!(data["walk"], Value::Null);

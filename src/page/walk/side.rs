@@ -12,14 +12,14 @@ use crate::{
     picture::{WorldPicture, svg},
 };
 
-/// A world and what can happen in it from a start.
+/// A world, and the states that a robot can reach in it.
 pub(super) struct WalkSide<'a> {
     pub(super) world: &'a NamedWorld,
     /// The robot in each state that it can reach, the start first.
     pub(super) robots: Vec<PlacedRobot<'a>>,
-    /// What it can do in each state, and the place of the state after it.
+    /// The actions in each state, and the index of the state after each.
     pub(super) actions: Vec<Vec<(Action, usize)>>,
-    /// The place of each state.
+    /// The index of each state.
     place: HashMap<State, usize>,
 }
 
@@ -44,13 +44,13 @@ impl<'a> WalkSide<'a> {
         side
     }
 
-    /// The place of a state; the start's, if the robot cannot be in it.
+    /// The index of a state; that of the start if the robot cannot reach the state.
     pub(super) fn place(&self, state: State) -> usize {
         self.place.get(&state).copied().unwrap_or_default()
     }
 
-    /// The world as it is drawn, but for its words; and for its marker, if that can be moved: this the
-    /// page shows itself.
+    /// The drawing of the world, without texts; and without its marker if that can be moved, because the
+    /// page draws it.
     pub(super) fn picture(&self) -> String {
         let marker = *self.robots[0].marker();
         let start = self.placed().filter(|_| !marker.is_movable());
@@ -63,12 +63,12 @@ impl<'a> WalkSide<'a> {
         })
     }
 
-    /// Where the marker is, in words.
-    pub(super) fn where_the_marker_is(&self) -> String {
+    /// The place of the marker, in words.
+    pub(super) fn marker_place(&self) -> String {
         let marker = *self.robots[0].marker();
         let picture =
             WorldPicture { start: self.placed(), marker, ..WorldPicture::from(self.world) };
-        let place = picture.where_the_marker_is().unwrap_or_default();
+        let place = picture.marker_place().unwrap_or_default();
         if marker.is_movable() {
             format!("{place} at first; a red robot carries it")
         } else {

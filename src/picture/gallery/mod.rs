@@ -1,4 +1,4 @@
-//! Pictures of many worlds, held against their graphs. To look at them, name a directory:
+//! Pictures of many worlds, compared with their graphs. To look at them, name a directory:
 //! `PICTURES=some/directory cargo test --release gallery`.
 
 mod worlds;
@@ -31,7 +31,7 @@ fn numbers(path: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Reads the order off the SVG and holds it against the graph.
+/// Reads the order off the SVG and compares it with the graph.
 fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
     let document = Document::parse(svg).unwrap();
     let of_class = |class: &'static str| {
@@ -81,7 +81,7 @@ fn assert_doors_in_order(world: &NamedWorld, svg: &str) {
     }
 }
 
-/// A world of the gallery, and what is drawn of it.
+/// A world of the gallery, and its drawing.
 struct Drawn {
     world: NamedWorld,
     drawing: Drawing,
@@ -129,7 +129,7 @@ fn doors_stand_in_clockwise_order_whatever_the_world() {
     }
 }
 
-/// How often the curves of the picture cross.
+/// The number of crossings of the curves.
 fn crossings(drawing: &Drawing) -> usize {
     let mut count = 0;
     for (at, (.., one)) in drawing.edges.iter().enumerate() {
@@ -160,7 +160,7 @@ fn a_world_in_the_plane_is_drawn_without_crossings() {
     assert!(planar > 100, "{planar}");
 }
 
-/// The vertices, not its own, through whose discs an edge passes; each with the edge.
+/// The edges that pass through the disc of a vertex that is not an end, each with the vertex.
 fn pierced(drawing: &Drawing) -> Vec<(usize, usize)> {
     let mut pierced = Vec::new();
     for (edge, ((.., curve), ends)) in drawing.edges.iter().zip(&drawing.ends).enumerate() {

@@ -1,4 +1,4 @@
-//! The worlds that the pictures are held against.
+//! The worlds of the gallery.
 
 use std::f64::consts::TAU;
 
@@ -97,7 +97,7 @@ impl Dice {
     }
 }
 
-/// A random connected world: a tree, and further edges put in at random places.
+/// A random connected world: a tree, and further edges at random places.
 pub(super) fn random(seed: u64, vertices: usize, edges: usize) -> NamedWorld {
     let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     let mut lists: Vec<(String, Vec<String>)> =

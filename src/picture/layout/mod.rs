@@ -1,7 +1,6 @@
-//! Where the vertices go, and by which bends loops and parallel edges keep apart.
+//! The positions of the vertices, and of bends that keep loops and parallel edges apart.
 //!
-//! A graph in the plane is laid out as it lies there, without a crossing; any other by the lengths
-//! of its paths. The unit is the length of a usual edge; y points down.
+//! A planar embedded graph is laid out without crossings, any other graph by the lengths of its paths. The unit is the length of a usual edge; y points down.
 
 mod planar;
 mod planar_part;
@@ -18,10 +17,10 @@ use planar::Weights;
 use refine::Keep;
 use subdivision::Subdivision;
 
-/// Vertices up to which a layout is polished; larger ones are plain.
+/// The most vertices of a polished layout; larger ones are plain.
 pub(super) const POLISHED: usize = 120;
 
-/// Where everything is.
+/// A layout.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// One point a vertex.
@@ -30,7 +29,7 @@ pub(super) struct Layout {
     pub(super) bends: Vec<Vec<Point>>,
 }
 
-/// Nodes, bends included, up to which a layout in the plane is affordable.
+/// The most nodes, with bends, for which a planar layout is affordable.
 const PLANAR: usize = 6000;
 
 /// A layout of the graph.

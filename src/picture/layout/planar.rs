@@ -1,4 +1,4 @@
-//! Tutte's layout of a graph in the plane: straight segments, no crossing, every order kept.
+//! Tutte's layout of a planar graph: straight segments, no crossing, every order kept.
 //!
 //! The largest face lies outside. Every other face is filled with triangles, so that the whole is
 //! three-connected; then each node goes to the middle of its neighbours (W. T. Tutte, "How to draw
@@ -9,17 +9,17 @@ use std::f64::consts::TAU;
 
 use super::{super::geometry::Point, subdivision::Subdivision};
 
-/// Sweeps of the relaxation; it stops earlier when nothing moves any more.
+/// The most sweeps of the relaxation; it stops earlier if no node moves.
 const SWEEPS: usize = 4000;
-/// A sweep that moves no node further than this is the last.
+/// A sweep that moves no node farther than this is the last.
 const STILL: f64 = 1e-10;
 
-/// Rounds in which the weights are made anew.
+/// Rounds in which the weights are computed again.
 const ROUNDS: usize = 12;
 /// Sweeps of each of these rounds.
 const ROUND_SWEEPS: usize = 250;
 
-/// Whether long segments are drawn together.
+/// The weights of segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Weights {
     /// All segments weigh the same.

@@ -1,9 +1,9 @@
-//! As much of a graph as lies in the plane with its orders kept: a spanning tree, and then each
-//! edge that does not need a handle of the surface.
+//! A planar part of a graph, with its orders: a spanning tree, and each further edge that does not need a
+//! handle of the surface.
 
 use crate::model::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 
-/// The graph without the edges that keep it from lying in the plane, its vertices as they were.
+/// The graph without the edges that make it non-planar; its vertices stay.
 pub(super) fn planar_part(graph: &EmbeddedGraph) -> Option<EmbeddedGraph> {
     let mut kept = spanning_tree(graph);
     let mut part = with_edges(graph, &kept)?;
@@ -45,7 +45,7 @@ fn spanning_tree(graph: &EmbeddedGraph) -> Vec<bool> {
     kept
 }
 
-/// The graph with only these darts; none where that is no embedded graph.
+/// The graph with only these darts; none if that is not an embedded graph.
 fn with_edges(graph: &EmbeddedGraph, kept: &[bool]) -> Option<EmbeddedGraph> {
     let name = |dart: Dart| dart.min(graph.opposite(dart)).0.to_string();
     let lists: Vec<_> = graph

@@ -1,4 +1,4 @@
-//! A large tree around its middle: each depth on a circle of its own, the leaves evenly around.
+//! A large tree around its middle: each depth on its own circle, the leaves evenly spread.
 
 use std::f64::consts::TAU;
 
@@ -6,10 +6,10 @@ use crate::model::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 
 use super::{super::geometry::Point, stress::hops};
 
-/// The least way along a circle from one leaf to the next.
+/// The least distance along a circle from one leaf to the next.
 const APART: f64 = 0.7;
 
-/// One point a vertex of a tree, each order kept.
+/// A point for each vertex of a tree; all orders are kept.
 pub(super) fn tree(graph: &EmbeddedGraph) -> Vec<Point> {
     let root = middle(graph);
     let depths = hops(graph, root);

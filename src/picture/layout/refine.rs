@@ -1,5 +1,5 @@
-//! Springs along segments, and room around nodes, segments and corners. Each node moves downhill,
-//! and where the embedding is to be kept, only as far as nothing crosses and no order changes.
+//! Springs along segments, and room around nodes, segments and corners. Each node moves downhill; if the
+//! embedding must be kept, only as far as nothing crosses and no order changes.
 
 use std::f64::consts::TAU;
 
@@ -11,13 +11,13 @@ use super::{
 /// What a move may not change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Keep {
-    /// No crossing comes in, and the order around each node stays.
+    /// No new crossings; the order around each node stays.
     Embedding,
     /// Anything may change.
     Nothing,
 }
 
-/// The work that is spent, in distances computed.
+/// The budget, in computed distances.
 const BUDGET: usize = 60_000_000;
 
 /// Moves the points of the nodes to a better place.
@@ -61,7 +61,7 @@ impl<'a> Field<'a> {
         Self { darts: web.darts_of_nodes(), web, points, keep, segments }
     }
 
-    /// Moves one node downhill, and answers how far.
+    /// Moves one node downhill, and returns the distance.
     fn improve(&mut self, node: usize, step: &mut f64) -> f64 {
         const TOUCH: f64 = 1e-5;
         let here = self.points[node];
@@ -86,7 +86,7 @@ impl<'a> Field<'a> {
         0.0
     }
 
-    /// All of the energy that depends on where the node is.
+    /// The part of the energy that depends on the node's place.
     fn energy(&self, node: usize) -> f64 {
         let here = self.points[node];
         let weight = |node: usize| if node < self.web.vertices { 1.0 } else { 0.4 };
@@ -131,7 +131,7 @@ impl<'a> Field<'a> {
         (0..darts.len()).map(move |at| turn(angle(darts[at]), angle(darts[(at + 1) % darts.len()])))
     }
 
-    /// How far the doors of the node are from having room.
+    /// The lack of room for the doors of the node.
     fn tightness(&self, node: usize) -> f64 {
         if self.darts[node].len() < 2 || node >= self.web.vertices {
             return 0.0;
@@ -145,7 +145,7 @@ impl<'a> Field<'a> {
             .sum()
     }
 
-    /// Whether what is to be kept is kept, after the node has moved.
+    /// Whether the required properties hold after the node has moved.
     fn is_allowed(&self, node: usize) -> bool {
         if self.keep == Keep::Nothing {
             return true;

@@ -14,15 +14,15 @@ use super::{
     subdivision::Subdivision,
 };
 
-/// Vertices beyond which even the plain layout does not compare all pairs.
+/// The most vertices for which the plain layout compares all pairs.
 const ALL_PAIRS: usize = 3000;
 /// Faces that are tried as the outer one.
 const FRAMES: usize = 6;
 /// Starting places that are tried, each also as its mirror image.
 const TRIES: u32 = 24;
 
-/// The best of several layouts: few crossings, and doors near the straight lines. `in_part`: one
-/// more layout, that of the part of the graph that lies in the plane.
+/// The best of several layouts: few crossings, and doors near the straight lines. `in_part`: one more
+/// layout, that of a planar part of the graph.
 pub(super) fn best(graph: &EmbeddedGraph, in_part: Option<Vec<Point>>) -> Vec<Point> {
     let count = graph.vertex_count();
     let distances = distances(graph);
@@ -111,7 +111,7 @@ pub(super) fn plain(graph: &EmbeddedGraph) -> Vec<Point> {
     points
 }
 
-/// Places to set out from: a circle in breadth-first order, in the order of the numbers, and then
+/// Initial places: a circle in breadth-first order, in the order of the numbers, and then
 /// at random from a fixed seed.
 fn set_out(graph: &EmbeddedGraph, attempt: u32) -> Vec<Point> {
     let count = graph.vertex_count();
@@ -157,7 +157,7 @@ fn majorize(points: &mut [Point], distances: &[Vec<u32>]) {
                 let wish = f64::from(hops);
                 let weight = 1.0 / (wish * wish);
                 let away = match (here - points[other]).direction() {
-                    // Two vertices at one place part in directions of their own.
+                    // Two vertices at one place move apart in different directions.
                     none if none == Point::default() => Point::polar(2.4 * vertex as f64, 1.0),
                     direction => direction,
                 };

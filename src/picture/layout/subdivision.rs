@@ -1,4 +1,4 @@
-//! A graph without loops and parallel edges: each of them gets bends, which are nodes of their own.
+//! A graph whose loops and parallel edges get bends, which are further nodes, so that it is simple.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(super) struct Subdivision {
     pub(super) opposite: Vec<usize>,
     /// The next dart clockwise around the same node.
     pub(super) clockwise: Vec<usize>,
-    /// The length that each dart's segment would like to have.
+    /// The best length of each dart's segment.
     pub(super) wish: Vec<f64>,
     /// The bends of each edge, from its first dart on.
     pub(super) bends: Vec<Vec<usize>>,

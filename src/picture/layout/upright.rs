@@ -1,4 +1,4 @@
-//! How the whole layout is turned: edges level or upright, first vertices where reading begins.
+//! The rotation of the whole layout: edges level or upright, first vertices at the top left.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,11 +9,10 @@ use super::{
     Layout,
 };
 
-/// Angles that are tried at most.
+/// The most angles that are tried.
 const TRIES: usize = 400;
 
-/// Turns the layout about the origin; where no vertex has an order to keep, it may also be
-/// reflected.
+/// Rotates the layout about the origin; if no vertex has an order to keep, it may also be reflected.
 pub(super) fn turn_upright(graph: &EmbeddedGraph, layout: &mut Layout) {
     let edges: Vec<_> = graph
         .edges()
@@ -89,7 +88,7 @@ fn score(vertices: &[Point], edges: &[(usize, usize)]) -> f64 {
         let late = (number as f64 + 0.5) / count - 0.5;
         reading += late * (from_middle.x + 2.0 * from_middle.y) / count;
     }
-    // Numbers that grow clockwise, where they go around.
+    // Numbers that grow clockwise around the centre.
     let around: f64 = (0..vertices.len())
         .map(|at| {
             let next = vertices[(at + 1) % vertices.len()];

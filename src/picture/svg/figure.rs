@@ -24,7 +24,7 @@ const EDGES: [&str; INKS + 1] =
     ["#4a5568", "#1f6fb2", "#b3541e", "#2e7d4f", "#7b4fa3", "#a3842a", "#0f8b8d", "#ad3f7c"];
 
 impl Page {
-    /// Everything that is drawn, moved by `shift`.
+    /// The whole drawing, moved by `shift`.
     pub(super) fn drawing(
         &mut self,
         picture: &WorldPicture,
@@ -170,7 +170,7 @@ impl Page {
     }
 }
 
-/// How thick edges are: so that they are seen when the whole of a large picture is.
+/// The width of edges: visible when the whole of a large picture is on the screen.
 fn thickness(drawing: &Drawing) -> f64 {
     if drawing.size.knob > 0.0 {
         return 2.2;

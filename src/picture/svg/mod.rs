@@ -1,8 +1,8 @@
 //! The drawing as SVG text.
 //!
 //! Discs are `circle.vertex`, doors `circle.door`, edges `path.edge`; `data-vertex`, `data-door`,
-//! `data-dart` and `data-darts` say which, so that a program can read the order off the picture
-//! too. An edge runs from the first of its darts to the second. All names are in one `g.names`, so
+//! `data-dart` and `data-darts` identify them, so that a program can read the order off the
+//! picture too. An edge runs from the first of its darts to the second. All names are in one `g.names`, so
 //! that the walk page can put a robot below them.
 
 mod figure;
@@ -20,12 +20,12 @@ pub(super) use figure::FLOOR;
 pub(super) use page::{FAINT, INK, MARKER, Page, short};
 pub(super) use sheet::Sheet;
 
-/// Whether the picture says what its signs mean.
+/// Whether the picture has a legend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Legend {
     /// Below the drawing.
     Below,
-    /// It does not: something else does.
+    /// No legend.
     Elsewhere,
 }
 
@@ -53,10 +53,10 @@ pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend
     })
 }
 
-/// What the signs mean.
+/// The legend of the signs.
 fn says(picture: &WorldPicture, drawing: &Drawing) -> Vec<String> {
     let mut says = Vec::new();
-    says.extend(picture.where_the_marker_is());
+    says.extend(picture.marker_place());
     if drawing.size.knob > 0.0 && picture.graph.vertices().any(|v| picture.graph.degree(v) > 1) {
         says.push("doors are numbered clockwise from each vertex's first".to_owned());
     }

@@ -1,4 +1,4 @@
-//! An SVG document as far as it is written: text, the marker's sign, numbers.
+//! An SVG document under construction: text, the marker's sign, numbers.
 
 use super::super::{
     geometry::Point,
@@ -13,14 +13,14 @@ pub(in super::super) const FAINT: &str = "#6b7280";
 /// The colour of the marker and of the door that it points along.
 pub(in super::super) const MARKER: &str = "#c8281e";
 
-/// A number without needless digits: tenths.
+/// A number, rounded to tenths.
 pub(in super::super) fn short(number: f64) -> String {
     let tenths = (number * 10.0).round() / 10.0;
     // No negative zero.
     format!("{}", tenths + 0.0)
 }
 
-/// The document as far as it is written.
+/// The document so far.
 pub(in super::super) struct Page(pub(in super::super) String);
 
 impl Page {

@@ -1,4 +1,4 @@
-//! The sheet on which a drawing stands: its title above; a scale, its caption and its legend below.
+//! The sheet around a drawing: its title above; a scale, its caption and its legend below.
 
 use super::{
     super::{
@@ -11,7 +11,7 @@ use super::{
 
 /// Room around everything.
 const MARGIN: f64 = 18.0;
-/// Text is broken so that the picture need not be wider than this, or than its drawing.
+/// Text is broken into lines so that the picture is not wider than this, or than its drawing.
 const COLUMN: f64 = 380.0;
 /// Font sizes and line heights of the title, the caption and the legend.
 const TITLE: [f64; 2] = [17.0, 23.0];
@@ -20,7 +20,7 @@ const LEGEND: [f64; 2] = [11.0, 15.5];
 /// Room in a line of the legend for a sign before it.
 const ASIDE: f64 = 18.0;
 
-/// What stands around a drawing.
+/// The texts around a drawing.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Sheet<'a> {
     /// Above the drawing; may be empty.
@@ -29,7 +29,7 @@ pub(in super::super) struct Sheet<'a> {
     pub(in super::super) caption: &'a str,
     /// All that is drawn lies in this box.
     pub(in super::super) extent: Extent,
-    /// Units of the picture in a metre, where the sheet is to show a scale.
+    /// Units of the picture in a metre, if the sheet shows a scale.
     pub(in super::super) metre: Option<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Sheet<'_> {
         self.extent.size().x.max(COLUMN)
     }
 
-    /// These sayings as a legend: in one line if they fit, else each for itself.
+    /// These texts as a legend: in one line if they fit, otherwise one a line.
     pub(in super::super) fn legend(&self, mut says: Vec<String>) -> Vec<String> {
         let widest = self.column() - ASIDE;
         let whole = says.join("; ");
@@ -48,8 +48,8 @@ impl Sheet<'_> {
         says.iter().flat_map(|line| text::lines(line, LEGEND[0], widest)).collect()
     }
 
-    /// The SVG document of a drawing, which is to move what it draws by the step that it is given.
-    /// The sign stands before the first line of the legend.
+    /// The SVG document of a drawing, which moves its content by the given step. The sign is before the
+    /// first line of the legend.
     pub(in super::super) fn document(
         &self,
         legend: &[String],
@@ -118,7 +118,7 @@ impl Sheet<'_> {
 }
 
 impl Page {
-    /// A bar of a round number of metres, and where north is.
+    /// A bar of a round number of metres, and the direction of north.
     fn scale_bar(&mut self, metre: f64, room: f64, middle: Point) {
         let fits = |length: &&f64| **length * metre <= (room * 0.75).max(60.0);
         let lengths = [0.1, 0.2, 0.5, 1.0, 2.0, 4.0, 10.0, 20.0, 50.0, 100.0, 500.0];
