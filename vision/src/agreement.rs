@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn floor_seen_through_a_door_is_no_opening_and_through_a_gap_as_wide_as_a_hallway_it_is() {
+    fn floor_behind_a_door_is_not_an_opening_but_behind_a_gap_as_wide_as_a_hallway_it_is() {
         let outline = Outline::hallway(Axis::X, SQUARE, -0.6, 0.6);
         let beside = |gap: [f64; 2]| {
             let mut hallway = DrawnPlace::junction([true, false, true, false], HALF);

@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn an_area_of_the_stripes_colour_is_no_sure_end_of_the_floor() {
+    fn an_area_of_the_stripes_colour_is_not_a_sure_edge() {
         let stripe = sight("ffffsssoooo");
         assert_eq!(stripe.sure(), Some(range(31.5)));
         let lit_floor = sight("ffffsssssssssoooo");
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stripe_without_floor_before_it_is_no_edge() {
+    fn a_stripe_without_floor_before_it_is_not_an_edge() {
         assert_eq!(sight("    soooo").edges().count(), 0);
         assert_eq!(sight("foooooooosooo").edges().count(), 0);
     }

@@ -314,7 +314,7 @@ mod tests {
     // paper: sense.clear.two
     // paper: sense.hallway.major
     #[test]
-    fn two_walls_and_no_more_are_clear_and_so_are_broken_ones() {
+    fn two_walls_are_clear_even_if_they_are_broken() {
         assert_eq!(clear_or_not(&[], [-2.0, 2.0], [-2.0, 2.0]), HallwayStatus::Clear);
         let broken = [wall(Axis::X, 0.82, 1.0, 2.0), wall(Axis::X, -0.78, 1.0, 2.0)];
         assert_eq!(clear_or_not(&broken, [-2.0, 0.7], [-2.0, 0.8]), HallwayStatus::Clear);
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hallway_across_is_told_by_the_direction_nearer_to_ahead() {
+    fn the_heading_of_a_hallway_across_is_the_one_nearer_to_ahead() {
         for (turned, heading, left) in [(0.1, 0.1 - FRAC_PI_2, 1.0), (-0.1, FRAC_PI_2 - 0.1, 0.6)] {
             let hallway = FittedHallway {
                 frame: WallFrame::along(turned),

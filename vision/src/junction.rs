@@ -72,7 +72,7 @@ pub fn junction(
                 });
                 if !known {
                     let outline = Outline::junction(doors, square, &params.outline);
-                    let every = params.junction.coarse_step;
+                    let every = params.junction.coarse_step.max(1);
                     let agreement = outline.agreement(boundary, frame, every, &params.outline);
                     guesses.push(FittedJunction { frame: *frame, doors, square, agreement });
                 }

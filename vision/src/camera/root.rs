@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_slope_is_of_no_help_the_bracket_is_halved() {
+    fn if_the_slope_does_not_help_the_bracket_is_halved() {
         let flat = |at: f64| ((at - 0.3).cbrt(), 0.0);
         assert!((root(flat, [0.0, 1.0], 0.9) - 0.3).abs() < 1e-15);
     }

@@ -104,7 +104,7 @@ other = {:?}
 [smoothing]
 colour = {:?} # by how much the same colour differs in the same light, in steps of chroma
 light = {:?} # by which share the light differs from place to place
-unknown_below = {:?} # a colour is unknown of which each class has a smaller share
+unknown_below = {:?} # a colour is unknown if each class has a smaller share of it
 
 # What each class looks like, as [value, chroma, hue, pixels]. The value is the greatest of red,
 # green and blue, in steps of 8 of 256; the chroma, in steps of 4, is what the greatest is above the

@@ -243,7 +243,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_file_is_read_or_refused(
+    fn a_changed_file_is_read_or_rejected(
         at in 0..SMALL.len(), remove in 0..4_usize, insert in "[-0-9a-z\\[\\]{}=.,\"'#\n ]{0,4}",
     ) {
         let end = (at + remove).min(SMALL.len());
