@@ -200,7 +200,7 @@ impl<'a> Lines<'a> {
         Ok((line, text.split_whitespace().map(number).collect::<Result<_, _>>()?))
     }
 
-    /// The numbers of the next line, of which there must be `COUNT`.
+    /// The numbers of the next line, which must be `N`.
     fn numbers<const N: usize>(&mut self, what: &'static str) -> Result<[f64; N], OpticsFileError> {
         let (line, numbers) = self.next(what)?;
         numbers.try_into().map_err(|numbers: Vec<f64>| OpticsFileError::LineCount {

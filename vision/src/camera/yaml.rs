@@ -136,7 +136,7 @@ impl Values {
         self.get(key)?.words.first().map(String::as_str)
     }
 
-    /// The numbers of a key, of which there must be `COUNT`.
+    /// The numbers of a key, which must be `N`.
     pub(super) fn numbers<const N: usize>(
         &self,
         key: &'static str,
