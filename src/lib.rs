@@ -1,9 +1,9 @@
 //! Deterministic topological SLAM that can be trusted.
 //!
-//! This package is the front of the house: it passes on the specification ([`model`]), draws worlds
-//! ([`picture`]), lets a reader walk two of them in a browser ([`page`]) and traces the paper
-//! ([`paper`]). [`journal`] is a run of a simulated robot as a person looks at it, [`report`] what the
-//! specification says of a log.
+//! This package contains the command line and what it draws and writes: pictures of worlds and runs
+//! ([`picture`]), pages for a browser ([`page`]), the trace of the paper ([`paper`]), the record of a
+//! simulated run ([`journal`]) and the conformance report of a log ([`report`]). The specification is
+//! [`model`].
 
 pub mod journal;
 pub mod page;

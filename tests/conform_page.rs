@@ -1,4 +1,4 @@
-//! The page of what the specification says of logs, in a browser.
+//! The page of conformance reports, in a browser.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

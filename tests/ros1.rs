@@ -21,9 +21,9 @@ use std::{
 
 use mcap::MessageStream;
 
-/// ROS's client library belongs to the system's Python.
+/// ROS's client library is installed in the system's Python.
 const PYTHON: &str = "/usr/bin/python3";
-/// The simulated time goes by so many times as fast as the real one.
+/// How many times faster the simulated time is than the real time.
 const SPEED: &str = "8";
 
 /// A program that ends with the test.
@@ -34,7 +34,7 @@ impl Running {
         Self(command.spawn().unwrap())
     }
 
-    /// As Ctrl-C does.
+    /// Sends the signal of Ctrl-C.
     fn interrupt(&self) {
         let id = self.0.id().to_string();
         assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
@@ -55,7 +55,7 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         if let Ok(None) = self.0.try_wait() {
-            // It takes its own children with it, where it is asked.
+            // After an interrupt it also stops its own children.
             self.interrupt();
             if self.ends_within(20).is_none() {
                 let _ = self.0.kill();
@@ -65,7 +65,7 @@ impl Drop for Running {
     }
 }
 
-/// A master, somebody who listens, a simulated robot, and where they leave what they write.
+/// A master, a listener, a simulated robot, and the folder for their files.
 struct Stage {
     // Dropped in this order.
     robot: Running,
@@ -86,7 +86,7 @@ fn toposlam(arguments: &[&str]) -> Command {
     command
 }
 
-fn said(arguments: &[&str]) -> String {
+fn stdout_of(arguments: &[&str]) -> String {
     let output = toposlam(arguments).output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {error}");
@@ -136,16 +136,16 @@ impl Stage {
         let master = ros("roscore", &["-p".as_ref(), port.to_string().as_ref()]);
         until("the master", || TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_ok());
         let listener = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros1/listener.py");
-        let listener = ros(PYTHON, &[listener.as_ref(), path("heard").as_ref()]);
+        let listener = ros(PYTHON, &[listener.as_ref(), path("received").as_ref()]);
         see(&folder);
         let [camera, colours] = [path("camera.toml"), path("colours.toml")];
         let simulate = ["simulate", "worlds/shape-6.toml", "--seed", "3", "--ros", &address];
         let seen = ["--speed", SPEED, "--calibration", &camera, "--colours", &colours];
-        let told = fs::File::create(folder.join("robot")).unwrap();
-        let robot = Running::new(toposlam(&[&simulate[..], &seen].concat()).stdout(told));
+        let output = fs::File::create(folder.join("robot")).unwrap();
+        let robot = Running::new(toposlam(&[&simulate[..], &seen].concat()).stdout(output));
         let stage =
             Self { robot, _listener: listener, _master: master, address, folder, _alone: alone };
-        until("odometry and pictures", || stage.heard("/odom") && stage.heard("/camera"));
+        until("odometry and pictures", || stage.received("/odom") && stage.received("/camera"));
         Some(stage)
     }
 
@@ -154,15 +154,15 @@ impl Stage {
     }
 
     fn lines(&self, topic: &str) -> Vec<String> {
-        let heard = fs::read_to_string(self.folder.join("heard")).unwrap_or_default();
-        heard.lines().filter(|line| line.starts_with(topic)).map(str::to_owned).collect()
+        let received = fs::read_to_string(self.folder.join("received")).unwrap_or_default();
+        received.lines().filter(|line| line.starts_with(topic)).map(str::to_owned).collect()
     }
 
-    fn heard(&self, topic: &str) -> bool {
+    fn received(&self, topic: &str) -> bool {
         !self.lines(topic).is_empty()
     }
 
-    /// What the wheels were told: how fast ahead, and to turn.
+    /// The commands to the wheels: speed ahead and turning speed.
     fn wheels(&self) -> Vec<[f64; 2]> {
         let number = |word: Option<&str>| word.unwrap().parse().unwrap();
         let lines = self.lines("/cmd_vel").into_iter().map(|line| {
@@ -176,14 +176,14 @@ impl Stage {
         self.wheels().last().is_some_and(|wheels| wheels.iter().any(|speed| speed.abs() > 0.0))
     }
 
-    /// Somebody drives the robot.
+    /// Starts `toposlam drive`.
     fn drive(&self) -> Running {
         let [camera, colours] = [self.path("camera.toml"), self.path("colours.toml")];
         let [log, map] = [self.path("run.mcap"), self.path("map.toml")];
         let drive = ["drive", "--ros", &self.address, "--calibration", &camera];
         let written = ["--colours", &colours, "--log", &log, "--map", &map, "--json"];
-        let told = fs::File::create(self.folder.join("told")).unwrap();
-        Running::new(toposlam(&[&drive[..], &written].concat()).stdout(told))
+        let output = fs::File::create(self.folder.join("output")).unwrap();
+        Running::new(toposlam(&[&drive[..], &written].concat()).stdout(output))
     }
 
     /// The last message of the log.
@@ -194,9 +194,9 @@ impl Stage {
         String::from_utf8_lossy(&last.data).into_owned()
     }
 
-    /// The robot never went faster than it may, and the last that its wheels were told is to stand.
+    /// The robot never exceeds its speed limit, and its last command is to stop.
     fn was_safe(&self) {
-        // What was said last is written down soon.
+        // The listener writes the last message soon.
         sleep(Duration::from_secs(1));
         let wheels = self.wheels();
         assert!(!wheels.is_empty() && !self.moves());
@@ -221,12 +221,12 @@ fn see(folder: &Path) {
         let render = ["render", "worlds/shape-8.toml", "--marker", "--size", "640x480"];
         let seed = n.to_string();
         let view = ["--pose", &pose, "--seed", &seed, "--out", &image, "--labels", &labels];
-        said(&[&render[..], &view].concat());
+        stdout_of(&[&render[..], &view].concat());
     }
     let [images, labels] = [path("images"), path("labels")];
     let [camera, colours] = [path("camera.toml"), path("colours.toml")];
     let train = ["train", "--images", &images, "--labels", &labels];
-    said(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
+    stdout_of(&[&train[..], &["--calibration", &camera, "--out", &colours]].concat());
 }
 
 // paper: hardware.ros
@@ -236,18 +236,18 @@ fn the_whole_of_shape_6_is_mapped_through_ros() {
     let begun = Instant::now();
     let status = stage.drive().ends_within(600).unwrap();
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
-    let told = fs::read_to_string(stage.folder.join("told")).unwrap();
-    assert_eq!(status.code(), Some(0), "{told}");
-    let compared = said(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
+    let output = fs::read_to_string(stage.folder.join("output")).unwrap();
+    assert_eq!(status.code(), Some(0), "{output}");
+    let compared = stdout_of(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
     assert!(compared.contains("\"isomorphic\":true"), "{compared}");
     assert!(compared.contains("\"distinguishable\":false"), "{compared}");
     assert!(stage.end().contains("mapped\0"), "{}", stage.end());
-    let judged = said(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
+    let judged = stdout_of(&["conform", &stage.path("run.mcap"), "--world", "worlds/shape-6.toml"]);
     assert!(judged.contains("conforms"), "{judged}");
     stage.was_safe();
     stage.robot.interrupt();
     assert!(stage.robot.ends_within(20).unwrap().success());
-    eprintln!("{told}{}", fs::read_to_string(stage.folder.join("robot")).unwrap());
+    eprintln!("{output}{}", fs::read_to_string(stage.folder.join("robot")).unwrap());
 }
 
 #[test]
@@ -256,7 +256,7 @@ fn after_ctrl_c_the_robot_stands() {
     let mut drive = stage.drive();
     until("the robot moves", || stage.moves());
     drive.interrupt();
-    // However impatient somebody is.
+    // A second interrupt changes nothing.
     drive.interrupt();
     assert_eq!(drive.ends_within(10).unwrap().code(), Some(3));
     stage.was_safe();
@@ -264,11 +264,11 @@ fn after_ctrl_c_the_robot_stands() {
 }
 
 #[test]
-fn where_the_robot_falls_silent_it_is_told_to_stand() {
+fn a_silent_robot_is_commanded_to_stop() {
     let Some(stage) = Stage::new("silent") else { return };
     let mut drive = stage.drive();
     until("the robot moves", || stage.moves());
-    // Its process stands still; nothing is closed.
+    // Its process is suspended; no connection is closed.
     let robot = stage.robot.0.id().to_string();
     let signal = |name: &str| Command::new("kill").args([name, &robot]).status().unwrap();
     assert!(signal("-STOP").success());

@@ -1,4 +1,4 @@
-// Reads the pages of what the specification says of logs.
+// Tests the pages of conformance reports.
 //
 //   node conform_page.mjs CHROMIUM conforms=FILE diverged=FILE several=FILE
 //

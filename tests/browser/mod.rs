@@ -1,6 +1,6 @@
 //! Opens pages in a browser, by scripts that drive a headless Chromium.
 //!
-//! Needs Node, a Chromium and playwright-core; without them a test says so and is skipped, unless
+//! Needs Node, a Chromium and playwright-core. Without them a test prints a message and is skipped, unless
 //! `TOPOSLAM_BROWSER=required`.
 
 use std::{
@@ -11,14 +11,14 @@ use std::{
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// The first of these programs that there is.
+/// The first of these programs that is installed.
 fn program(names: &[&str]) -> Option<PathBuf> {
     let folders: Vec<_> = env::split_paths(&env::var_os("PATH")?).collect();
     let places = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
     places.into_iter().find(|place| place.is_file())
 }
 
-/// Node and a Chromium; or what is missing and how to install it.
+/// Node and a Chromium, or what is missing and how to install it.
 fn browser() -> Result<(PathBuf, PathBuf), String> {
     let node = program(&["node", "nodejs"])
         .ok_or("there is no node; on Debian: apt-get install nodejs npm")?;
@@ -31,8 +31,8 @@ fn browser() -> Result<(PathBuf, PathBuf), String> {
     Ok((node, chromium))
 }
 
-/// Runs a script of this folder on pages, each with what it is, as in `alike=FILE`; panics with what
-/// the script says if something is not as it should be.
+/// Runs a script of this folder on pages, each with its kind, as in `alike=FILE`. Panics with the output of
+/// the script if it fails.
 pub(crate) fn open(script: &str, pages: &[String]) {
     let (node, chromium) = match browser() {
         Ok(found) => found,

@@ -51,7 +51,7 @@ function onScreen(page, { x, y }) {
   }, [x, y]);
 }
 
-/** All that the page shows is what the data says of this picture. */
+/** The page shows the data of this picture. */
 async function assertShows(page, data, at) {
   const now = await shown(page);
   const round = data.rounds[at];
@@ -69,7 +69,7 @@ async function assertShows(page, data, at) {
   assert.equal(now.command, round.command);
   assert.equal(now.stage, round.maps - 1);
   assert.deepEqual(now.story, data.story.slice(0, round.story));
-  const before = data.rounds.slice(0, at).map(({ story }) => story).filter((told) => told < round.story);
+  const before = data.rounds.slice(0, at).map(({ story }) => story).filter((lines) => lines < round.story);
   assert.deepEqual(now.latest, now.story.slice(Math.max(0, ...before)));
   assert.equal(now.image, round.picture === null ? null : data.pictures[round.picture]);
   assert.equal(now.noPicture, round.picture === null ? 1 : 0);
@@ -82,17 +82,17 @@ async function assertShows(page, data, at) {
 
 async function followBySlider(page, data) {
   const last = data.rounds.length - 1;
-  let told = -1;
+  let lines = -1;
   let robot = null;
   for (const at of [0, 1, Math.floor(last / 3), Math.floor(last / 2), last - 1, last]) {
     await page.locator("#round").fill(String(at));
     const now = await assertShows(page, data, at);
-    assert.ok(now.story.length >= told, "the story shrinks");
-    told = now.story.length;
+    assert.ok(now.story.length >= lines, "the story shrinks");
+    lines = now.story.length;
     if (at > 1) assert.notDeepEqual(now.robot, robot, "the robot does not move");
     robot = now.robot;
   }
-  assert.equal(told, data.story.length, "the story is not told to its end");
+  assert.equal(lines, data.story.length, "the story is not complete");
 }
 
 async function followByKeysAndButtons(page, data) {

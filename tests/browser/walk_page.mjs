@@ -1,10 +1,8 @@
-// Walks the walk pages in a headless Chromium, and answers with exit code 1 and one message where
-// something is not as it should be.
+// Tests the walk pages in a headless Chromium. If a test fails, the exit code is 1 and there is one message.
 //
 //   node walk_page.mjs CHROMIUM alike=FILE apart=FILE ...
 //
-// alike: no walk tells the two worlds of this page apart; apart: the page knows one that does. How
-// the pages were made does not matter.
+// alike: no walk distinguishes the two worlds of the page; apart: the page has one that does.
 
 import assert from "node:assert/strict";
 import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
@@ -55,7 +53,7 @@ const after = (data, states, action) =>
     return data.sides[side].states[to];
   });
 
-/** The newest row is what the data says of these states, and equal columns look equal. */
+/** The newest row is that of the data, and equal columns look equal. */
 function assertShows(now, states, step, action) {
   const [a, b] = states.map(({ percept }) => percept);
   const { cells, differs } = now.rows.at(-1);
@@ -121,10 +119,10 @@ async function walkByKeyboard(page) {
   assert.equal((await shown(page)).rows.length, stopped);
 }
 
-/** The walk that tells the worlds apart: equal percepts up to its end, different ones there. */
+/** The walk that distinguishes the worlds: equal percepts up to its end, different ones there. */
 async function tellApart(page) {
   const data = await readData(page);
-  assert.ok(data.walk, "the page has no walk that tells the worlds apart");
+  assert.ok(data.walk, "the page has no walk that distinguishes the worlds");
   await page.getByRole("button", { name: "Play the walk that tells them apart" }).click();
   const rows = page.locator(".percepts tbody tr");
   await rows.nth(data.walk.length).waitFor({ timeout: 5000 + 2000 * data.walk.length });
@@ -145,7 +143,7 @@ async function tellApart(page) {
   });
   for (const action of alone) {
     const name = /^\d+$/.test(action) ? `door ${action}` : action;
-    // It is marked as disabled, and says why when it is pressed all the same.
+    // It is marked as disabled, and gives the reason when it is pressed.
     await page.getByRole("button", { name, exact: true }).click({ force: true });
     const after = await shown(page);
     assert.equal(after.rows.length, now.rows.length);
@@ -158,7 +156,7 @@ async function tellApart(page) {
 async function holdAsPhone(page) {
   await assertFitsPhone(page);
   const widths = await page.evaluate(async () => {
-    // The doors are drawn anew once the pictures have their new size.
+    // The doors are drawn again when the pictures have their new size.
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
     const doors = [...document.querySelectorAll(".own-doors .reach")];
     return doors.map((door) => door.getBoundingClientRect().width);

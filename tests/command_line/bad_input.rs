@@ -216,12 +216,12 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
 #[test]
 fn with_a_movable_marker_explore_and_check_reject_the_same_worlds() {
     const TORUS: &str = "worlds/theta-torus.toml";
-    let refused = |verb: &[&str]| error_of(&[verb, &["--marker", "movable"]].concat());
-    let message = refused(&["explore", TORUS]);
+    let rejected = |verb: &[&str]| error_of(&[verb, &["--marker", "movable"]].concat());
+    let message = rejected(&["explore", TORUS]);
     assert!(message.starts_with(&format!("error: {TORUS}: world 1 has loops or parallel edges")));
-    assert_eq!(message, refused(&["check", "--from", TORUS]));
-    let message = refused(&["explore", WORLD, "--choices", "all"]);
-    assert_eq!(message, refused(&["check", "--choices", "all"]));
+    assert_eq!(message, rejected(&["check", "--from", TORUS]));
+    let message = rejected(&["explore", WORLD, "--choices", "all"]);
+    assert_eq!(message, rejected(&["check", "--choices", "all"]));
     let message = error_of(&["explore", WORLD, "--marker", "chalk"]);
     assert!(message.contains("no algorithm maps with `chalk`; choose directional or movable"));
 }
@@ -240,10 +240,10 @@ fn an_output_path_is_checked_before_the_work() {
         &["draw", WORLD, "--out"],
     ];
     for verb in verbs {
-        let refused = error_of(&[verb, &[missing]].concat());
-        assert!(refused.starts_with(&format!("error: {missing}: ")), "{refused}");
-        let refused = error_of(&[verb, &[itself]].concat());
-        assert!(refused.starts_with(&format!("error: {itself}: ")), "{refused}");
+        let rejected = error_of(&[verb, &[missing]].concat());
+        assert!(rejected.starts_with(&format!("error: {missing}: ")), "{rejected}");
+        let rejected = error_of(&[verb, &[itself]].concat());
+        assert!(rejected.starts_with(&format!("error: {itself}: ")), "{rejected}");
         assert_eq!(names_in(&folder), [""; 0]);
     }
 }
@@ -285,14 +285,14 @@ fn a_marker_needs_a_start_in_each_world() {
     let page = page.to_str().unwrap();
     for arguments in [[WORLD, &file], [&file, WORLD]] {
         let compared = [&["compare", "--html", page, "--marker", "undirected"], &arguments[..]];
-        let refused = error_of(&compared.concat());
+        let rejected = error_of(&compared.concat());
         let cause = "there is no [start] that places the undirected marker; give --start";
-        assert!(refused.starts_with(&format!("error: {file}: {cause}")), "{refused}");
+        assert!(rejected.starts_with(&format!("error: {file}: {cause}")), "{rejected}");
     }
-    let refused = error_of(&["compare", "--html", page, &file, WORLD]);
-    assert!(refused.starts_with("error: --html: a world has no start"), "{refused}");
-    let refused = error_of(&["compare", "--walk", "0", &file, WORLD]);
-    assert!(refused.starts_with("error: --walk: a world has no start"), "{refused}");
+    let rejected = error_of(&["compare", "--html", page, &file, WORLD]);
+    assert!(rejected.starts_with("error: --html: a world has no start"), "{rejected}");
+    let rejected = error_of(&["compare", "--walk", "0", &file, WORLD]);
+    assert!(rejected.starts_with("error: --walk: a world has no start"), "{rejected}");
     assert_eq!(names_in(&folder), ["path.toml"]);
 }
 
@@ -303,10 +303,10 @@ fn an_output_folder_is_checked_before_the_work() {
     let inside = format!("{file}/inside");
     for place in [&file, &inside] {
         for verb in [["--out", place], ["--atlas", place]] {
-            let refused = error_of(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
+            let rejected = error_of(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
             assert!(
-                refused.starts_with(&format!("error: {place}: the folder cannot be created")),
-                "{refused}"
+                rejected.starts_with(&format!("error: {place}: the folder cannot be created")),
+                "{rejected}"
             );
         }
     }

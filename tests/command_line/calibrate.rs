@@ -6,7 +6,7 @@ use image::{ImageFormat, Rgb, RgbImage, imageops::crop_imm};
 use serde_json::Value;
 use toposlam_vision::camera::{Camera, OpticsModel, SphericalMirror, calibration};
 
-use super::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, stderr, stdout, stdout_of};
 
 /// Poses in shape 8 with different views.
 const POSES: [&str; 6] =
@@ -34,7 +34,7 @@ fn rendered(look: &str) -> Images {
         if number == 0 {
             arguments.extend(["--labels", &labels]);
         }
-        said(arguments);
+        stdout_of(arguments);
     }
     Images { files, labels: image::open(labels).unwrap().into_rgb8() }
 }
@@ -80,7 +80,7 @@ fn the_rim_is_found_within_a_pixel_and_the_mask_hides_the_robot() {
     for (images, name) in [(&*LABORATORY, "laboratory"), (&*THEATRE, "theatre")] {
         let folder = folder(&format!("calibrated-{name}"));
         let [out, mask, fit] = ["camera.toml", "mask.png", "fit.png"].map(|name| folder.join(name));
-        let report = said(calibrate(
+        let report = stdout_of(calibrate(
             &images.files,
             &[
                 "--json",
@@ -126,7 +126,7 @@ fn the_rim_is_found_within_a_pixel_and_the_mask_hides_the_robot() {
 fn one_image_is_enough_for_the_rim() {
     for images in [&*LABORATORY, &*THEATRE] {
         for image in images.files.chunks(1) {
-            let text = said(calibrate(image, &[]));
+            let text = stdout_of(calibrate(image, &[]));
             let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
             close(&mirror(&calibration::read(text.as_bytes(), nothing).unwrap()), &truth());
         }
@@ -148,7 +148,7 @@ fn a_rim_cut_off_by_the_border_is_found_by_its_arcs() {
         })
         .collect();
     let out = folder.join("camera.toml");
-    let text = said(calibrate(&files, &["--out", out.to_str().unwrap()]));
+    let text = stdout_of(calibrate(&files, &["--out", out.to_str().unwrap()]));
     assert!(text.starts_with("centre  ") && text.lines().count() == 3, "{text}");
     let expected = truth();
     let [u, v] = expected.centre;
@@ -167,7 +167,7 @@ fn known_values_come_from_the_start_file_and_the_options() {
     )
     .unwrap();
     let more = ["--start", start.to_str().unwrap(), "--camera-height", "0.75", "--ahead", "-12.5"];
-    let text = said(calibrate(&LABORATORY.files[..1], &more));
+    let text = stdout_of(calibrate(&LABORATORY.files[..1], &more));
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let camera = calibration::read(text.as_bytes(), nothing).unwrap();
     let found = mirror(&camera);
@@ -179,8 +179,8 @@ fn known_values_come_from_the_start_file_and_the_options() {
 
 #[test]
 fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
-    let folder = folder("calibrate-refused");
-    let inputs = super::folder("calibrate-refused-inputs");
+    let folder = folder("calibrate-rejected");
+    let inputs = super::folder("calibrate-rejected-inputs");
     let input = |name: &str, bytes: &[u8]| {
         fs::write(inputs.join(name), bytes).unwrap();
         inputs.join(name).to_str().unwrap().to_owned()

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use toposlam_model::format::plantri::{self, PlantriCode};
 
-use super::{folder, objects, read_world, run, said, stderr, stdout, world_files};
+use super::{folder, objects, read_world, run, stderr, stdout, stdout_of, world_files};
 
 fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
     lines.iter().map(|line| line[key].as_u64().unwrap()).collect()
@@ -14,7 +14,7 @@ fn numbers(lines: &[Value], key: &str) -> Vec<u64> {
 // paper: cost.moves
 #[test]
 fn every_start_of_every_world_with_up_to_4_edges_is_mapped() {
-    let text = said(["check", "--json", "--edges", "1..=4"]);
+    let text = stdout_of(["check", "--json", "--edges", "1..=4"]);
     let lines = objects(&text);
     assert_eq!(numbers(&lines, "edges"), [1, 2, 3, 4]);
     assert_eq!(numbers(&lines, "worlds"), [2, 5, 20, 107]);
@@ -34,7 +34,7 @@ fn every_start_of_every_world_with_up_to_4_edges_is_mapped() {
 // paper: movable.place
 #[test]
 fn with_a_movable_marker_every_simple_world_is_mapped() {
-    let lines = objects(&said(["check", "--json", "--edges", "1..=6", "--marker", "movable"]));
+    let lines = objects(&stdout_of(["check", "--json", "--edges", "1..=6", "--marker", "movable"]));
     assert_eq!(numbers(&lines, "starts"), [1, 2, 6, 23, 108, 596]);
     assert_eq!(numbers(&lines, "mapped"), [1, 2, 6, 23, 108, 596]);
     assert_eq!(numbers(&lines, "moves_total"), [1, 5, 27, 173, 1222, 9519]);
@@ -46,7 +46,7 @@ fn with_a_movable_marker_every_simple_world_is_mapped() {
     // From the start with four vertices and 32 moves, not from the one with 36 moves.
     assert_eq!(lines[5]["largest_ratio"], 4.0 / 3.0);
     for class in ["simple", "corridor", "planar"] {
-        let table = said(["check", "--marker", "movable", "--class", class]);
+        let table = stdout_of(["check", "--marker", "movable", "--class", class]);
         let title = format!("Place and back-link validation, movable marker, class {class}\n");
         assert!(table.starts_with(&title), "{table}");
         assert!(table.contains("  max/(m n)\n") && table.contains("\nholds: "), "{table}");
@@ -64,26 +64,27 @@ fn the_error_names_the_world_that_is_not_simple() {
     let file = folder.join("three.ec");
     fs::write(&file, plantri::write(&worlds, PlantriCode::Edge).unwrap()).unwrap();
     let file = file.to_str().unwrap();
-    let refused = run(["check", "--marker", "movable", "--from", file]);
-    assert_eq!(refused.status.code(), Some(2));
-    let message = stderr(&refused);
+    let rejected = run(["check", "--marker", "movable", "--from", file]);
+    assert_eq!(rejected.status.code(), Some(2));
+    let message = stderr(&rejected);
     assert!(message.starts_with(&format!("error: {file}: world 2 has loops or")), "{message}");
-    let lines = objects(&said(["check", "--json", "--from", file]));
+    let lines = objects(&stdout_of(["check", "--json", "--from", file]));
     assert_eq!(lines.len(), 3);
 }
 
 #[test]
 fn the_output_is_the_same_at_any_number_of_threads() {
-    let with = |threads: &str| said(["check", "--json", "--edges", "1..=5", "--threads", threads]);
+    let with =
+        |threads: &str| stdout_of(["check", "--json", "--edges", "1..=5", "--threads", threads]);
     assert_eq!(with("1"), with("2"));
-    let table = |threads: &str| said(["check", "--edges", "1..=5", "--threads", threads]);
+    let table = |threads: &str| stdout_of(["check", "--edges", "1..=5", "--threads", threads]);
     assert_eq!(table("1"), table("2"));
 }
 
 #[test]
 fn smaller_classes_are_parts_of_larger_ones() {
     let worlds = |class: &str| {
-        let lines = objects(&said(["check", "--json", "--edges", "1..=6", "--class", class]));
+        let lines = objects(&stdout_of(["check", "--json", "--edges", "1..=6", "--class", class]));
         assert!(lines.iter().all(|line| line["class"] == class && line["holds"] == true));
         numbers(&lines, "worlds")
     };
@@ -98,7 +99,8 @@ fn smaller_classes_are_parts_of_larger_ones() {
 
 #[test]
 fn two_shards_add_up_to_the_whole() {
-    let check = |shard: &str| objects(&said(["check", "--json", "--edges", "4", "--shard", shard]));
+    let check =
+        |shard: &str| objects(&stdout_of(["check", "--json", "--edges", "4", "--shard", shard]));
     let (first, second, whole) = (check("1/2"), check("2/2"), check("1/1"));
     assert_eq!((&first[0]["shard"], &second[0]["shard"]), (&"1/2".into(), &"2/2".into()));
     for key in ["worlds", "starts", "mapped", "moves_total"] {
@@ -119,7 +121,7 @@ fn an_empty_shard_never_holds() {
 
 #[test]
 fn all_choices_count_states_and_runs() {
-    let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--choices", "all"]));
+    let lines = objects(&stdout_of(["check", "--json", "--edges", "1..=4", "--choices", "all"]));
     assert_eq!(numbers(&lines, "states"), [4, 43, 725, 16471]);
     assert_eq!(numbers(&lines, "runs"), [3, 45, 1777, 502_371]);
     assert_eq!(numbers(&lines, "moves_least"), [1, 2, 3, 4]);
@@ -134,7 +136,7 @@ fn all_choices_count_states_and_runs() {
 fn every_world_of_the_repository_is_mapped_from_everywhere() {
     for path in world_files() {
         let file = path.to_str().unwrap();
-        let lines = objects(&said(["check", "--json", "--from", file]));
+        let lines = objects(&stdout_of(["check", "--json", "--from", file]));
         let graph = read_world(&path).graph;
         assert_eq!(numbers(&lines, "edges"), [graph.edge_count() as u64], "{file}");
         assert_eq!(numbers(&lines, "worlds"), [1]);
@@ -154,7 +156,7 @@ fn worlds_in_plantris_codes_are_checked_by_size() {
     for (code, name) in [(PlantriCode::Planar, "three.pc"), (PlantriCode::Edge, "three.ec")] {
         let file = folder.join(name);
         fs::write(&file, plantri::write(&worlds, code).unwrap()).unwrap();
-        let lines = objects(&said(["check", "--json", "--from", file.to_str().unwrap()]));
+        let lines = objects(&stdout_of(["check", "--json", "--from", file.to_str().unwrap()]));
         assert_eq!(numbers(&lines, "edges"), [3, 6]);
         assert_eq!(numbers(&lines, "worlds"), [1, 2]);
         assert!(lines.iter().all(|line| line["holds"] == true));
@@ -168,8 +170,8 @@ fn the_worst_start_costs_the_same_in_explore() {
     for ending in ["toml", "json"] {
         let file = folder.join(format!("worst.{ending}"));
         let file = file.to_str().unwrap();
-        let lines = objects(&said(["check", "--json", "--edges", "1..=4", "--worst", file]));
-        let explored = objects(&said(["explore", "--json", file]));
+        let lines = objects(&stdout_of(["check", "--json", "--edges", "1..=4", "--worst", file]));
+        let explored = objects(&stdout_of(["explore", "--json", file]));
         assert_eq!(explored[0]["moves"], lines[3]["moves_max"]);
         assert_eq!(explored[0]["edges"], 4);
     }

@@ -5,15 +5,15 @@ use std::{fs, path::Path};
 use serde_json::{Value, json};
 use toposlam_model::format::{named_world::NamedWorld, world_file};
 
-use super::{folder, objects, read_world, said, world_files};
+use super::{folder, objects, read_world, stdout_of, world_files};
 
 #[test]
 fn figure_1a_and_figure_1b_are_not_isomorphic_and_not_mirror_images() {
     let files = ["worlds/figure-1a.toml", "worlds/figure-1b.toml"];
-    let line = &objects(&said(["compare", "--json", files[0], files[1]]))[0];
+    let line = &objects(&stdout_of(["compare", "--json", files[0], files[1]]))[0];
     assert_eq!((&line["isomorphic"], &line["mirror"]), (&false.into(), &false.into()));
     assert_eq!(line["difference"], "genus 0 against 1");
-    let text = said(["compare", files[0], files[1]]);
+    let text = stdout_of(["compare", files[0], files[1]]);
     assert!(text.contains("\nnot isomorphic: genus 0 against 1\nnot mirror images\n"), "{text}");
 }
 
@@ -21,7 +21,7 @@ fn figure_1a_and_figure_1b_are_not_isomorphic_and_not_mirror_images() {
 fn a_world_is_isomorphic_to_itself_by_a_bijection_of_all_edge_ends() {
     for path in world_files() {
         let file = path.to_str().unwrap();
-        let line = &objects(&said(["compare", "--json", file, file]))[0];
+        let line = &objects(&stdout_of(["compare", "--json", file, file]))[0];
         assert_eq!(line["isomorphic"], true, "{file}");
         let pairs = line["bijection"].as_array().unwrap();
         assert_eq!(pairs.len(), read_world(&path).graph.dart_count());
@@ -38,7 +38,7 @@ fn a_world_is_the_mirror_image_of_its_mirror_image() {
         let image = NamedWorld::numbered("mirror", "", world.graph.mirror_image(), None);
         fs::write(&mirror, world_file::to_toml(&image)).unwrap();
         let files = [path.to_str().unwrap(), mirror.to_str().unwrap()];
-        let line = &objects(&said(["compare", "--json", files[0], files[1]]))[0];
+        let line = &objects(&stdout_of(["compare", "--json", files[0], files[1]]))[0];
         assert_eq!(line["mirror"], true, "{}", files[0]);
         chiral += usize::from(line["isomorphic"] == false);
     }
@@ -50,7 +50,7 @@ const CYCLES: [&str; 2] = ["worlds/cycle-3.toml", "worlds/cycle-4.toml"];
 
 fn compared(files: [&str; 2], more: &[&str]) -> Value {
     let arguments = [&["compare", "--json"], &files[..], more].concat();
-    objects(&said(arguments)).remove(0)
+    objects(&stdout_of(arguments)).remove(0)
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn an_undirected_marker_does_not_distinguish_the_worlds_of_figure_1() {
     assert_eq!(relation.len(), 32);
     assert_eq!(relation[0], json!(["x:0", "X:0"]));
     assert_eq!(relation[1], json!(["a:1", "A:1"]));
-    let text = said(["compare", FIGURE_1[0], FIGURE_1[1], "--marker", "undirected"]);
+    let text = stdout_of(["compare", FIGURE_1[0], FIGURE_1[1], "--marker", "undirected"]);
     let verdict = "\nNo walk distinguishes the worlds from x:a in A and X:A in B. ";
     assert!(text.contains(verdict), "{text}");
     assert!(text.contains("  x:0~X:0  a:1~A:1  "), "{text}");
@@ -74,7 +74,7 @@ fn a_directional_marker_distinguishes_the_worlds_of_figure_1_and_is_the_default(
     assert_eq!((&line["distinguishable"], &line["relation"]), (&true.into(), &Value::Null));
     assert_eq!((&line["walk"], &line["walks"]), (&json!([0, 1, 1]), &json!([[0, 1, 1]])));
     assert_eq!(compared(FIGURE_1, &[]), line);
-    let text = said(["compare", FIGURE_1[0], FIGURE_1[1]]);
+    let text = stdout_of(["compare", FIGURE_1[0], FIGURE_1[1]]);
     let end = "the walk 0,1,1 distinguishes the worlds:\n  A: 4 doors, marker along door 1\n  \
                B: 4 doors, marker along door 3\n";
     assert!(text.ends_with(end), "{text}");
@@ -127,7 +127,7 @@ fn a_walk_is_replayed_percept_by_percept() {
     assert_eq!(percepts[0], json!([centre(0), centre(0)]));
     assert_eq!(percepts[3], json!([centre(1), centre(3)]));
     let text =
-        said(["compare", CYCLES[0], CYCLES[1], "--marker", "undirected", "--walk", "1, 1,1"]);
+        stdout_of(["compare", CYCLES[0], CYCLES[1], "--marker", "undirected", "--walk", "1, 1,1"]);
     let rows: Vec<_> = text.lines().rev().take(4).collect();
     assert!(rows[0].contains("2 doors, marker  "), "{text}");
     assert!(rows[0].ends_with("  <- differs"), "{text}");
@@ -152,7 +152,7 @@ fn a_page_for_walking_is_written() {
     let folder = folder("compare_page");
     let page = folder.join("page.html");
     let files = [FIGURE_1[0], FIGURE_1[1], "--html", page.to_str().unwrap()];
-    said([&["compare"], &files[..]].concat());
+    stdout_of([&["compare"], &files[..]].concat());
     let page = fs::read_to_string(&page).unwrap();
     assert!(page.contains("<title>figure-1a and figure-1b, directional marker</title>"));
     assert!(page.contains("\"walk\":[\"0\",\"1\",\"1\"]"));
@@ -202,7 +202,7 @@ fn a_walk_goes_as_far_as_both_robots_can() {
     let line = compared(files, &["--marker", "none", "--walk", "0,2,1"]);
     assert_eq!(line["walked"]["actions"], json!([0]));
     assert_eq!(line["walked"]["stopped"], "door 2 was taken at a vertex with 2 doors, in B");
-    let text = said(["compare", files[0], files[1], "--marker", "none", "--walk", "0,2,1"]);
+    let text = stdout_of(["compare", files[0], files[1], "--marker", "none", "--walk", "0,2,1"]);
     let end = "3 doors             2 doors             <- differs\n  \
                stopped: door 2 was taken at a vertex with 2 doors, in B\n";
     assert!(text.ends_with(end), "{text}");

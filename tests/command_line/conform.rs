@@ -1,4 +1,4 @@
-//! `toposlam conform`: what is said of a log, with which exit code, and what is written.
+//! `toposlam conform`: what is stdout_of of a log, with which exit code, and what is written.
 
 use std::{
     f64::consts::PI,
@@ -16,7 +16,7 @@ use toposlam_robot::log::{
     writer::LogWriter,
 };
 
-use super::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, stderr, stdout, stdout_of};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
@@ -39,7 +39,7 @@ fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
 }
 
 #[test]
-fn a_good_log_conforms_to_its_world_to_some_world_and_by_what_was_seen() {
+fn a_correct_log_conforms_to_its_world_to_some_world_and_by_its_scenes() {
     let log = logged(&folder("conform-good"), SHAPE_6, &["--seed", "3"]);
     for arguments in [
         &["--world", SHAPE_6][..],
@@ -49,36 +49,40 @@ fn a_good_log_conforms_to_its_world_to_some_world_and_by_what_was_seen() {
         &["--class", "corridor"],
         &["--driver", "anyone"],
     ] {
-        let (code, told) = judged(&log, arguments);
-        assert_eq!((code, &told["verdict"]), (Some(0), &"conforms".into()), "{arguments:?} {told}");
-        assert_eq!((&told["event"], &told["class"]), (&Value::Null, &Value::Null));
-        assert_eq!((&told["candidates"], &told["events"]), (&1.into(), &15.into()), "{told}");
+        let (code, report) = judged(&log, arguments);
+        assert_eq!(
+            (code, &report["verdict"]),
+            (Some(0), &"conforms".into()),
+            "{arguments:?} {report}"
+        );
+        assert_eq!((&report["event"], &report["class"]), (&Value::Null, &Value::Null));
+        assert_eq!((&report["candidates"], &report["events"]), (&1.into(), &15.into()), "{report}");
         // The end is the only dead end of shape 6, and one loop is closed.
-        assert_eq!(told["coverage"]["dead-end"], 1);
+        assert_eq!(report["coverage"]["dead-end"], 1);
         if !arguments.contains(&"anyone") {
-            assert_eq!(told["coverage"]["confirmed"], 1);
+            assert_eq!(report["coverage"]["confirmed"], 1);
         }
     }
-    let text = said(["conform", log.to_str().unwrap(), "--world", SHAPE_6]);
+    let text = stdout_of(["conform", log.to_str().unwrap(), "--world", SHAPE_6]);
     assert!(text.contains("run.mcap: conforms\n"), "{text}");
     assert!(text.contains("the robot is at end, having come from corner"), "{text}");
 }
 
 #[test]
-fn a_log_of_another_world_diverges_where_that_shows_and_in_a_shorter_log_too() {
+fn a_log_of_another_world_diverges_and_so_does_a_shorter_log() {
     let folder = folder("conform-other");
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let short = folder.join("short.mcap");
     let page = folder.join("report.html");
     let written = ["--minimise", short.to_str().unwrap(), "--html", page.to_str().unwrap()];
-    let (code, told) = judged(&log, &[&["--world", SHAPE_8][..], &written].concat());
-    assert_eq!((code, &told["verdict"]), (Some(1), &"diverged".into()));
+    let (code, report) = judged(&log, &[&["--world", SHAPE_8][..], &written].concat());
+    assert_eq!((code, &report["verdict"]), (Some(1), &"diverged".into()));
     // After the first move there is a T, and after the second a corner instead of the other T.
-    assert_eq!((&told["event"], &told["class"]), (&5.into(), &"perception".into()), "{told}");
-    assert_eq!(told["matched"], 4);
-    assert_eq!(told["allowed"], serde_json::json!(["at e, having come from w: 3 doors"]));
-    assert_eq!(told["shorter"].as_array().unwrap().len(), 3);
-    let command = told["command"].as_str().unwrap();
+    assert_eq!((&report["event"], &report["class"]), (&5.into(), &"perception".into()), "{report}");
+    assert_eq!(report["matched"], 4);
+    assert_eq!(report["allowed"], serde_json::json!(["at e, having come from w: 3 doors"]));
+    assert_eq!(report["shorter"].as_array().unwrap().len(), 3);
+    let command = report["command"].as_str().unwrap();
     let words: Vec<_> = command.split(' ').skip(1).chain(["--json"]).collect();
     let output = run(&words);
     assert_eq!(output.status.code(), Some(1), "{command}");
@@ -89,18 +93,21 @@ fn a_log_of_another_world_diverges_where_that_shows_and_in_a_shorter_log_too() {
 }
 
 #[test]
-fn a_cut_log_is_incomplete_and_one_that_was_given_up_says_so() {
+fn a_truncated_log_and_a_run_that_was_given_up_are_incomplete() {
     let folder = folder("conform-cut");
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let bytes = fs::read(&log).unwrap();
     fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
-    let (code, told) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!((code, &told["verdict"]), (Some(3), &"incomplete".into()), "{told}");
-    assert!(told["remarks"][0].as_str().unwrap().starts_with("the log is truncated at byte "));
+    let (code, report) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
+    assert!(report["remarks"][0].as_str().unwrap().starts_with("the log is truncated at byte "));
     let log = logged(&folder, SHAPE_6, &["--fault", "lights-out@20"]);
-    let (code, told) = judged(&log, &["--world", SHAPE_6]);
-    assert_eq!((code, &told["verdict"]), (Some(3), &"incomplete".into()), "{told}");
-    assert!(told["remarks"][0].as_str().unwrap().starts_with("the run was given up: "), "{told}");
+    let (code, report) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
+    assert!(
+        report["remarks"][0].as_str().unwrap().starts_with("the run was given up: "),
+        "{report}"
+    );
 }
 
 #[test]
@@ -110,15 +117,15 @@ fn a_robot_that_was_carried_does_not_conform() {
     let carried = (0..20).find_map(|seed| {
         let seed = seed.to_string();
         let log = logged(&folder, SHAPE_8, &["--seed", &seed, "--fault", "carried@30"]);
-        let (code, told) = judged(&log, &["--world", SHAPE_8]);
-        (code == Some(1)).then_some(told)
+        let (code, report) = judged(&log, &["--world", SHAPE_8]);
+        (code == Some(1)).then_some(report)
     });
-    let told = carried.unwrap();
-    assert!(["perception", "motion"].contains(&told["class"].as_str().unwrap()), "{told}");
+    let report = carried.unwrap();
+    assert!(["perception", "motion"].contains(&report["class"].as_str().unwrap()), "{report}");
 }
 
 #[test]
-fn several_logs_are_told_together() {
+fn several_logs_are_reported_together() {
     let folder = folder("conform-several");
     let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let other = folder.join("other.mcap");
@@ -126,11 +133,15 @@ fn several_logs_are_told_together() {
     let paths = [good.to_str().unwrap(), other.to_str().unwrap()];
     let output = run([&["conform", "--json"][..], &paths].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = objects(&stdout(&output));
-    assert_eq!((told.len(), &told[2]["logs"], &told[2]["conform"]), (3, &2.into(), &2.into()));
-    let [one, all] = [&told[0], &told[2]].map(|told| told["coverage"]["new-vertex"].as_u64());
+    let report = objects(&stdout(&output));
+    assert_eq!(
+        (report.len(), &report[2]["logs"], &report[2]["conform"]),
+        (3, &2.into(), &2.into())
+    );
+    let [one, all] =
+        [&report[0], &report[2]].map(|report| report["coverage"]["new-vertex"].as_u64());
     assert_eq!(all, one.map(|one| 2 * one));
-    let text = said([&["conform"][..], &paths].concat());
+    let text = stdout_of([&["conform"][..], &paths].concat());
     assert!(text.contains("2 logs: 2 conform, 0 diverge, 0 incomplete"), "{text}");
 }
 
@@ -144,11 +155,11 @@ fn a_quirk_is_tolerated_and_counted() {
     fs::write(&quirks, quirk).unwrap();
     let arguments =
         ["--world", SHAPE_8, "--driver", "anyone", "--quirks", quirks.to_str().unwrap()];
-    let (_, told) = judged(&log, &arguments);
-    assert!(told["tolerated"]["rebuilt"].as_u64().unwrap() > 0, "{told}");
+    let (_, report) = judged(&log, &arguments);
+    assert!(report["tolerated"]["rebuilt"].as_u64().unwrap() > 0, "{report}");
     // What is tolerated is not where it diverges.
     let (_, without) = judged(&log, &arguments[..4]);
-    assert_ne!(told["event"], without["event"]);
+    assert_ne!(report["event"], without["event"]);
 }
 
 #[test]
@@ -174,9 +185,12 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--events", "pictures"], "--events: what this needs"),
     ] {
         let output = run([&["conform"][..], arguments].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?} {said}");
-        assert!(said.starts_with("error: ") && said.contains(cause), "{arguments:?} {said}");
+        let stdout_of = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?} {stdout_of}");
+        assert!(
+            stdout_of.starts_with("error: ") && stdout_of.contains(cause),
+            "{arguments:?} {stdout_of}"
+        );
         assert!(output.stdout.is_empty());
     }
 }
@@ -194,13 +208,16 @@ fn events_out_of_order_are_an_error() {
     fs::write(&log, writer.finish().unwrap()).unwrap();
     let output = run(["conform", log.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
-    let said = stderr(&output);
-    assert!(said.contains("message 2: the events are out of order: it is of 1.000 s"), "{said}");
+    let stdout_of = stderr(&output);
+    assert!(
+        stdout_of.contains("message 2: the events are out of order: it is of 1.000 s"),
+        "{stdout_of}"
+    );
 }
 
 /// PyPI's `rosbags` makes a ROS 1 bag of a log.
 #[test]
-fn a_log_that_went_by_way_of_ros_1_conforms_and_is_replayed_all_the_same() {
+fn a_log_converted_to_ros_1_conforms_and_is_replayed() {
     let folder = folder("conform-ros1");
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let bag = folder.join("run.bag");
@@ -211,19 +228,19 @@ fn a_log_that_went_by_way_of_ros_1_conforms_and_is_replayed_all_the_same() {
         return eprintln!("skipped: there is no rosbags-convert of PyPI's rosbags");
     };
     assert!(output.status.success(), "{}", stderr(&output));
-    let (code, told) = judged(&bag, &["--world", SHAPE_6]);
+    let (code, report) = judged(&bag, &["--world", SHAPE_6]);
     assert_eq!(
-        (code, &told["verdict"], &told["events"]),
+        (code, &report["verdict"], &report["events"]),
         (Some(0), &"conforms".into(), &15.into())
     );
-    let replayed = objects(&said(["replay", bag.to_str().unwrap(), "--json"])).remove(0);
+    let replayed = objects(&stdout_of(["replay", bag.to_str().unwrap(), "--json"])).remove(0);
     assert_eq!((&replayed["map"], &replayed["difference"]), (&true.into(), &Value::Null));
 }
 
 /// Somebody drives a robot along x to an L, and then between its doors. The log has only scenes and
 /// odometry.
 #[test]
-fn what_was_seen_before_a_robot_strayed_is_a_shorter_log() {
+fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
     let folder = folder("conform-strayed");
     let log = folder.join("run.mcap");
     let mut writer = LogWriter::new(Vec::new()).unwrap();
@@ -251,23 +268,23 @@ fn what_was_seen_before_a_robot_strayed_is_a_shorter_log() {
     fs::write(&log, writer.finish().unwrap()).unwrap();
     let short = folder.join("short.mcap");
     let arguments = ["--driver", "anyone", "--minimise", short.to_str().unwrap()];
-    let (code, told) = judged(&log, &arguments);
+    let (code, report) = judged(&log, &arguments);
     assert_eq!(
-        (code, &told["class"], &told["cause"]),
+        (code, &report["class"], &report["cause"]),
         (Some(1), &"motion".into(), &"aside".into())
     );
-    assert_eq!(told["condition"], "the robot drove off 45 degrees from the door");
-    let words: Vec<_> = told["command"].as_str().unwrap().split(' ').skip(1).collect();
+    assert_eq!(report["condition"], "the robot drove off 45 degrees from the door");
+    let words: Vec<_> = report["command"].as_str().unwrap().split(' ').skip(1).collect();
     let output = run([&words[..], &["--json"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let again = objects(&stdout(&output)).remove(0);
-    assert_eq!((&again["cause"], &again["event"]), (&told["cause"], &told["event"]));
+    assert_eq!((&again["cause"], &again["event"]), (&report["cause"], &report["event"]));
     assert!(fs::metadata(&short).unwrap().len() < fs::metadata(&log).unwrap().len());
 }
 
 /// Real bags, recorded by ROS itself: there is nothing in them that could be judged.
 #[test]
-fn logs_without_what_could_be_judged_are_refused() {
+fn logs_without_evidence_are_an_error() {
     let logs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/logs");
     if !logs.is_dir() {
         eprintln!("skipped: there are no bags in {}", logs.display());

@@ -5,12 +5,12 @@ use std::{collections::BTreeSet, fs};
 use serde_json::{Value, json};
 use toposlam_model::format::world_file;
 
-use super::{folder, names_in, objects, read_world, run, said, stdout};
+use super::{folder, names_in, objects, read_world, run, stdout, stdout_of};
 
 /// The lines of a search, those of sizes and then the rest.
 fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {
     let arguments = [&["counterexample", "--json"], arguments].concat();
-    let lines = objects(&said(arguments));
+    let lines = objects(&stdout_of(arguments));
     lines.into_iter().partition(|line| line["placed_worlds"].is_number())
 }
 
@@ -38,13 +38,13 @@ fn a_line_for_each_size_and_one_for_the_smallest_pair() {
 fn without_a_pair_the_smallest_is_null() {
     let (_, rest) = searched(&["--marker", "directional", "--edges", "5"]);
     assert_eq!((rest.len(), &rest[0]["smallest"]), (1, &Value::Null));
-    let text = said(["counterexample", "--marker", "directional", "--edges", "5"]);
+    let text = stdout_of(["counterexample", "--marker", "directional", "--edges", "5"]);
     assert!(text.ends_with("\nno pair up to 5 edges: a walk distinguishes any two\n"), "{text}");
 }
 
 #[test]
 fn several_markers_make_a_table() {
-    let text = said(["counterexample", "--edges", "7"]);
+    let text = stdout_of(["counterexample", "--edges", "7"]);
     let rows: Vec<_> = text.lines().skip(3).map(|row| row.split_whitespace().next()).collect();
     let markers = [
         "none",
@@ -62,8 +62,8 @@ fn several_markers_make_a_table() {
     assert_eq!((sizes.len(), rest.len()), (8 * 3, 8));
     // A repeated marker counts once. The pairs are printed after the table.
     let twice = ["counterexample", "--edges", "4", "--marker", "none", "--marker", "none"];
-    assert!(said(twice).starts_with("none marker: "));
-    let text = said(["counterexample", "--edges", "4", "--all"]);
+    assert!(stdout_of(twice).starts_with("none marker: "));
+    let text = stdout_of(["counterexample", "--edges", "4", "--all"]);
     let (table, pairs) = text.split_once("\nAll pairs: 1\n").unwrap();
     assert_eq!(table.lines().count(), 3 + 8);
     assert!(pairs.contains("none-simple-1 ~ none-simple-2: 3 and 4 edges"), "{text}");
@@ -97,7 +97,7 @@ fn all_pairs_are_reported_and_written_and_are_pairs() {
         let files: Vec<_> = names.iter().map(file).collect();
         let files: Vec<_> = files.iter().map(|file| file.to_str().unwrap()).collect();
         let compared = ["compare", "--json", "--marker", "undirected", files[0], files[1]];
-        let compared = &objects(&said(compared))[0];
+        let compared = &objects(&stdout_of(compared))[0];
         let expected = (&compared["distinguishable"], &compared["isomorphic"]);
         assert_eq!(expected, (&false.into(), &false.into()));
         in_pairs.extend(names.iter().map(ToString::to_string));
@@ -134,7 +134,7 @@ fn a_page_is_written_if_there_is_a_pair() {
     let written = ["--edges", "4", "--html", page.to_str().unwrap()];
     let output = run([&["counterexample", "--marker", "directional"], &written[..]].concat());
     assert_eq!((output.status.code(), names_in(&folder).len()), (Some(0), 0));
-    said([&["counterexample", "--marker", "none"], &written[..]].concat());
+    stdout_of([&["counterexample", "--marker", "none"], &written[..]].concat());
     let page = fs::read_to_string(&page).unwrap();
     assert!(page.starts_with("<!doctype html>") && page.contains("none-simple-2"));
 }

@@ -15,7 +15,7 @@ use toposlam_model::{
     world::{Action, GraphWorld},
 };
 
-use super::{folder, objects, read_world, run, said, stdout, world_files};
+use super::{folder, objects, read_world, run, stdout, stdout_of, world_files};
 
 /// Repeats the actions of a run from its start.
 fn replay<'w, M: Marker>(
@@ -45,7 +45,7 @@ fn is_isomorphic_start(map: &NamedWorld, world: &NamedWorld, start: Dart) -> boo
 fn the_doors_of_a_run_can_be_repeated_and_its_map_is_the_world() {
     for path in world_files() {
         let file = path.to_str().unwrap();
-        let lines = objects(&said(["explore", "--json", file]));
+        let lines = objects(&stdout_of(["explore", "--json", file]));
         let [line] = lines.as_slice() else { panic!("{file}: {} lines", lines.len()) };
         let world = read_world(&path);
         let start = world.start.unwrap();
@@ -91,12 +91,12 @@ It is isomorphic to the world:
   v0 = u, v1 = v
 The robot is where it believes to be: at v0, entered by dart v0.0.
 ";
-    assert_eq!(said(["explore", "worlds/theta-torus.toml"]), story);
+    assert_eq!(stdout_of(["explore", "worlds/theta-torus.toml"]), story);
 }
 
 #[test]
 fn the_story_mentions_an_absent_marker_if_it_decides() {
-    let story = flat(&said(["explore", "worlds/petersen.toml"]));
+    let story = flat(&stdout_of(["explore", "worlds/petersen.toml"]));
     assert!(story.contains("at move 2 of its path: expected 3 doors, marker along"));
 }
 
@@ -106,7 +106,8 @@ fn the_start_can_be_chosen() {
         read_world(&world_files().into_iter().find(|p| p.ends_with("shape-6.toml")).unwrap());
     for start in world.graph.darts() {
         let text = world.start_text(start);
-        let lines = objects(&said(["explore", "worlds/shape-6.toml", "--json", "--start", &text]));
+        let lines =
+            objects(&stdout_of(["explore", "worlds/shape-6.toml", "--json", "--start", &text]));
         assert_eq!(lines[0]["start"], text.as_str());
         let map = world_file::read(lines[0]["map"].to_string().as_bytes()).unwrap();
         assert!(is_isomorphic_start(&map, &world, start), "{text}");
@@ -120,7 +121,14 @@ fn the_extension_of_the_map_decides_its_format() {
     let svg = file("map.svg");
     for name in ["map.toml", "map.json", "map.ec"] {
         let (map, svg) = (file(name), svg.to_str().unwrap());
-        said(["explore", "worlds/figure-1b.toml", "--map", map.to_str().unwrap(), "--svg", svg]);
+        stdout_of([
+            "explore",
+            "worlds/figure-1b.toml",
+            "--map",
+            map.to_str().unwrap(),
+            "--svg",
+            svg,
+        ]);
     }
     let map = read_world(&file("map.toml"));
     assert_eq!(map, read_world(&file("map.json")));
@@ -156,7 +164,7 @@ fn with_all_choices_shape_6_can_cost_9_moves() {
         let text = world.start_text(start);
         let arguments =
             ["explore", "worlds/shape-6.toml", "--json", "--choices", "all", "--start", &text];
-        let line = &objects(&said(arguments))[0];
+        let line = &objects(&stdout_of(arguments))[0];
         let costs = line["costs"].as_array().unwrap();
         assert!(costs.contains(&line["moves"]), "{line}");
         assert!(costs.iter().all(|cost| cost.as_u64() >= Some(6)), "{line}");
@@ -191,7 +199,7 @@ fn numbers_after(text: &str, words: &[&str]) -> Vec<u64> {
 fn a_run_with_a_movable_marker_can_be_repeated_and_ends_at_its_pose() {
     for path in simple_world_files() {
         let file = path.to_str().unwrap();
-        let lines = objects(&said(["explore", file, "--marker", "movable", "--json"]));
+        let lines = objects(&stdout_of(["explore", file, "--marker", "movable", "--json"]));
         let [line] = lines.as_slice() else { panic!("{file}: {} lines", lines.len()) };
         assert_eq!((&line["marker"], &line["isomorphic"]), (&"movable".into(), &true.into()));
         let world = read_world(&path);
@@ -201,7 +209,7 @@ fn a_run_with_a_movable_marker_can_be_repeated_and_ends_at_its_pose() {
         let robot = replay(&world, Movable, start, &line["doors"]);
         assert!(robot.carries(), "{file}");
 
-        let story = flat(&said(["explore", file, "--marker", "movable", "--full", "--doors"]));
+        let story = flat(&stdout_of(["explore", file, "--marker", "movable", "--full", "--doors"]));
         let (rounds, end) = story.split_once(" The map is complete after ").unwrap();
         let pose = end.split("entered by dart v").nth(1).unwrap();
         let pose: Vec<_> = numbers_after(&format!(".{pose}"), &["."]);
@@ -280,7 +288,7 @@ It is isomorphic to the world:
 The robot is where it believes to be: at v5, entered by dart v5.0.
 It carries its marker.
 ";
-    assert_eq!(said(["explore", "worlds/shape-6.toml", "--marker", "movable"]), story);
+    assert_eq!(stdout_of(["explore", "worlds/shape-6.toml", "--marker", "movable"]), story);
     // In the tetrahedron the marker shows by which of two darts a known vertex was entered.
     let back_link = "
 Round 3: the robot takes v2.1 with the marker (1 move) and senses 3 doors.
@@ -295,14 +303,16 @@ Round 3: the robot takes v2.1 with the marker (1 move) and senses 3 doors.
   The robot picks the marker up.
   So v2.1 and v0.2 are the two ends of one edge.
 ";
-    assert!(said(["explore", "worlds/k4-plane.toml", "--marker", "movable"]).contains(back_link));
+    assert!(
+        stdout_of(["explore", "worlds/k4-plane.toml", "--marker", "movable"]).contains(back_link)
+    );
 }
 
 #[test]
 fn only_full_stories_contain_every_rejected_candidate() {
     let file = "worlds/building-25.toml";
-    let story = said(["explore", file, "--marker", "movable"]);
-    let full = said(["explore", file, "--marker", "movable", "--full"]);
+    let story = stdout_of(["explore", file, "--marker", "movable"]);
+    let full = stdout_of(["explore", file, "--marker", "movable", "--full"]);
     let rejected =
         |story: &str| flat(story).matches(": rejected because the marker is not here (").count();
     let omitted: u64 = numbers_after(&story, &["  ... and "]).iter().sum();
@@ -315,7 +325,7 @@ fn a_carried_marker_is_not_drawn() {
     let svg = folder("explore_movable").join("map.svg");
     let drawn = |marker| {
         let svg = svg.to_str().unwrap();
-        said(["explore", "worlds/shape-6.toml", "--svg", svg, "--marker", marker]);
+        stdout_of(["explore", "worlds/shape-6.toml", "--svg", svg, "--marker", marker]);
         fs::read_to_string(svg).unwrap()
     };
     let sign = "class=\"marker\"";

@@ -2,7 +2,7 @@
 
 use std::{io::Read, process::Stdio};
 
-use super::{folder, run, said, stderr, stdout, toposlam};
+use super::{folder, run, stderr, stdout, stdout_of, toposlam};
 
 const VERBS: [(&str, &[&str]); 18] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
@@ -58,7 +58,7 @@ const VERBS: [(&str, &[&str]); 18] = [
 #[test]
 fn the_help_of_every_verb_has_its_flags_and_an_example_of_it() {
     for (verb, flags) in VERBS {
-        let help = said([verb, "--help"]);
+        let help = stdout_of([verb, "--help"]);
         assert!(help.contains("Example"), "{help}");
         assert!(help.contains(&format!("  toposlam {verb} ")), "{help}");
         assert!(flags.iter().all(|flag| help.contains(flag)), "{help}");
@@ -103,7 +103,7 @@ fn no_line_is_wider_than_80_columns() {
     }
     for (verb, _) in VERBS {
         for help in ["-h", "--help"] {
-            for line in said([verb, help]).lines() {
+            for line in stdout_of([verb, help]).lines() {
                 assert!(line.chars().count() <= 80, "{verb}: {line}");
             }
         }
@@ -112,14 +112,14 @@ fn no_line_is_wider_than_80_columns() {
 
 #[test]
 fn toposlam_alone_prints_its_verbs() {
-    let help = said::<&str>([]);
+    let help = stdout_of::<&str>([]);
     assert!(VERBS.iter().all(|(verb, _)| help.contains(&format!("\n  {verb} "))), "{help}");
 }
 
 #[test]
 fn every_shell_has_completions_of_every_verb() {
     for shell in ["bash", "zsh", "fish"] {
-        let script = said(["completions", shell]);
+        let script = stdout_of(["completions", shell]);
         assert!(VERBS.iter().all(|(verb, _)| script.contains(verb)), "{shell}");
     }
 }

@@ -4,13 +4,13 @@ use std::fs;
 
 use serde_json::json;
 
-use super::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, stderr, stdout, stdout_of};
 
 const RUN: &str = "fuzz/corpus/mcap/of-a-run";
 
 #[test]
-fn a_log_is_told_with_its_topics_and_what_they_could_carry() {
-    let told = "fuzz/corpus/mcap/of-a-run: MCAP, 847 bytes, whole
+fn the_report_lists_the_topics_and_what_they_can_carry() {
+    let text = "fuzz/corpus/mcap/of-a-run: MCAP, 847 bytes, whole
 from 1.000000000 s, for 1.000 s
 7 messages
 
@@ -28,12 +28,12 @@ from 1.000000000 s, for 1.000 s
   motion    /cmd_vel
   percept   /toposlam/percept
 ";
-    assert_eq!(said(["info", RUN]), told);
+    assert_eq!(stdout_of(["info", RUN]), text);
 }
 
 #[test]
 fn json_tells_each_log_on_a_line() {
-    let text = said(["info", "--json", RUN, "fuzz/corpus/bag/bz2"]);
+    let text = stdout_of(["info", "--json", RUN, "fuzz/corpus/bag/bz2"]);
     let [run, bag] = &objects(&text)[..] else { panic!("{text}") };
     assert_eq!(run["schema"], 1);
     assert_eq!(run["mapping"]["percept"], json!(["/toposlam/percept"]));
@@ -48,7 +48,7 @@ fn json_tells_each_log_on_a_line() {
 }
 
 #[test]
-fn a_log_that_is_cut_is_told_as_far_as_it_goes_and_is_incomplete() {
+fn a_truncated_log_is_reported_up_to_its_end_and_is_incomplete() {
     let output = run(["info", "--json", "fuzz/corpus/bag/not-closed"]);
     assert_eq!(output.status.code(), Some(3));
     let [line] = &objects(&stdout(&output))[..] else { panic!() };
@@ -60,7 +60,7 @@ fn a_log_that_is_cut_is_told_as_far_as_it_goes_and_is_incomplete() {
 }
 
 #[test]
-fn what_is_wrong_is_one_message_with_file_and_place() {
+fn an_error_is_one_message_with_file_and_place() {
     for (log, message) in [
         (
             "README.md",
@@ -81,17 +81,17 @@ fn what_is_wrong_is_one_message_with_file_and_place() {
 }
 
 #[test]
-fn a_mapping_is_written_and_held_against_its_log() {
+fn a_topic_map_is_written_and_checked_against_its_log() {
     let mapping = folder("info").join("mapping.toml");
     let path = mapping.to_str().unwrap();
-    said(["info", RUN, "--write-mapping", path]);
+    stdout_of(["info", RUN, "--write-mapping", path]);
     let text = fs::read_to_string(&mapping).unwrap();
     assert!(
         text.starts_with("[image]\ntopic = \"/camera/image/compressed\"\n\n[odometry]\n"),
         "{text}"
     );
-    let told = said(["info", RUN, "--mapping", path]);
-    assert!(told.contains("  odometry  /odom\n"), "{told}");
+    let text = stdout_of(["info", RUN, "--mapping", path]);
+    assert!(text.contains("  odometry  /odom\n"), "{text}");
     let output = run(["info", "fuzz/corpus/bag/bz2", "--mapping", path]);
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);

@@ -10,15 +10,15 @@ use std::{
 use mcap::{MessageStream, Summary, read::Options};
 use serde_json::Value;
 
-use super::{folder, objects, read_world, run, said, stderr, stdout};
+use super::{folder, objects, read_world, run, stderr, stdout, stdout_of};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 
-/// Simulates shape 6 and writes a log; what is said of the run.
+/// Simulates shape 6 and writes a log; what is stdout_of of the run.
 fn logged(log: &Path, arguments: &[&str]) -> Value {
     let log = log.to_str().unwrap();
     let simulate = ["simulate", SHAPE_6, "--seed", "3", "--json", "--log", log];
-    objects(&said([&simulate[..], arguments].concat())).remove(0)
+    objects(&stdout_of([&simulate[..], arguments].concat())).remove(0)
 }
 
 /// What Python reads in a log; `None`, and why, where it has no readers of logs.
@@ -40,9 +40,9 @@ fn by_python(log: &Path) -> Option<Value> {
 }
 
 /// What Python must find in the log of any run on shape 6 that maps it.
-fn agree(told: &Value, line: &Value) {
-    assert_eq!(told["in_order"], true);
-    let count = |topic: &str| told["counts"][topic].as_u64().unwrap_or_default();
+fn agree(report: &Value, line: &Value) {
+    assert_eq!(report["in_order"], true);
+    let count = |topic: &str| report["counts"][topic].as_u64().unwrap_or_default();
     let moves = line["moves"].as_u64().unwrap();
     assert_eq!(count("/toposlam/scene"), line["frames"].as_u64().unwrap());
     assert_eq!((count("/toposlam/door"), count("/toposlam/percept")), (moves, moves + 1));
@@ -50,31 +50,37 @@ fn agree(told: &Value, line: &Value) {
     assert_eq!(count("/odom"), count("/tf"));
     // At least four samples a second of driving, which is most of the time.
     let seconds = line["simulated_seconds"].as_f64().unwrap();
-    assert!(count("/odom") as f64 > 3.0 * seconds && count("/odom") > count("/cmd_vel"), "{told}");
-    assert_eq!(told["run"]["start"], line["start"]);
-    assert_eq!((&told["run"]["seed"], &told["run"]["marker"]), (&3.into(), &"directional".into()));
+    assert!(
+        count("/odom") as f64 > 3.0 * seconds && count("/odom") > count("/cmd_vel"),
+        "{report}"
+    );
+    assert_eq!(report["run"]["start"], line["start"]);
+    assert_eq!(
+        (&report["run"]["seed"], &report["run"]["marker"]),
+        (&3.into(), &"directional".into())
+    );
     let end = serde_json::json!({"moves": moves, "ending": "mapped", "cause": ""});
-    assert_eq!(told["end"], end);
+    assert_eq!(report["end"], end);
     // The degrees of an L, a T, three Ls and a dead end, as the robot comes upon them.
     let degrees = serde_json::json!([2, 3, 2, 2, 2, 1]);
-    assert_eq!(told["map"]["degrees"], degrees);
-    let opposite: Vec<usize> = serde_json::from_value(told["map"]["opposite"].clone()).unwrap();
+    assert_eq!(report["map"]["degrees"], degrees);
+    let opposite: Vec<usize> = serde_json::from_value(report["map"]["opposite"].clone()).unwrap();
     assert!((0..12).all(|dart| opposite[opposite[dart]] == dart), "{opposite:?}");
-    let percepts = told["percepts"].as_array().unwrap();
+    let percepts = report["percepts"].as_array().unwrap();
     assert_eq!(percepts[0], serde_json::json!([0, 2, 0, [true, false, false, true]]));
     assert!(percepts.iter().enumerate().all(|(moves, percept)| percept[0] == moves));
     assert!(percepts.iter().all(|percept| {
         let doors = percept[3].as_array().unwrap().iter().filter(|&door| door == true);
         percept[1] == doors.count()
     }));
-    assert_eq!(told["frames"], serde_json::json!(["odom", "base_link"]));
-    assert_eq!(told["first_odometry"], serde_json::json!([0, 0.0, 0.0]));
-    let last = told["last_odometry"][0].as_f64().unwrap() / 1e9;
+    assert_eq!(report["frames"], serde_json::json!(["odom", "base_link"]));
+    assert_eq!(report["first_odometry"], serde_json::json!([0, 0.0, 0.0]));
+    let last = report["last_odometry"][0].as_f64().unwrap() / 1e9;
     assert!((last - seconds).abs() < 1e-3, "{last} {seconds}");
-    let turn: Vec<f64> = serde_json::from_value(told["orientation"].clone()).unwrap();
+    let turn: Vec<f64> = serde_json::from_value(report["orientation"].clone()).unwrap();
     assert!((turn.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-9, "{turn:?}");
-    assert_eq!(told["last_cmd_vel"], serde_json::json!([0.0, 0.0]));
-    for (kind, same) in told["standard_types_are_those_of_ros_2"].as_object().unwrap() {
+    assert_eq!(report["last_cmd_vel"], serde_json::json!([0.0, 0.0]));
+    for (kind, same) in report["standard_types_are_those_of_ros_2"].as_object().unwrap() {
         assert_eq!(same, true, "{kind}");
     }
 }
@@ -91,12 +97,12 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
     let line = logged(&one, &["--by-scene"]);
     logged(&other, &["--by-scene"]);
     assert_eq!(fs::read(&one).unwrap(), fs::read(&other).unwrap(), "the same bytes each time");
-    if let Some(told) = by_python(&one) {
-        agree(&told, &line);
-        assert_eq!(told["images"], serde_json::json!({}), "there are no pictures");
-        assert_eq!(told["run"]["calibration"], "");
+    if let Some(report) = by_python(&one) {
+        agree(&report, &line);
+        assert_eq!(report["images"], serde_json::json!({}), "there are no pictures");
+        assert_eq!(report["run"]["calibration"], "");
         assert_eq!(
-            told["run"]["command"],
+            report["run"]["command"],
             "toposlam simulate worlds/shape-6.toml --seed 3 --by-scene"
         );
     }
@@ -105,20 +111,20 @@ fn readers_of_ros_2_find_in_a_log_what_the_run_was() {
 
 // paper: exp.simulated
 #[test]
-fn a_log_holds_the_pictures_as_the_camera_gave_them() {
+fn a_log_contains_the_original_pictures() {
     let folder = folder("log_pictures");
     let [log, html] = [log_in(&folder, "run"), folder.join("run.html")];
     let line = logged(&log, &["--effects", "none", "--html", html.to_str().unwrap()]);
-    if let Some(told) = by_python(&log) {
-        agree(&told, &line);
+    if let Some(report) = by_python(&log) {
+        agree(&report, &line);
         let (image, annotated) = ("/camera/image/compressed", "/camera/annotated/compressed");
         for topic in [image, annotated] {
-            assert_eq!(told["counts"][topic], line["frames"]);
+            assert_eq!(report["counts"][topic], line["frames"]);
         }
         // Without effects the camera gives PNG; the first is taken at once.
-        assert_eq!(told["images"][image], serde_json::json!(["png", 0, 640, 480]));
-        assert_eq!(told["images"][annotated], serde_json::json!(["jpeg", 0, 640, 480]));
-        assert!(told["run"]["calibration"].as_str().unwrap().starts_with("[camera]\nkind = "));
+        assert_eq!(report["images"][image], serde_json::json!(["png", 0, 640, 480]));
+        assert_eq!(report["images"][annotated], serde_json::json!(["jpeg", 0, 640, 480]));
+        assert!(report["run"]["calibration"].as_str().unwrap().starts_with("[camera]\nkind = "));
     }
     fs::remove_dir_all(folder).unwrap();
 }
@@ -133,7 +139,7 @@ fn readable(file: &[u8]) -> (usize, String) {
 }
 
 #[test]
-fn a_log_whose_writer_was_killed_is_read_up_to_its_last_whole_chunk() {
+fn a_log_whose_writer_was_killed_is_read_to_its_last_whole_chunk() {
     let folder = folder("log_killed");
     let log = log_in(&folder, "run");
     logged(&log, &["--by-scene"]);
@@ -182,7 +188,7 @@ fn a_run_that_cannot_begin_leaves_no_log() {
 /// A device that is always full.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_and_ends_the_run() {
+fn a_full_disk_is_reported_and_ends_the_run() {
     let output = run(["simulate", SHAPE_6, "--by-scene", "--json", "--log", "/dev/full"]);
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
@@ -192,7 +198,7 @@ fn a_full_disk_is_told_and_ends_the_run() {
 
 #[cfg(unix)]
 #[test]
-fn the_log_of_an_interrupted_run_ends_with_that() {
+fn the_log_of_an_interrupted_run_ends_with_the_interruption() {
     use std::process::Stdio;
 
     let folder = folder("log_interrupted");
@@ -219,12 +225,12 @@ fn the_log_of_an_interrupted_run_ends_with_that() {
 }
 
 #[test]
-fn the_start_of_a_log_is_known_by_its_hash_whatever_its_names() {
+fn the_start_of_a_log_is_recognised_by_its_hash() {
     let folder = folder("log_hash");
     let hash = |arguments: &[&str]| {
         let log = log_in(&folder, "run");
         let simulate = ["simulate", "--by-scene", "--json", "--log", log.to_str().unwrap()];
-        said([&simulate[..], arguments].concat());
+        stdout_of([&simulate[..], arguments].concat());
         let file = fs::read(&log).unwrap();
         let summary = Summary::read(&file).unwrap().unwrap();
         mcap::read::metadata(&file, &summary.metadata_indexes[0]).unwrap().metadata["world_hash"]

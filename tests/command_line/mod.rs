@@ -44,7 +44,7 @@ fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
 }
 
 /// The standard output of a successful run.
-fn said<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
+fn stdout_of<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> String {
     let output = run(arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     stdout(&output)

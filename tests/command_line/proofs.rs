@@ -7,11 +7,11 @@ use serde_json::Value;
 use toposlam_model::format::world_file;
 use toposlam_proofs::{Exhibit, Lemma, Theorem, lemmas, replay::ChoicesError, theorems};
 
-use super::{folder, objects, run, said, stderr, stdout};
+use super::{folder, objects, run, stderr, stdout, stdout_of};
 
 /// The lemmas, the theorems and the totals.
 fn listed() -> (Vec<Value>, Vec<Value>, Value) {
-    let mut lines = objects(&said(["proofs", "--json"]));
+    let mut lines = objects(&stdout_of(["proofs", "--json"]));
     let totals = lines.pop().unwrap();
     let (lemmas, theorems) = lines.into_iter().partition(|line| line.get("lemma").is_some());
     (lemmas, theorems, totals)
@@ -64,7 +64,7 @@ fn error_message(output: &Output) -> String {
 #[test]
 fn every_lemma_is_listed_with_its_place_and_its_engines() {
     let (lines, proved, totals) = listed();
-    let text = said(["proofs"]);
+    let text = stdout_of(["proofs"]);
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     // Without line breaks.
     let flowing = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -106,7 +106,7 @@ fn every_lemma_is_listed_with_its_place_and_its_engines() {
 fn a_lemma_is_checked_in_every_case() {
     let lemmas = quick();
     let names = lemmas.iter().flat_map(|lemma| ["--run", lemma.name]);
-    let lines = objects(&said(["proofs", "--json"].into_iter().chain(names)));
+    let lines = objects(&stdout_of(["proofs", "--json"].into_iter().chain(names)));
     for (line, lemma) in lines.iter().zip(&lemmas) {
         assert_eq!((&line["lemma"], &line["holds"]), (&lemma.name.into(), &true.into()));
         assert_eq!(
@@ -118,7 +118,7 @@ fn a_lemma_is_checked_in_every_case() {
     let totals = lines.last().unwrap();
     assert_eq!((&totals["lemmas"], &totals["held"]), (&lemmas.len().into(), &lemmas.len().into()));
     assert_eq!(totals["holds"], true);
-    let text = said(["proofs", "--run", lemmas[0].name]);
+    let text = stdout_of(["proofs", "--run", lemmas[0].name]);
     let row = text.lines().next().unwrap();
     assert!(row.starts_with(lemmas[0].name) && row.ends_with(" s  holds"), "{text}");
     assert!(text.lines().last().unwrap().starts_with("holds: 1 of 1 lemmas, "), "{text}");
@@ -137,13 +137,13 @@ fn the_other_verbs_read_the_world_of_a_case() {
     let folder = folder("proofs_case");
     let (lemma, choices) = case_with_a_walk();
     let case = ["proofs", "--run", lemma.name, "--choices", &choices_text(&choices)];
-    let text = said(case);
+    let text = stdout_of(case);
     assert!(text.starts_with(&format!("{}\n  ", lemma.name)), "{text}");
     let joined = text.replace(" \\\n", " ").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(joined.contains(&format!(" again: toposlam {} ", case.join(" "))), "{text}");
     assert!(text.contains("\n  door   robot at  perceives\n  start  v"), "{text}");
     assert!(text.ends_with("\n\nholds: the lemma holds in this case\n"), "{text}");
-    assert_eq!(text, said(case));
+    assert_eq!(text, stdout_of(case));
 
     let (_, below) = text.split_once(" `toposlam explore`:\n\n").unwrap();
     let length = below.lines().position(|line| line.starts_with("facing = ")).unwrap() + 1;
@@ -151,10 +151,10 @@ fn the_other_verbs_read_the_world_of_a_case() {
     let file = folder.join("case.toml");
     fs::write(&file, &world).unwrap();
     let file = file.to_str().unwrap();
-    assert!(said(["explore", file]).contains("It is isomorphic to the world"));
-    assert!(said(["draw", file]).starts_with("<svg"));
+    assert!(stdout_of(["explore", file]).contains("It is isomorphic to the world"));
+    assert!(stdout_of(["draw", file]).starts_with("<svg"));
 
-    let [line] = objects(&said(case.into_iter().chain(["--json"]))).try_into().unwrap();
+    let [line] = objects(&stdout_of(case.into_iter().chain(["--json"]))).try_into().unwrap();
     assert_eq!((&line["lemma"], &line["holds"]), (&lemma.name.into(), &true.into()));
     assert_eq!((&line["choices"], &line["verdict"]), (&choices.into(), &"holds".into()));
     let from_json = world_file::read(line["worlds"][0].to_string().as_bytes()).unwrap();
@@ -167,19 +167,19 @@ fn the_other_verbs_read_the_world_of_a_case() {
 #[test]
 fn choices_that_make_no_case_are_an_error() {
     let (lemma, choices) = case_with_a_walk();
-    let refused = |choices: &[u8]| {
+    let rejected = |choices: &[u8]| {
         let choices = choices_text(choices);
         error_message(&run(["proofs", "--run", lemma.name, "--choices", &choices]))
     };
     let length = choices.len();
     let place = format!("error: --choices: {}: ", lemma.name);
-    let message = refused(&choices[1..]);
+    let message = rejected(&choices[1..]);
     let few = format!("a case that begins so has at least {length} choices, not {}", length - 1);
     assert_eq!(message, format!("{place}{few}\n"));
-    let message = refused(&[&choices[..], &[0]].concat());
+    let message = rejected(&[&choices[..], &[0]].concat());
     let many = format!("the case that begins so has {length} choices, not {}", length + 1);
     assert_eq!(message, format!("{place}{many}\n"));
-    let message = refused(&[&[255], &choices[1..]].concat());
+    let message = rejected(&[&[255], &choices[1..]].concat());
     assert!(message.starts_with(&format!("{place}choice number 1 is 255; it is at most ")));
 }
 
@@ -213,8 +213,8 @@ fn a_sampled_case_has_its_own_bound() {
 
 #[test]
 fn the_case_in_the_help_exists() {
-    let help = said(["proofs", "--help"]);
+    let help = stdout_of(["proofs", "--help"]);
     let mut examples = help.lines().filter_map(|line| line.strip_prefix("  toposlam "));
     let case = examples.find(|line| line.contains("--choices")).unwrap();
-    assert!(said(case.split(' ')).contains("as a file for `toposlam draw`"));
+    assert!(stdout_of(case.split(' ')).contains("as a file for `toposlam draw`"));
 }

@@ -5,11 +5,11 @@ use std::fs;
 use image::{ImageFormat, RgbImage};
 use toposlam_vision::camera::{Camera, calibration};
 
-use super::{folder, names_in, run, said, stderr};
+use super::{folder, names_in, run, stderr, stdout_of};
 
 const PLAN: &str = "worlds/shape-8.toml";
 
-fn refused(arguments: &[&str], message: &str) {
+fn rejected(arguments: &[&str], message: &str) {
     let output = run([&["render"], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert!(stderr(&output).contains(message), "{}", stderr(&output));
@@ -22,7 +22,7 @@ fn the_same_command_writes_the_same_files() {
         let files = ["png", "labels.png"].map(|ending| folder.join(format!("{name}.{ending}")));
         let [out, labels] = files.each_ref().map(|file| file.to_str().unwrap());
         let small = ["render", PLAN, "--size", "640x480", "--out", out, "--labels", labels];
-        assert_eq!(said([&small, more].concat()), "");
+        assert_eq!(stdout_of([&small, more].concat()), "");
         files.map(|file| fs::read(file).unwrap())
     };
     let first = render("first", &[]);
@@ -50,7 +50,7 @@ fn the_same_command_writes_the_same_files() {
 fn the_ending_of_the_name_selects_jpeg() {
     let folder = folder("render-jpeg");
     let out = folder.join("view.jpg");
-    said(["render", PLAN, "--out", out.to_str().unwrap()]);
+    stdout_of(["render", PLAN, "--out", out.to_str().unwrap()]);
     let bytes = fs::read(out).unwrap();
     let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Jpeg).unwrap();
     assert_eq!((picture.width(), picture.height()), (1280, 960));
@@ -63,7 +63,7 @@ fn the_image_is_that_of_the_calibrated_camera() {
         ["camera.toml", "default.png", "calibrated.png", "small.png"].map(|name| folder.join(name));
     fs::write(&file, calibration::to_toml(&Camera::superscout().sized([800, 600]))).unwrap();
     let render = |out: &std::path::Path, more: &[&str]| {
-        said([&["render", PLAN, "--out", out.to_str().unwrap()], more].concat());
+        stdout_of([&["render", PLAN, "--out", out.to_str().unwrap()], more].concat());
         image::open(out).unwrap().into_rgb8()
     };
     let calibration = ["--calibration", file.to_str().unwrap()];
@@ -78,23 +78,23 @@ fn the_image_is_that_of_the_calibrated_camera() {
 
 #[test]
 fn invalid_input_is_refused_and_nothing_is_written() {
-    let folder = folder("render-refused");
+    let folder = folder("render-rejected");
     let out = folder.join("view.png");
     let out = ["--out", out.to_str().unwrap()];
     let with = |arguments: &[&'static str]| [&[PLAN], &out[..], arguments].concat();
-    refused(&with(&["--pose", "2,6,0"]), "--pose: there is no floor at 2,6");
-    refused(&with(&["--pose", "2,8"]), "write three numbers");
-    refused(&with(&["--pose", "2,8,nan"]), "write three numbers");
-    refused(&with(&["--effect", "fog=1"]), "--effect: there is no effect `fog`; there are ");
-    refused(&with(&["--effect", "blur=9"]), "--effect: `blur` is 9; it may be from 0 to 4");
-    refused(&with(&["--effect", "blur"]), "write NAME=VALUE");
-    refused(&with(&["--look", "cave"]), "laboratory");
-    refused(&with(&["--calibration", "nowhere.toml"]), "nowhere.toml: cannot be read");
-    refused(
+    rejected(&with(&["--pose", "2,6,0"]), "--pose: there is no floor at 2,6");
+    rejected(&with(&["--pose", "2,8"]), "write three numbers");
+    rejected(&with(&["--pose", "2,8,nan"]), "write three numbers");
+    rejected(&with(&["--effect", "fog=1"]), "--effect: there is no effect `fog`; there are ");
+    rejected(&with(&["--effect", "blur=9"]), "--effect: `blur` is 9; it may be from 0 to 4");
+    rejected(&with(&["--effect", "blur"]), "write NAME=VALUE");
+    rejected(&with(&["--look", "cave"]), "laboratory");
+    rejected(&with(&["--calibration", "nowhere.toml"]), "nowhere.toml: cannot be read");
+    rejected(
         &[&["worlds/figure-1a.toml"], &out[..]].concat(),
         "figure-1a.toml: this world is no floor",
     );
-    refused(&[PLAN, "--out", "view.gif"], "view.gif: the name must end in .png or .jpg or .jpeg");
-    refused(&with(&["--labels", "labels.jpg"]), "labels.jpg: the name must end in .png");
+    rejected(&[PLAN, "--out", "view.gif"], "view.gif: the name must end in .png or .jpg or .jpeg");
+    rejected(&with(&["--labels", "labels.jpg"]), "labels.jpg: the name must end in .png");
     assert!(names_in(&folder).is_empty());
 }

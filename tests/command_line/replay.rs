@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{folder, objects, read_world, run, said, stderr, stdout};
+use super::{folder, objects, read_world, run, stderr, stdout, stdout_of};
 
 // paper: exp.off-line-time
 #[test]
@@ -12,29 +12,29 @@ fn a_log_gives_the_same_map_again_in_less_time() {
     let log = log.to_str().unwrap();
     let few = ["--size", "640x480", "--effects", "none"];
     let shape = ["simulate", "worlds/shapes/shape-2.toml", "--json", "--log", log];
-    let simulated = objects(&said([&shape[..], &few].concat())).remove(0);
+    let simulated = objects(&stdout_of([&shape[..], &few].concat())).remove(0);
     let map = folder.join("map.toml");
     let arguments = ["replay", log, "--json", "--map", map.to_str().unwrap()];
-    let told = objects(&said(arguments)).remove(0);
-    assert_eq!((&told["map"], &told["difference"]), (&true.into(), &serde_json::Value::Null));
-    assert_eq!(told["moves"], simulated["moves"]);
+    let report = objects(&stdout_of(arguments)).remove(0);
+    assert_eq!((&report["map"], &report["difference"]), (&true.into(), &serde_json::Value::Null));
+    assert_eq!(report["moves"], simulated["moves"]);
     for what in ["scenes", "commands", "percepts", "doors"] {
-        assert_eq!(told[what][0], told[what][1], "{what}");
-        assert!(told[what][1].as_u64().unwrap() > 0, "{what}");
+        assert_eq!(report[what][0], report[what][1], "{what}");
+        assert!(report[what][1].as_u64().unwrap() > 0, "{what}");
     }
-    // What computing takes is told beside what the robot took.
-    assert_eq!(told["recorded_seconds"], simulated["simulated_seconds"]);
-    assert!(told["compute_seconds"].as_f64().unwrap() > 0.0);
+    // What computing takes is report beside what the robot took.
+    assert_eq!(report["recorded_seconds"], simulated["simulated_seconds"]);
+    assert!(report["compute_seconds"].as_f64().unwrap() > 0.0);
     let edges = read_world(&map).graph.edge_count();
-    assert_eq!(told["edges"], edges);
+    assert_eq!(report["edges"], edges);
 }
 
 #[test]
-fn a_cut_log_is_replayed_as_far_as_it_goes_and_one_without_commands_is_refused() {
+fn a_truncated_log_is_replayed_to_its_end_and_a_log_without_commands_is_an_error() {
     let folder = folder("replay-cut");
     let log = folder.join("run.mcap");
     let path = log.to_str().unwrap();
-    said(["simulate", "worlds/shape-6.toml", "--by-scene", "--json", "--log", path]);
+    stdout_of(["simulate", "worlds/shape-6.toml", "--by-scene", "--json", "--log", path]);
     let bytes = fs::read(&log).unwrap();
     let mapping = folder.join("mapping.toml");
     fs::write(&mapping, "[odometry]\ntopic = \"/odom\"\n").unwrap();
@@ -44,7 +44,7 @@ fn a_cut_log_is_replayed_as_far_as_it_goes_and_one_without_commands_is_refused()
     fs::write(&log, &bytes[..bytes.len() / 2]).unwrap();
     let output = run(["replay", path, "--json"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    let told = objects(&stdout(&output)).remove(0);
-    assert_eq!(told["complete"], false);
-    assert!(told["error"].as_str().unwrap().contains("the log has no more pictures"), "{told}");
+    let report = objects(&stdout(&output)).remove(0);
+    assert_eq!(report["complete"], false);
+    assert!(report["error"].as_str().unwrap().contains("the log has no more pictures"), "{report}");
 }

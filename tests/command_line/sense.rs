@@ -10,7 +10,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::camera::{Camera, calibration};
 
-use super::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, stderr, stdout, stdout_of};
 
 const SIZE: [u32; 2] = [640, 480];
 /// A PNG of 69 bytes whose header claims 16384 x 16384 pixels.
@@ -45,7 +45,7 @@ static FILES: LazyLock<Files> = LazyLock::new(|| {
 /// An image from a pose in shape 6, with the marker at its corner.
 fn rendered(name: &str, pose: &str) -> String {
     let path = FILES.folder.join(name).to_str().unwrap().to_owned();
-    said([
+    stdout_of([
         "render",
         "worlds/shape-6.toml",
         "--pose",
@@ -80,7 +80,7 @@ fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
     // In the hallway to the ne corner; and on the way into the marked corner, 0.4 m before it.
     let hallway = rendered("hallway.png", "2,4.1,5");
     let corner = rendered("corner.jpg", "0.4,8,180");
-    let text = said(sense(&[&hallway, &corner], &["--json"]));
+    let text = stdout_of(sense(&[&hallway, &corner], &["--json"]));
     let [in_hallway, at_corner] = &objects(&text)[..] else { panic!("{text}") };
     let near = |value: &Value, expected: f64, off: f64| {
         assert!((value.as_f64().unwrap() - expected).abs() < off, "{value} is not {expected}");
@@ -131,7 +131,7 @@ fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
 fn the_text_has_labelled_rows_and_each_stage_has_a_picture() {
     let image = rendered("words.png", "0.4,8,180");
     let steps = folder("sense_steps");
-    let text = said(sense(&[&image], &["--stages", steps.to_str().unwrap()]));
+    let text = stdout_of(sense(&[&image], &["--stages", steps.to_str().unwrap()]));
     assert!(text.starts_with(&format!("{image}\n  place       L, 0.4")), "{text}");
     let doors = "\n  doors       straight behind, 90 degrees to the left\n";
     assert!(text.contains(doors), "{text}");
@@ -143,7 +143,7 @@ fn the_text_has_labelled_rows_and_each_stage_has_a_picture() {
     let expected = ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
     assert_eq!(names, expected.map(|step| format!("words-{step}.png")));
     let file = steps.join("words.txt");
-    assert_eq!(said(sense(&[&image], &["--out", file.to_str().unwrap()])), "");
+    assert_eq!(stdout_of(sense(&[&image], &["--out", file.to_str().unwrap()])), "");
     assert_eq!(fs::read_to_string(file).unwrap(), text);
 }
 
@@ -169,7 +169,7 @@ fn a_useless_image_is_unknown_with_the_reason() {
         (of("wall.png", [206, 190, 158]), "few-walls"),
     ];
     let images = cases.each_ref().map(|(path, _)| path.as_str());
-    let lines = objects(&said(sense(&images, &["--json"])));
+    let lines = objects(&stdout_of(sense(&images, &["--json"])));
     assert_eq!(lines.len(), cases.len());
     for (object, (path, reason)) in lines.iter().zip(&cases) {
         assert_eq!(
@@ -178,7 +178,10 @@ fn a_useless_image_is_unknown_with_the_reason() {
         );
         assert_eq!(object["reason"], *reason, "{object}");
         assert!(object["marker"].is_null(), "{object}");
-        assert_eq!(said(sense(&[path], &[])), format!("{path}\n  place       unknown: {reason}\n"));
+        assert_eq!(
+            stdout_of(sense(&[path], &[])),
+            format!("{path}\n  place       unknown: {reason}\n")
+        );
     }
 }
 
@@ -189,7 +192,7 @@ fn other_files_than_images_of_the_camera_are_refused_with_the_reason() {
     let small = RgbImage::new(320, 240);
     let small_path = FILES.folder.join("small.png");
     small.save_with_format(&small_path, ImageFormat::Png).unwrap();
-    let refused = [
+    let rejected = [
         (written("text.png", b"a picture"), "this is not an image; it must be PNG or JPEG"),
         (written("empty.png", b""), "this is not an image; it must be PNG or JPEG"),
         (written("half.png", &png[..png.len() / 2]), "this cannot be read as an image: "),
@@ -208,7 +211,7 @@ fn other_files_than_images_of_the_camera_are_refused_with_the_reason() {
         ),
         (FILES.folder.join("none.png").to_str().unwrap().to_owned(), "cannot be read: "),
     ];
-    for (path, cause) in refused {
+    for (path, cause) in rejected {
         let output = run(sense(&[&path], &["--json"]));
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
@@ -218,7 +221,7 @@ fn other_files_than_images_of_the_camera_are_refused_with_the_reason() {
 }
 
 /// Runs with one of the two files changed. Returns the error message without the file name.
-fn refusal(changed: &str, from: &str, to: &str) -> String {
+fn error_message(changed: &str, from: &str, to: &str) -> String {
     let image = rendered("image.png", "2,4,0");
     let [mut calibration, mut colours] = [FILES.calibration.clone(), FILES.colours.clone()];
     let file = if changed == "camera.toml" { &mut calibration } else { &mut colours };
@@ -262,7 +265,7 @@ fn an_invalid_calibration_is_refused_with_the_allowed_values() {
         ),
     ];
     for (from, to, message) in cases {
-        assert_eq!(refusal("camera.toml", from, to), message);
+        assert_eq!(error_message("camera.toml", from, to), message);
     }
     let image = rendered("image.png", "2,4,0");
     let nothing = written("nothing.toml", b"");
@@ -293,8 +296,8 @@ fn invalid_colours_are_refused_with_the_allowed_values() {
         ("[histograms]", "[histograms", "line "),
     ];
     for (from, to, message) in cases {
-        let refusal = refusal("colours.toml", from, to);
-        assert!(refusal.starts_with(message), "{refusal}");
+        let error_message = error_message("colours.toml", from, to);
+        assert!(error_message.starts_with(message), "{error_message}");
     }
 }
 
@@ -306,5 +309,5 @@ fn stages_of_images_with_the_same_name_are_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("its pictures would be called as those of"));
     assert!(names_in(&steps).is_empty());
-    said(sense(&[&one, &other], &[]));
+    stdout_of(sense(&[&one, &other], &[]));
 }

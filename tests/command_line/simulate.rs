@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{folder, names_in, objects, read_world, run, said, stderr, stdout};
+use super::{folder, names_in, objects, read_world, run, stderr, stdout, stdout_of};
 
 const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
@@ -53,18 +53,18 @@ fn a_robot_that_sees_only_its_pictures_maps_shape_6() {
 
 // paper: exp.multiplicative
 #[test]
-fn what_a_run_came_to_is_one_object_the_same_each_time() {
+fn the_result_of_a_run_is_one_object_and_always_the_same() {
     for (plan, seed, moves, edges) in [(SHAPE_6, "0", 7, 6), (SHAPE_8, "1", 12, 7)] {
-        let told = || {
-            let text = said(["simulate", plan, "--by-scene", "--seed", seed, "--json"]);
+        let report = || {
+            let text = stdout_of(["simulate", plan, "--by-scene", "--seed", seed, "--json"]);
             let mut object = objects(&text).remove(0);
             // The one thing that is a wall time.
             assert!(object["compute_seconds"].as_f64().unwrap() > 0.0);
             object["compute_seconds"] = serde_json::Value::Null;
             object
         };
-        let object = told();
-        assert_eq!(object, told());
+        let object = report();
+        assert_eq!(object, report());
         assert_eq!(object["schema"], 1);
         assert_eq!((&object["moves"], &object["explore_moves"]), (&moves.into(), &moves.into()));
         assert_eq!(object["edges"], edges);
@@ -80,7 +80,7 @@ fn what_a_run_came_to_is_one_object_the_same_each_time() {
 }
 
 #[test]
-fn a_robot_that_gives_up_says_where_and_why() {
+fn a_robot_that_gives_up_reports_where_and_why() {
     for (fault, why) in [
         (
             "blocked@20",
@@ -107,13 +107,13 @@ fn a_robot_with_too_few_darts_is_incomplete() {
 #[test]
 fn control_is_as_specified_on_any_number_of_threads() {
     let arguments = ["evaluate", "control", "--traversals", "3000", "--plans", "10", "--json"];
-    let text = said(arguments);
-    assert_eq!(text, said([&arguments[..], &["--threads", "3"]].concat()));
+    let text = stdout_of(arguments);
+    assert_eq!(text, stdout_of([&arguments[..], &["--threads", "3"]].concat()));
     let lines = objects(&text);
     let last = lines.last().unwrap();
     assert_eq!((&last["kind"], &last["holds"]), (&"control".into(), &true.into()), "{text}");
     assert_eq!(last["traversals"], 3000);
-    let table = said(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
+    let table = stdout_of(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
     // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
     assert!(table.contains("  26 doors, counted from each entry, in 1 floor plan\n"), "{table}");
     assert!(table.contains("holds: each door leads where the specification says"), "{table}");
@@ -130,20 +130,20 @@ fn a_few_doors_are_taken_with_pictures() {
 // paper: exp.simulated
 #[test]
 fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
-    let text = said(["evaluate", "runs", "--plans", "12", "--starts", "2", "--json"]);
+    let text = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--json"]);
     let lines = objects(&text);
     let last = lines.last().unwrap();
     assert_eq!((&last["kind"], &last["holds"]), (&"runs".into(), &true.into()), "{text}");
     let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
     assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
-    let table = said(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
+    let table = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
     for part in ["dropped", "frozen", "carried", "holds: each map is right, or the robot gave up"] {
         assert!(table.contains(part), "{part}\n{table}");
     }
 }
 
 #[test]
-fn what_cannot_work_is_said_before_the_run() {
+fn bad_arguments_are_reported_before_the_run() {
     let folder = folder("simulate_bad");
     let write = |name: &str, text: &str| {
         let file = folder.join(name);
@@ -195,7 +195,7 @@ fn what_cannot_work_is_said_before_the_run() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_tells_what_is_known_and_is_incomplete() {
+fn an_interrupted_run_reports_its_results_and_is_incomplete() {
     use std::{
         io::{BufRead, BufReader, Read},
         process::{Command, Stdio},

@@ -13,7 +13,7 @@ use toposlam_vision::{
     colour::{ColourModel, Stripe, StripeKind},
 };
 
-use super::{folder, names_in, objects, run, said, stderr, stdout};
+use super::{folder, names_in, objects, run, stderr, stdout, stdout_of};
 
 const SIZE: [u32; 2] = [320, 240];
 /// A PNG of 69 bytes whose header claims 16384 x 16384 pixels.
@@ -67,7 +67,7 @@ impl Set {
         let [image, camera] = [image, "camera.toml"].map(|name| self.path(name));
         let what = ["render", "worlds/shape-8.toml", "--marker", "--effects", "none"];
         let how = ["--pose", pose, "--calibration", &camera, "--out", &image];
-        said([&what[..], &how, more].concat());
+        stdout_of([&what[..], &how, more].concat());
     }
 
     fn write(&self, name: &str, bytes: &[u8]) {
@@ -89,7 +89,7 @@ impl Set {
 
     /// The JSON object.
     fn report(&self, more: &[&str]) -> Value {
-        let text = said(self.train(&[&["--json"], more].concat()));
+        let text = stdout_of(self.train(&[&["--json"], more].concat()));
         let [report]: [Value; 1] = objects(&text).try_into().unwrap();
         report
     }
@@ -99,7 +99,7 @@ impl Set {
     }
 
     /// The error message. Nothing is written.
-    fn refusal(&self, more: &[&str]) -> String {
+    fn error_message(&self, more: &[&str]) -> String {
         let output = run(self.train(more));
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
@@ -140,7 +140,7 @@ fn every_class_of_a_rendered_building_is_recognized() {
 #[test]
 fn the_text_is_a_table() {
     let set = Set::copy("train-table", 7);
-    let text = said(set.train(&["--folds", "7", "--stripe", "wall", "--stripe-width", "0.1"]));
+    let text = stdout_of(set.train(&["--folds", "7", "--stripe", "wall", "--stripe-width", "0.1"]));
     let stripe = Stripe { kind: StripeKind::OnWall, width: 0.1 };
     assert_eq!(set.model().stripe, stripe);
     assert!(text.starts_with("stripe  a baseboard on the wall, 0.1 m wide\nimages  7\n"), "{text}");
@@ -161,7 +161,7 @@ fn the_text_is_a_table() {
 #[test]
 fn the_same_images_give_the_same_colours() {
     let [one, other] = ["train-one", "train-other"].map(|name| Set::copy(name, 5));
-    let learned = |set: &Set| (said(set.train(&[])), set.model().to_toml());
+    let learned = |set: &Set| (stdout_of(set.train(&[])), set.model().to_toml());
     let first = learned(&one);
     assert_eq!(first, learned(&other));
     assert_eq!(first, learned(&one));
@@ -170,14 +170,14 @@ fn the_same_images_give_the_same_colours() {
 #[test]
 fn sensing_works_with_the_learned_colours() {
     let set = Set::copy("train-sense", 7);
-    said(set.train(&[]));
+    stdout_of(set.train(&[]));
     // In the hallway, between two junctions; and 0.6 m before the marked corner, which turns to the right.
     set.render("0.1,2,86", "hallway.png", &[]);
     set.render("0.05,7.4,91", "corner.png", &[]);
     let [hallway, corner, camera, colours] =
         ["hallway.png", "corner.png", "camera.toml", "colours.toml"].map(|name| set.path(name));
     let files = ["--calibration", &camera, "--colours", &colours, "--json"];
-    let text = said([&["sense", &hallway, &corner], &files[..]].concat());
+    let text = stdout_of([&["sense", &hallway, &corner], &files[..]].concat());
     let [hallway, corner] = &objects(&text)[..] else { panic!("{text}") };
     assert_eq!(hallway["scene"], "hallway", "{text}");
     assert!((hallway["right"].as_f64().unwrap() - 0.7).abs() < 0.05, "{text}");
@@ -195,7 +195,7 @@ fn one_image_is_enough_but_is_not_cross_validated() {
         let labels = Path::new(name).with_extension("png");
         fs::remove_file(set.0.join("labels").join(labels)).unwrap();
     }
-    let text = said(set.train(&[]));
+    let text = stdout_of(set.train(&[]));
     let why = "\nnot cross-validated: there is only one image to learn from\n";
     assert!(text.ends_with(why), "{text}");
     let report = set.report(&[]);
@@ -206,8 +206,8 @@ fn one_image_is_enough_but_is_not_cross_validated() {
     );
     assert!(report["classes"][2]["pixels"].as_u64().unwrap() > 0, "{report}");
     fs::remove_file(set.0.join("colours.toml")).unwrap();
-    let refusal = set.refusal(&["--folds", "2"]);
-    assert_eq!(refusal, "--folds: 1 image cannot be divided; there must be at least 2\n");
+    let error_message = set.error_message(&["--folds", "2"]);
+    assert_eq!(error_message, "--folds: 1 image cannot be divided; there must be at least 2\n");
 }
 
 #[test]
@@ -226,11 +226,11 @@ fn images_that_are_too_dark_or_bright_are_left_out_and_reported() {
     let left_out = [(black, dark), (white, burnt)];
     let left_out = left_out.map(|(image, reason)| json!({ "image": image, "reason": reason }));
     assert_eq!((&report["images"], &report["left_out"]), (&json!(7), &json!(left_out)));
-    let text = said(set.train(&[]));
+    let text = stdout_of(set.train(&[]));
     assert!(text.contains("\nimages  7, and 2 left out\n"), "{text}");
     // The colours are the same as without them.
     let model = set.model();
-    said(RENDERED.train(&[]));
+    stdout_of(RENDERED.train(&[]));
     assert_eq!(model, RENDERED.model());
 }
 
@@ -343,10 +343,10 @@ fn invalid_images_and_labels_are_refused_with_the_file() {
         }),
     ];
     for (name, breaking) in cases {
-        let set = Set::copy(&format!("train-refused-{name}"), 7);
+        let set = Set::copy(&format!("train-rejected-{name}"), 7);
         let expected = breaking(&set);
         if name == "no-light" {
-            // Each image is named before the refusal.
+            // Each image is named before the error_message.
             let output = run(set.train(&[]));
             let message = stderr(&output);
             assert_eq!(output.status.code(), Some(2), "{message}");
@@ -355,8 +355,8 @@ fn invalid_images_and_labels_are_refused_with_the_file() {
             assert!(message.ends_with(&last), "{message}");
             continue;
         }
-        let refusal = set.refusal(&[]);
-        assert!(refusal.starts_with(&expected), "{name}: {refusal}");
+        let error_message = set.error_message(&[]);
+        assert!(error_message.starts_with(&expected), "{name}: {error_message}");
     }
 }
 
@@ -395,8 +395,8 @@ fn invalid_options_are_refused_with_the_allowed_values() {
         (&["--stripe-width", "0"], "--stripe-width: 0 is out of range"),
     ];
     for (arguments, message) in cases {
-        let refusal = set.refusal(arguments);
-        assert!(refusal.starts_with(message), "{arguments:?}: {refusal}");
+        let error_message = set.error_message(arguments);
+        assert!(error_message.starts_with(message), "{arguments:?}: {error_message}");
     }
     let output = run(set.train(&["--stripe", "ceiling"]));
     assert!(stderr(&output).contains("[possible values: floor, wall]"));
@@ -438,7 +438,7 @@ fn a_class_that_occurs_in_one_part_only_is_reported() {
     }
     labels.save(path).unwrap();
     let why = "without part 2 of the images no pixel within 3 m is labelled as stripe\n";
-    assert!(said(set.train(&[])).ends_with(&format!("\nnot cross-validated: {why}")));
+    assert!(stdout_of(set.train(&[])).ends_with(&format!("\nnot cross-validated: {why}")));
     fs::remove_file(set.0.join("colours.toml")).unwrap();
-    assert_eq!(set.refusal(&["--folds", "2"]), format!("--folds: {why}"));
+    assert_eq!(set.error_message(&["--folds", "2"]), format!("--folds: {why}"));
 }

@@ -16,12 +16,11 @@ use toposlam_robot::{
     simulator::SimulationConfig,
 };
 
-/// Keeps what a robot does.
+/// Records a run.
 struct Keeper {
     journal: Journal,
     moves: u64,
-    /// A few pictures, which take turns: each stands for as many rounds as there are pictures, and then
-    /// a round has none.
+    /// A few pictures. Each is used for as many rounds as there are pictures, then a round has none.
     pictures: Vec<Vec<u8>>,
 }
 

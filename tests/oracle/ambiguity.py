@@ -11,7 +11,7 @@ table, which is refined until nothing changes. Needs nothing but Python's own li
 For each kind and each number of edges it prints `KIND m placed_worlds ambiguous`, then
 `KIND smallest M K`: the edges of the two worlds of the smallest ambiguous pair, the larger first
 (or `KIND smallest none`). A placed world is ambiguous when another one, of at most N edges and of
-the same class, cannot be told from it: from some start pose of the one and some start pose of the
+the same class, cannot be distinguished from it: from some start pose of the one and some start pose of the
 other, every sequence of actions gives the same percepts. How many embedded graphs there are goes
 to stderr.
 
@@ -284,7 +284,7 @@ def states(kind, world):
     return table, {(pose, first) for pose in start_poses(kind, graph, facing)}
 
 
-# ---------------------------------------------------------------- which cannot be told apart
+# ---------------------------------------------------------------- indistinguishable worlds
 
 def classes_of_starts(kind, worlds):
     """One table of all states of all placed worlds: first split by percept, then again and again
@@ -321,7 +321,7 @@ def classes_of_starts(kind, worlds):
 
 
 def ambiguous(kind, worlds):
-    """For each placed world whether another one cannot be told from it, and the edges of the
+    """For each placed world whether another one cannot be distinguished from it, and the edges of the
     smallest such pair."""
     sharing = {}
     for i, classes in enumerate(classes_of_starts(kind, worlds)):
@@ -336,7 +336,7 @@ def ambiguous(kind, worlds):
     return confused, smallest
 
 
-def told_apart(one, other, start_one, start_other):
+def distinguishable(one, other, start_one, start_other):
     """Whether walking in both tables at once comes to percepts that differ."""
     met, waiting = {(start_one, start_other)}, [(start_one, start_other)]
     for here, there in waiting:
@@ -356,7 +356,7 @@ def ambiguous_by_walking(kind, worlds):
     confused, smallest = set(), None
     for i, (one, starts_one) in enumerate(tables):
         for j, (other, starts_other) in enumerate(tables[:i]):
-            if not all(told_apart(one, other, a, b) for a in starts_one for b in starts_other):
+            if not all(distinguishable(one, other, a, b) for a in starts_one for b in starts_other):
                 confused.update([i, j])
                 less, more = sorted([worlds[i].edges, worlds[j].edges])
                 smallest = (more, less) if smallest is None else min(smallest, (more, less))

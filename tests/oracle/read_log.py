@@ -59,8 +59,8 @@ def stamp(time):
     return time.sec * 10**9 + time.nanosec
 
 
-def told(messages):
-    """Per topic how many messages there are; and of some what they say."""
+def summary(messages):
+    """The number of messages per topic, and the content of some."""
     counts, first, last, percepts, moves, odometry = {}, {}, {}, [], [], []
     latest, order = 0, True
     for topic, time, message in messages:
@@ -112,7 +112,7 @@ def size(data):
 def main():
     path = Path(sys.argv[1])
     one, other = ByRosbags(path), ByMcap(path)
-    by_rosbags, by_mcap = told(one.messages()), told(other.messages())
+    by_rosbags, by_mcap = summary(one.messages()), summary(other.messages())
     assert by_rosbags == by_mcap, (by_rosbags, by_mcap)
     run = other.notes["toposlam"]
     assert run == {name: str(value) for name, value in by_mcap["run"].items()}, run
