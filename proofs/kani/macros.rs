@@ -1,5 +1,5 @@
 //! The attributes of the stand-in for Kani: they refuse what Kani refuses, in its words, and leave
-//! a mark in the harness, by which `tests/harnesses` tells which harnesses were compiled and how
+//! a mark in the harness, by which `tests/harnesses` recognises which harnesses were compiled and how
 //! far they are unwound. They prove nothing.
 
 use proc_macro::{Delimiter, Group, Span, TokenStream, TokenTree};

@@ -70,12 +70,12 @@ pub fn world_file(bytes: &[u8]) {
 /// Panics if that does not hold.
 pub fn planar_code(bytes: &[u8]) {
     let worlds = read(bytes, PlantriCode::Planar);
-    // This code tells a world in one way, if its numbers have one byte.
+    // In this code a world has one representation, if its numbers have one byte.
     let is_header = bytes.starts_with(b">>");
     if let (Some(first), Some(1..), false) = (worlds.first(), bytes.first(), is_header) {
         let written = plantri::write(std::slice::from_ref(first), PlantriCode::Planar);
-        let told = written.as_deref().ok().and_then(|file| file.strip_prefix(b">>planar_code<<"));
-        assert!(told.is_some_and(|told| bytes.starts_with(told)), "{first:?} is not what is told");
+        let body = written.as_deref().ok().and_then(|file| file.strip_prefix(b">>planar_code<<"));
+        assert!(body.is_some_and(|body| bytes.starts_with(body)), "{first:?} is written otherwise");
     }
 }
 
@@ -143,9 +143,12 @@ fn read(bytes: &[u8], code: PlantriCode) -> Vec<EmbeddedGraph> {
             }
             Err(error) => {
                 assert_is_a_message(&error);
-                assert!(code == PlantriCode::Planar, "edge_code tells every world: {error}");
-                let is_told = |graph: &EmbeddedGraph| is_simple(graph) && is_small(graph);
-                assert!(!worlds.iter().all(is_told), "planar_code tells these: {error}");
+                assert!(code == PlantriCode::Planar, "edge_code represents every world: {error}");
+                let is_planar_code = |graph: &EmbeddedGraph| is_simple(graph) && is_small(graph);
+                assert!(
+                    !worlds.iter().all(is_planar_code),
+                    "planar_code represents these: {error}"
+                );
             }
         }
     }
@@ -168,7 +171,7 @@ fn assert_is_named(world: &NamedWorld) {
     names.sort_unstable();
     assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?} are different");
     match edge_names {
-        None => assert!(is_simple(graph), "neighbours do not tell {graph:?}"),
+        None => assert!(is_simple(graph), "neighbours do not represent {graph:?}"),
         Some(edges) => {
             assert_eq!(edges.len(), graph.dart_count(), "every dart has its edge's name");
             let mut named: Vec<_> = graph.edges().map(|(dart, _)| &edges[dart.at()]).collect();
@@ -181,7 +184,11 @@ fn assert_is_named(world: &NamedWorld) {
     }
     if let Some(start) = world.start {
         assert!(start.at() < graph.dart_count(), "{start:?} is a dart");
-        assert_eq!(world.start_from_text(&world.start_text(start)), Ok(start), "a start is told");
+        assert_eq!(
+            world.start_from_text(&world.start_text(start)),
+            Ok(start),
+            "a start has a text"
+        );
     }
     let junctions = world.plan.as_ref().map(|plan| plan.junctions().len());
     let positions = world.positions.as_ref().map(Vec::len);

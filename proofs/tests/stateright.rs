@@ -2,7 +2,7 @@
 //! every order at line 5 and at line 9: a second opinion on `toposlam check --choices all`.
 //!
 //! Nothing here is the specification's but embedded graphs, percepts and the verifier of a bijection:
-//! the map, the walks in it and the hypotheses are written anew, and stateright explores the states.
+//! the map, the walks in it and the hypotheses are written separately, and stateright explores the states.
 //! The way back is not: after a rejection the robot is where it was.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]

@@ -1,8 +1,8 @@
 (* Runs the extracted algorithms, with their default choices, in each start that stands on a line of
-   standard input, and tells on a line of standard output what they did.
+   standard input, and prints their runs, a line each, on standard output.
 
    A start is the kind of marker and two lists of darts, with semicolons between them: what is opposite to
-   dart 0, 1, 2, ..., and what is clockwise from it. The facing dart is dart 0. Told are what the robot
+   dart 0, 1, 2, ..., and what is clockwise from it. The facing dart is dart 0. The output is what the robot
    did, in its order, the doors that it took as numbers; of each dart of its map the first dart of its
    vertex, the degree of its vertex, and the other end of its edge; and the robot's pose:
 
@@ -66,7 +66,7 @@ let rec run start sighting pose spot did = function
       if spot <> None then failwith "a marker was dropped that is not carried";
       run start sighting pose (Some pose) ("drop" :: did) go
 
-let told marker start =
+let run_line marker start =
   let mapping, sighting =
     match marker with
     | "directional" -> (directional_mapping, fun _ -> pointing 0)
@@ -91,7 +91,7 @@ let answer line =
   match List.map (String.split_on_char ' ') (String.split_on_char ';' line) with
   | [ [ marker ]; "" :: "opposite" :: opposite; "" :: "clockwise" :: clockwise ] ->
       let darts numbers = Array.of_list (List.map int_of_string numbers) in
-      told marker { opposite = darts opposite; clockwise = darts clockwise }
+      run_line marker { opposite = darts opposite; clockwise = darts clockwise }
   | _ -> failwith ("this is no start: " ^ line)
 
 let () =

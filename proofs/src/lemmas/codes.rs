@@ -112,7 +112,7 @@ fn compare(
         value: format!("dart {} of the first, dart {} of the second", here.0, there.0),
     });
     let isomorphic = isomorphic((one, here), (other, there));
-    claim("the codes tell it", (code(one, here) == code(other, there)) == isomorphic)?;
+    claim("the codes decide it", (code(one, here) == code(other, there)) == isomorphic)?;
     let bijection = Bijection::of_starts((one, here), (other, there));
     claim("the verifier finds it", bijection.verify(one, other) == isomorphic)
 }

@@ -136,8 +136,8 @@ fn planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) 
         return Ok(());
     }
     let written = again(&worlds, PlantriCode::Planar)?;
-    let told = written.strip_prefix(b">>planar_code<<");
-    claim("writing gives the bytes back", told == Some(bytes.as_slice()))
+    let body = written.strip_prefix(b">>planar_code<<");
+    claim("writing gives the bytes back", body == Some(bytes.as_slice()))
 }
 
 fn wide_planar_code<C: Choose, const MOST: usize, const LETTERS: u8>(choose: &mut C) -> CaseResult {
@@ -218,7 +218,7 @@ fn written_and_read<C: Choose, const LEAST: usize, const MOST: usize>(
         claim("edge_code by hand reads as the same world", reads(&file, PlantriCode::Edge))?;
     }
     let file = plantri::write(std::slice::from_ref(graph), PlantriCode::Planar);
-    claim("planar_code tells simple worlds", file.is_ok() == is_simple(graph))?;
+    claim("planar_code represents simple worlds", file.is_ok() == is_simple(graph))?;
     let Ok(file) = file else { return Ok(()) };
     claim("planar_code reads as the same world", reads(&file, PlantriCode::Planar))?;
     let mut numbers = vec![0, graph.vertex_count() as u16];
@@ -301,11 +301,11 @@ fn neighbour_lists<C: Choose>(choose: &mut C) -> CaseResult {
         Err(_) => claim("what is refused is none", !is_one),
         Ok(graph) => {
             claim("what is accepted is one", is_one && is_world(&graph))?;
-            let told = graph.vertices().map(|vertex| {
+            let found = graph.vertices().map(|vertex| {
                 let far = graph.darts_of(vertex).map(|dart| graph.vertex(graph.opposite(dart)));
                 (lists[vertex.at()].0, far.map(|far| lists[far.at()].0).collect())
             });
-            claim("the graph has them in this order", told.collect::<Lists>() == lists)
+            claim("the graph has them in this order", found.collect::<Lists>() == lists)
         }
     }
 }

@@ -58,8 +58,8 @@ impl Mapping {
         [marker, &opposite, &clockwise].join("; ")
     }
 
-    /// What the running algorithm does in a start, as `compare/main.ml` tells it.
-    fn told(self, start: &EmbeddedGraph) -> String {
+    /// The run of the running algorithm from a start, in the format of `compare/main.ml`.
+    fn run_line(self, start: &EmbeddedGraph) -> String {
         let mut did = Actions(vec!["did".to_owned()]);
         let bound = start.dart_count();
         let known = match self {
@@ -117,15 +117,15 @@ fn extracted(folder: &Path, mapping: Mapping, starts: &[EmbeddedGraph]) -> Strin
     printed(Command::new(program).stdin(File::open(lines).unwrap()))
 }
 
-/// The first start of which something else is told, with the difference.
+/// The first start with different runs, and the difference.
 fn difference(mapping: Mapping, starts: &[EmbeddedGraph], proved: &str) -> Option<String> {
     let lines = proved.lines().map(Some).chain(iter::repeat(None));
     let (start, proved) = starts
         .iter()
         .zip(lines)
-        .find(|(start, line)| *line != Some(mapping.told(start).as_str()))?;
+        .find(|(start, line)| *line != Some(mapping.run_line(start).as_str()))?;
     let proved = proved.unwrap_or("nothing");
-    let running = mapping.told(start);
+    let running = mapping.run_line(start);
     let world = NamedWorld::numbered("start", "", start.clone(), Some(Dart(0)));
     let world = world_file::to_toml(&world);
     Some(format!("the proved algorithm\n  {proved}\nthe running one\n  {running}\nin\n\n{world}"))
@@ -141,7 +141,7 @@ fn assert_same(mapping: Mapping, folder: &Path, starts: &[EmbeddedGraph]) {
 }
 
 /// The numbers of starts: A000698 with up to 5 edges; and those with up to 7 that are simple, of which
-/// `model/tests/counts.rs` tells how they are held against a filter.
+/// `model/tests/counts.rs` compares them with a filter.
 #[test]
 fn the_proved_algorithm_1_and_the_running_one_do_the_same_in_every_small_start() {
     let Some(compiled) = compiled() else { return };

@@ -52,7 +52,7 @@ class Panel {
     new ResizeObserver(() => this.state && this.draw()).observe(this.svg);
   }
 
-  /** Leaves the drawing alone: the page says the rest, and a phone has little room. */
+  /** Crops to the drawing: the page has the texts, and a phone has little room. */
   crop() {
     const rest = ".title, .caption, .legend, .scale, .names ~ .marker";
     for (const element of this.svg.querySelectorAll(rest)) element.remove();
@@ -75,7 +75,7 @@ class Panel {
   }
 
   /**
-   * Shows the robot in a state. `shared` tells whether the other robot has a door too; with a
+   * Shows the robot in a state. `shared` says whether the other robot has a door too; with a
    * `duration`, in milliseconds, the robot travels from where it was.
    */
   show(state, shared, duration) {

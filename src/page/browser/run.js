@@ -21,10 +21,10 @@ const lines = story.map((line) => {
 find(".story").append(...lines);
 
 /** The index of the first line of the latest event. */
-const toldFrom = [];
-for (const [at, { story: told }] of rounds.entries()) {
+const latestFrom = [];
+for (const [at, { story: shown }] of rounds.entries()) {
   const before = rounds[at - 1]?.story ?? 0;
-  toldFrom.push(told > before ? before : (toldFrom.at(-1) ?? 0));
+  latestFrom.push(shown > before ? before : (latestFrom.at(-1) ?? 0));
 }
 
 let at = 0;
@@ -62,12 +62,12 @@ function showMap({ maps }) {
   write(".grown", `${maps} of ${stages.length}`);
 }
 
-function showStory({ story: told }) {
+function showStory({ story: shown }) {
   for (const [number, line] of lines.entries()) {
-    line.hidden = number >= told;
-    line.classList.toggle("latest", number >= toldFrom[at] && number < told);
+    line.hidden = number >= shown;
+    line.classList.toggle("latest", number >= latestFrom[at] && number < shown);
   }
-  const box = find(".told .scroll");
+  const box = find(".story-panel .scroll");
   box.scrollTop = box.scrollHeight;
 }
 

@@ -33,7 +33,7 @@ function say(text) {
   find(".status").textContent = text;
 }
 
-function told({ action, states }) {
+function stepText({ action, states }) {
   const [a, b] = states.map((state) => state.percept);
   const when = action === null ? "At the start" : `Step ${steps.length - 1}, ${called(action)}`;
   return a === b ? `${when}: both perceive ${a}.` : `${when}: they differ. A: ${a}; B: ${b}.`;
@@ -50,7 +50,7 @@ function show(duration = 0) {
   }
   relation?.show(pair(states));
   showActions();
-  say(told(steps.at(-1)));
+  say(stepText(steps.at(-1)));
 }
 
 function enter(action, states) {
@@ -197,7 +197,7 @@ find("#tell-apart").addEventListener("click", tellApart);
     "Blue numbers are the doors as each robot counts them, 0 is the way back; " +
     "small ones count clockwise from each vertex's first.";
   const [first] = data.sides[0].states;
-  const carried = first.marker === null ? "" : " @ tells where the marker lies, +marker that it is carried.";
+  const carried = first.marker === null ? "" : " @ is the place of the marker, +marker that it is carried.";
   const states = `${first.text} is a robot that has come in by the door of that small number.${carried}`;
   find(".meaning").textContent = `${doors} ${states}`;
 }
