@@ -4,14 +4,10 @@ use proptest::{collection::vec, prelude::*};
 
 use crate::embedded_graph::EmbeddedGraph;
 
-/// Which embedded graphs a test wants.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Class {
-    Multigraph,
-    Simple,
-}
+pub(crate) use crate::enumerate::Class;
 
-/// Any connected embedded graph of the class with up to `most` edges, of any genus.
+/// Any connected embedded graph of the class, multigraph or simple, with up to `most` edges and of
+/// any genus.
 pub(crate) fn any_graph(class: Class, most: usize) -> impl Strategy<Value = EmbeddedGraph> {
     // Each edge: a corner that it leaves, whether it leads to a new vertex, a corner where it ends.
     let edge = (any::<u16>(), any::<bool>(), any::<u16>());

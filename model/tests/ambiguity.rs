@@ -1,4 +1,4 @@
-//! Which worlds a marker cannot tell apart: the witnesses, and the search.
+//! Worlds that a marker does not distinguish: the witnesses, and the search.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -283,7 +283,7 @@ fn a_relation_that_is_not_kept_proves_nothing() {
         assert!(!Relation(fewer).verify(&one, &other), "{place}");
     }
     assert!(!Relation(Vec::new()).verify(&one, &other));
-    // Nor does one that speaks of what is not there.
+    // Nor does one that names states that do not exist.
     for nowhere in [
         // A triangle has the darts 0 to 5.
         State { pose: Dart(6), ..one.state() },
@@ -345,7 +345,7 @@ fn a_search_of_no_size_or_of_too_many_edges_is_refused() {
     );
 }
 
-/// Asked to stop, a search finds nothing and says so: what it has seen is not all.
+/// A search that is stopped returns no findings.
 #[test]
 fn an_interrupted_search_says_so() {
     struct Stop;

@@ -27,7 +27,7 @@ fn marked(degree: u32, door: u32) -> Percept {
     Percept { degree, sighting: Sighting::Pointing(Door(door)) }
 }
 
-/// A sensor that says what is written, and then the last of it again and again.
+/// A sensor with scripted percepts. The last one repeats.
 struct Script<'s> {
     percepts: &'s [Percept],
     moves: usize,
@@ -158,7 +158,7 @@ proptest! {
     }
 }
 
-/// The story tells every move and every decision.
+/// The events contain every move and every decision.
 // paper: cost.moves
 // paper: alg1.2, alg1.3, alg1.7, alg1.18, alg1.19, alg1.20, alg1.21, alg1.22, alg1.23, alg1.return
 #[test]

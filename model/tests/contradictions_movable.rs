@@ -28,8 +28,8 @@ fn lying(degree: u32) -> Percept {
     Percept { degree, sighting: Sighting::Lying(1) }
 }
 
-/// A sensor that says what is written, one percept a move, and then the last of it again and again;
-/// the marker is dropped and picked up without a word.
+/// A sensor with scripted percepts, one a move. The last one repeats. Dropping and picking up the marker
+/// always succeeds.
 struct Script<'s> {
     percepts: &'s [Percept],
     moves: usize,

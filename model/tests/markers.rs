@@ -135,23 +135,23 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
     }
 }
 
-/// Whoever holds a marker by a reference has the marker.
+/// A reference to a marker behaves like the marker.
 #[test]
 fn a_reference_to_a_marker_tells_what_the_marker_tells() {
-    type Told = (&'static str, &'static str, Vec<Dart>, Vec<MarkerPart>, bool);
-    fn told<M: Marker + ?Sized>(marker: &M) -> Told {
+    type Properties = (&'static str, &'static str, Vec<Dart>, Vec<MarkerPart>, bool);
+    fn properties<M: Marker + ?Sized>(marker: &M) -> Properties {
         let (graph, facing) = (junction(), Dart(2));
         let starts = marker.starts(&graph, facing);
         let parts = marker.parts(&graph, facing);
         (marker.name(), marker.about(), starts, parts, marker.is_movable())
     }
     for marker in MARKERS {
-        assert_eq!(told(&marker), told(marker));
+        assert_eq!(properties(&marker), properties(marker));
     }
 }
 
 #[test]
-fn a_name_that_no_marker_has_is_refused_with_those_that_there_are() {
+fn an_unknown_marker_is_refused_with_the_names_of_all_markers() {
     for marker in MARKERS {
         assert_eq!(named(marker.name()), Ok(marker));
         assert_eq!(format!("{marker:?}"), marker.name());

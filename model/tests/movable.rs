@@ -161,7 +161,7 @@ fn story(graph: &EmbeddedGraph) -> Vec<(u64, MappingEvent)> {
     story
 }
 
-/// The story tells every decision.
+/// The events contain every decision.
 // paper: movable.place, movable.new, movable.known, movable.back-link
 #[test]
 fn the_story_of_the_tetrahedron() {
@@ -302,9 +302,9 @@ fn with_loops_or_parallel_edges_one_movable_marker_does_not_suffice() {
         assert!(isomorphism(one, other).is_err());
         assert!(indistinguishable(one, other));
     }
-    // The only worlds with one edge, which the degree tells apart.
+    // The only worlds with one edge, which the degree distinguishes.
     let one_loop = EmbeddedGraph::from_edge_lists(&[("v", vec!["a", "a"])]).unwrap();
     assert!(!indistinguishable(&chain(1), &one_loop));
-    // The marker does tell some that without it are alike.
+    // The marker does distinguish some that are indistinguishable without it.
     assert!(!indistinguishable(&cycle(3), &cycle(4)));
 }

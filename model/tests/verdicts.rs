@@ -1,4 +1,4 @@
-//! The judge refuses what is wrong, each thing by its own name.
+//! The judge names each flaw.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -138,7 +138,7 @@ fn a_loop_is_not_closed_by_a_dart_that_is_explored() {
     assert_eq!(exploration.map().opposite(Dart(1)), Some(Dart(4)));
 }
 
-/// Whoever follows a path of his own tells the robot where it ended.
+/// A caller that follows its own path reports where it ended.
 #[test]
 fn from_the_marker_the_robot_finds_its_way_to_what_it_has_just_come_to_know() {
     let graph = theta(["c", "b", "a"]);

@@ -210,7 +210,7 @@ mod tests {
             run(&plan, facing, robot, NoSensor, (), DARTS).outcome().to_string()
         };
         for (kind, why) in [
-            (FaultKind::LightsOut, "7 pictures in a row do not tell where the robot is"),
+            (FaultKind::LightsOut, "7 pictures in a row do not show where the robot is"),
             (FaultKind::Blocked, "3 commands in a row were not carried out"),
         ] {
             setting.faults = vec![RobotFault::at(kind, 20)];

@@ -86,7 +86,7 @@ fn a_robot_that_gives_up_reports_where_and_why() {
             "blocked@20",
             "on move 2, by door 1: 3 commands in a row were not carried out; in a hallway",
         ),
-        ("lights-out@20", "7 pictures in a row do not tell where the robot is"),
+        ("lights-out@20", "7 pictures in a row do not show where the robot is"),
         ("dropped@20:50", "6 unusable pictures in a row: the camera gives no picture"),
     ] {
         let output = run(["simulate", SHAPE_6, "--by-scene", "--fault", fault]);

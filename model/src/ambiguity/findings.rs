@@ -26,7 +26,7 @@ impl PlacedWorld {
     }
 }
 
-/// Placed worlds of which no two can be told apart, in the order of their sizes and codes. There are
+/// Placed worlds that are indistinguishable from each other, in the order of their sizes and codes. There are
 /// at least two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AmbiguousGroup {

@@ -1,4 +1,4 @@
-//! Worlds that a marker cannot tell apart: two starts from which every door sequence gives the same
+//! Worlds that a marker does not distinguish: two starts from which every door sequence gives the same
 //! percepts. Section 2.2.
 //!
 //! Whether two starts are indistinguishable is decided by the coarsest partition of the states

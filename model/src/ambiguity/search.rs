@@ -1,4 +1,4 @@
-//! All worlds of a class that a marker cannot tell apart, up to a number of edges.
+//! All worlds of a class that a marker does not distinguish, up to a number of edges.
 //!
 //! Placed worlds are indistinguishable exactly when their quotients are equal. So one pass over all
 //! worlds and a grouping find them, without comparing each pair.

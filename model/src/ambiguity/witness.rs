@@ -1,4 +1,4 @@
-//! The witnesses: a relation between states that no walk leaves, or a walk that tells states apart.
+//! The witnesses: a relation between states that no walk leaves, or a walk that distinguishes states.
 //! Each is verified without regard to how it was found.
 
 use crate::{

@@ -407,7 +407,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        any_graph::{self, any_graph},
+        any_graph::any_graph,
         enumerate::{Each, Enumeration},
         isomorphism::code,
         marker::Directional,
@@ -498,7 +498,7 @@ mod tests {
 
         #[test]
         fn what_algorithm_1_knows_is_in_the_smallest_world(
-            graph in any_graph(any_graph::Class::Multigraph, 6), part in any::<prop::sample::Index>(),
+            graph in any_graph(Class::Multigraph, 6), part in any::<prop::sample::Index>(),
         ) {
             let trace = explored(&graph, Dart(0));
             let trace = trace.up_to(part.index(trace.len()));
@@ -515,7 +515,7 @@ mod tests {
 
         #[test]
         fn a_run_of_algorithm_1_is_explained_by_its_own_world_alone(
-            graph in any_graph(any_graph::Class::Multigraph, 10),
+            graph in any_graph(Class::Multigraph, 10),
         ) {
             let trace = explored(&graph, Dart(0));
             let found = smallest(&trace, None, search(Class::Multigraph, 12), &());
@@ -526,7 +526,7 @@ mod tests {
 
         #[test]
         fn the_smallest_world_of_a_walk_is_as_small_as_trying_all_finds(
-            graph in any_graph(any_graph::Class::Simple, 5),
+            graph in any_graph(Class::Simple, 5),
             walk in prop::collection::vec(any::<u8>(), 0..12),
             class in prop::sample::select(Class::ALL.to_vec()),
             marked in any::<prop::sample::Index>(),

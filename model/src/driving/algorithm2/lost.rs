@@ -21,13 +21,13 @@ pub struct Lost {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LostReason {
     /// Too many images in a row show no place where the robot could be.
-    #[error("{pictures} pictures in a row do not tell where the robot is")]
+    #[error("{pictures} pictures in a row do not show where the robot is")]
     Unknown {
         /// How many.
         pictures: u32,
     },
     /// The robot has gone too far without knowing where it is.
-    #[error("the robot has crept {metres:.2} m without a picture that tells where it is")]
+    #[error("the robot has crept {metres:.2} m without a picture that shows where it is")]
     Crept {
         /// How far.
         metres: f64,

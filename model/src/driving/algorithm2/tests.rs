@@ -12,7 +12,7 @@ const T_STEM: &[f64] = &[PI, FRAC_PI_2, -FRAC_PI_2];
 const T_LEFT: &[f64] = &[PI, FRAC_PI_2, 0.0];
 const T_RIGHT: &[f64] = &[PI, 0.0, -FRAC_PI_2];
 
-/// A robot that does what it is told, and knows it by odometry.
+/// A robot that executes commands, with perfect odometry.
 struct Robot<'a> {
     path: PathExecution<'a>,
     odometry: Odometry,
@@ -41,14 +41,14 @@ impl<'a> Robot<'a> {
         robot
     }
 
-    /// In front of a junction of which one picture has told, half a metre before its turning point.
+    /// In front of a junction that one image has shown, half a metre before its turning point.
     fn before(doors: &[f64], queue: &'a [Door]) -> Self {
         let mut robot = Self::in_hallway(queue);
         assert_eq!(robot.sees(&junction(doors, 0.75, 0.0)), ahead(UNIT / 2.0));
         robot
     }
 
-    /// At the turning point of the next junction, of which two pictures have told.
+    /// At the turning point of the next junction, which two images have shown.
     fn come_to(doors: &[f64], queue: &'a [Door]) -> Self {
         let mut robot = Self::before(doors, queue);
         robot.sees(&junction(doors, 0.5, 0.0));
@@ -60,7 +60,7 @@ impl<'a> Robot<'a> {
         self.path.round(scene, self.odometry)
     }
 
-    /// Sees a scene and does this share of what it is told.
+    /// Sees a scene and executes this share of the command.
     fn sees_and_does(&mut self, share: f64, scene: &Scene) -> Command {
         let step = self.round(scene);
         let Ok(Step::Go(command)) = step else { panic!("it goes on, and not: {step:?}") };
@@ -83,7 +83,7 @@ impl<'a> Robot<'a> {
         self.round(scene).expect_err("it gives up").why
     }
 
-    /// Drives on by the same scene until it gives up: after so many commands, and why.
+    /// Drives on by the same scene until it gives up. Returns the number of commands and the reason.
     fn drives_on(&mut self, share: f64, scene: &Scene) -> (usize, LostReason) {
         for commands in 0..1000 {
             match self.round(scene) {
@@ -102,7 +102,7 @@ fn ahead(forward: f64) -> Command {
     Command { turn: 0.0, forward }
 }
 
-/// A junction whose turning point lies so far ahead of a robot that then has turned by so much.
+/// A junction with its turning point this far ahead of a robot, which then turns by this angle.
 fn view(doors: &[f64], distance: f64, turned: f64) -> JunctionView {
     let through = [distance * turned.cos(), -distance * turned.sin()];
     let door = |&door: &f64| CentreLine { through, direction: wrapped(door - turned) };
@@ -301,7 +301,7 @@ fn after_a_turn_a_picture_must_show_the_doors_turned_before_it_leaves() {
         robot
     };
     let left = FRAC_PI_2;
-    // What is not turned, or of another form, or no junction, tells nothing.
+    // A junction that is not turned, or has another shape, or is none, is ignored.
     for other in [
         junction(T_STEM, 0.0, 0.0),
         junction(L_LEFT, 0.0, left),
@@ -347,7 +347,7 @@ fn the_entry_door_is_the_one_behind_on_arrival() {
         assert_eq!(standing.form, JunctionShape([true, true, false, true]));
         assert_near(standing.entry.abs(), PI);
     }
-    // Pictures tell its direction better than odometry.
+    // Images show its direction better than odometry.
     let standing = Robot::before(T_STEM, &[Door(2)]).arrives(&junction(T_STEM, 0.05, 0.2));
     assert_near(standing.entry, PI - 0.2);
 }
@@ -419,7 +419,7 @@ fn a_junction_behind_is_no_arrival_though_a_hallway_was_seen() {
     let mut robot = Robot::in_hallway(&[Door(2)]);
     robot.sees(&junction(T_LEFT, -1.0, 0.0));
     assert_eq!(robot.path.state(), PathState::Leaving);
-    // Nor though one picture has told of a junction ahead, where there was none.
+    // Nor if one image has shown a junction ahead where there is none.
     let mut robot = Robot::in_hallway(&[Door(2)]);
     robot.sees(&junction(L_LEFT, 0.05, 0.0));
     for _ in 0..4 {
@@ -584,7 +584,7 @@ fn after_a_metre_of_creeping_it_gives_up() {
         robot.sees_and_does(1.5, &unknown());
     }
     robot.sees(&hallway(0.0));
-    assert_eq!(robot.drives_on(1.5, &unknown()).0, 5, "what was known in between counts anew");
+    assert_eq!(robot.drives_on(1.5, &unknown()).0, 5, "a known place resets the count");
 }
 
 #[test]
@@ -648,7 +648,7 @@ fn a_path_is_given_up_in_words() {
         robot.sees(&unknown());
     }
     let lost = robot.round(&unknown()).unwrap_err();
-    let said = "7 pictures in a row do not tell where the robot is; in a hallway, 2.00 m after the \
+    let said = "7 pictures in a row do not show where the robot is; in a hallway, 2.00 m after the \
                 last turn to a door";
     assert_eq!(lost.to_string(), said);
     assert_near(lost.since_turn, robot.path.since_turn());
