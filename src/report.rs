@@ -77,7 +77,7 @@ pub struct DivergenceReport {
     /// The number of the message in the log, from 1, and its position in the file; none at the end.
     pub message: Option<(u64, u64)>,
     /// The class of the fault.
-    pub culprit: FaultClass,
+    pub fault: FaultClass,
     /// The cause, one word.
     pub cause: &'static str,
     /// What happened.

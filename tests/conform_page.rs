@@ -102,7 +102,7 @@ fn diverged(log: &str, events: usize, at: usize) -> LogReport {
             event: at,
             time: at as f64 * 4.7,
             message: Some((4711, 1_234_567)),
-            culprit: FaultClass::Perception,
+            fault: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors, no marker".to_owned(),
             why: "at none of the 2 poses left in the known world this is so".to_owned(),

@@ -10,7 +10,10 @@ use toposlam_model::{
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
-    trace::{Claim, Trace, TraceEvent, TraceEventKind, WorldSearch, anywhere, follow, smallest},
+    trace::{
+        Trace, TraceClaim, TraceEvent, TraceEventKind, WorldSearch, anywhere, match_algorithm,
+        smallest,
+    },
     world::GraphWorld,
 };
 use toposlam_robot::{
@@ -103,7 +106,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
         let mapping = TopicMap::unambiguous(&log);
-        let gathered = extract(&log, &mapping, Evidence::Told, None, true, &()).unwrap();
+        let gathered = extract(&log, &mapping, Evidence::Recorded, None, true, &()).unwrap();
         let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
         assert!(judgement.divergence.is_none() && judgement.trace.len() == 10_000);
     });
@@ -115,7 +118,7 @@ fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let known = follow(&half, Claim::Part, 1000).exploration.map().clone();
+    let known = match_algorithm(&half, TraceClaim::Part, 1000).exploration.map().clone();
     let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
     bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
 }

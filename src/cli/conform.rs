@@ -1,4 +1,4 @@
-//! `toposlam conform LOG...`: logs held against the specification. Sections 2 and 4 to 6.
+//! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
 mod known_world;
 mod minimise;
@@ -19,7 +19,7 @@ use toposlam_model::{
 };
 use toposlam_robot::conform::{
     ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError, Judgement,
-    Looking, Quirks, RunCoverage, RunDriver, extract, judge,
+    Quirks, RunCoverage, RunDriver, SensingProgress, extract, judge,
 };
 
 use super::{
@@ -30,12 +30,16 @@ use super::{
 };
 use known_world::Known;
 
-/// Hold logs of runs against the specification: do they conform, and if not, where, why, whose fault
+/// Check logs of runs against the specification
 ///
-/// A log is a ROS 1 bag or an MCAP file. Where it tells percepts and doors, those are judged; otherwise
-/// they are derived from its scenes or its pictures, and its odometry. They are held against a known
-/// world, or else the smallest world is searched that explains them; and against Algorithm 1: are the
-/// doors those that it takes, or may take?
+/// For each log, the command reports that it conforms and which cases of the specification it covers, or
+/// the first event at which it diverges, why, and the class of the fault: perception, motion, algorithm
+/// or log.
+///
+/// A log is a ROS 1 bag or an MCAP file. If it records percepts and doors, these are checked. Otherwise
+/// they are inferred from its scenes or images and its odometry. They must fit the known world; without
+/// one, the command searches for the smallest world that explains them. The doors must be doors that
+/// Algorithm 1 takes, or may take.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,74 +47,75 @@ Examples:
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
   toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
 
-Exit codes: 0 all conform, 1 one diverged, 2 bad usage or input, 3 one is incomplete: truncated, or
-its run did not come to its end, or worlds were not searched to the bound.")]
+Exit codes: 0 all logs conform, 1 a log diverges, 2 bad usage or input, 3 a log is incomplete: it is \
+truncated, its run did not end, or the search for a world reached its step limit.")]
 pub(super) struct ConformArguments {
-    /// The logs
+    /// The logs to check
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// The world or floor plan in which they were made
+    /// The world file or floor plan in which they were recorded
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
-    /// Where the robot starts there, and which door is behind it, or `any`
-    /// [default: as the log says, or else the world's own start, or else any]
+    /// The robot's start and the door behind it, or `any`
+    /// [default: from the log, or else from the world file, or else any]
     #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
-    /// The kind of marker [default: as the log says, or else directional]
+    /// The kind of marker [default: from the log, or else directional]
     #[arg(long, value_name = "MARKER", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
-    /// Who takes the doors
+    /// What chose the doors
     #[arg(long, value_enum, default_value = "algorithm1", value_name = "WHO")]
     driver: Who,
-    /// Without a known world: the class of worlds that are searched for one that explains a log
+    /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
-    /// Without a known world: up to how many edges; where Algorithm 1 knows more, 4 beyond that
+    /// Without --world: the largest number of edges to search; at least 4 more than Algorithm 1 knows
     #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world")]
     edges: usize,
     #[command(flatten)]
     sources: LogOptions,
-    /// Of what events are made [default: the first of these that the log has]
+    /// The source of the events [default: the first of these that the log has]
     #[arg(long, value_enum, value_name = "WHAT")]
     events: Option<Made>,
-    /// Divergences that are known and tolerated
+    /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Give up when more edge ends are known
+    /// Stop when more edge ends are known
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
     /// Write a shorter log that diverges in the same way
     #[arg(long, value_name = "FILE")]
     minimise: Option<PathBuf>,
-    /// Write the report as a page
+    /// Write the report as an HTML page
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Print one JSON object for each log, and one for all where there are several
+    /// Print one JSON object for each log, and one for all if there are several
     #[arg(long)]
     json: bool,
 }
 
-/// Who takes the doors.
+/// What chose the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Who {
     /// Algorithm 1, with any of its choices
     Algorithm1,
-    /// Anyone, wherever they like
+    /// Anything, in any way
     Anyone,
 }
 
-/// Of what events are made.
+/// The source of the events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Made {
-    /// Of the percepts and doors that the log tells
-    Told,
-    /// Of the scenes that it tells, and odometry
+    /// Recorded percepts and doors
+    #[value(alias = "told")]
+    Recorded,
+    /// Scenes and odometry
     Scenes,
-    /// Of its pictures, and odometry
+    /// Images and odometry
     Pictures,
 }
 
-/// A log that was judged.
+/// A log and its judgement.
 struct Judged {
     opened: OpenLog,
     gathered: ExtractedRun,
@@ -118,8 +123,8 @@ struct Judged {
     known: Option<Known>,
 }
 
-impl Looking for Progress {
-    fn looked(&self, pictures: u64) {
+impl SensingProgress for Progress {
+    fn sensed(&self, pictures: u64) {
         self.part_done(pictures);
     }
 }
@@ -167,7 +172,7 @@ impl ConformArguments {
         if let Some(path) = &self.minimise {
             output::check_place(path, &["mcap"])?;
             if self.logs.len() > 1 {
-                return Err(Failure::at("--minimise", "this goes with one log"));
+                return Err(Failure::at("--minimise", "this needs exactly one log"));
             }
             if self.logs.contains(path) {
                 return Err(Failure::at("--minimise", "this is the log itself"));
@@ -176,13 +181,13 @@ impl ConformArguments {
         Ok(())
     }
 
-    /// Reads a log and judges it.
+    /// Reads and judges a log.
     fn judge(&self, path: &Path, quirks: &Quirks) -> Result<Judged, Failure> {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = match self.events {
             Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
             Some(_) => {
-                let cause = "what this needs is not in the log, as far as the mapping tells";
+                let cause = "the log does not have what this needs";
                 return Err(Failure::at("--events", format!("{cause} ({})", path.display())));
             }
             None => opened.evidence(path)?,
@@ -219,7 +224,7 @@ impl ConformArguments {
         let judgement = judgement.map_err(|error| match error {
             JudgeError::Empty if gathered.pictures > 0 => Failure::in_file(
                 path,
-                format!("in its {} pictures no junction is visited", gathered.pictures),
+                format!("no junction is visited in its {} images", gathered.pictures),
             ),
             error => Failure::in_file(path, error),
         })?;
@@ -242,14 +247,14 @@ impl ConformArguments {
 impl From<Made> for Evidence {
     fn from(made: Made) -> Self {
         match made {
-            Made::Told => Self::Told,
+            Made::Recorded => Self::Recorded,
             Made::Scenes => Self::Scenes,
             Made::Pictures => Self::Pictures,
         }
     }
 }
 
-/// Of a divergence and what is incomplete, the divergence is worse.
+/// The worse outcome: a divergence is worse than an incomplete log.
 fn worse(worst: Outcome, verdict: ConformVerdict) -> Outcome {
     match (worst, verdict) {
         (Outcome::Violated, _) | (_, ConformVerdict::Diverged) => Outcome::Violated,

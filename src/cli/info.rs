@@ -1,4 +1,4 @@
-//! `toposlam info LOG...`: what logs hold. Sections 5 and 6.
+//! `toposlam info LOG...`: the contents of logs. Sections 5 and 6.
 
 use std::{
     collections::BTreeMap,
@@ -11,30 +11,30 @@ use toposlam_robot::log::{
     Format,
     reader::Log,
     topic::{Encoding, Topic},
-    topic_map::{Guess, TopicMap, guess},
+    topic_map::{RoleGuess, TopicMap, guess},
 };
 
 use super::{Failure, Outcome, input, json::print_object, output, text::grouped, text::print_rows};
 
-/// Tell what is in logs: when they were recorded, whether they are whole, their topics
+/// Show the contents of logs: times, completeness and topics
 ///
-/// Logs are ROS 1 bags (version 2.0) and MCAP files, of this program or of any other. Besides the topics
-/// it tells which of them could carry what a run is made of: pictures, odometry, motion, percepts, doors.
-/// A mapping file says so where that is not clear, or not usual.
+/// A log is a ROS 1 bag (version 2.0) or an MCAP file, from this program or any other. The command also
+/// lists the topics that could carry images, odometry, motion, percepts and doors. If several topics
+/// could, or none is recognised, a mapping file selects the topic.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   toposlam info run.mcap --write-mapping mapping.toml
 
-Ends with 3 if a log is truncated; what is in it up to there is told.")]
+Exit code 3 if a log is truncated; its contents up to there are shown.")]
 pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// Hold this mapping file against each log
+    /// Check that this mapping file fits each log
     #[arg(long, value_name = "FILE", conflicts_with = "write_mapping")]
     mapping: Option<PathBuf>,
-    /// Write a mapping file of what only one topic of the log could carry
+    /// Write a mapping file with the topics that are unambiguous
     #[arg(long, value_name = "FILE")]
     write_mapping: Option<PathBuf>,
     /// Print one JSON object for each log
@@ -57,7 +57,7 @@ struct Line<'l> {
     messages: u64,
     truncated: Option<Truncated>,
     topics: Vec<TopicLine<'l>>,
-    /// For what it could be, the topics that could carry it; or that the mapping file says do.
+    /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
 }
 
@@ -83,7 +83,7 @@ impl InfoArguments {
         if let Some(path) = &self.write_mapping {
             output::check_place(path, &["toml"])?;
             if self.logs.len() > 1 {
-                return Err(Failure::at("--write-mapping", "this goes with one log"));
+                return Err(Failure::at("--write-mapping", "this needs exactly one log"));
             }
         }
         let mapping = match &self.mapping {
@@ -118,14 +118,14 @@ impl InfoArguments {
     }
 }
 
-/// For everything that is or could be carried, the names of the topics.
+/// For each role, the names of the topics that carry it or could carry it.
 fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static str, Vec<&'l str>)> {
     if let Some(mapping) = mapping {
         let carriers = mapping.carriers();
         return carriers.map(|(role, carrier)| (role.name(), vec![&*carrier.topic])).collect();
     }
     let name = |topic: usize| log.topics().get(topic).map(|topic| &*topic.name);
-    let names = |guess: Guess| {
+    let names = |guess: RoleGuess| {
         let topics = guess.topics.into_iter().filter_map(name);
         (guess.role.name(), topics.collect())
     };
@@ -139,12 +139,12 @@ fn format(log: &Log) -> &'static str {
     }
 }
 
-/// How long it takes from the first to the last message, in seconds.
+/// The time from the first to the last message, in seconds.
 fn duration(log: &Log) -> Option<f64> {
     Some(log.end()?.saturating_sub(log.start()?) as f64 / 1e9)
 }
 
-/// How many messages a second there are on a topic.
+/// The number of messages a second on a topic.
 fn rate(log: &Log, topic: &Topic) -> Option<f64> {
     let duration = duration(log).filter(|duration| *duration > 0.0)?;
     Some(topic.messages as f64 / duration)
@@ -226,7 +226,7 @@ fn print(
     print_rows(out, ["  messages", "a second", "topic", "type", ""], &rows)?;
     writeln!(out)?;
     if carriers.is_empty() {
-        writeln!(out, "No topic is known to carry what a run is made of; a mapping file can say.")?;
+        writeln!(out, "No topic of a run is recognised; select topics with a mapping file.")?;
     }
     let rows: Vec<_> = carriers
         .iter()
@@ -236,16 +236,16 @@ fn print(
         })
         .collect();
     if !rows.is_empty() {
-        print_rows(out, ["carried", "by"], &rows)?;
+        print_rows(out, ["role", "topic"], &rows)?;
     }
     Ok(())
 }
 
-/// Writes what only one topic could carry; what several could stands in comments.
+/// Writes the roles with one possible topic; those with several are comments.
 fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), Failure> {
     let mapping = TopicMap::unambiguous(log);
     if mapping.is_empty() {
-        return Err(Failure::in_file(path, "there is nothing that only one topic could carry"));
+        return Err(Failure::in_file(path, "no role has exactly one possible topic"));
     }
     let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
     let comments = several.map(|(role, topics)| {

@@ -182,7 +182,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--world", "missing.toml"], "missing.toml: cannot be read"),
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
-        (&[log, "--events", "pictures"], "--events: what this needs"),
+        (&[log, "--events", "pictures"], "--events: the log does not have"),
     ] {
         let output = run([&["conform"][..], arguments].concat());
         let stdout_of = stderr(&output);
@@ -292,7 +292,7 @@ fn logs_without_evidence_are_an_error() {
     }
     for (name, cause) in [
         ("example.bag", "2 topics could carry odometry: /turtle1/pose, /turtle2/pose"),
-        ("example-unsorted-chunks.bag", "it has neither percepts and doors, nor scenes"),
+        ("example-unsorted-chunks.bag", "no topics are known for percepts and doors"),
         ("no-messages.bag", "it is empty: there is no message in it"),
     ] {
         let output = run(["conform", logs.join(name).to_str().unwrap()]);

@@ -18,11 +18,11 @@ use crate::{
 
 /// How far Algorithm 1 goes along with a trace.
 #[derive(Clone, Debug)]
-pub struct Followed {
+pub struct AlgorithmMatch {
     /// Whose choices it takes.
-    pub choosing: Choosing,
+    pub choices: MatchedChoices,
     /// How far it came.
-    pub reached: Reached,
+    pub reached: MatchEnd,
     /// What it knew then.
     pub exploration: Exploration,
     /// The cases that it went through.
@@ -33,7 +33,7 @@ pub struct Followed {
 
 /// Whose choices a trace shows, as far as it goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choosing {
+pub enum MatchedChoices {
     /// The default ones.
     Default,
     /// Others, which Algorithm 1 leaves open.
@@ -46,7 +46,7 @@ pub enum Choosing {
 
 /// How far Algorithm 1 goes along with a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Reached {
+pub enum MatchEnd {
     /// To its end: the map is complete.
     Mapped,
     /// As far as the trace goes.
@@ -61,22 +61,22 @@ pub struct Departure {
     /// The event.
     pub event: TraceEvent,
     /// What Algorithm 1 would have done there, for each choice that leads there; each once.
-    pub allowed: Vec<Allowed>,
+    pub allowed: Vec<AllowedStep>,
 }
 
 /// What Algorithm 1 would have done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Allowed {
+pub struct AllowedStep {
     /// The door that it takes; `None` where it takes none.
     pub door: Option<Door>,
     /// What for.
-    pub purpose: Purpose,
+    pub purpose: StepPurpose,
 }
 
 /// Why a robot that runs Algorithm 1 goes where it goes. Darts are those of the map, told as vertex
 /// and index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum StepPurpose {
     /// Lines 5 and 6: to explore this dart.
     Explore {
         /// The vertex's number.
@@ -101,7 +101,7 @@ pub enum Purpose {
     Bound,
 }
 
-impl fmt::Display for Purpose {
+impl fmt::Display for StepPurpose {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Explore { vertex, index } => {
@@ -118,7 +118,7 @@ impl fmt::Display for Purpose {
     }
 }
 
-impl fmt::Display for Allowed {
+impl fmt::Display for AllowedStep {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         if let Some(door) = self.door {
             write!(out, "door {} (", door.0)?;
@@ -173,7 +173,7 @@ impl World for TraceWorld<'_> {
 
 /// What a trace is said to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Claim {
+pub enum TraceClaim {
     /// A run to its end: of choices that lead along it those count first that end there, too.
     Whole,
     /// Perhaps a part of one.
@@ -183,28 +183,28 @@ pub enum Claim {
 /// Follows a trace by Algorithm 1, with the default choices for as long as they lead along it, and
 /// otherwise with any that do. At most `bound` darts may become known.
 #[must_use]
-pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
+pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> AlgorithmMatch {
     let mut world = TraceWorld { trace, moves: 0 };
     let mut exploration = Exploration::new(bound);
     let mut coverage = AlgorithmCoverage::default();
     let run = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
     let reached = match &run {
-        Ok(()) if world.moves == trace.doors().len() => Some(Reached::Mapped),
-        Err(MappingError::World(TraceWorldError::End)) => Some(Reached::EndOfTrace),
+        Ok(()) if world.moves == trace.doors().len() => Some(MatchEnd::Mapped),
+        Err(MappingError::World(TraceWorldError::End)) => Some(MatchEnd::EndOfTrace),
         _ => None,
     };
-    let to_the_end = reached == Some(Reached::Mapped);
-    let part = reached == Some(Reached::EndOfTrace);
+    let to_the_end = reached == Some(MatchEnd::Mapped);
+    let part = reached == Some(MatchEnd::EndOfTrace);
     let mut search = Search { claim, ..Search::default() };
     // Other choices may take the same doors, and be at the end of a run where these are not.
-    let found = if to_the_end || (part && claim == Claim::Part) {
+    let found = if to_the_end || (part && claim == TraceClaim::Part) {
         None
     } else {
-        search.run(trace, bound).filter(|(found, _)| !part || *found == Reached::Mapped)
+        search.run(trace, bound).filter(|(found, _)| !part || *found == MatchEnd::Mapped)
     };
     if let (Some(reached), None) = (reached, &found) {
-        let choosing = Choosing::Default;
-        return Followed { choosing, reached, exploration, coverage, script: None };
+        let choices = MatchedChoices::Default;
+        return AlgorithmMatch { choices, reached, exploration, coverage, script: None };
     }
     // Where the default choices go along, it is their end that is another.
     let from = match run {
@@ -214,17 +214,20 @@ pub fn follow(trace: &Trace, claim: Claim, bound: usize) -> Followed {
     };
     let from = (from < trace.len()).then(|| trace.event(from).id);
     let (reached, script) = found.unwrap_or_else(|| search.departure(trace));
-    let choosing = match &reached {
-        Reached::Departure(departure) if Some(departure.event.id) == from => Choosing::Default,
-        _ => Choosing::Other { from },
+    let choices = match &reached {
+        MatchEnd::Departure(departure) if Some(departure.event.id) == from => {
+            MatchedChoices::Default
+        }
+        _ => MatchedChoices::Other { from },
     };
-    let mut followed = Followed { choosing, reached, exploration, coverage, script: Some(script) };
+    let mut followed =
+        AlgorithmMatch { choices, reached, exploration, coverage, script: Some(script) };
     let mut coverage = AlgorithmCoverage::default();
     followed.exploration = followed.again(trace, bound, &mut coverage);
-    Followed { coverage, ..followed }
+    AlgorithmMatch { coverage, ..followed }
 }
 
-impl Followed {
+impl AlgorithmMatch {
     /// Runs along the trace again, as far as Algorithm 1 goes along with it, for an observer.
     pub fn again(
         &self,
@@ -257,17 +260,17 @@ struct Way<'t> {
 
 impl Way<'_> {
     /// What a choice is for.
-    fn purpose(&self, choice: MappingChoice) -> Purpose {
+    fn purpose(&self, choice: MappingChoice) -> StepPurpose {
         let map = self.exploration.map();
         let named = |dart| (map.vertex(dart).0, map.index(dart));
         match choice {
             MappingChoice::Edge(edge) => {
                 let (vertex, index) = named(edge);
-                Purpose::Explore { vertex, index }
+                StepPurpose::Explore { vertex, index }
             }
             MappingChoice::Hypothesis(place) => {
                 let (vertex, index) = named(self.exploration.hypotheses()[place]);
-                Purpose::Try { vertex, index }
+                StepPurpose::Try { vertex, index }
             }
         }
     }
@@ -278,14 +281,14 @@ type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
 
 /// All choices, depth first.
 struct Search {
-    claim: Claim,
+    claim: TraceClaim,
     /// The choices of the first way that goes along with all of a trace, but is not at its end there.
     part: Option<Vec<MappingChoice>>,
     seen: HashSet<Known>,
     /// The first event that none of the ways would have that came farthest,
     farthest: usize,
     /// what they would have instead,
-    allowed: Vec<Allowed>,
+    allowed: Vec<AllowedStep>,
     /// and the choices of the first of them.
     script: Vec<MappingChoice>,
 }
@@ -293,7 +296,7 @@ struct Search {
 impl Default for Search {
     fn default() -> Self {
         Self {
-            claim: Claim::Part,
+            claim: TraceClaim::Part,
             part: None,
             seen: HashSet::new(),
             farthest: 0,
@@ -305,13 +308,13 @@ impl Default for Search {
 
 impl Search {
     /// A way that goes along with the whole trace.
-    fn run(&mut self, trace: &Trace, bound: usize) -> Option<(Reached, Vec<MappingChoice>)> {
+    fn run(&mut self, trace: &Trace, bound: usize) -> Option<(MatchEnd, Vec<MappingChoice>)> {
         let mut exploration = Exploration::new(bound);
         let mut world = TraceWorld { trace, moves: 0 };
         let begun = exploration.begin(&mut world, &mut ());
         let way = Way { exploration, world, script: Vec::new() };
         if let Err(error) = begun {
-            self.ended(&way, &error, Purpose::Done);
+            self.ended(&way, &error, StepPurpose::Done);
             return None;
         }
         let mut ways = vec![way];
@@ -328,18 +331,18 @@ impl Search {
             }
             if way.exploration.map().unexplored_is_empty() {
                 if way.world.moves == trace.doors().len() {
-                    return Some((Reached::Mapped, way.script));
+                    return Some((MatchEnd::Mapped, way.script));
                 }
-                let done = Allowed { door: None, purpose: Purpose::Done };
+                let done = AllowedStep { door: None, purpose: StepPurpose::Done };
                 self.departed(2 * way.world.moves + 1, done, &way.script);
             }
             // The first choice is tried first.
             ways.extend(self.next(&way).into_iter().rev());
-            if self.claim == Claim::Part && self.part.is_some() {
+            if self.claim == TraceClaim::Part && self.part.is_some() {
                 break;
             }
         }
-        self.part.take().map(|part| (Reached::EndOfTrace, part))
+        self.part.take().map(|part| (MatchEnd::EndOfTrace, part))
     }
 
     /// Every choice that leads along the trace.
@@ -376,7 +379,7 @@ impl Search {
     }
 
     /// A way ended before the trace.
-    fn ended(&mut self, way: &Way, error: &MappingError<TraceWorldError>, purpose: Purpose) {
+    fn ended(&mut self, way: &Way, error: &MappingError<TraceWorldError>, purpose: StepPurpose) {
         let at_percept = 2 * way.world.moves;
         let (event, door, purpose) = match error {
             MappingError::World(TraceWorldError::Door { asked, .. }) => {
@@ -385,16 +388,16 @@ impl Search {
             // The end of the trace is told otherwise.
             MappingError::World(TraceWorldError::End) => return,
             MappingError::Contradiction(contradiction) => {
-                (at_percept, None, Purpose::Contradicted(*contradiction))
+                (at_percept, None, StepPurpose::Contradicted(*contradiction))
             }
-            MappingError::InvalidStep(step) => (at_percept, None, Purpose::InvalidStep(*step)),
-            MappingError::Bound { .. } => (at_percept, None, Purpose::Bound),
+            MappingError::InvalidStep(step) => (at_percept, None, StepPurpose::InvalidStep(*step)),
+            MappingError::Bound { .. } => (at_percept, None, StepPurpose::Bound),
         };
-        self.departed(event, Allowed { door, purpose }, &way.script);
+        self.departed(event, AllowedStep { door, purpose }, &way.script);
     }
 
     /// Instead of an event of the trace a way would have had something else.
-    fn departed(&mut self, event: usize, allowed: Allowed, script: &[MappingChoice]) {
+    fn departed(&mut self, event: usize, allowed: AllowedStep, script: &[MappingChoice]) {
         if self.allowed.is_empty() || event > self.farthest {
             self.farthest = event;
             self.allowed.clear();
@@ -406,9 +409,9 @@ impl Search {
     }
 
     /// Where the ways ended that came farthest.
-    fn departure(self, trace: &Trace) -> (Reached, Vec<MappingChoice>) {
+    fn departure(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
         let departure = Departure { event: trace.event(self.farthest), allowed: self.allowed };
-        (Reached::Departure(departure), self.script)
+        (MatchEnd::Departure(departure), self.script)
     }
 }
 
@@ -460,8 +463,8 @@ mod tests {
         let graph = lollipop();
         // At the fork the robot goes back where it came from, while nothing is left there.
         let trace = walked(&graph, Dart(0), &[Door(0), Door(0)]);
-        let followed = follow(&trace, Claim::Whole, 100);
-        let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
+        let followed = match_algorithm(&trace, TraceClaim::Whole, 100);
+        let MatchEnd::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         let allowed: Vec<_> = departure.allowed.iter().map(ToString::to_string).collect();
         assert_eq!(departure.event.id, 3);
         assert_eq!(
@@ -471,7 +474,7 @@ mod tests {
                 "door 2 (line 5: explores the unexplored dart 2 of vertex v1)",
             ]
         );
-        assert_eq!(followed.choosing, Choosing::Default);
+        assert_eq!(followed.choices, MatchedChoices::Default);
     }
 
     #[test]
@@ -481,40 +484,44 @@ mod tests {
         let moves = doors.len();
         doors.push(Door(0));
         let trace = walked(&graph, Dart(0), &doors);
-        let followed = follow(&trace, Claim::Whole, 100);
-        let done = Allowed { door: None, purpose: Purpose::Done };
+        let followed = match_algorithm(&trace, TraceClaim::Whole, 100);
+        let done = AllowedStep { door: None, purpose: StepPurpose::Done };
         let departure = Departure { event: trace.event(2 * moves + 1), allowed: vec![done] };
-        assert_eq!(followed.reached, Reached::Departure(departure));
+        assert_eq!(followed.reached, MatchEnd::Departure(departure));
         assert!(followed.exploration.map().complete().is_some());
     }
 
     #[test]
     fn a_start_without_the_marker_departs_at_once() {
         let percept = Percept { degree: 2, sighting: Sighting::Nothing };
-        let followed =
-            follow(&Trace::new([TraceEventKind::Percept(percept)]).unwrap(), Claim::Part, 100);
-        let Reached::Departure(departure) = followed.reached else { panic!("{followed:?}") };
+        let followed = match_algorithm(
+            &Trace::new([TraceEventKind::Percept(percept)]).unwrap(),
+            TraceClaim::Part,
+            100,
+        );
+        let MatchEnd::Departure(departure) = followed.reached else { panic!("{followed:?}") };
         assert_eq!(departure.event.id, 0);
         let contradiction = Contradiction::Start { perceived: percept };
-        assert_eq!(departure.allowed[0].purpose, Purpose::Contradicted(contradiction));
+        assert_eq!(departure.allowed[0].purpose, StepPurpose::Contradicted(contradiction));
     }
 
     #[test]
     fn more_darts_than_the_bound_depart() {
         let trace = explored(&lollipop(), Dart(0));
-        let Reached::Departure(departure) = follow(&trace, Claim::Part, 3).reached else {
+        let MatchEnd::Departure(departure) = match_algorithm(&trace, TraceClaim::Part, 3).reached
+        else {
             panic!()
         };
-        assert_eq!(departure.allowed[0].purpose, Purpose::Bound);
+        assert_eq!(departure.allowed[0].purpose, StepPurpose::Bound);
     }
 
     proptest! {
         #[test]
         fn every_run_is_followed_to_its_map(graph in any_graph(Class::Multigraph, 30)) {
             let trace = explored(&graph, Dart(0));
-            let followed = follow(&trace, Claim::Whole, 100);
-            prop_assert_eq!(followed.choosing, Choosing::Default);
-            prop_assert_eq!(&followed.reached, &Reached::Mapped);
+            let followed = match_algorithm(&trace, TraceClaim::Whole, 100);
+            prop_assert_eq!(followed.choices, MatchedChoices::Default);
+            prop_assert_eq!(&followed.reached, &MatchEnd::Mapped);
             let map = followed.exploration.map().complete().unwrap();
             prop_assert_eq!(code(map, FACING), code(&graph, Dart(0)));
         }
@@ -525,12 +532,12 @@ mod tests {
         ) {
             let trace = explored(&graph, Dart(0));
             let event = part.index(trace.len() - 1);
-            let followed = follow(&trace.up_to(event), Claim::Part, 100);
-            prop_assert_eq!(followed.reached, Reached::EndOfTrace);
+            let followed = match_algorithm(&trace.up_to(event), TraceClaim::Part, 100);
+            prop_assert_eq!(followed.reached, MatchEnd::EndOfTrace);
             // Where no choices are at their end there, the default ones count all the same.
-            let followed = follow(&trace.up_to(event), Claim::Whole, 100);
-            let default = followed.choosing == Choosing::Default;
-            prop_assert_eq!(followed.reached == Reached::EndOfTrace, default);
+            let followed = match_algorithm(&trace.up_to(event), TraceClaim::Whole, 100);
+            let default = followed.choices == MatchedChoices::Default;
+            prop_assert_eq!(followed.reached == MatchEnd::EndOfTrace, default);
         }
 
         #[test]
@@ -539,10 +546,10 @@ mod tests {
             numbers in prop::collection::vec(any::<u8>(), 1..40),
         ) {
             let trace = chosen(&graph, &numbers);
-            let followed = follow(&trace, Claim::Whole, 100);
-            prop_assert_eq!(&followed.reached, &Reached::Mapped);
+            let followed = match_algorithm(&trace, TraceClaim::Whole, 100);
+            prop_assert_eq!(&followed.reached, &MatchEnd::Mapped);
             let same = trace == explored(&graph, Dart(0));
-            prop_assert_eq!(followed.choosing == Choosing::Default, same);
+            prop_assert_eq!(followed.choices == MatchedChoices::Default, same);
             let map = followed.exploration.map().complete().unwrap();
             prop_assert_eq!(code(map, FACING), code(&graph, Dart(0)));
         }
@@ -556,7 +563,7 @@ mod tests {
             // The doors up to there, and then one that is not there.
             let mut false_door = trace.up_to(2 * moves + 1);
             false_door.doors[moves] = Door(1000);
-            let Reached::Departure(departure) = follow(&false_door, Claim::Whole, 100).reached else {
+            let MatchEnd::Departure(departure) = match_algorithm(&false_door, TraceClaim::Whole, 100).reached else {
                 panic!("it is followed")
             };
             prop_assert_eq!(departure.event.id, 2 * moves + 1);

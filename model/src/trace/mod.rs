@@ -10,8 +10,8 @@ mod world_search;
 use thiserror::Error;
 
 pub use algorithm_match::{
-    Allowed, Choosing, Claim, Departure, Followed, Purpose, Reached, TraceWorld, TraceWorldError,
-    follow,
+    AlgorithmMatch, AllowedStep, Departure, MatchEnd, MatchedChoices, StepPurpose, TraceClaim,
+    TraceWorld, TraceWorldError, match_algorithm,
 };
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses};

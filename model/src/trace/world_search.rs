@@ -412,7 +412,7 @@ mod tests {
         isomorphism::code,
         marker::Directional,
         trace::{
-            Claim, TraceEventKind, follow, poses,
+            TraceClaim, TraceEventKind, match_algorithm, poses,
             tests::{explored, lollipop, walked},
         },
         world::{GraphWorld, State},
@@ -502,7 +502,7 @@ mod tests {
         ) {
             let trace = explored(&graph, Dart(0));
             let trace = trace.up_to(part.index(trace.len()));
-            let known = follow(&trace, Claim::Part, 100).exploration.map().clone();
+            let known = match_algorithm(&trace, TraceClaim::Part, 100).exploration.map().clone();
             let edges = |known| match smallest(&trace, known, search(Class::Multigraph, 6), &()) {
                 SmallestWorld::World { graph, marker } => {
                     assert!(explains(&graph, marker, &trace));

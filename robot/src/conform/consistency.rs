@@ -1,8 +1,8 @@
-//! What the events of a log contradict by themselves, and what is false in how it says that its run ended.
+//! Contradictions within a log: in single events, and in its end.
 
 use toposlam_model::{
     driving::visit::JunctionShape,
-    trace::{Followed, Reached, Trace},
+    trace::{AlgorithmMatch, MatchEnd, Trace},
 };
 
 use super::{
@@ -13,7 +13,7 @@ use super::{
 use crate::record::{Arrival, MapRecord, RunEnding};
 
 impl RunEvents {
-    /// What each event contradicts by itself, in order.
+    /// The contradictions of single events, in order.
     pub(super) fn own_faults(&self) -> Vec<(usize, DivergenceCause)> {
         let mut faults = Vec::new();
         let mut moves = 0;
@@ -22,8 +22,8 @@ impl RunEvents {
             match &event.kind {
                 CheckedKind::Arrival { arrival, entry_off } => {
                     let Arrival { percept, number, form, .. } = arrival;
-                    if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(DivergenceCause::Number { expected: moves, told });
+                    if let Some(recorded) = number.filter(|&number| number != moves) {
+                        fault(DivergenceCause::Number { expected: moves, recorded });
                     }
                     let doors = form.map_or(percept.degree, JunctionShape::degree);
                     if doors != percept.degree {
@@ -35,13 +35,13 @@ impl RunEvents {
                 }
                 CheckedKind::Door { number, off, .. } => {
                     moves += 1;
-                    if let Some(told) = number.filter(|&told| told != moves) {
-                        fault(DivergenceCause::Number { expected: moves, told });
+                    if let Some(recorded) = number.filter(|&number| number != moves) {
+                        fault(DivergenceCause::Number { expected: moves, recorded });
                     }
-                    // Where a robot went aside, an event of its own says so.
+                    // An event of its own follows if the robot took no door.
                     let own = self.events.get(place + 1).map(|event| &event.kind);
-                    let told = matches!(own, Some(CheckedKind::Aside { .. }));
-                    if let Some(off) = off.filter(|&off| off > OFF && !told) {
+                    let reported = matches!(own, Some(CheckedKind::Aside { .. }));
+                    if let Some(off) = off.filter(|&off| off > OFF && !reported) {
                         fault(DivergenceCause::Aside { off });
                     }
                 }
@@ -53,20 +53,20 @@ impl RunEvents {
         faults
     }
 
-    /// What is false in how the log says that the run ended, given what Algorithm 1 makes of it.
+    /// The contradictions between the recorded end and Algorithm 1.
     pub(super) fn false_ending(
         &self,
-        followed: &Followed,
+        followed: &AlgorithmMatch,
         known: Option<&KnownWorld>,
     ) -> Vec<DivergenceCause> {
         let map = followed.exploration.map();
         let mapped = self.is_said_whole();
         let mut faults = Vec::new();
         match (&followed.reached, map.complete()) {
-            (Reached::EndOfTrace, _) if mapped => {
+            (MatchEnd::EndOfTrace, _) if mapped => {
                 faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
             }
-            (Reached::Mapped, Some(graph)) => {
+            (MatchEnd::Mapped, Some(graph)) => {
                 let found = MapRecord::of(followed.exploration.journey());
                 if self.map.as_ref().is_some_and(|recorded| !recorded.same_map(&found)) {
                     faults.push(DivergenceCause::Map);
@@ -80,19 +80,19 @@ impl RunEvents {
         faults
     }
 
-    /// Whether the log says that the map was complete at its end.
+    /// Whether the log says that the map is complete at its end.
     pub(super) fn is_said_whole(&self) -> bool {
         self.end.as_ref().is_some_and(|end| end.ending == RunEnding::Mapped)
     }
 
-    /// Whether the log says another number of moves than it has.
+    /// The recorded number of moves, if it is wrong.
     pub(super) fn false_moves(&self, trace: &Trace) -> Option<DivergenceCause> {
         let made = trace.percepts().len() - 1;
-        let told = self.end.as_ref()?.moves;
-        (made as u64 != told).then_some(DivergenceCause::Moves { made, told })
+        let recorded = self.end.as_ref()?.moves;
+        (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
     }
 
-    /// Whether this is all of a run; of one that Algorithm 1 drives, to its end.
+    /// Whether the log has the whole run; if Algorithm 1 drives, until its map is complete.
     pub(super) fn is_whole(&self, driven: bool) -> bool {
         let ended = match &self.end {
             Some(_) => self.is_said_whole() || !driven,

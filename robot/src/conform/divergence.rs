@@ -1,30 +1,30 @@
-//! Why a run does not conform, and whose fault that is.
+//! Divergences: why a run does not conform, and the class of the fault.
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
 use toposlam_model::trace::{Departure, Misfit, TraceEventKind, TraceOrderError};
 
-/// Where a run first does something that the specification does not.
+/// The first event that the specification does not allow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
-    /// Which event, from 0; the number of events where one is missing at the end.
+    /// The index of the event; the number of events if one is missing at the end.
     pub event: usize,
-    /// Why it does not fit.
+    /// Why it is not allowed.
     pub cause: DivergenceCause,
-    /// Whose fault that is.
-    pub culprit: FaultClass,
+    /// The class of the fault.
+    pub fault: FaultClass,
 }
 
-/// Whose fault a divergence is.
+/// The class of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FaultClass {
-    /// The robot perceived what is not so.
+    /// A wrong percept.
     Perception,
-    /// The robot did not go where it was told to go.
+    /// The robot did not drive as commanded.
     Motion,
-    /// The robot was told to go where Algorithm 1 does not go, or its map is wrong.
+    /// A door that Algorithm 1 does not take, or a wrong map.
     Algorithm,
-    /// The log does not agree with itself.
+    /// The log contradicts itself.
     Log,
 }
 
@@ -50,74 +50,73 @@ impl fmt::Display for FaultClass {
     }
 }
 
-/// Off by more than this, in radians, odometry contradicts a direction.
+/// Odometry contradicts a direction if they differ by more than this, in radians.
 pub(super) const OFF: f64 = FRAC_PI_6;
 
-/// Why an event does not fit.
+/// Why an event is not allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DivergenceCause {
-    /// Percepts and doors do not take turns.
+    /// Percepts and doors do not alternate.
     NotInTurn(TraceOrderError),
-    /// Its number is not that of its place.
+    /// Its number of moves is wrong.
     Number {
-        /// How many moves there were.
+        /// The number of moves.
         expected: u32,
-        /// How many it says.
-        told: u32,
+        /// The recorded number.
+        recorded: u32,
     },
-    /// It has as many doors as its percept has not.
+    /// Its degree is not its number of doors.
     Form {
-        /// The number of doors that were told.
+        /// The degree.
         degree: u32,
-        /// The number of directions in which there is one.
+        /// The number of directions with a door.
         doors: u32,
     },
-    /// The robot drove in another direction than that of the door that it is said to have taken, or of
-    /// any.
+    /// The robot did not drive in the direction of the recorded door, or of any door.
     Aside {
-        /// By how much, in radians.
+        /// The angle between them, in radians.
         off: f64,
     },
-    /// The entry door is not where odometry says that the robot came from.
+    /// The entry door is not in the direction that the robot came from by odometry.
     Entry {
-        /// By how much it is off, in radians.
+        /// The angle between them, in radians.
         off: f64,
     },
     /// The robot turned back in a hallway.
     TurnedBack,
-    /// The robot was at a junction that its pictures did not tell.
+    /// The robot was at a junction that could not be recognised in its images.
     Undecided,
-    /// In the known world this is not so.
+    /// It does not fit the known world.
     World(Misfit),
-    /// No world is so.
+    /// It fits no world.
     NoWorld {
-        /// Worlds with so many edges were tried.
+        /// The largest number of edges that was searched.
         edges: usize,
     },
-    /// Algorithm 1 does not do this.
+    /// No run of Algorithm 1 has it.
     Algorithm(Departure),
-    /// The log says that the map is complete; Algorithm 1 would go on.
+    /// The log says that the map is complete, and it is not.
     Unfinished {
-        /// So many edge ends are not explored.
+        /// The number of unexplored edge ends.
         unexplored: u32,
     },
-    /// The map in the log is not the one that Algorithm 1 makes.
+    /// The recorded map is not the map of Algorithm 1.
     Map,
-    /// The map that Algorithm 1 makes is not that of the known world.
+    /// The map of Algorithm 1 is not the known world.
     WrongMap,
-    /// The log says another number of moves than it has.
+    /// The recorded number of moves is wrong.
     Moves {
-        /// How many it has.
+        /// The number of moves in the log.
         made: usize,
-        /// How many it says.
-        told: u64,
+        /// The recorded number.
+        recorded: u64,
     },
 }
 
 impl DivergenceCause {
-    /// Whose fault it is, as far as the event itself tells.
+    /// The class of the fault, as far as the event itself shows it.
     #[must_use]
-    pub fn culprit(&self) -> FaultClass {
+    pub fn fault(&self) -> FaultClass {
         match self {
             Self::NotInTurn(_) | Self::Number { .. } | Self::Form { .. } | Self::Moves { .. } => {
                 FaultClass::Log
@@ -134,7 +133,7 @@ impl DivergenceCause {
         }
     }
 
-    /// A word for it, by which a quirk can be told.
+    /// Its name in quirk files and reports.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -162,7 +161,7 @@ impl DivergenceCause {
     }
 }
 
-/// Every name that a cause has.
+/// The names of all causes.
 pub(super) const NAMES: [&str; 16] = [
     "not-in-turn",
     "number",
@@ -187,54 +186,49 @@ impl fmt::Display for DivergenceCause {
         let degrees = |off: f64| format!("{:.0} degrees", off.to_degrees());
         match self {
             Self::NotInTurn(not) => write!(out, "{not}"),
-            Self::Number { expected, told } => {
-                write!(
-                    out,
-                    "the log tells it as that of move {told}; it is that of move {expected}"
-                )
+            Self::Number { expected, recorded } => {
+                write!(out, "its move number is {expected}, and the log says {recorded}")
             }
             Self::Form { degree, doors } => {
-                write!(out, "its degree is {degree}, but it has doors in {doors} directions")
+                write!(out, "its degree is {degree}, but it has {doors} doors")
             }
             Self::Aside { off } => {
                 write!(out, "the robot drove off {} from the door", degrees(*off))
             }
             Self::Entry { off } => write!(
                 out,
-                "the entry door is {} from where the robot came by odometry",
+                "by odometry the robot came from a direction {} off the entry door",
                 degrees(*off)
             ),
             Self::TurnedBack => {
-                write!(out, "the robot turned back without having been at a junction")
+                write!(out, "the robot turned back before it reached a junction")
             }
             Self::Undecided => {
-                write!(out, "the robot was at a junction of which its pictures do not tell")
+                write!(out, "the robot was at a junction that its images do not show clearly")
             }
             Self::World(misfit) => match misfit.candidates.len() {
-                1 => write!(out, "in the known world this is not so"),
+                1 => write!(out, "it does not fit the known world"),
                 poses => {
-                    write!(out, "at none of the {poses} poses left in the known world this is so")
+                    write!(out, "it fits none of the {poses} candidate poses in the known world")
                 }
             },
             Self::NoWorld { edges } => {
                 write!(out, "no world with at most {edges} edges explains the log up to here")
             }
             Self::Algorithm(departure) => out.write_str(match departure.event.kind {
-                TraceEventKind::Percept(_) => {
-                    "what is perceived contradicts what was perceived before"
-                }
+                TraceEventKind::Percept(_) => "this percept contradicts the percepts before it",
                 TraceEventKind::Door(_) => "no run of Algorithm 1 takes this door here",
             }),
             Self::Unfinished { unexplored } => {
                 write!(
                     out,
-                    "the run is said to be complete, with {unexplored} edge ends unexplored"
+                    "the log says that the map is complete; {unexplored} edge ends are unexplored"
                 )
             }
-            Self::Map => write!(out, "the map in the log is not the one that Algorithm 1 makes"),
-            Self::WrongMap => write!(out, "the map is not that of the known world"),
-            Self::Moves { made, told } => {
-                write!(out, "the log says that {told} moves were made; it has {made}")
+            Self::Map => write!(out, "the recorded map is not the map of Algorithm 1"),
+            Self::WrongMap => write!(out, "the map is not the known world"),
+            Self::Moves { made, recorded } => {
+                write!(out, "the log says that {recorded} moves were made; it has {made}")
             }
         }
     }

@@ -1,5 +1,5 @@
-//! The events of a log: those that it tells, or else those that are derived from its scenes or its
-//! pictures, and its odometry. Sections 3 to 6.
+//! Extracts the events of a log: recorded ones, or else those that are inferred from its scenes or images
+//! and its odometry. Sections 3 to 6.
 
 use rayon::prelude::*;
 use thiserror::Error;
@@ -24,108 +24,106 @@ use crate::{
     record::{EventKind, Frame, FrameSensor, SensingError},
 };
 
-/// What events are made of.
+/// The source of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
-    /// The percepts and doors that the log tells.
-    Told,
-    /// The scenes that it tells, and its odometry.
+    /// Recorded percepts and doors.
+    Recorded,
+    /// Recorded scenes and odometry.
     Scenes,
-    /// Its pictures, and its odometry.
+    /// Images and odometry.
     Pictures,
 }
 
-/// What was made of a log.
+/// The events of a log.
 #[derive(Clone, Debug)]
 pub struct ExtractedRun {
-    /// The events, and what the log says of itself.
+    /// The events, and the end of the run.
     pub events: RunEvents,
-    /// What they are made of.
+    /// Their source.
     pub evidence: Evidence,
-    /// The head of the log, where it has one.
+    /// The head of the log, if it has one.
     pub run: Option<messages::Run>,
-    /// What was seen, and where, where events are derived from it.
-    pub seen: Vec<Seen>,
-    /// How many pictures were looked at.
+    /// The scenes from which events are inferred.
+    pub seen: Vec<SensedScene>,
+    /// The number of images that were sensed.
     pub pictures: u64,
-    /// How many of them are no images.
+    /// The number of them that could not be decoded.
     pub unreadable: u64,
 }
 
-/// What was seen in a picture.
+/// A scene, and where it was sensed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
-    /// Where it, or its scene, stands in the log.
+pub struct SensedScene {
+    /// Its message, or that of its image.
     pub source: EventSource,
-    /// What it shows.
+    /// The scene.
     pub scene: Scene,
-    /// Where the robot was when it was taken.
+    /// The odometry at that time.
     pub odometry: Odometry,
 }
 
-/// Why there are no events.
+/// Why events cannot be extracted.
 #[derive(Debug, Error)]
 pub enum ExtractError {
     /// The log cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The mapping does not fit it.
+    /// The topic map does not fit it.
     #[error(transparent)]
     TopicMap(#[from] TopicMapError),
-    /// Nothing that could be judged is mapped.
+    /// No source of events is mapped.
     #[error(
-        "it has neither percepts and doors, nor scenes or pictures together with odometry, as far as the \
-         mapping tells; `toposlam info` tells what it has"
+        "no topics are known for percepts and doors, nor for scenes or images with odometry; `toposlam info` \
+         lists the topics"
     )]
     NothingMapped,
-    /// Pictures have to be looked at, and there is no calibration, or there are no colours.
-    #[error(
-        "its events have to be derived from its pictures: that needs --calibration and --colours"
-    )]
-    NoEyes,
-    /// A picture is not of the calibrated camera.
+    /// Images must be sensed without a calibration or colours.
+    #[error("its events must be inferred from its images: this needs --calibration and --colours")]
+    NoSensor,
+    /// An image is not of the calibrated camera.
     #[error("message {message}: {cause}")]
     Size {
-        /// Which message, counted from 1.
+        /// The number of the message.
         message: u64,
-        /// What is wrong with it.
+        /// Why it cannot be sensed.
         cause: SensingError,
     },
-    /// A percept or a door says that it was before the one ahead of it.
+    /// The time of a percept or door is before that of the last one.
     #[error("message {message}: the events are out of order: it is of {:.3} s, the one before it of {:.3} s", *.time as f64 / 1e9, *.before as f64 / 1e9)]
     OutOfOrder {
-        /// Which message, counted from 1.
+        /// The number of the message.
         message: u64,
-        /// When it says that it was, in nanoseconds.
+        /// Its time, in nanoseconds.
         time: u64,
-        /// When the one before it was.
+        /// The time of the last one.
         before: u64,
     },
 }
 
-/// Watches pictures being looked at, and may break off.
-pub trait Looking {
-    /// So many more pictures have been looked at.
-    fn looked(&self, _pictures: u64) {}
+/// Observes the progress of sensing.
+pub trait SensingProgress {
+    /// This many more images have been sensed.
+    fn sensed(&self, _pictures: u64) {}
 }
 
-impl Looking for () {}
+impl SensingProgress for () {}
 
-/// So many pictures are looked at together, by as many threads as there are.
+/// The number of images that are sensed in parallel.
 const TOGETHER: usize = 32;
 
 impl Evidence {
-    /// What events can be made of where such things are mapped: the first in the order of this list.
+    /// The first source of events that a topic map has.
     #[must_use]
     pub fn of(mapping: &TopicMap) -> Option<Self> {
-        [Self::Told, Self::Scenes, Self::Pictures].into_iter().find(|one| one.is_in(mapping))
+        [Self::Recorded, Self::Scenes, Self::Pictures].into_iter().find(|one| one.is_in(mapping))
     }
 
-    /// Whether events can be made of it where such things are mapped.
+    /// Whether a topic map has this source of events.
     #[must_use]
     pub fn is_in(self, mapping: &TopicMap) -> bool {
         let needed = match self {
-            Self::Told => [Role::Percept, Role::Door],
+            Self::Recorded => [Role::Percept, Role::Door],
             Self::Scenes => [Role::Scene, Role::Odometry],
             Self::Pictures => [Role::Image, Role::Odometry],
         };
@@ -134,25 +132,25 @@ impl Evidence {
 
     fn roles(self) -> &'static [Role] {
         match self {
-            Self::Told => &[Role::Percept, Role::Door, Role::Odometry],
+            Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
             Self::Scenes => &[Role::Scene, Role::Odometry],
             Self::Pictures => &[Role::Image, Role::Odometry],
         }
     }
 }
 
-/// Makes events of a log. A robot that is `marked` puts its marker down where it begins; that is only
-/// asked where events are derived.
+/// Extracts the events of a log. A `marked` robot puts its marker down at its start; this matters only for
+/// inferred events.
 ///
 /// # Errors
-/// Where the log cannot be read, and where there is nothing in it of which events could be made.
+/// Returns an error if the log cannot be read, or has no source of events.
 pub fn extract(
     log: &Log,
     mapping: &TopicMap,
     evidence: Evidence,
     sensor: Option<&Sensor>,
     marked: bool,
-    watch: &impl Looking,
+    watch: &impl SensingProgress,
 ) -> Result<ExtractedRun, ExtractError> {
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
     let threads = rayon::current_num_threads();
@@ -178,21 +176,21 @@ pub fn extract(
     let Extraction { recorded, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
-        Some(Seen { source, scene, odometry })
+        Some(SensedScene { source, scene, odometry })
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
     events.events = match evidence {
-        Evidence::Told => recorded.finish(),
-        Evidence::Scenes | Evidence::Pictures => derived(&seen, marked),
+        Evidence::Recorded => recorded.finish(),
+        Evidence::Scenes | Evidence::Pictures => infer_events(&seen, marked),
     };
     Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable })
 }
 
-/// The events of what was seen.
+/// The events that are inferred from scenes.
 #[must_use]
-pub fn derived(seen: &[Seen], marked: bool) -> Vec<CheckedEvent> {
+pub fn infer_events(seen: &[SensedScene], marked: bool) -> Vec<CheckedEvent> {
     let mut derivation = InferredEvents::new(marked);
-    for Seen { source, scene, odometry } in seen {
+    for SensedScene { source, scene, odometry } in seen {
         derivation.see(*source, scene, odometry);
     }
     derivation.finish()
@@ -200,14 +198,14 @@ pub fn derived(seen: &[Seen], marked: bool) -> Vec<CheckedEvent> {
 
 struct Extraction<'w, W> {
     recorded: RecordedEvents,
-    /// Where the robot was, and when.
+    /// The odometry, with its times.
     track: Vec<(u64, Odometry)>,
-    /// What was seen, and when the picture was taken.
+    /// The scenes, with their times.
     seen: Vec<(EventSource, u64, Scene)>,
     /// Frames that have not been sensed, with their times.
     waiting: Vec<(EventSource, u64, Frame)>,
     run: Option<messages::Run>,
-    /// When the last percept or door was.
+    /// The time of the last percept or door.
     last: u64,
     events: RunEvents,
     /// One for each thread.
@@ -217,7 +215,7 @@ struct Extraction<'w, W> {
     unreadable: u64,
 }
 
-impl<W: Looking> Extraction<'_, W> {
+impl<W: SensingProgress> Extraction<'_, W> {
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
         let Entry { time, offset, id, stamp, content, .. } = entry;
         let stamp = stamp.nanoseconds();
@@ -256,13 +254,13 @@ impl<W: Looking> Extraction<'_, W> {
         Ok(())
     }
 
-    /// Looks at the pictures that wait.
+    /// Senses the waiting frames.
     fn look(&mut self) -> Result<(), ExtractError> {
         if self.waiting.is_empty() {
             return Ok(());
         }
         if self.sensors.is_empty() {
-            return Err(ExtractError::NoEyes);
+            return Err(ExtractError::NoSensor);
         }
         let share = self.waiting.len().div_ceil(self.sensors.len());
         let shares = self.sensors.par_iter_mut().zip(self.waiting.par_chunks(share));
@@ -272,7 +270,7 @@ impl<W: Looking> Extraction<'_, W> {
             scenes.collect::<Vec<_>>()
         };
         let seen: Vec<_> = shares.flat_map_iter(look).collect();
-        self.watch.looked(seen.len() as u64);
+        self.watch.sensed(seen.len() as u64);
         self.pictures += seen.len() as u64;
         for ((source, time, _), scene) in self.waiting.drain(..).zip(seen) {
             match scene {
@@ -285,7 +283,7 @@ impl<W: Looking> Extraction<'_, W> {
     }
 }
 
-/// Where a robot was at a time, between the two readings nearest to it.
+/// The odometry at a time, interpolated between the nearest two readings.
 fn at(track: &[(u64, Odometry)], time: u64) -> Option<Odometry> {
     let after = track.partition_point(|&(reading, _)| reading < time);
     match (after.checked_sub(1).and_then(|before| track.get(before)), track.get(after)) {

@@ -1,5 +1,4 @@
-//! Events from a log that has only pictures and motion: junction visits and the doors taken, from what
-//! sensing tells of the pictures and where odometry says that the robot was. Sections 3 to 5.
+//! Infers events from scenes and odometry: visits to junctions, and the doors taken. Sections 3 to 5.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
@@ -18,27 +17,27 @@ use super::{
 };
 use crate::record::Arrival;
 
-/// A junction is visited when its turning point comes as near as this, in metres.
+/// A junction is visited if its turning point comes this near, in metres.
 pub const NEAR: f64 = 0.3;
-/// A robot that drives off by more than this from every door takes none, in radians.
+/// A robot that leaves by more than this off every door takes none, in radians.
 const ASIDE: f64 = FRAC_PI_6;
-/// A turning point that is as far from the last one is another junction's, in metres.
+/// A turning point this far from the last one is of another junction, in metres.
 const ANOTHER: f64 = 1.5;
-/// So far from its turning point a junction is left, in metres; nearer what looks like a hallway is none.
+/// A robot this far from the turning point has left the junction, in metres. Nearer, a hallway is ignored.
 const AWAY: f64 = 0.6;
 
-/// Makes events of scenes as they come.
+/// Infers events from a sequence of scenes.
 #[derive(Clone, Debug)]
 pub struct InferredEvents {
     events: Vec<CheckedEvent>,
     approach: Option<Approach>,
-    /// What was seen since the last junction.
+    /// The estimate from the scenes since the last junction.
     seen: JunctionEstimate,
-    /// How the robot looked when it was last in a hallway.
+    /// The heading when the robot was last in a hallway.
     hallway: Option<f64>,
 }
 
-/// A run of scenes of one junction.
+/// Consecutive scenes of one junction.
 #[derive(Clone, Debug)]
 struct Approach {
     /// Of its first scene.
@@ -46,22 +45,22 @@ struct Approach {
     visit: JunctionEstimate,
     /// The direction of the entry door in the frame of odometry.
     entry: f64,
-    /// Where the turning point is in that frame.
+    /// The turning point in that frame.
     turning_point: [f64; 2],
-    /// How near the turning point came, in metres, and in which scene.
+    /// The smallest distance to the turning point, in metres, and its scene.
     nearest: f64,
     visited: EventSource,
 }
 
 impl InferredEvents {
-    /// Nothing has happened yet. A robot that is `marked` puts its marker down where it begins.
+    /// A robot at its start; if it is `marked`, it puts its marker down there.
     #[must_use]
     pub fn new(marked: bool) -> Self {
         let seen = if marked { JunctionEstimate::at_marker() } else { JunctionEstimate::default() };
         Self { events: Vec::new(), approach: None, seen, hallway: None }
     }
 
-    /// What sensing tells of the next picture, and where the robot was when it was taken.
+    /// The next scene, and the odometry at its time.
     pub fn see(&mut self, source: EventSource, scene: &Scene, odometry: &Odometry) {
         match &scene.place {
             Place::Unknown(_) => {}
@@ -70,7 +69,7 @@ impl InferredEvents {
         }
     }
 
-    /// The events, once no more pictures come.
+    /// The events, after the last scene.
     #[must_use]
     pub fn finish(mut self) -> Vec<CheckedEvent> {
         if let Some(approach) = self.approach.take().filter(Approach::is_visit) {
@@ -82,7 +81,7 @@ impl InferredEvents {
     fn in_hallway(&mut self, source: EventSource, scene: &Scene, odometry: &Odometry) {
         if let Some(approach) = self.approach.take() {
             if !approach.is_over(odometry) {
-                // A junction that is still ahead was taken for a hallway. The marker shows all the same.
+                // A junction that is still ahead looks like a hallway; its marker is visible.
                 let mut approach = approach;
                 if !approach.is_visit() {
                     approach.visit.see(scene);
@@ -101,7 +100,7 @@ impl InferredEvents {
         self.seen.see(scene);
     }
 
-    /// The robot has left a junction, or its neighbourhood.
+    /// The robot has left a junction or passed it.
     fn leave(&mut self, source: EventSource, approach: &Approach, heading: f64) {
         if approach.is_visit() {
             let Some((form, entry)) = self.visited(approach) else { return };
@@ -180,8 +179,8 @@ impl Approach {
         self.nearest <= NEAR
     }
 
-    /// Whether a robot in a hallway has done with this junction: it is away from it after a visit, has
-    /// passed it without one, or looks back.
+    /// Whether a robot in a hallway has left this junction: it is away from it after a visit, has passed it
+    /// without one, or faces back.
     fn is_over(&self, odometry: &Odometry) -> bool {
         let [x, y] = [0, 1].map(|axis| odometry.position[axis] - self.turning_point[axis]);
         let inwards = -(x * self.entry.cos() + y * self.entry.sin());
@@ -190,7 +189,7 @@ impl Approach {
     }
 }
 
-/// A point that the robot sees, in the frame of odometry.
+/// A point relative to the robot, in the frame of odometry.
 fn in_frame([x, y]: [f64; 2], odometry: &Odometry) -> [f64; 2] {
     let (sine, cosine) = odometry.heading.sin_cos();
     let [east, north] = odometry.position;
@@ -204,7 +203,7 @@ mod tests {
     use toposlam_model::driving::scene::{CentreLine, HallwayStatus, HallwayView, Reason};
 
     use super::*;
-    use crate::conform::{Seen, derived, shorten_frames};
+    use crate::conform::{SensedScene, infer_events, shorten_frames};
     use crate::record::EventId;
 
     /// What a robot sees that looks along x and has come along it; the junction has a door behind it and
@@ -228,12 +227,17 @@ mod tests {
     }
 
     /// Places that are seen from somewhere, in turn.
-    fn seen(places: &[(Place, [f64; 2], f64)]) -> Vec<Seen> {
-        let seen = |(message, (place, position, heading)): (usize, &(Place, [f64; 2], f64))| Seen {
-            source: EventSource { time: message as u64, id: EventId(message as u64), offset: 0 },
-            scene: Scene { place: place.clone(), marker: None },
-            odometry: Odometry { position: *position, heading: *heading },
-        };
+    fn seen(places: &[(Place, [f64; 2], f64)]) -> Vec<SensedScene> {
+        let seen =
+            |(message, (place, position, heading)): (usize, &(Place, [f64; 2], f64))| SensedScene {
+                source: EventSource {
+                    time: message as u64,
+                    id: EventId(message as u64),
+                    offset: 0,
+                },
+                scene: Scene { place: place.clone(), marker: None },
+                odometry: Odometry { position: *position, heading: *heading },
+            };
         places.iter().enumerate().map(seen).collect()
     }
 
@@ -245,7 +249,7 @@ mod tests {
             CheckedKind::TurnedBack => "turned back",
             CheckedKind::Undecided => "undecided",
         };
-        derived(&seen(places), marked).iter().map(name).collect()
+        infer_events(&seen(places), marked).iter().map(name).collect()
     }
 
     /// A robot that comes along x to a junction at the origin, and visits it.
@@ -259,7 +263,7 @@ mod tests {
         let away = (hallway(), [0.0, 1.0], FRAC_PI_2);
         let places = [visit(), vec![away]].concat();
         assert_eq!(kinds(&places, false), ["percept", "door"]);
-        let events = derived(&seen(&places), false);
+        let events = infer_events(&seen(&places), false);
         let CheckedKind::Door { door, off: Some(off), .. } = events[1].kind else {
             panic!("{events:?}")
         };
@@ -315,11 +319,14 @@ mod tests {
         let aside = (hallway(), [0.7, 0.7], FRAC_PI_4);
         let long = vec![(hallway(), [-2.0, 0.0], 0.0); 50];
         let seen = seen(&[long, visit(), vec![aside]].concat());
-        let events = derived(&seen, false);
+        let events = infer_events(&seen, false);
         let least = shorten_frames(&seen, events.last().unwrap()).unwrap();
         // Two pictures of the junction, and where the robot went.
         assert_eq!(least.len(), 3);
-        assert!(matches!(derived(least, false).last().unwrap().kind, CheckedKind::Aside { .. }));
+        assert!(matches!(
+            infer_events(least, false).last().unwrap().kind,
+            CheckedKind::Aside { .. }
+        ));
         // A percept does not show in what was seen alone.
         assert_eq!(shorten_frames(&seen, &events[0]), None);
     }

@@ -1,4 +1,4 @@
-//! The judgement of a recorded run: against itself, a known world or some world, and Algorithm 1.
+//! Judges a recorded run: its consistency, a known world or the smallest one, and Algorithm 1.
 //! Sections 2.1 and 2.3.
 
 use std::collections::BTreeMap;
@@ -10,8 +10,9 @@ use toposlam_model::{
     mapping::{Contradiction, FACING},
     percept::Percept,
     trace::{
-        AlgorithmCoverage, Claim, Departure, Followed, Misfit, MisfitReason, Poses, Purpose,
-        Reached, SmallestWorld, Trace, TraceOrderError, WorldSearch, follow, poses, smallest,
+        AlgorithmCoverage, AlgorithmMatch, Departure, MatchEnd, Misfit, MisfitReason, Poses,
+        SmallestWorld, StepPurpose, Trace, TraceClaim, TraceOrderError, WorldSearch,
+        match_algorithm, poses, smallest,
     },
 };
 
@@ -22,60 +23,60 @@ use super::{
     quirks::Quirks,
 };
 
-/// What a run is held against.
+/// What a run is checked against.
 #[derive(Clone, Debug)]
 pub struct ConformConfig<'w> {
-    /// The world in which it was, where that is known.
+    /// The world, if it is known.
     pub world: Option<KnownWorld<'w>>,
-    /// Who took the doors.
+    /// What chose the doors.
     pub driver: RunDriver,
-    /// Which worlds are searched for one that explains the log, where none is known.
+    /// The worlds to search if none is known.
     pub search: WorldSearch,
-    /// How many darts Algorithm 1 may come to know.
+    /// The largest number of darts that Algorithm 1 may know.
     pub dart_bound: usize,
 }
 
-/// Who takes the doors.
+/// What chooses the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunDriver {
     /// Algorithm 1, with any choices.
     Algorithm1,
-    /// Anyone, wherever they like.
+    /// Anything, in any way.
     Anyone,
 }
 
-/// What the specification says of a run.
+/// The result of checking a run.
 #[derive(Clone, Debug)]
 pub struct Judgement {
-    /// What was judged; where quirks were tolerated, as it should have been.
+    /// The events; a tolerated event is replaced by the expected one.
     pub events: RunEvents,
     /// Its arrivals and doors, up to the first that is out of turn. The ids are indices of `events`.
     pub trace: Trace,
-    /// The first event that does not fit.
+    /// The first divergence.
     pub divergence: Option<Divergence>,
-    /// How the robot may stand in the known world.
+    /// The candidate poses in the known world.
     pub poses: Option<Poses>,
-    /// The smallest world that explains the log, where none is known.
+    /// The smallest world that explains the log, if none is known.
     pub smallest: Option<SmallestWorld>,
-    /// How far Algorithm 1 goes along.
-    pub followed: Option<Followed>,
-    /// What the run went through.
+    /// How far Algorithm 1 follows the log.
+    pub algorithm: Option<AlgorithmMatch>,
+    /// The cases that the run covers.
     pub coverage: RunCoverage,
-    /// Divergences that were tolerated, in order, with the quirk's place in its file.
+    /// The tolerated divergences in order, each with the index of its quirk.
     pub tolerated: Vec<(Divergence, usize)>,
 }
 
-/// The cases that a run went through.
+/// The cases that a run covers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunCoverage {
     /// Of Algorithm 1.
     pub algorithm: AlgorithmCoverage,
-    /// Of perception: each kind of junction, from each of its entries.
+    /// Of perception: the junction shapes, seen from the entry door.
     pub junctions: BTreeMap<JunctionShape, u64>,
 }
 
 impl RunCoverage {
-    /// Takes in what happened in another run.
+    /// Adds the cases of another run.
     pub fn include(&mut self, other: &Self) {
         self.algorithm.include(&other.algorithm);
         for (&form, count) in &other.junctions {
@@ -87,11 +88,11 @@ impl RunCoverage {
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConformVerdict {
-    /// All of it fits.
+    /// Everything fits.
     Conforms,
     /// An event does not fit.
     Diverged,
-    /// All of it fits, but it is not all.
+    /// Everything fits, but the run or the search is not complete.
     Incomplete,
 }
 
@@ -107,21 +108,21 @@ impl ConformVerdict {
     }
 }
 
-/// Nothing that could be judged.
+/// Why a run cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum JudgeError {
     /// There is no event.
-    #[error("there is neither a percept nor a visit to a junction in it")]
+    #[error("it has neither a percept nor a visit to a junction")]
     Empty,
     /// The events are out of order.
     #[error(transparent)]
     OutOfOrder(#[from] OutOfOrder),
 }
 
-/// Holds a run against the specification. Quirks are tolerated, and judged as they should have been.
+/// Checks a run against the specification. A tolerated event is replaced by the expected one.
 ///
 /// # Errors
-/// Where there is no event, and where they are out of order.
+/// Returns an error if there is no event, or if they are out of order.
 pub fn judge(
     mut events: RunEvents,
     question: &ConformConfig,
@@ -144,20 +145,20 @@ pub fn judge(
     }
 }
 
-/// Makes of an event what it should have been; `false` where that is not known.
+/// Replaces an event by the expected one; `false` if that is not known.
 fn amend(events: &mut RunEvents, divergence: &Divergence) -> bool {
     let expected = match &divergence.cause {
         DivergenceCause::World(misfit) => expected_by(misfit),
         DivergenceCause::Algorithm(departure) => expected_after(departure),
         DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => return false,
-        // It is passed over.
+        // It is skipped.
         _ => return true,
     };
     let Some(expected) = expected else { return false };
     match events.events.get_mut(divergence.event).map(|event| &mut event.kind) {
         Some(CheckedKind::Arrival { arrival, .. }) => {
             arrival.percept = expected;
-            // What it looked like is what is tolerated.
+            // Its shape belongs to the tolerated percept.
             arrival.form = None;
             true
         }
@@ -165,7 +166,7 @@ fn amend(events: &mut RunEvents, divergence: &Divergence) -> bool {
     }
 }
 
-/// What should be perceived at every pose that is left.
+/// The percept that all candidate poses expect.
 fn expected_by(misfit: &Misfit) -> Option<Percept> {
     let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
         MisfitReason::Percept { expected } => Some(*expected),
@@ -175,10 +176,10 @@ fn expected_by(misfit: &Misfit) -> Option<Percept> {
     expected.all(|other| other == Some(first)).then_some(first)
 }
 
-/// What Algorithm 1 expects to be perceived.
+/// The percept that Algorithm 1 expects.
 fn expected_after(departure: &Departure) -> Option<Percept> {
     departure.allowed.iter().find_map(|allowed| match allowed.purpose {
-        Purpose::Contradicted(
+        StepPurpose::Contradicted(
             Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
         ) => Some(expected),
         _ => None,
@@ -216,7 +217,7 @@ impl Judgement {
             divergence: None,
             poses: None,
             smallest: None,
-            followed: None,
+            algorithm: None,
             coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
             trace,
@@ -225,21 +226,21 @@ impl Judgement {
         if let Some(known) = &question.world {
             let poses = poses(known.graph, &known.marker, &known.states, trace);
             if let Some(misfit) = &poses.misfit {
-                let culprit = known.culprit(trace, misfit);
-                found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), culprit);
+                let fault = known.fault(trace, misfit);
+                found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), fault);
             }
             judgement.poses = Some(poses);
         }
         let mut explored = None;
         if question.driver == RunDriver::Algorithm1 {
-            let claim = if events.is_said_whole() { Claim::Whole } else { Claim::Part };
-            let followed = follow(trace, claim, question.dart_bound);
+            let claim = if events.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part };
+            let followed = match_algorithm(trace, claim, question.dart_bound);
             match &followed.reached {
-                Reached::Departure(departure) => {
+                MatchEnd::Departure(departure) => {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
                 }
-                Reached::Mapped => explored = followed.exploration.map().complete().cloned(),
-                Reached::EndOfTrace => {}
+                MatchEnd::Mapped => explored = followed.exploration.map().complete().cloned(),
+                MatchEnd::EndOfTrace => {}
             }
             if in_turn {
                 for cause in events.false_ending(&followed, question.world.as_ref()) {
@@ -247,30 +248,29 @@ impl Judgement {
                 }
             }
             judgement.coverage.algorithm = followed.coverage.clone();
-            judgement.followed = Some(followed);
+            judgement.algorithm = Some(followed);
         }
         if in_turn && let Some(cause) = events.false_moves(trace) {
             found.note(len, cause);
         }
         if question.world.is_none() {
             let darts = judgement
-                .followed
+                .algorithm
                 .as_ref()
                 .map_or(0, |followed| followed.exploration.map().dart_count());
-            // A bound below what is known already would be none.
+            // The bound must exceed what is already known.
             let edges = question.search.edges.max(darts.div_ceil(2) + BEYOND);
             let search = WorldSearch { edges, ..question.search };
-            // Algorithm 1 has told its world from every other; one that it has not done with has all that
-            // it knows.
+            // A complete map is the only world that explains the run; an incomplete one is part of it.
             let smallest = if let Some(graph) = explored {
                 SmallestWorld::World { graph, marker: Some(FACING) }
             } else {
-                let followed = judgement.followed.as_ref();
+                let followed = judgement.algorithm.as_ref();
                 let known = followed.map(|followed| followed.exploration.map());
                 smallest(trace, known, search, watch)
             };
             if let SmallestWorld::None { event } = smallest {
-                // It is the fault of an event, if of any, before which all is explained.
+                // Everything before this event is explained.
                 found.note(trace.event(event).id, DivergenceCause::NoWorld { edges });
             }
             judgement.smallest = Some(smallest);
@@ -286,15 +286,15 @@ impl Judgement {
             return ConformVerdict::Diverged;
         }
         let searched = !matches!(self.smallest, Some(SmallestWorld::Unfinished { .. }));
-        if searched && self.events.is_whole(self.followed.is_some()) {
+        if searched && self.events.is_whole(self.algorithm.is_some()) {
             ConformVerdict::Conforms
         } else {
             ConformVerdict::Incomplete
         }
     }
 
-    /// In how many ways the robot may stand after the last event that fits: in the known world, or, where
-    /// none is known and one was found, 1.
+    /// The number of candidate poses after the last event that fits; 1 if the world was not known and one
+    /// was found.
     #[must_use]
     pub fn candidates(&self) -> usize {
         match (&self.poses, &self.smallest) {
@@ -305,7 +305,7 @@ impl Judgement {
     }
 }
 
-/// The first divergence, of those that are not tolerated.
+/// The first divergence that is not tolerated.
 struct Found<'t> {
     tolerated: &'t [(Divergence, usize)],
     first: Option<Divergence>,
@@ -313,25 +313,25 @@ struct Found<'t> {
 
 impl Found<'_> {
     fn note(&mut self, event: usize, cause: DivergenceCause) {
-        let culprit = cause.culprit();
-        self.note_as(event, cause, culprit);
+        let fault = cause.fault();
+        self.note_as(event, cause, fault);
     }
 
-    /// Of two at one event the one noted first counts.
-    fn note_as(&mut self, event: usize, cause: DivergenceCause, culprit: FaultClass) {
+    /// Of two at the same event, the first to be noted counts.
+    fn note_as(&mut self, event: usize, cause: DivergenceCause, fault: FaultClass) {
         let same = |other: &Divergence| other.event == event && other.cause.name() == cause.name();
         let tolerated = self.tolerated.iter().any(|(tolerated, _)| same(tolerated));
         let earlier = self.first.as_ref().is_none_or(|first| event < first.event);
         if earlier && !tolerated {
-            self.first = Some(Divergence { event, cause, culprit });
+            self.first = Some(Divergence { event, cause, fault });
         }
     }
 }
 
-/// Where Algorithm 1 knows a part of a world, worlds with so many more edges are tried at least.
+/// Worlds with at least this many more edges than Algorithm 1 knows are tried.
 const BEYOND: usize = 4;
 
-/// How often each kind of junction was perceived, from each of its entries.
+/// The number of arrivals at each junction shape, seen from the entry door.
 fn junctions(events: &RunEvents) -> BTreeMap<JunctionShape, u64> {
     let mut counts = BTreeMap::new();
     for CheckedEvent { kind, .. } in &events.events {

@@ -1,4 +1,4 @@
-//! A world in which a log is known to have been made, and whose fault it is where a percept does not fit it.
+//! A known world, and the fault class of a percept that does not fit it.
 
 use toposlam_model::{
     embedded_graph::EmbeddedGraph,
@@ -12,21 +12,21 @@ use toposlam_model::{
 
 use super::divergence::FaultClass;
 
-/// A known world, and how the robot may stand in it at first.
+/// A known world, and the possible states at the start.
 #[derive(Clone, Debug)]
 pub struct KnownWorld<'w> {
     /// The embedded graph.
     pub graph: &'w EmbeddedGraph,
     /// The kind of marker.
     pub marker: &'static dyn Marker,
-    /// All the ways in which the robot may stand, and the marker lie, at first.
+    /// The possible states of the robot and the marker at the start.
     pub states: Vec<State>,
 }
 
 impl KnownWorld<'_> {
-    /// Whose fault a misfit is. Where what follows fits better if the robot came somewhere else than if it
-    /// perceived this one thing wrongly, it is motion's.
-    pub(super) fn culprit(&self, trace: &Trace, misfit: &Misfit) -> FaultClass {
+    /// The fault class of a misfit. It is motion if the following events fit better from another pose than
+    /// after one wrong percept.
+    pub(super) fn fault(&self, trace: &Trace, misfit: &Misfit) -> FaultClass {
         let TraceEventKind::Percept(perceived) = misfit.event.kind else {
             return FaultClass::Algorithm;
         };
@@ -43,12 +43,12 @@ impl KnownWorld<'_> {
         if came_elsewhere > perceived_wrongly { FaultClass::Motion } else { FaultClass::Perception }
     }
 
-    /// How many events fit.
+    /// The number of events that fit.
     fn fitting(&self, trace: &Trace, states: &[State]) -> usize {
         poses(self.graph, &self.marker, states, trace).left.len()
     }
 
-    /// Whether a map is that of this world, from one of the starts.
+    /// Whether a map is this world from one of its starts.
     pub(super) fn has(&self, map: &EmbeddedGraph) -> bool {
         let of_map = code(map, FACING);
         let is = |state: &State| state.placed.is_some_and(|dart| code(self.graph, dart) == of_map);
@@ -56,10 +56,10 @@ impl KnownWorld<'_> {
     }
 }
 
-/// So many events are looked at to tell whose fault a misfit is.
+/// The number of following events that decide the fault class of a misfit.
 const AHEAD: usize = 12;
 
-/// What follows some moves, with another first percept.
+/// The trace after some moves, with another first percept.
 fn ahead(trace: &Trace, moves: usize, first: Percept) -> Trace {
     let first = TraceEventKind::Percept(first);
     let rest = trace.events().skip(2 * moves + 1).take(AHEAD).map(|event| event.kind);

@@ -1,5 +1,5 @@
-//! A recorded run, held against the specification: where it first diverged, what the specification
-//! would have allowed there, and whose fault it was. Sections 2 and 4 to 6.
+//! Checks a recorded run against the specification: the first divergence, what the specification allows
+//! there instead, and the class of the fault. Sections 2 and 4 to 6.
 
 mod consistency;
 mod divergence;
@@ -17,7 +17,9 @@ mod tests;
 
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents};
-pub use extract::{Evidence, ExtractError, ExtractedRun, Looking, Seen, derived, extract};
+pub use extract::{
+    Evidence, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
+};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{
     ConformConfig, ConformVerdict, JudgeError, Judgement, RunCoverage, RunDriver, judge,

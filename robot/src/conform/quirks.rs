@@ -1,11 +1,11 @@
-//! Divergences that are known and tolerated: each has a name and a reason, and is counted.
+//! Known divergences that are tolerated. Each has a name and a reason, and is counted.
 
 use serde::Deserialize;
 use thiserror::Error;
 
 use super::divergence::{Divergence, NAMES};
 
-/// What is tolerated.
+/// The tolerated divergences.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quirks {
     quirks: Vec<Quirk>,
@@ -15,39 +15,39 @@ pub struct Quirks {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quirk {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Why it is tolerated.
     pub reason: String,
-    /// What does not fit: `percept`, `contradiction`, `entry`, `aside`, `turned-back`, `undecided`,
+    /// The cause of the divergence: `percept`, `contradiction`, `entry`, `aside`, `turned-back`, `undecided`,
     /// `number`, `form`, `moves`, `map`, `wrong-map` or `unfinished`.
     pub cause: String,
-    /// At which event alone, counted from 1; everywhere if it does not say.
+    /// The only event at which it is tolerated, counted from 1; everywhere without one.
     pub event: Option<usize>,
 }
 
 /// Why quirks cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum QuirkError {
-    /// It is not such a file.
+    /// The file has another form.
     #[error("{}", .0.trim_end())]
     Form(String),
-    /// There is no such cause.
-    #[error("quirk `{name}`: `{cause}` is no cause; there are {}", tolerable().join(", "))]
+    /// The cause is unknown.
+    #[error("quirk `{name}`: unknown cause `{cause}`; the causes are {}", tolerable().join(", "))]
     Cause {
         /// The quirk's name.
         name: String,
-        /// What it says.
+        /// The cause in the file.
         cause: String,
     },
-    /// After such a divergence it is not known how to go on.
+    /// It is not known how a run continues after this cause.
     #[error(
-        "quirk `{name}`: a divergence `{cause}` cannot be tolerated: how to go on is not known"
+        "quirk `{name}`: the cause `{cause}` cannot be tolerated: it is not known how the run continues"
     )]
     Intolerable {
         /// The quirk's name.
         name: String,
-        /// What it says.
+        /// The cause in the file.
         cause: String,
     },
     /// A quirk without a reason.
@@ -58,7 +58,7 @@ pub enum QuirkError {
     },
 }
 
-/// After these it is not known how the run went on.
+/// It is not known how a run continues after these.
 const INTOLERABLE: [&str; 4] = ["not-in-turn", "no-such-door", "no-world", "door"];
 
 /// The causes that a quirk may have.
@@ -77,7 +77,7 @@ impl Quirks {
     /// Reads quirks from a file of TOML.
     ///
     /// # Errors
-    /// Where it is none, or says what cannot be.
+    /// Returns an error if it is not a quirk file, or a quirk in it is invalid.
     pub fn read(text: &str) -> Result<Self, QuirkError> {
         let file: File =
             toml::from_str(text).map_err(|error| QuirkError::Form(error.to_string()))?;
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(quirk("percept", "glare"), Ok(1));
         assert_eq!(quirk("percept", " ").unwrap_err(), "quirk `x` has no reason");
         assert!(quirk("door", "why").unwrap_err().contains("cannot be tolerated"));
-        assert!(quirk("glare", "why").unwrap_err().contains("there are number, form, aside"));
+        assert!(quirk("glare", "why").unwrap_err().contains("the causes are number, form, aside"));
         let unknown = Quirks::read("[[quirk]]\nname = \"x\"\ncuase = \"percept\"").unwrap_err();
         assert!(unknown.to_string().contains("line 3"), "{unknown}");
         assert_eq!(Quirks::read("").unwrap(), Quirks::default());

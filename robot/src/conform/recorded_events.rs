@@ -1,5 +1,4 @@
-//! Events from a log that tells percepts and doors itself; odometry, where the log has it, says whether
-//! the robot went where they say.
+//! The recorded arrivals and doors of a log, compared with its odometry.
 
 use std::{
     collections::VecDeque,
@@ -14,16 +13,16 @@ use toposlam_model::{
 use super::events::{CheckedEvent, CheckedKind, EventSource};
 use crate::record::{Arrival, EventKind};
 
-/// Odometry tells a direction over so many metres. Over many more it drifts.
-const TOLD: f64 = 1.0;
+/// A direction by odometry needs this distance, in metres. Over much more, odometry drifts.
+const FAR_ENOUGH: f64 = 1.0;
 
-/// Makes events of percepts, doors and odometry as they come.
+/// Collects arrivals and doors, and measures the directions between them.
 #[derive(Clone, Debug, Default)]
 pub struct RecordedEvents {
     events: Vec<CheckedEvent>,
-    /// Where the robot was of late, by its wheels: as far back as a direction needs.
+    /// The last odometry, as far back as a direction needs.
     way: VecDeque<Odometry>,
-    /// That the robot left a junction lately, where, by which event and in which direction.
+    /// Where the robot last left a junction, the index of the event, and the direction of the door.
     left: Option<(Odometry, usize, f64)>,
 }
 
@@ -40,7 +39,7 @@ impl RecordedEvents {
 
     fn moved(&mut self, odometry: Odometry) {
         if let Some((from, event, direction)) = self.left
-            && from.distance(&odometry) >= TOLD
+            && from.distance(&odometry) >= FAR_ENOUGH
         {
             self.left = None;
             if let Some(CheckedEvent { kind: CheckedKind::Door { off, .. }, .. }) =
@@ -49,7 +48,7 @@ impl RecordedEvents {
                 *off = Some(wrapped(way(&from, &odometry) - direction).abs());
             }
         }
-        while self.way.get(1).is_some_and(|second| second.distance(&odometry) >= TOLD) {
+        while self.way.get(1).is_some_and(|second| second.distance(&odometry) >= FAR_ENOUGH) {
             self.way.pop_front();
         }
         self.way.push_back(odometry);
@@ -62,7 +61,7 @@ impl RecordedEvents {
             now.map(|now| now.whither(PI))
         } else {
             let ends = self.way.front().zip(now);
-            let far_enough = ends.filter(|(from, now)| from.distance(now) >= TOLD);
+            let far_enough = ends.filter(|(from, now)| from.distance(now) >= FAR_ENOUGH);
             far_enough.map(|(from, now)| way(now, from))
         };
         let entry_off =
@@ -81,7 +80,7 @@ impl RecordedEvents {
         };
         let now = self.way.back().copied();
         self.left = now.zip(direction).map(|(now, direction)| (now, self.events.len(), direction));
-        // What comes next is the way from here.
+        // The next direction starts here.
         self.way.clear();
         self.way.extend(now);
         self.events
@@ -95,13 +94,13 @@ impl RecordedEvents {
     }
 }
 
-/// The direction from one place to another.
+/// The direction from one position to another.
 fn way(from: &Odometry, to: &Odometry) -> f64 {
     let [x, y] = [0, 1].map(|axis| to.position[axis] - from.position[axis]);
     y.atan2(x)
 }
 
-/// The direction in the frame of odometry in which a door of a junction leads.
+/// The direction of a door of a junction, in the frame of odometry.
 #[must_use]
 pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
     let mut doors = (0..4).filter(|&quarter| form.0[quarter]);

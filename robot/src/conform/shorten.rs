@@ -1,4 +1,4 @@
-//! A log that diverges in the same way as another, and is shorter.
+//! Shortens a log that diverges, so that it still diverges in the same way.
 
 use std::mem::discriminant;
 
@@ -10,26 +10,26 @@ use toposlam_model::{
 use super::{
     divergence::{Divergence, DivergenceCause},
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
-    extract::{Seen, derived},
+    extract::{SensedScene, infer_events},
     judgement::{ConformConfig, Judgement, RunDriver, judge},
     quirks::Quirks,
 };
 use crate::record::Arrival;
 
-/// A log that diverges in the same way as a longer one.
+/// A shorter log with the same divergence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShortenedRun {
     /// Its events.
     pub events: RunEvents,
-    /// Whether it diverges by itself, in whatever world and whoever drives.
+    /// Whether it diverges in any world and with any driver.
     pub by_itself: bool,
 }
 
-/// The events up to the first divergence, without those that it does not need; `None` where there is no
-/// divergence, or nothing to cut.
+/// The events up to the first divergence, without those that it does not need; `None` if there is no
+/// divergence, or nothing to remove.
 ///
-/// Where percepts and doors diverge, stretches of moves are left out; where an event contradicts itself
-/// or odometry, all but the last events are.
+/// If percepts and doors diverge, sequences of moves are removed; if an event contradicts itself or the
+/// odometry, only the last events are kept.
 #[must_use]
 pub fn shorten_run(
     judgement: &Judgement,
@@ -62,7 +62,7 @@ pub fn shorten_run(
         | DivergenceCause::WrongMap
         | DivergenceCause::Moves { .. } => None,
         _ => {
-            // What odometry says of a door comes with the event after it.
+            // The odometry after a door belongs to the next event.
             let last = (divergence.event + 1).min(judgement.events.events.len() - 1);
             (0..=divergence.event).rev().find_map(|first| {
                 let events = judgement.events.from(first, last)?;
@@ -74,17 +74,20 @@ pub fn shorten_run(
     }
 }
 
-/// The least that was seen of which the event at a place among those derived from all is derived; `None`
-/// where it cannot be derived but with all, or is none that shows in what was seen alone.
+/// The shortest sequence of scenes from which an event is inferred; `None` if there is no short one, or
+/// the event cannot diverge by itself.
 #[must_use]
-pub fn shorten_frames<'s>(seen: &'s [Seen], event: &CheckedEvent) -> Option<&'s [Seen]> {
+pub fn shorten_frames<'s>(
+    seen: &'s [SensedScene],
+    event: &CheckedEvent,
+) -> Option<&'s [SensedScene]> {
     let alone = matches!(
         event.kind,
         CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided
     );
     let end = seen.partition_point(|seen| seen.source <= event.source);
     let shows = |first: &usize| {
-        let events = derived(&seen[*first..end], false);
+        let events = infer_events(&seen[*first..end], false);
         let is = |kind: &CheckedKind| discriminant(kind) == discriminant(&event.kind);
         let stands = |event: &CheckedEvent| matches!(event.kind, CheckedKind::Arrival { .. });
         events.last().is_some_and(|last| is(&last.kind)) && events.iter().any(stands)
@@ -93,11 +96,10 @@ pub fn shorten_frames<'s>(seen: &'s [Seen], event: &CheckedEvent) -> Option<&'s 
     Some(&seen[first..end])
 }
 
-/// So many pictures back is far enough to look for what led to an event.
+/// The largest number of scenes that are kept.
 const FAR: usize = 400;
 
-/// Whether two divergences are alike: the same cause, and where that is what was perceived the same
-/// expectation.
+/// Whether two divergences have the same cause, and for percepts the same expectation.
 fn alike(one: &Divergence, other: &Divergence) -> bool {
     match (&one.cause, &other.cause) {
         (DivergenceCause::World(one), DivergenceCause::World(other)) => {

@@ -407,19 +407,19 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
     let mut false_percept = right.clone();
     false_percept[3].degree = 5;
     let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.culprit), (6, FaultClass::Perception));
+    assert_eq!((divergence.event, divergence.fault), (6, FaultClass::Perception));
     // Nothing follows that could tell: a percept that is so elsewhere is false all the same.
     let mut last = right.clone();
     let degree = &mut last.last_mut().unwrap().degree;
     *degree = if *degree == 2 { 3 } else { 2 };
     let divergence = judged(&events(&last), &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.culprit), (16, FaultClass::Perception));
+    assert_eq!((divergence.event, divergence.fault), (16, FaultClass::Perception));
     // One door was not the one that was told; everything after it is of another place.
     let mut made = told;
     made[2] = Door(0);
     let elsewhere = walk(&made);
     let divergence = judged(&events(&elsewhere), &question).divergence.unwrap();
-    assert_eq!(divergence.culprit, FaultClass::Motion);
+    assert_eq!(divergence.fault, FaultClass::Motion);
 }
 
 #[test]
@@ -481,7 +481,7 @@ proptest! {
             prop_assert!(short.events.len() <= divergence.event + 2);
             let found = judged(&short, &question).divergence.unwrap();
             prop_assert_eq!(found.cause.name(), divergence.cause.name());
-            prop_assert_eq!(found.culprit, divergence.culprit);
+            prop_assert_eq!(found.fault, divergence.fault);
         }
     }
 }

@@ -17,7 +17,7 @@ use super::{
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
     standard::Quaternion,
-    topic_map::{Bound, Carried, Part, Role},
+    topic_map::{BoundTopicMap, Carried, MessagePart, Role},
     value::Value,
 };
 use crate::record::{Arrival, EventId, EventKind, Frame};
@@ -53,7 +53,7 @@ pub enum Content {
 /// The entries of a log.
 pub struct Entries<'l> {
     log: &'l Log,
-    bound: Bound,
+    bound: BoundTopicMap,
     messages: RawMessages<'l>,
     /// The last odometry.
     odometry: Odometry,
@@ -64,7 +64,7 @@ pub struct Entries<'l> {
 impl Log {
     /// Its entries by a topic map, in the order of time. Ends after the first error.
     #[must_use]
-    pub fn entries(&self, mapping: &Bound) -> Entries<'_> {
+    pub fn entries(&self, mapping: &BoundTopicMap) -> Entries<'_> {
         let messages = self.read(&mapping.topics());
         let (odometry, next) = (Odometry::default(), VecDeque::new());
         Entries { log: self, bound: mapping.clone(), messages, odometry, next }
@@ -131,16 +131,16 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         }
         Role::Odometry => EventKind::Odometry(odometry(carried, value)?),
         Role::Motion => EventKind::Motion {
-            forward: number(carried, value, Part::Forward)? * carried.length.in_metres(),
-            turn: number(carried, value, Part::Turn)? * carried.angle.in_radians(),
+            forward: number(carried, value, MessagePart::Forward)? * carried.length.in_metres(),
+            turn: number(carried, value, MessagePart::Turn)? * carried.angle.in_radians(),
         },
         Role::Percept if carried.own => EventKind::Arrival(encode::arrival_of(&own(value)?)),
         Role::Percept => {
-            let marker = whole::<i64>(carried, value, Part::Marker)?;
+            let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
             EventKind::Arrival(Arrival {
-                number: whole(carried, value, Part::Move)?,
+                number: whole(carried, value, MessagePart::Move)?,
                 percept: Percept {
-                    degree: whole(carried, value, Part::Degree)?.unwrap_or_default(),
+                    degree: whole(carried, value, MessagePart::Degree)?.unwrap_or_default(),
                     sighting: encode::sighting_of(marker.unwrap_or(encode::NONE.into())),
                 },
                 form: None,
@@ -149,8 +149,8 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         }
         Role::Door if carried.own => encode::door_of(&own(value)?),
         Role::Door => EventKind::Door {
-            number: whole(carried, value, Part::Move)?,
-            door: Door(whole(carried, value, Part::Door)?.unwrap_or_default()),
+            number: whole(carried, value, MessagePart::Move)?,
+            door: Door(whole(carried, value, MessagePart::Door)?.unwrap_or_default()),
         },
         Role::Command => encode::command_of(&own(value)?),
         Role::Map => EventKind::Map(encode::map_of(&own(value)?)),
@@ -165,7 +165,7 @@ fn own<M: FromValue>(value: &Value<'_>) -> Result<M, String> {
         .map_err(|field| format!("its field `{field}` is missing, or is not what it should be"))
 }
 
-fn number(carried: &Carried, value: &Value<'_>, part: Part) -> Result<f64, String> {
+fn number(carried: &Carried, value: &Value<'_>, part: MessagePart) -> Result<f64, String> {
     let path = carried.paths.get(&part).map_or("", String::as_str);
     number_at(value, path)
 }
@@ -183,7 +183,7 @@ fn number_at(value: &Value<'_>, path: &str) -> Result<f64, String> {
 fn whole<N: TryFrom<i64>>(
     carried: &Carried,
     value: &Value<'_>,
-    part: Part,
+    part: MessagePart,
 ) -> Result<Option<N>, String> {
     let Some(path) = carried.paths.get(&part) else { return Ok(None) };
     let found = value.at(path).ok_or_else(|| format!("it has no `{path}`"))?;
@@ -192,9 +192,9 @@ fn whole<N: TryFrom<i64>>(
 }
 
 fn odometry(carried: &Carried, value: &Value<'_>) -> Result<Odometry, String> {
-    let [x, y] = [number(carried, value, Part::X)?, number(carried, value, Part::Y)?];
-    let heading = match carried.paths.get(&Part::Quaternion) {
-        None => number(carried, value, Part::Heading)? * carried.angle.in_radians(),
+    let [x, y] = [number(carried, value, MessagePart::X)?, number(carried, value, MessagePart::Y)?];
+    let heading = match carried.paths.get(&MessagePart::Quaternion) {
+        None => number(carried, value, MessagePart::Heading)? * carried.angle.in_radians(),
         Some(path) => {
             let part = |name| number_at(value, &format!("{path}.{name}"));
             Quaternion { x: part("x")?, y: part("y")?, z: part("z")?, w: part("w")? }

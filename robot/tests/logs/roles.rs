@@ -12,7 +12,7 @@ use toposlam_robot::{
         entries::{Content, Entry},
         messages::Stamp,
         reader::Log,
-        topic_map::{Guess, Role, TopicMap, guess},
+        topic_map::{Role, RoleGuess, TopicMap, guess},
     },
     record::{Arrival, CameraImage, EventKind},
 };
@@ -186,8 +186,8 @@ fn where_several_topics_could_carry_the_same_none_is_chosen() {
     assert_eq!(
         guess(log.topics()),
         [
-            Guess { role: Role::Image, topics: vec![2] },
-            Guess { role: Role::Odometry, topics: vec![0, 1] }
+            RoleGuess { role: Role::Image, topics: vec![2] },
+            RoleGuess { role: Role::Odometry, topics: vec![0, 1] }
         ]
     );
     assert_eq!(

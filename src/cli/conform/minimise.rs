@@ -5,7 +5,7 @@ use std::{f64::consts::PI, path::Path};
 use toposlam_model::driving::odometry::Odometry;
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, RunEvents, Seen, ShortenedRun, direction, shorten_frames,
+        CheckedEvent, CheckedKind, RunEvents, SensedScene, ShortenedRun, direction, shorten_frames,
         shorten_run,
     },
     log::{
@@ -124,10 +124,10 @@ fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError
 }
 
 /// What was seen, as a log tells it: scenes and odometry.
-fn write_seen(seen: &[Seen], run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
+fn write_seen(seen: &[SensedScene], run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = seen.first().map_or(0, |seen| seen.source.time);
-    for Seen { source, scene, odometry: there } in seen {
+    for SensedScene { source, scene, odometry: there } in seen {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
         log.write(ODOM, time, &odometry(stamp, there))?;

@@ -1,4 +1,4 @@
-//! A judgement in words.
+//! The report of a judgement.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use toposlam_model::{
     format::named_world::NamedWorld,
     mapping::PartialMap,
     percept::Percept,
-    trace::{AlgorithmCase, Choosing, MisfitReason, Reached, SmallestWorld},
+    trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason, SmallestWorld},
 };
 use toposlam_robot::{
     conform::{
@@ -24,11 +24,11 @@ use toposlam_robot::{
 use super::{Judged, minimise::Minimised};
 use crate::cli::text::{counted, grouped, vertices};
 
-/// So many ways are told one by one.
-const TOLD: usize = 8;
+/// The largest number of candidates that are listed.
+const LISTED: usize = 8;
 
 impl Judged {
-    /// All that is said of a log; `shown` where it is looked at, with pictures.
+    /// The report of a log; with pictures if it is `shown` on a page.
     pub(super) fn report(
         &self,
         path: &Path,
@@ -77,24 +77,24 @@ impl Judged {
                 remarks.push(format!("the run was given up{colon}{cause}"));
             }
             None if events.has_head => {
-                remarks.push("the log does not tell how the run ended".to_owned());
+                remarks.push("the log does not record how the run ended".to_owned());
             }
             None => {}
         }
         if let Some(SmallestWorld::Unfinished { edges }) = self.judgement.smallest {
             remarks.push(format!(
-                "no world with up to {} explains it; not all larger ones were tried",
+                "no world with at most {} explains it; the search reached its step limit",
                 counted(edges, "edge")
             ));
         }
-        if let (ConformVerdict::Conforms, Some(followed)) = (verdict, &self.judgement.followed)
-            && followed.reached == Reached::EndOfTrace
+        if let (ConformVerdict::Conforms, Some(followed)) = (verdict, &self.judgement.algorithm)
+            && followed.reached == MatchEnd::EndOfTrace
         {
-            remarks.push("it ends before the map is complete".to_owned());
+            remarks.push("the log ends before the map is complete".to_owned());
         }
         if self.gathered.unreadable > 0 {
-            let pictures = counted(self.gathered.unreadable as usize, "picture");
-            remarks.push(format!("{pictures} could not be read and were passed over"));
+            let images = counted(self.gathered.unreadable as usize, "image");
+            remarks.push(format!("{images} could not be decoded and were skipped"));
         }
         remarks
     }
@@ -103,11 +103,11 @@ impl Judged {
         let judgement = &self.judgement;
         let count = counted(judgement.events.events.len(), "event");
         let made = match self.gathered.evidence {
-            Evidence::Told => "as the log tells them".to_owned(),
-            Evidence::Scenes => "derived from the log's scenes and odometry".to_owned(),
+            Evidence::Recorded => "recorded in the log".to_owned(),
+            Evidence::Scenes => "inferred from scenes and odometry".to_owned(),
             Evidence::Pictures => {
                 let pictures = grouped(self.gathered.pictures.into());
-                format!("derived from {pictures} pictures and odometry")
+                format!("inferred from {pictures} images and odometry")
             }
         };
         let mut facts = vec![("events", format!("{count}, {made}"))];
@@ -123,8 +123,10 @@ impl Judged {
                     (false, Some(1)) => poses.states.first().map_or(String::new(), |state| {
                         format!("the robot is {}", known.pose(state.pose))
                     }),
-                    (false, left) => format!("{} fit", counted(*left.unwrap_or(&0), "pose")),
-                    (true, _) => format!("{} fit at first", counted(*begun, "pose")),
+                    (false, left) => {
+                        format!("{} left", counted(*left.unwrap_or(&0), "candidate pose"))
+                    }
+                    (true, _) => format!("{} at the start", counted(*begun, "candidate pose")),
                 };
                 facts.push(("world", format!("{}, {from}; {fit}", world.name)));
             }
@@ -133,25 +135,26 @@ impl Judged {
                 let smallest = format!("{edges}, {}", vertices(count));
                 facts.push((
                     "world",
-                    format!("not known; the smallest that explains it has {smallest}"),
+                    format!("unknown; the smallest that explains the log has {smallest}"),
                 ));
             }
-            _ => facts.push(("world", "not known".to_owned())),
+            _ => facts.push(("world", "unknown".to_owned())),
         }
-        if let Some(followed) = &judgement.followed {
-            let choices = match followed.choosing {
-                Choosing::Default => "those of Algorithm 1, with the default choices".to_owned(),
-                Choosing::Other { from: None } => {
-                    "some that Algorithm 1 may take; by its default choices it would go on"
-                        .to_owned()
+        if let Some(followed) = &judgement.algorithm {
+            let choices = match followed.choices {
+                MatchedChoices::Default => {
+                    "those of Algorithm 1 with its default choices".to_owned()
                 }
-                Choosing::Other { from: Some(event) } => format!(
-                    "some that Algorithm 1 may take; not its default choices from event {} on",
+                MatchedChoices::Other { from: None } => {
+                    "allowed by Algorithm 1; with its default choices it would continue".to_owned()
+                }
+                MatchedChoices::Other { from: Some(event) } => format!(
+                    "allowed by Algorithm 1; not its default choices from event {} on",
                     event + 1
                 ),
             };
             let doors = match &followed.reached {
-                Reached::Departure(departure) => {
+                MatchEnd::Departure(departure) => {
                     format!("{choices}; up to event {}", departure.event.id)
                 }
                 _ => choices,
@@ -162,7 +165,7 @@ impl Judged {
         facts
     }
 
-    /// Every event, and where the robot is after it.
+    /// Every event, and the robot's pose after it.
     fn lines(&self) -> Vec<EventLine> {
         let judgement = &self.judgement;
         let begun = self.opened.log.start().unwrap_or(0);
@@ -175,10 +178,10 @@ impl Judged {
             let there = there.and_then(|((poses, known), event)| {
                 Some(match (poses.alone.get(event)?, poses.left.get(event)?) {
                     (Some(state), _) => known.pose(state.pose),
-                    (None, left) => format!("{left} poses fit"),
+                    (None, left) => format!("{left} candidate poses"),
                 })
             });
-            // What is as before is not told again.
+            // A pose is shown only when it changes.
             let then = there.filter(|there| *there != before);
             if let Some(then) = &then {
                 before.clone_from(then);
@@ -202,15 +205,15 @@ impl Judged {
             event: divergence.event + 1,
             time: time.saturating_sub(begun) as f64 / 1e9,
             message: event.map(|event| (event.source.id.0, event.source.offset)),
-            culprit: divergence.culprit,
+            fault: divergence.fault,
             cause: divergence.cause.name(),
-            what: event.map_or("the end of the log".to_owned(), |event| what(&event.kind)),
+            what: event.map_or("end of the log".to_owned(), |event| what(&event.kind)),
             why: divergence.cause.to_string(),
             allowed: self.allowed(&divergence.cause),
         }
     }
 
-    /// What would have been allowed.
+    /// What the specification allows instead.
     fn allowed(&self, cause: &DivergenceCause) -> Vec<String> {
         match cause {
             DivergenceCause::World(misfit) => {
@@ -224,8 +227,9 @@ impl Judged {
                         }
                     }
                 };
-                let mut told: Vec<_> = misfit.candidates.iter().take(TOLD).map(candidate).collect();
-                if let Some(more) = misfit.candidates.len().checked_sub(TOLD + 1) {
+                let mut told: Vec<_> =
+                    misfit.candidates.iter().take(LISTED).map(candidate).collect();
+                if let Some(more) = misfit.candidates.len().checked_sub(LISTED + 1) {
                     told.push(format!("and {} more", more + 1));
                 }
                 told
@@ -266,7 +270,7 @@ impl Judged {
         tolerated.collect()
     }
 
-    /// The known world, or the smallest that explains the log, as a drawing.
+    /// A drawing of the known world, or of the smallest one that explains the log.
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
             (Some(known), _) => Some(picture::svg(&WorldPicture::from(&known.world))),
@@ -290,7 +294,7 @@ fn map_in_words(map: &PartialMap) -> String {
     }
 }
 
-/// An event in words.
+/// The description of an event.
 pub(super) fn what(kind: &CheckedKind) -> String {
     match kind {
         CheckedKind::Arrival { arrival: Arrival { percept, form, .. }, .. } => {
@@ -300,10 +304,10 @@ pub(super) fn what(kind: &CheckedKind) -> String {
         }
         CheckedKind::Door { door, .. } => format!("door {}", door.0),
         CheckedKind::Aside { off } => {
-            format!("drove off {:.0} degrees aside of every door", off.to_degrees())
+            format!("left {:.0} degrees off the nearest door", off.to_degrees())
         }
         CheckedKind::TurnedBack => "turned back".to_owned(),
-        CheckedKind::Undecided => "a junction that was not made out".to_owned(),
+        CheckedKind::Undecided => "junction not recognised".to_owned(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! A report on the terminal, and as JSON.
+//! A report as text and as JSON.
 
 use std::{collections::BTreeMap, io::Write};
 
@@ -9,9 +9,9 @@ use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
 use super::Failure;
 use crate::cli::{json::print_object, text::counted, text::print_hanging};
 
-/// So many steps are told before a divergence.
+/// The number of steps shown before a divergence.
 const BEFORE: usize = 6;
-/// So many events of a shorter log are told.
+/// The number of events of a shorter log that are shown.
 const SHORT: usize = 12;
 
 /// What `--json` prints for a log.
@@ -23,7 +23,7 @@ struct Line<'r> {
     event: Option<usize>,
     class: Option<&'static str>,
     events: usize,
-    /// How many events fit, from the first.
+    /// The number of events before the divergence.
     matched: usize,
     candidates: usize,
     coverage: BTreeMap<&'r str, u64>,
@@ -65,7 +65,7 @@ pub(super) fn json(
         log: &report.log,
         verdict: report.verdict.name(),
         event: told.map(|told| told.event),
-        class: told.map(|told| told.culprit.name()),
+        class: told.map(|told| told.fault.name()),
         events: report.events.len(),
         matched: told.map_or(report.events.len(), |told| told.event - 1),
         candidates: judgement.candidates(),
@@ -125,7 +125,7 @@ fn in_words(verdict: ConformVerdict) -> &'static str {
     match verdict {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",
-        ConformVerdict::Incomplete => "incomplete: it conforms as far as it goes",
+        ConformVerdict::Incomplete => "incomplete: no divergence so far",
     }
 }
 
@@ -134,10 +134,10 @@ fn diverged(
     report: &LogReport,
     told: &DivergenceReport,
 ) -> Result<(), Failure> {
-    let DivergenceReport { event, time, message, culprit, what, why, allowed, .. } = told;
+    let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = told;
     writeln!(
         out,
-        "{}: diverges at event {event} of {}, at {time:.1} s: {culprit}",
+        "{}: diverges at event {event} of {}, at {time:.1} s: {fault}",
         report.log,
         report.events.len()
     )?;
@@ -146,7 +146,7 @@ fn diverged(
         writeln!(out, "  message {message} of the log, at byte {offset}")?;
     }
     if !allowed.is_empty() {
-        writeln!(out, "  allowed there:")?;
+        writeln!(out, "  allowed instead:")?;
     }
     for allowed in allowed {
         print_hanging(out, "    ", allowed)?;
@@ -155,7 +155,7 @@ fn diverged(
     let before = report.events.iter().skip(first).take(event.saturating_sub(1 + first));
     let before: Vec<_> = before.collect();
     if !before.is_empty() {
-        writeln!(out, "  the last steps before it, which fit:")?;
+        writeln!(out, "  the last steps before it:")?;
     }
     for line in before {
         let then = if line.then.is_empty() { "" } else { " -> " };
@@ -166,7 +166,10 @@ fn diverged(
         if let Some(more) = report.shorter.len().checked_sub(SHORT + 1) {
             events.push(format!("and {} more", more + 1));
         }
-        let head = format!("  the same in {}: ", counted(report.shorter.len(), "event"));
+        let head = format!(
+            "  shorter log with this divergence, {}: ",
+            counted(report.shorter.len(), "event")
+        );
         print_hanging(out, &head, &events.join("; "))?;
     }
     if let Some(command) = &report.command {
@@ -175,9 +178,9 @@ fn diverged(
     Ok(())
 }
 
-/// The cases that were gone through, those that were not, and those that cannot be.
+/// The cases that are covered, and those that are not but can be.
 fn covered(coverage: &[CoveredCase]) -> String {
-    // A run that diverged may go through what its world does not have.
+    // A run that diverged may cover cases that its world does not have.
     let possible = |covered: &&CoveredCase| covered.count > 0 || covered.reachable != Some(false);
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
@@ -191,13 +194,13 @@ fn covered(coverage: &[CoveredCase]) -> String {
         .collect();
     let missed = match missed.len() {
         0 => String::new(),
-        _ => format!("; not {}", missed.join(", ")),
+        _ => format!("; not covered: {}", missed.join(", ")),
     };
     let told = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
     format!("{} of {all} cases{told}{missed}", seen.len())
 }
 
-/// What is said of several logs together.
+/// The summary of several logs.
 pub(super) fn together(
     out: &mut dyn Write,
     reports: &[LogReport],
@@ -207,11 +210,11 @@ pub(super) fn together(
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);
     let coverage = LogReport::coverage_of(reports);
-    let culprits = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.culprit));
+    let faults = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.fault));
     if as_json {
         let mut classes: BTreeMap<_, _> = FaultClass::ALL.map(|one| (one.name(), 0)).into();
-        for culprit in culprits {
-            *classes.entry(culprit.name()).or_default() += 1;
+        for fault in faults {
+            *classes.entry(fault.name()).or_default() += 1;
         }
         let (coverage, logs) = (counts(&coverage), reports.len());
         let line = Together { schema: 1, logs, conform, diverged, incomplete, coverage, classes };

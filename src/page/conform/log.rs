@@ -58,7 +58,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
 
 /// Where the run diverged, how, and whose fault that is.
 fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
-    let DivergenceReport { event, time, message, culprit, cause, what, why, .. } = told;
+    let DivergenceReport { event, time, message, fault, cause, what, why, .. } = told;
     let of = report.events.len();
     let place = if *event > of {
         format!("After all {of} events")
@@ -70,11 +70,11 @@ fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
     });
     format!(
         "<p class=\"what\"><b>{}</b> {}</p>\n\
-         <p><span class=\"chip\">{culprit}</span> {}</p>\n\
+         <p><span class=\"chip\">{fault}</span> {}</p>\n\
          <p class=\"faint\">{} \u{b7} {} min{message} \u{b7} cause <code>{}</code></p>\n",
         escaped(&wording::sentence(what)),
         escaped(&wording::sentence(why)),
-        wording::sentence(wording::did(*culprit)),
+        wording::sentence(wording::did(*fault)),
         events::link(log, *event, &place),
         clock(*time),
         escaped(cause),

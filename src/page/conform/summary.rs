@@ -44,8 +44,8 @@ pub(super) fn section(reports: &[LogReport]) -> String {
 fn row(report: &LogReport, number: usize) -> String {
     let verdict = report.verdict.name();
     let why = match &report.divergence {
-        Some(DivergenceReport { event, culprit, what, .. }) => {
-            format!("<span class=\"chip\">{culprit}</span> event {event}: {}", escaped(what))
+        Some(DivergenceReport { event, fault, what, .. }) => {
+            format!("<span class=\"chip\">{fault}</span> event {event}: {}", escaped(what))
         }
         None => {
             report.remarks.first().map_or_else(|| wording::fits(report), |remark| escaped(remark))

@@ -50,7 +50,7 @@ fn diverged(events: usize, at: usize) -> LogReport {
             event: at,
             time: at as f64 / 2.0,
             message: Some((4711, 1_234_567)),
-            culprit: FaultClass::Perception,
+            fault: FaultClass::Perception,
             cause: "percept",
             what: "perceives 4 doors".to_owned(),
             why: "at none of the 2 poses left in the known world this is so".to_owned(),

@@ -75,9 +75,9 @@ pub(super) fn fits(report: &LogReport) -> String {
     }
 }
 
-/// What a culprit did.
-pub(super) fn did(culprit: FaultClass) -> &'static str {
-    match culprit {
+/// What a fault did.
+pub(super) fn did(fault: FaultClass) -> &'static str {
+    match fault {
         FaultClass::Perception => "the robot perceived what is not so",
         FaultClass::Motion => "the robot did not go where it was told to go",
         FaultClass::Algorithm => {

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{Angle, Carrier, Length, Part, Role, TopicMap, TopicMapError, TopicMapErrorKind};
+use super::{
+    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
+};
 use crate::log::{
     definition::{Count, Definition, FieldType},
     topic::Topic,
@@ -10,7 +12,7 @@ use crate::log::{
 
 /// A mapping that fits a log.
 #[derive(Clone, Debug)]
-pub struct Bound {
+pub struct BoundTopicMap {
     pub(in crate::log) carried: Vec<Carried>,
 }
 
@@ -20,14 +22,14 @@ pub(in crate::log) struct Carried {
     pub(in crate::log) role: Role,
     pub(in crate::log) topic: usize,
     /// None for messages of the project's own.
-    pub(in crate::log) paths: BTreeMap<Part, String>,
+    pub(in crate::log) paths: BTreeMap<MessagePart, String>,
     /// Whether it is the project's own message.
     pub(in crate::log) own: bool,
-    pub(in crate::log) length: Length,
-    pub(in crate::log) angle: Angle,
+    pub(in crate::log) length: LengthUnit,
+    pub(in crate::log) angle: AngleUnit,
 }
 
-impl Bound {
+impl BoundTopicMap {
     /// The topics of the log that carry something.
     #[must_use]
     pub fn topics(&self) -> Vec<usize> {
@@ -35,9 +37,9 @@ impl Bound {
     }
 }
 
-pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<Bound, TopicMapError> {
+pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap, TopicMapError> {
     let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
-    Ok(Bound { carried: carried.collect::<Result<_, _>>()? })
+    Ok(BoundTopicMap { carried: carried.collect::<Result<_, _>>()? })
 }
 
 fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
@@ -54,10 +56,11 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
     }
     let mut paths = carrier.paths.clone();
     if !own {
-        let heading_told =
-            [Part::Heading, Part::Quaternion].iter().any(|part| paths.contains_key(part));
+        let heading_told = [MessagePart::Heading, MessagePart::Quaternion]
+            .iter()
+            .any(|part| paths.contains_key(part));
         for (part, path) in usual.unwrap_or_default() {
-            let is_heading = matches!(part, Part::Heading | Part::Quaternion);
+            let is_heading = matches!(part, MessagePart::Heading | MessagePart::Quaternion);
             if !(is_heading && heading_told) {
                 paths.entry(*part).or_insert_with(|| (*path).to_owned());
             }
@@ -70,7 +73,7 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
     }
     for (part, path) in &paths {
         let place = carrier.places.get(part).unwrap_or(&carrier.place);
-        let expected = if *part == Part::Quaternion { "a quaternion" } else { "a number" };
+        let expected = if *part == MessagePart::Quaternion { "a quaternion" } else { "a number" };
         if !leads(definition, path, *part) {
             let (path, type_name) = (path.clone(), type_name.clone());
             return Err(
@@ -83,13 +86,15 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
 }
 
 /// The parts without which there is nothing.
-fn needed(role: Role, paths: &BTreeMap<Part, String>) -> Vec<Part> {
+fn needed(role: Role, paths: &BTreeMap<MessagePart, String>) -> Vec<MessagePart> {
     match role {
-        Role::Odometry if paths.contains_key(&Part::Quaternion) => vec![Part::X, Part::Y],
-        Role::Odometry => vec![Part::X, Part::Y, Part::Heading],
-        Role::Motion => vec![Part::Forward, Part::Turn],
-        Role::Percept => vec![Part::Degree],
-        Role::Door => vec![Part::Door],
+        Role::Odometry if paths.contains_key(&MessagePart::Quaternion) => {
+            vec![MessagePart::X, MessagePart::Y]
+        }
+        Role::Odometry => vec![MessagePart::X, MessagePart::Y, MessagePart::Heading],
+        Role::Motion => vec![MessagePart::Forward, MessagePart::Turn],
+        Role::Percept => vec![MessagePart::Degree],
+        Role::Door => vec![MessagePart::Door],
         _ => Vec::new(),
     }
 }
@@ -110,9 +115,9 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Topi
 }
 
 /// Whether a path leads to what a part is.
-fn leads(definition: &Definition, path: &str, part: Part) -> bool {
+fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
     let found = definition.at(path);
-    if part != Part::Quaternion {
+    if part != MessagePart::Quaternion {
         let number =
             |kind| matches!(kind, FieldType::Int(_) | FieldType::Unsigned(_) | FieldType::Float(_));
         return found.is_some_and(|(kind, count)| number(kind) && count == Count::One);

@@ -3,7 +3,7 @@
 use thiserror::Error;
 use toposlam_model::format::document::{DocumentError, DocumentErrorKind, TextPosition};
 
-use super::{Part, Role};
+use super::{MessagePart, Role};
 
 /// Why a topic map cannot be read or does not fit its log.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -59,7 +59,7 @@ pub enum TopicMapErrorKind {
     #[error("for messages of type {type_name:?} the key `{}` must give a path", .part.name())]
     NoPath {
         /// The part.
-        part: Part,
+        part: MessagePart,
         /// The type.
         type_name: String,
     },

@@ -5,7 +5,7 @@ use crate::log::topic::Topic;
 
 /// The topics that could carry something.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Guess {
+pub struct RoleGuess {
     /// What.
     pub role: Role,
     /// Which topics of the log; at least one, and none is better than the others.
@@ -17,7 +17,7 @@ pub struct Guess {
 ///
 /// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's.
 #[must_use]
-pub fn guess(topics: &[Topic]) -> Vec<Guess> {
+pub fn guess(topics: &[Topic]) -> Vec<RoleGuess> {
     let could = |role: Role, topic: &Topic| {
         let annotated = topic.name.split('/').any(|part| part == "annotated");
         topic.messages > 0
@@ -27,7 +27,7 @@ pub fn guess(topics: &[Topic]) -> Vec<Guess> {
     };
     let guesses = Role::ALL.map(|role| {
         let topics = topics.iter().enumerate().filter(|(_, topic)| could(role, topic));
-        Guess { role, topics: topics.map(|(index, _)| index).collect() }
+        RoleGuess { role, topics: topics.map(|(index, _)| index).collect() }
     });
     guesses.into_iter().filter(|guess| !guess.topics.is_empty()).collect()
 }

@@ -36,11 +36,11 @@ mod guess;
 mod read;
 mod role;
 
-pub use bound::Bound;
+pub use bound::BoundTopicMap;
 pub(super) use bound::Carried;
 pub use error::{TopicMapError, TopicMapErrorKind};
-pub use guess::{Guess, guess};
-pub use role::{Angle, Length, Part, Role};
+pub use guess::{RoleGuess, guess};
+pub use role::{AngleUnit, LengthUnit, MessagePart, Role};
 
 use std::{collections::BTreeMap, fmt::Write};
 
@@ -60,15 +60,15 @@ pub struct Carrier {
     /// Its name.
     pub topic: String,
     /// Where in its messages each part stands; what is usual for its type is left out.
-    pub paths: BTreeMap<Part, String>,
+    pub paths: BTreeMap<MessagePart, String>,
     /// In what lengths are.
-    pub length: Length,
+    pub length: LengthUnit,
     /// In what angles are.
-    pub angle: Angle,
+    pub angle: AngleUnit,
     /// Where the mapping file says so.
     place: TextPosition,
     /// Where it says each path.
-    places: BTreeMap<Part, TextPosition>,
+    places: BTreeMap<MessagePart, TextPosition>,
 }
 
 impl Carrier {
@@ -78,8 +78,8 @@ impl Carrier {
         Self {
             topic: topic.to_owned(),
             paths: BTreeMap::new(),
-            length: Length::Metres,
-            angle: Angle::Radians,
+            length: LengthUnit::Metres,
+            angle: AngleUnit::Radians,
             place: TextPosition::default(),
             places: BTreeMap::new(),
         }
@@ -103,7 +103,9 @@ impl TopicMap {
     /// If several topics could carry the same: which.
     pub fn from_log(log: &Log) -> Result<Self, TopicMapError> {
         let guesses = guess(log.topics());
-        if let Some(Guess { role, topics }) = guesses.iter().find(|guess| guess.topics.len() > 1) {
+        if let Some(RoleGuess { role, topics }) =
+            guesses.iter().find(|guess| guess.topics.len() > 1)
+        {
             let names = topics.iter().filter_map(|topic| log.topics().get(*topic));
             let topics = names.map(|topic| topic.name.clone()).collect();
             return Err(TopicMapErrorKind::Several { role: *role, topics }.in_file());
@@ -115,7 +117,7 @@ impl TopicMap {
     #[must_use]
     pub fn unambiguous(log: &Log) -> Self {
         let mut carriers = BTreeMap::new();
-        for Guess { role, topics } in guess(log.topics()) {
+        for RoleGuess { role, topics } in guess(log.topics()) {
             if let [topic] = topics[..]
                 && let Some(topic) = log.topics().get(topic)
             {
@@ -159,7 +161,7 @@ impl TopicMap {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place in the mapping file.
-    pub fn bind(&self, log: &Log) -> Result<Bound, TopicMapError> {
+    pub fn bind(&self, log: &Log) -> Result<BoundTopicMap, TopicMapError> {
         bound::bind(self, log.topics())
     }
 
@@ -176,10 +178,10 @@ impl TopicMap {
             for (part, path) in &carrier.paths {
                 let _ = writeln!(text, "{} = {}", part.name(), quoted(path));
             }
-            if carrier.length != Length::Metres {
+            if carrier.length != LengthUnit::Metres {
                 let _ = writeln!(text, "length = {}", quoted(carrier.length.name()));
             }
-            if carrier.angle != Angle::Radians {
+            if carrier.angle != AngleUnit::Radians {
                 let _ = writeln!(text, "angle = {}", quoted(carrier.angle.name()));
             }
         }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
-use super::{Angle, Carrier, Length, Part, Role, TopicMap, TopicMapError, TopicMapErrorKind};
+use super::{
+    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
+};
 
 pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
     let document = Document::parse_toml(bytes)?;
@@ -39,13 +41,15 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
         }
     }
     if let Some(unit) = table.get("length") {
-        carrier.length = unit.word(&[Length::Metres, Length::Inches].map(|it| (it.name(), it)))?;
+        carrier.length =
+            unit.word(&[LengthUnit::Metres, LengthUnit::Inches].map(|it| (it.name(), it)))?;
     }
     if let Some(unit) = table.get("angle") {
-        carrier.angle = unit.word(&[Angle::Radians, Angle::Degrees].map(|it| (it.name(), it)))?;
+        carrier.angle =
+            unit.word(&[AngleUnit::Radians, AngleUnit::Degrees].map(|it| (it.name(), it)))?;
     }
-    match carrier.places.get(&Part::Quaternion) {
-        Some(place) if carrier.paths.contains_key(&Part::Heading) => {
+    match carrier.places.get(&MessagePart::Quaternion) {
+        Some(place) if carrier.paths.contains_key(&MessagePart::Heading) => {
             Err(TopicMapErrorKind::TwoHeadings.at(place.clone()))
         }
         _ => Ok(carrier),

@@ -30,7 +30,7 @@ pub enum Role {
 
 /// A part of what is carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Part {
+pub enum MessagePart {
     /// To the front of where the robot began.
     X,
     /// To the left.
@@ -55,7 +55,7 @@ pub enum Part {
 
 /// In what a length is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Length {
+pub enum LengthUnit {
     /// Metres.
     Metres,
     /// Inches of 25.4 mm.
@@ -64,14 +64,14 @@ pub enum Length {
 
 /// In what an angle is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Angle {
+pub enum AngleUnit {
     /// Radians.
     Radians,
     /// Degrees.
     Degrees,
 }
 
-impl Length {
+impl LengthUnit {
     /// As mapping files call it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -91,7 +91,7 @@ impl Length {
     }
 }
 
-impl Angle {
+impl AngleUnit {
     /// As mapping files call it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -111,7 +111,7 @@ impl Angle {
     }
 }
 
-impl Part {
+impl MessagePart {
     /// As mapping files call it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -165,12 +165,14 @@ impl Role {
     }
 
     /// Of which parts it is.
-    pub(super) fn parts(self) -> &'static [Part] {
+    pub(super) fn parts(self) -> &'static [MessagePart] {
         match self {
-            Self::Odometry => &[Part::X, Part::Y, Part::Heading, Part::Quaternion],
-            Self::Motion => &[Part::Forward, Part::Turn],
-            Self::Percept => &[Part::Move, Part::Degree, Part::Marker],
-            Self::Door => &[Part::Move, Part::Door],
+            Self::Odometry => {
+                &[MessagePart::X, MessagePart::Y, MessagePart::Heading, MessagePart::Quaternion]
+            }
+            Self::Motion => &[MessagePart::Forward, MessagePart::Turn],
+            Self::Percept => &[MessagePart::Move, MessagePart::Degree, MessagePart::Marker],
+            Self::Door => &[MessagePart::Move, MessagePart::Door],
             _ => &[],
         }
     }
@@ -191,30 +193,30 @@ impl Role {
     }
 
     /// Where its parts stand in messages of a type, if that is usual for it.
-    pub(super) fn usual(self, type_name: &str) -> Option<&'static [(Part, &'static str)]> {
+    pub(super) fn usual(self, type_name: &str) -> Option<&'static [(MessagePart, &'static str)]> {
         if self.own() == Some(type_name) {
             return Some(&[]);
         }
         Some(match (self, type_name) {
             (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image") => &[],
             (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
-                (Part::X, "pose.pose.position.x"),
-                (Part::Y, "pose.pose.position.y"),
-                (Part::Quaternion, "pose.pose.orientation"),
+                (MessagePart::X, "pose.pose.position.x"),
+                (MessagePart::Y, "pose.pose.position.y"),
+                (MessagePart::Quaternion, "pose.pose.orientation"),
             ],
             (Self::Odometry, "geometry_msgs/PoseStamped") => &[
-                (Part::X, "pose.position.x"),
-                (Part::Y, "pose.position.y"),
-                (Part::Quaternion, "pose.orientation"),
+                (MessagePart::X, "pose.position.x"),
+                (MessagePart::Y, "pose.position.y"),
+                (MessagePart::Quaternion, "pose.orientation"),
             ],
             (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose") => {
-                &[(Part::X, "x"), (Part::Y, "y"), (Part::Heading, "theta")]
+                &[(MessagePart::X, "x"), (MessagePart::Y, "y"), (MessagePart::Heading, "theta")]
             }
             (Self::Motion, "geometry_msgs/Twist") => {
-                &[(Part::Forward, "linear.x"), (Part::Turn, "angular.z")]
+                &[(MessagePart::Forward, "linear.x"), (MessagePart::Turn, "angular.z")]
             }
             (Self::Motion, "geometry_msgs/TwistStamped") => {
-                &[(Part::Forward, "twist.linear.x"), (Part::Turn, "twist.angular.z")]
+                &[(MessagePart::Forward, "twist.linear.x"), (MessagePart::Turn, "twist.angular.z")]
             }
             _ => return None,
         })

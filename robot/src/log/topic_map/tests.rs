@@ -25,8 +25,8 @@ degree = \"exits\"
 fn a_mapping_is_written_as_it_was_read() {
     let mapping = TopicMap::read(WHOLE.as_bytes()).unwrap();
     let odometry = mapping.carrier(Role::Odometry).unwrap();
-    assert_eq!((odometry.length, odometry.angle), (Length::Inches, Angle::Degrees));
-    assert_eq!(odometry.paths[&Part::Heading], "at[0].theta");
+    assert_eq!((odometry.length, odometry.angle), (LengthUnit::Inches, AngleUnit::Degrees));
+    assert_eq!(odometry.paths[&MessagePart::Heading], "at[0].theta");
     assert_eq!(mapping.to_toml(), WHOLE);
     let strange = "[run]\ntopic = \"/a\\\"\\n\\u0001'b\"\n";
     let strange = TopicMap::read(strange.as_bytes()).unwrap();
