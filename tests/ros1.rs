@@ -238,7 +238,8 @@ fn the_whole_of_shape_6_is_mapped_through_ros() {
     eprintln!("mapped in {:.0} s", begun.elapsed().as_secs_f64());
     let output = fs::read_to_string(stage.folder.join("output")).unwrap();
     assert_eq!(status.code(), Some(0), "{output}");
-    let compared = stdout_of(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
+    let compared =
+        stdout_of(&["compare", "worlds/shape-6.toml", &stage.path("map.toml"), "--json"]);
     assert!(compared.contains("\"isomorphic\":true"), "{compared}");
     assert!(compared.contains("\"distinguishable\":false"), "{compared}");
     assert!(stage.end().contains("mapped\0"), "{}", stage.end());

@@ -21,7 +21,12 @@ use super::{Failure, Outcome, simulate::MAX_DARTS};
 /// do not come, and after Ctrl-C. The sonars are not used. Keep the robot's bumpers on and its stop
 /// button in reach.
 #[derive(clap::Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(
+    override_usage = "\
+toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
+                      --colours <FILE>",
+    after_help = AFTER_HELP
+)]
 #[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
 pub(super) struct DriveArguments {
     /// The ROS 1 master, as in http://127.0.0.1:11311

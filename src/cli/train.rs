@@ -28,7 +28,11 @@ use report::{LeftOut, TrainingReport, Validation};
 /// body and outside the mirror are ignored. Images that are too dark or too bright are left out and
 /// reported.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(
+    override_usage = "\
+toposlam train [OPTIONS] --images <DIR> --labels <DIR>
+                      --calibration <FILE> --out <COLOURS>",
+    after_help = "\
 Colours of labels:
   floor (0,255,0)   stripe (255,0,0)   marker (0,0,255)
   other (0,0,0)     ignore (255,255,255)
@@ -44,7 +48,8 @@ Example, with rendered images and labels:
     --out colours.toml
   toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 \\
     --out view.png
-  toposlam sense view.png --calibration camera.toml --colours colours.toml")]
+  toposlam sense view.png --calibration camera.toml --colours colours.toml"
+)]
 pub(super) struct TrainArguments {
     /// Folder of the images: .png, .jpg and .jpeg
     #[arg(long, value_name = "DIR")]

@@ -70,9 +70,9 @@ fn the_help_of_every_verb_has_its_flags_and_an_example_of_it() {
 fn no_line_is_wider_than_80_columns() {
     let folder = folder("width");
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    let [page, map] = ["page.html", "map.toml"].map(file);
+    let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 22] = [
+    let runs: [&[&str]; 28] = [
         &[],
         &["check", "--edges", "1..=4"],
         &["check", "--edges", "1..=4", "--choices", "all"],
@@ -95,6 +95,12 @@ fn no_line_is_wider_than_80_columns() {
         &["proofs"],
         &case,
         &["proofs", "--run", "the_way_back"],
+        &["simulate", "worlds/shape-6.toml", "--by-scene", "--log", &log],
+        &["info", &log],
+        &["conform", &log, "--world", "worlds/shape-6.toml"],
+        &["conform", &log],
+        &["replay", &log],
+        &["evaluate", "control", "--traversals", "20"],
     ];
     for arguments in runs {
         for line in stdout(&run(arguments)).lines() {

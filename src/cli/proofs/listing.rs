@@ -70,8 +70,7 @@ fn print_list(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> i
     let [lemmas, theorems] =
         [(lemmas.len(), "lemma"), (theorems.len(), "theorem")].map(|(n, word)| counted(n, word));
     writeln!(out)?;
-    let totals =
-        format!("{lemmas}, {cases} within the exhaustive bounds; {theorems} for {EVERY_WORLD}");
+    let totals = format!("{lemmas}, {cases} within bounds; {theorems} for {EVERY_WORLD}");
     print_paragraph(out, &totals)
 }
 

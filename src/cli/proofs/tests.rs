@@ -335,7 +335,7 @@ fn a_theorem_is_listed_but_not_checked() {
     let entry = "\nround\n  It turns.\n  paper       2.2\n  file        proofs/coq/Theorems.v\n  \
                  Coq         every world\n\n";
     assert!(text.contains(entry), "{text}");
-    let last = "\n1 lemma, 4 cases within the exhaustive bounds; 1 theorem for every world\n";
+    let last = "\n1 lemma, 4 cases within bounds; 1 theorem for every world\n";
     assert!(text.ends_with(last), "{text}");
     for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
         let (Err(Failure::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
