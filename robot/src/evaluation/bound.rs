@@ -1,17 +1,18 @@
-//! How often something may really happen that was seen so often.
+//! Upper bounds of rates from counted cases.
 
 /// The confidence of a bound.
 const CONFIDENCE: f64 = 0.95;
 
-/// The greatest rate of something that was seen in `seen` of `of` independent cases, with a confidence
-/// of 95 %: with any greater rate, so few would be seen in less than one of twenty trials. The bound is
-/// exact (Clopper and Pearson 1934, one-sided); for none seen it is the rule of three, about `3 / of`.
+/// The upper bound, with a confidence of 95 %, of the rate of an event that was seen in `seen` of
+/// `of` independent cases: with any greater rate, so few would be seen in less than one of twenty
+/// trials. The bound is exact (Clopper and Pearson 1934, one-sided). For none seen it is the rule
+/// of three, about `3 / of`.
 #[must_use]
 pub fn upper_bound(seen: usize, of: usize) -> f64 {
     if seen >= of {
         return 1.0;
     }
-    // At the rate that was seen, as few or fewer are no surprise.
+    // The measured rate is a lower limit of the bound.
     let (mut low, mut high) = (seen as f64 / of as f64, 1.0);
     for _ in 0..64 {
         let rate = f64::midpoint(low, high);
@@ -24,11 +25,11 @@ pub fn upper_bound(seen: usize, of: usize) -> f64 {
     high
 }
 
-/// How likely it is that something with a rate not below `seen / of` happens at most so often.
+/// The probability of at most `seen` events if the rate is `rate`, at or above `seen / of`.
 fn at_most(seen: usize, of: usize, rate: f64) -> f64 {
     let binomial: f64 = (0..seen).map(|nth| ((of - nth) as f64 / (nth + 1) as f64).ln()).sum();
     let exactly = binomial + seen as f64 * rate.ln() + (of - seen) as f64 * (-rate).ln_1p();
-    // From the largest term down: each is a part of the one before.
+    // From the largest term down: each term is a fraction of the one before.
     let mut part = 1.0;
     let mut sum = 0.0;
     for nth in (0..=seen).rev() {
@@ -53,7 +54,7 @@ mod tests {
     #[test]
     fn of_none_seen_the_bound_is_the_rule_of_three() {
         for of in [1, 10, 100, 3000, 20_000] {
-            // 1 - 0.05^(1/n), by another way.
+            // 1 - 0.05^(1/n), computed in another way.
             let exact = -(0.05_f64.ln() / of as f64).exp_m1();
             close(upper_bound(0, of), exact, 1e-12);
         }

@@ -1,4 +1,4 @@
-//! Colours for every look, learned from rendered images that are judged nowhere.
+//! Colours of every look, learned from rendered images that are not used for judging.
 
 use thiserror::Error;
 use toposlam_vision::{
@@ -9,21 +9,21 @@ use toposlam_vision::{
 use super::view_sampler::{ViewError, ViewSampler};
 use crate::simulator::{BuildingLook, Rig, label_mask, labels};
 
-/// From so many images the colours of a look are learned.
+/// The number of images from which the colours of a look are learned.
 const IMAGES: u64 = 16;
 
-/// Why the colours of a look are not learned.
+/// Why the colours of a look cannot be learned.
 #[derive(Debug, Error)]
 pub enum LearningError {
-    /// There is nothing to look at.
+    /// The view cannot be sampled.
     #[error(transparent)]
     View(#[from] ViewError),
-    /// Of no image the light is known.
+    /// Too little was seen.
     #[error("look {look}: {cause}")]
     Training {
         /// The look.
         look: &'static str,
-        /// What is wrong.
+        /// The cause.
         cause: TrainingError,
     },
     /// An image does not fit.
@@ -31,15 +31,15 @@ pub enum LearningError {
     Example {
         /// The look.
         look: &'static str,
-        /// What is wrong.
+        /// The cause.
         cause: ExampleError,
     },
 }
 
-/// The colours of a look, learned with a camera and its rig.
+/// Learns the colours of a look with a camera and its rig.
 ///
 /// # Errors
-/// Where too little is to be seen.
+/// Returns an error if too little is seen.
 pub fn learned(
     views: &ViewSampler,
     look: &'static BuildingLook,
@@ -53,7 +53,7 @@ pub fn learned(
         let classes = labels(rig, &building, view.pose, &view.effects);
         let mask = label_mask(rig, &classes);
         match training.add(camera, &view.picture(rig, &building), &mask) {
-            // An image that is too dark to tell its light teaches nothing.
+            // Skip images that are too dark to measure their light.
             Ok(()) | Err(ExampleError::Light(_)) => {}
             Err(cause) => return Err(LearningError::Example { look: look.name, cause }),
         }

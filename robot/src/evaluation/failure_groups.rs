@@ -1,4 +1,4 @@
-//! What the views have in common in which sensing fails.
+//! Groups of views, to find what failures have in common.
 
 use super::{
     judged_view::{JudgedView, Zone},
@@ -8,32 +8,32 @@ use super::{
 };
 use crate::truth::Truth;
 
-/// A group of views with something in common, and how many of them failed.
+/// A group of views with something in common, and the number that failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureGroup {
-    /// By what the views are grouped.
+    /// The property by which the views are grouped.
     pub by: &'static str,
-    /// What those of this group have in common.
+    /// Its value in this group.
     pub what: String,
-    /// How many failed: they were not right.
+    /// The number of views that failed: those that are not right.
     pub failed: usize,
-    /// Of how many.
+    /// The number of views.
     pub of: usize,
-    /// Whether it is one of the two groups on either side of a median; the one not above it comes
-    /// first.
+    /// Whether it is one of the two groups on either side of a median. The group up to the median
+    /// comes first.
     pub is_half: bool,
 }
 
 impl FailureGroup {
-    /// How many failed, as a share; 0 of none.
+    /// The share of views that failed; 0 without views.
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.failed as f64 / self.of.max(1) as f64
     }
 }
 
-/// Groups of the views in hallways and at junctions (up to their turning points): by look, size, what
-/// is to be seen, distance, heading, offset, and by each effect that is above its median or below.
+/// Groups of the views in hallways and before turning points: by look, image size, class, distance,
+/// heading and offset, and by each effect above or up to its median.
 #[must_use]
 pub fn groups(views: &[JudgedView]) -> Vec<FailureGroup> {
     let asked = |judged: &&JudgedView| matches!(judged.zone(), Zone::Hallway | Zone::Before);
@@ -63,8 +63,7 @@ pub fn groups(views: &[JudgedView]) -> Vec<FailureGroup> {
     groups
 }
 
-/// How the robot lies in its hallway or before its junction: how far it is turned away from the
-/// hallway's direction, and how far aside of its middle.
+/// The robot's angle to its hallway, and its distance from the middle, both without sign.
 fn lie(truth: &Truth) -> Option<(f64, f64)> {
     match truth {
         Truth::Hallway(hallway) | Truth::Between(hallway, _) => {
@@ -79,7 +78,7 @@ fn lie(truth: &Truth) -> Option<(f64, f64)> {
     }
 }
 
-/// How far from the turning point, in a few words.
+/// The distance from the turning point, in words.
 fn distance(truth: &Truth) -> &'static str {
     let Truth::Junction(junction) = truth else { return "1.5 m or more" };
     match junction.distance() {
@@ -91,7 +90,7 @@ fn distance(truth: &Truth) -> &'static str {
     }
 }
 
-/// A group for each label, in the order of the labels.
+/// One group for each label, in the order of the labels.
 fn labelled(
     views: &[&JudgedView],
     by: &'static str,
@@ -107,7 +106,7 @@ fn labelled(
     groups.into_iter().map(group).collect()
 }
 
-/// Two groups for each number that differs between views: those above its median, and the others.
+/// Two groups for each number that varies: the views above its median, and the others.
 fn halved(
     views: &[&JudgedView],
     numbers: impl Fn(&JudgedView) -> Vec<(&'static str, f64)>,
@@ -147,7 +146,7 @@ fn halved(
     groups
 }
 
-/// To three digits.
+/// Rounds to three significant digits.
 fn rounded(value: f64) -> String {
     let places = if value.abs() < 0.1 { 4 } else { 2 };
     format!("{value:.places$}")
@@ -170,7 +169,7 @@ mod tests {
     #[test]
     fn failures_show_in_the_groups_in_which_they_are_more_often() {
         let views = ViewSampler::of(&LOOKS, [640, 480], 0).unwrap();
-        // Sensing that fails where it is blurred, in the theatre only.
+        // Sensing fails in blurred views of the theatre only.
         let judged: Vec<_> = (0..600)
             .map(|number| {
                 let view = views.view(number).unwrap();

@@ -1,4 +1,4 @@
-//! Views and visits, rendered, sensed and judged.
+//! Renders, senses and judges views and visits.
 
 use std::{
     collections::BTreeMap,
@@ -34,16 +34,16 @@ use crate::truth::{JunctionTruth, Truth};
 /// Why views cannot be judged.
 #[derive(Debug, Error)]
 pub enum JudgingError {
-    /// The colours are not known.
+    /// The colours were not learned.
     #[error(transparent)]
     Learning(#[from] LearningError),
-    /// There is nothing to look at.
+    /// The view cannot be sampled.
     #[error(transparent)]
     View(#[from] ViewError),
-    /// The camera is another.
+    /// The image has another size than the camera.
     #[error(transparent)]
     Size(#[from] WrongSize),
-    /// A view is where there is no floor.
+    /// The view is not on the floor.
     #[error("view {number} of {plan} is not on the floor")]
     OffTheFloor {
         /// The number of the view.
@@ -53,20 +53,20 @@ pub enum JudgingError {
     },
 }
 
-/// All that judging takes: rigs and sensors for each size of picture, made once.
+/// Rigs and sensors for each image size.
 pub struct Judge {
     stations: BTreeMap<[u32; 2], Station>,
 }
 
-/// What belongs to one size of picture.
+/// What belongs to one image size.
 struct Station {
     right: Rig,
     wrong: Vec<Rig>,
-    /// For each look.
+    /// One for each look.
     sensors: Vec<Sensors>,
 }
 
-/// Sensors for one look: as many as there are threads at work.
+/// The sensors for one look, one for each thread at work.
 struct Sensors {
     look: &'static str,
     model: Sensor,
@@ -74,11 +74,10 @@ struct Sensors {
 }
 
 impl Judge {
-    /// Learns the colours of all looks of the views, for all sizes of their pictures, with a calibrated
-    /// camera.
+    /// Learns the colours of all looks of the views, for all image sizes, with a calibrated camera.
     ///
     /// # Errors
-    /// Where the colours cannot be learned.
+    /// Returns an error if the colours cannot be learned.
     pub fn new(
         camera: &Camera,
         views: &ViewSampler,
@@ -105,11 +104,11 @@ impl Judge {
         Ok(Self { stations: views.sizes.iter().map(station).collect::<Result<_, JudgingError>>()? })
     }
 
-    /// Judges views by their numbers, on all threads; the result does not depend on their number. Where
-    /// the watch breaks off, some are missing.
+    /// Judges views by their numbers on all threads. The result does not depend on the number of
+    /// threads. If the watch stops, some are missing.
     ///
     /// # Errors
-    /// Where there is nothing to look at.
+    /// Returns an error if a view cannot be sampled or judged.
     pub fn views(
         &self,
         views: &ViewSampler,
@@ -120,10 +119,10 @@ impl Judge {
         in_turn(numbers, watch, |number| self.view(views.view(number)?, calibration))
     }
 
-    /// Judges visits by their numbers, likewise.
+    /// Judges visits by their numbers, as [`Self::views`] does.
     ///
     /// # Errors
-    /// Where there is nothing to look at.
+    /// Returns an error if a visit cannot be sampled or judged.
     pub fn visits(
         &self,
         views: &ViewSampler,
@@ -139,7 +138,7 @@ impl Judge {
     /// Judges one view.
     ///
     /// # Errors
-    /// Where it is not on the floor.
+    /// Returns an error if the view is not on the floor.
     pub fn view(
         &self,
         view: RenderedView,
@@ -149,10 +148,10 @@ impl Judge {
         self.judged(view, &image)
     }
 
-    /// Judges one visit; `None` for one without pictures.
+    /// Judges one visit. Returns `None` if it has no images.
     ///
     /// # Errors
-    /// As [`Self::view`].
+    /// Returns an error if a view is not on the floor.
     pub fn visit(
         &self,
         pictures: Vec<RenderedView>,
@@ -182,10 +181,10 @@ impl Judge {
         Ok(Some(JudgedVisit { pictures, form, percept, decided }))
     }
 
-    /// The picture of a view, what sensing says of it, and a picture of each of its steps.
+    /// The image of a view, its scene, and a picture of each processing stage.
     ///
     /// # Errors
-    /// Where the view's size is none of the sizes.
+    /// Returns an error if the image does not have one of the sizes.
     pub fn stages(
         &self,
         view: &RenderedView,
@@ -237,7 +236,7 @@ impl Sensors {
         Ok(Self { look: look.name, model, idle: Mutex::default() })
     }
 
-    /// Works with a sensor that nobody else has meanwhile.
+    /// Calls a function with a sensor that no other thread uses meanwhile.
     fn with<R>(&self, work: impl FnOnce(&mut Sensor) -> R) -> R {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();

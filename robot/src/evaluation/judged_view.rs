@@ -1,4 +1,4 @@
-//! Views and visits that have been judged.
+//! Judged views and visits.
 
 use toposlam_model::{
     driving::{scene::Scene, visit::JunctionShape},
@@ -12,54 +12,54 @@ use super::{
 };
 use crate::truth::{MarkerTruth, Truth};
 
-/// Where a view is, as it matters to what is asked of it.
+/// The zone of a view. Different targets apply in different zones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Zone {
-    /// 1.5 m or more from any junction.
+    /// 1.5 m or more from every junction.
     Hallway,
-    /// Nearer, but not yet at a junction.
+    /// Nearer to a junction, but not yet at one.
     Between,
     /// At a junction, up to 0.1 m past its turning point.
     Before,
     /// At a junction, farther past its turning point.
     Past,
-    /// At a junction, and turned away from the door by which it was entered.
+    /// At a junction, and turned away from the entry door.
     Turned,
 }
 
-/// So far past the turning point a junction is to be made out, in metres.
+/// Up to this distance past its turning point, a junction must be recognized, in metres.
 const PAST: f64 = 0.1;
 
-/// A view, and what sensing made of it.
+/// A view with its ground truth, its scene and the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedView {
-    /// What was to be seen.
+    /// The view.
     pub view: RenderedView,
-    /// What is true there.
+    /// The ground truth.
     pub truth: Truth,
-    /// What sensing says.
+    /// The scene.
     pub scene: Scene,
-    /// Whether it is right about the place,
+    /// The verdict on the place.
     pub verdict: PlaceVerdict,
-    /// and about the marker.
+    /// The verdict on the marker.
     pub marker: MarkerVerdict,
 }
 
-/// A visit to a junction, and what came of it.
+/// A judged visit to a junction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedVisit {
-    /// Its pictures.
+    /// Its views.
     pub pictures: Vec<JudgedView>,
-    /// What the junction looks like from its entry.
+    /// The true shape of the junction, seen from its entry.
     pub form: JunctionShape,
-    /// What the robot should perceive.
+    /// The true percept.
     pub percept: Percept,
-    /// As what the junction was made out, once two pictures agreed.
+    /// The shape and percept that were decided, once two images agreed.
     pub decided: Option<(JunctionShape, Percept)>,
 }
 
 impl Zone {
-    /// Where a view with this truth is.
+    /// The zone of a view with this ground truth.
     #[must_use]
     pub fn of(truth: &Truth) -> Self {
         match truth {
@@ -75,13 +75,13 @@ impl Zone {
 }
 
 impl JudgedView {
-    /// Where it is.
+    /// The view's zone.
     #[must_use]
     pub fn zone(&self) -> Zone {
         Zone::of(&self.truth)
     }
 
-    /// What the image shows; `None` where different answers are right.
+    /// The true class; `None` if several answers are right.
     #[must_use]
     pub fn class(&self) -> Option<SceneClass> {
         match &self.truth {
@@ -91,7 +91,7 @@ impl JudgedView {
         }
     }
 
-    /// Whether the marker is just where it should be seen, on the approach to its L.
+    /// The marker, if it should be seen: the robot is approaching its L and near enough.
     #[must_use]
     pub fn marker_ahead(&self) -> Option<MarkerTruth> {
         let marker = self.view.marker()?;
@@ -108,7 +108,7 @@ impl JudgedView {
 }
 
 impl JudgedVisit {
-    /// Whether the junction was made out as another.
+    /// Whether another shape was decided.
     #[must_use]
     pub fn is_wrong(&self) -> bool {
         self.decided.is_some_and(|(form, _)| form != self.form)

@@ -1,5 +1,4 @@
-//! Cameras and eyes of simulated robots: one rig, and for each look of buildings the colours that were
-//! learned from it.
+//! Sensors of simulated robots: one rig, and the colours that were learned for each look.
 
 use std::sync::Arc;
 
@@ -13,7 +12,7 @@ use super::{
 };
 use crate::simulator::{BuildingLook, Rig};
 
-/// All that simulated robots with one camera need to see in buildings of these looks.
+/// The rig and the sensors of robots with one camera in buildings of several looks.
 #[derive(Debug)]
 pub struct LearnedSensors {
     camera: Camera,
@@ -21,14 +20,14 @@ pub struct LearnedSensors {
     looks: Vec<(&'static BuildingLook, ColourModel)>,
 }
 
-/// Colours are learned from the views of this seed, which are judged nowhere.
+/// The seed of the views from which colours are learned. No view of this seed is judged.
 const LEARNING: u64 = 1;
 
 impl LearnedSensors {
     /// Learns the colours of looks with a calibrated camera, as `toposlam evaluate vision` does.
     ///
     /// # Errors
-    /// Where the colours cannot be learned.
+    /// Returns an error if the colours cannot be learned.
     pub fn new(
         camera: &Camera,
         looks: &[&'static BuildingLook],
@@ -51,7 +50,7 @@ impl LearnedSensors {
         Ok(Self { camera: camera.clone(), rig: Arc::new(rig), looks })
     }
 
-    /// The same with colours that were learned elsewhere, for one look.
+    /// Sensors for one look with colours that were learned elsewhere.
     #[must_use]
     pub fn with_colours(
         camera: &Camera,
@@ -68,20 +67,20 @@ impl LearnedSensors {
         &self.rig
     }
 
-    /// The look of a number, which counts round.
+    /// The look for a number, in turn.
     #[must_use]
     pub fn look(&self, number: u64) -> &'static BuildingLook {
         self.looks[(number % self.looks.len() as u64) as usize].0
     }
 
-    /// The colours of buildings of a look; of the first, where it is none of them.
+    /// The colours of a look, or those of the first look if it is unknown.
     #[must_use]
     pub fn colours(&self, look: &'static BuildingLook) -> &ColourModel {
         let known = self.looks.iter().find(|(known, _)| known.name == look.name);
         &known.unwrap_or(&self.looks[0]).1
     }
 
-    /// Sensing in buildings of a look; of the first, where it is none of them.
+    /// A sensor for a look, or for the first look if it is unknown.
     #[must_use]
     pub fn sensor(&self, look: &'static BuildingLook) -> Sensor {
         Sensor::new(&self.camera, self.colours(look))

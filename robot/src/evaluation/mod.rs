@@ -1,4 +1,4 @@
-//! Sensing and driving, judged against the truth of the floor plan and against the specification.
+//! Compares sensing, driving and whole runs with the floor plan and the specification.
 
 pub mod bound;
 pub mod calibration;

@@ -1,11 +1,11 @@
-//! Many cases on all threads, their results in order.
+//! Runs many cases on all threads and returns the results in order.
 
 use std::convert::Infallible;
 
 use rayon::prelude::*;
 use toposlam_model::enumerate::Watch;
 
-/// Works on numbers on all threads; the results are in the order of the numbers.
+/// Works on numbers on all threads. The results are in the order of the numbers.
 pub(super) fn in_turn<R: Send, E: Send>(
     numbers: std::ops::Range<u64>,
     watch: &impl Watch,
@@ -25,7 +25,7 @@ pub(super) fn in_turn<R: Send, E: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Makes the cases of these numbers, those that there are, on all threads.
+/// Makes the cases of these numbers, as far as they exist, on all threads.
 pub(super) fn made_in_turn<C, R: Send>(
     numbers: std::ops::Range<u64>,
     watch: &impl Watch,

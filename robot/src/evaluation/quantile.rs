@@ -1,23 +1,23 @@
-//! How large errors are: quantiles of a sample.
+//! Quantiles of a sample.
 
-/// A quantile that is asked for.
+/// A quantile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantile {
     /// Half of the values are below it.
     Median,
-    /// 95 of 100 are.
+    /// 95 % of the values are below it.
     P95,
-    /// 99 of 100 are.
+    /// 99 % of the values are below it.
     P99,
     /// The greatest value.
     Most,
 }
 
 impl Quantile {
-    /// All of them.
+    /// All quantiles.
     pub const ALL: [Self; 4] = [Self::Median, Self::P95, Self::P99, Self::Most];
 
-    /// Which part of the values is below it.
+    /// The share of values below it.
     #[must_use]
     pub fn part(self) -> f64 {
         match self {
@@ -45,15 +45,15 @@ impl FromIterator<f64> for ErrorSample {
 }
 
 impl ErrorSample {
-    /// How many values there are.
+    /// The number of values.
     #[must_use]
     pub fn count(&self) -> usize {
         self.values.len()
     }
 
-    /// The value below which this part of the values lies, from 0 to 1; `None` where there are no
-    /// values. Between two values it is interpolated (Hyndman and Fan 1996, definition 7, as in R
-    /// and NumPy).
+    /// The value below which this share of the values lies, from 0 to 1; `None` without values.
+    /// Between two values it is interpolated (Hyndman and Fan 1996, definition 7, as in R and
+    /// NumPy).
     #[must_use]
     #[expect(clippy::cast_sign_loss, reason = "a place in a list is not negative")]
     pub fn quantile(&self, part: f64) -> Option<f64> {

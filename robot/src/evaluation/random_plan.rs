@@ -1,45 +1,45 @@
-//! Floor plans that nobody drew.
+//! Random floor plans.
 //!
-//! Hallways grow along the lines of a grid whose distances are random, one after the other, never a
-//! fourth one at a junction. Then each straight run of hallways is moved aside a little. Lines of the
-//! grid are so far apart that all that follows stays two hallway widths apart; so every plan is valid.
+//! Hallways grow along the lines of a random grid, at most three at a junction. Then each straight
+//! run of hallways is moved aside a little. The lines of the grid are far enough apart to keep
+//! junctions at least two hallway widths apart, so that every plan is valid.
 
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_model::floor_plan::{Direction, FloorPlan, FloorPlanError};
 
-/// Between these widths hallways are, in metres.
+/// Least and greatest width of hallways, in metres.
 const WIDTHS: [f64; 2] = [1.4, 2.0];
-/// Between these numbers of lines a grid has in each direction.
+/// Least and greatest number of grid lines in each direction.
 const LINES: [usize; 2] = [2, 5];
-/// Between these distances lines are more apart than they must be, in metres.
+/// Least and greatest spare distance between grid lines, in metres.
 const SPARE: [f64; 2] = [0.0, 4.0];
-/// So far may a straight run of hallways be moved aside, in metres.
+/// The greatest offset of a straight run of hallways, in metres.
 const ASIDE: f64 = 0.6;
-/// Up to so many pieces of hallway, each from one line of the grid to the next.
+/// Least and greatest number of hallway pieces. A piece joins two neighbouring grid nodes.
 const PIECES: [usize; 2] = [2, 16];
 
-/// A node of the grid: the numbers of its lines.
+/// A node of the grid: the indices of its lines.
 type Node = [usize; 2];
 
-/// The floor plan of a seed: hallways 1.4 to 2 m wide, dead ends, Ls, Ts and often loops, on a grid or
-/// off it.
+/// The random floor plan of a seed. Hallways are 1.4 to 2 m wide. There are dead ends, Ls, Ts and
+/// often loops.
 ///
 /// # Errors
-/// Never, as far as its tests show; a plan that is refused would be a defect here.
+/// Returns an error if the plan is not valid, which would be a defect of this module.
 pub fn random_plan(seed: u64) -> Result<FloorPlan, FloorPlanError> {
     drawn(seed, Pieces::grown)
 }
 
-/// The floor plan of a seed with so many junctions, from 2 on.
+/// The random floor plan of a seed with this number of junctions, at least 2.
 ///
 /// # Errors
-/// As [`random_plan`].
+/// Returns an error as [`random_plan`] does.
 pub fn random_plan_with(seed: u64, junctions: usize) -> Result<FloorPlan, FloorPlanError> {
     drawn(seed, |chance| Pieces::with_junctions(chance, junctions.max(2)))
 }
 
-/// A plan of pieces of hallway: its lines are drawn by chance, too.
+/// Builds a plan from pieces of hallway on random lines.
 fn drawn(
     seed: u64,
     grown: impl FnOnce(&mut Xoshiro256PlusPlus) -> Pieces,
@@ -59,8 +59,7 @@ fn drawn(
         lines
     });
     let nodes = pieces.junctions();
-    // For each axis a grid of how far what runs across it is moved along it: all of a straight run
-    // alike.
+    // For each axis, a grid of the offsets across it. A straight run has one offset.
     let mut moved = [vec![None; pieces.nodes()], vec![None; pieces.nodes()]];
     let mut positions = Vec::new();
     for &node in &nodes {
@@ -80,30 +79,30 @@ fn drawn(
     FloorPlan::new(width, &junctions, &hallways)
 }
 
-/// Pieces of hallway on a grid, each between neighbouring nodes.
+/// Pieces of hallway on a grid. Each joins neighbouring nodes.
 struct Pieces {
-    /// Lines that x counts, and that y counts.
+    /// The number of lines across x and across y.
     size: [usize; 2],
     /// For each node, whether a piece leads to the next node along x, and along y.
     onwards: Vec<[bool; 2]>,
 }
 
 impl Pieces {
-    /// Connected pieces, with at most three at a node, and one at least.
+    /// Connected pieces, at least one, with at most three at a node.
     fn grown(chance: &mut Xoshiro256PlusPlus) -> Self {
         let size = [0; 2].map(|_| chance.random_range(LINES[0]..=LINES[1]));
         let wanted = chance.random_range(PIECES[0]..=PIECES[1]);
-        // Some tries lead nowhere; on a small grid there is no room for more.
+        // Some tries fail: a small grid may have no more room.
         Self::grown_until(chance, size, 20 * wanted, |pieces| pieces.count() == wanted)
     }
 
-    /// Pieces with so many junctions, two at least.
+    /// Pieces with this number of junctions, at least two.
     fn with_junctions(chance: &mut Xoshiro256PlusPlus, wanted: usize) -> Self {
-        // Room for twice as many.
+        // The grid has room for twice as many.
         let lines = (2.0 * wanted as f64).sqrt().ceil() as usize + 1;
         loop {
-            // Of one junction and a dead end each piece makes one junction more or fewer, or none: the
-            // number is hardly ever passed by; if so, the next pieces may hit it.
+            // A piece changes the number of junctions by at most one, or rarely by two. If it
+            // passes the number, later pieces may still hit it.
             let pieces = Self::grown_until(chance, [lines; 2], 200 * wanted, |pieces| {
                 pieces.junctions().len() == wanted
             });
@@ -113,7 +112,7 @@ impl Pieces {
         }
     }
 
-    /// Pieces that have grown by so many tries, or until they are done.
+    /// Adds pieces for this many tries, or until `done`.
     fn grown_until(
         chance: &mut Xoshiro256PlusPlus,
         size: [usize; 2],
@@ -162,7 +161,7 @@ impl Pieces {
         (node[0] < self.size[0] && node[1] < self.size[1]).then_some(node)
     }
 
-    /// The node before a piece, and its axis.
+    /// The node before a piece, and the axis of the piece.
     fn piece(&self, node: Node, direction: Direction) -> Option<(usize, usize)> {
         let neighbour = self.neighbour(node, direction)?;
         let axis = usize::from(matches!(direction, Direction::North | Direction::South));
@@ -184,7 +183,7 @@ impl Pieces {
         Direction::ALL.iter().filter(|&&direction| self.has(node, direction)).count()
     }
 
-    /// Whether hallways end at a node: there are some, and they do not just pass.
+    /// Whether hallways end at a node: there are some, and they do not just pass through it.
     fn is_junction(&self, node: Node) -> bool {
         let straight = Direction::ALL
             .iter()
@@ -201,8 +200,8 @@ impl Pieces {
         nodes.filter(|&node| self.is_junction(node)).collect()
     }
 
-    /// The first node of the straight run of pieces along an axis in which a node lies: the node
-    /// itself, where none leads to it.
+    /// The first node of the straight run of pieces through a node along an axis. It is the node
+    /// itself if no piece leads to it.
     fn run(&self, mut node: Node, axis: usize) -> Node {
         let back = [Direction::West, Direction::South][axis];
         while self.has(node, back)
@@ -213,7 +212,7 @@ impl Pieces {
         node
     }
 
-    /// The junctions at the ends of each hallway.
+    /// The junctions at both ends of each hallway.
     fn hallways(&self) -> Vec<[Node; 2]> {
         let mut hallways = Vec::new();
         for from in self.junctions() {
@@ -292,7 +291,7 @@ mod tests {
         };
         assert!(lengths().any(|length| length < 2.1), "a shortest hallway");
         assert!(lengths().any(|length| length > 8.0), "a long one");
-        // Off the grid: positions that differ by less than a line.
+        // Off the grid: some positions differ by less than the distance of two lines.
         let close = |plan: &&FloorPlan| {
             let junctions = plan.junctions();
             junctions.iter().any(|one| {

@@ -1,4 +1,4 @@
-//! A view: where a robot is, in which building, and what its camera sees there.
+//! A view: a pose in a building, and all that its image depends on.
 
 use std::sync::Arc;
 
@@ -8,37 +8,37 @@ use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 use crate::simulator::{Building, BuildingLook, Effects, Pose, Rig, render};
 use crate::truth::{MarkerTruth, Truth};
 
-/// A place for a robot, and what there is to see.
+/// A pose in a building, and all that its image depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderedView {
-    /// Its number among the views of its seed.
+    /// Its number among the views of the seed.
     pub number: u64,
-    /// The name of the plan.
+    /// The plan's name.
     pub plan_name: String,
     /// The floor plan.
     pub plan: Arc<FloorPlan>,
-    /// What the building looks like.
+    /// The look of the building.
     pub look: &'static BuildingLook,
-    /// What makes the picture harder to read.
+    /// The effects that make the image harder to read.
     pub effects: Effects,
-    /// The dart along which the marker lies, if there is one.
+    /// The dart along which the marker lies, if there is a marker.
     pub marker: Option<Dart>,
-    /// Where the robot is.
+    /// The robot's pose.
     pub pose: Pose,
-    /// Width and height of the picture.
+    /// Width and height of the image, in pixels.
     pub image: [u32; 2],
-    /// What else there is by chance in the building, and in the picture.
+    /// Random seeds of the building and of the image.
     pub seeds: [u64; 2],
 }
 
 impl RenderedView {
-    /// What is true there.
+    /// The ground truth; `None` if the pose is not on the floor.
     #[must_use]
     pub fn truth(&self) -> Option<Truth> {
         Truth::at(&self.plan, self.pose)
     }
 
-    /// Where the marker lies.
+    /// The marker's true place, relative to the robot.
     #[must_use]
     pub fn marker(&self) -> Option<MarkerTruth> {
         self.marker.map(|dart| MarkerTruth::of(&self.plan, dart, self.pose))
@@ -50,18 +50,18 @@ impl RenderedView {
         Building::new(&self.plan, self.look, self.marker, &self.effects, self.seeds[0])
     }
 
-    /// What a rig sees there.
+    /// The image that a rig takes.
     #[must_use]
     pub fn picture(&self, rig: &Rig, building: &Building) -> RgbImage {
         render(rig, building, self.pose, &self.effects, self.seeds[1])
     }
 }
 
-/// Which effects there are.
+/// The effects of views.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhichEffects {
-    /// Each drawn from its default range.
+    /// Each effect is drawn from its default range.
     Default,
-    /// None.
+    /// No effects.
     None,
 }

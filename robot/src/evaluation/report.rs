@@ -1,4 +1,4 @@
-//! What was measured on many views and visits, and what is asked of it.
+//! Figures that were measured on many views and visits, and their targets.
 
 use std::collections::BTreeMap;
 
@@ -17,21 +17,21 @@ use super::{
 };
 use crate::truth::{HallwayTruth, JunctionTruth, Truth};
 
-/// What was measured.
+/// The figures of an evaluation of sensing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisionReport {
-    /// Whether the camera was as its calibration says.
+    /// Whether the camera agrees with its calibration.
     pub calibration: Calibration,
-    /// How often something went wrong.
+    /// Rates of failures.
     pub rates: Vec<Rate>,
-    /// How large errors were.
+    /// Sizes of errors.
     pub errors: Vec<Errors>,
-    /// For each class that was true, how often each class was said; of hallways, and of junctions up
-    /// to their turning points.
+    /// For each true class, the number of scenes of each class; of hallways, and of junctions up to
+    /// their turning points.
     pub confusion: BTreeMap<SceneClass, BTreeMap<SceneClass, usize>>,
 }
 
-/// What a figure is about.
+/// The subject of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReportSubject {
     /// Views in hallways.
@@ -40,71 +40,71 @@ pub enum ReportSubject {
     Between,
     /// Views of junctions up to their turning points.
     Junction,
-    /// Views of junctions from beyond.
+    /// Views of junctions past their turning points.
     Past,
-    /// Views of junctions by a robot that has turned.
+    /// Views of junctions after the robot has turned.
     Turned,
-    /// The marker, in single views.
+    /// The marker in single views.
     Marker,
     /// Visits.
     Visit,
 }
 
-/// How often something that should not happen happened.
+/// The rate of a failure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// What it is about.
+    /// The subject.
     pub subject: ReportSubject,
-    /// What happened, in a few words.
+    /// The failure, in a few words.
     pub what: &'static str,
-    /// How often it did.
+    /// The number of failures.
     pub seen: usize,
-    /// In how many cases.
+    /// The number of cases.
     pub cases: usize,
-    /// As a share of the cases, how often it may.
+    /// The target: the greatest allowed share of the cases.
     pub limit: Option<f64>,
 }
 
-/// How large the errors of something were.
+/// The sizes of an error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// What it is about.
+    /// The subject.
     pub subject: ReportSubject,
-    /// Of what.
+    /// The quantity, in a few words.
     pub what: &'static str,
-    /// In which unit.
+    /// The unit of output.
     pub unit: ErrorUnit,
     /// The errors, in metres or radians.
     pub sample: ErrorSample,
-    /// Quantiles that may not be larger than so much of the unit.
+    /// The targets: quantiles and their greatest allowed values, in the unit.
     pub limits: Vec<(Quantile, f64)>,
 }
 
-/// A unit for people.
+/// A unit of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorUnit {
-    /// Of radians.
+    /// For errors in radians.
     Degrees,
-    /// Of metres.
+    /// For errors in metres.
     Centimetres,
 }
 
-/// Whether what is asked is so.
+/// Whether a target is met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TargetStatus {
-    /// It is, or nothing is asked.
+    /// It is met, or there is no target.
     Met,
-    /// There was nothing to measure.
+    /// Nothing was measured.
     Empty,
-    /// It is not.
+    /// It is missed.
     Missed,
 }
 
-/// With a wrong calibration, so many times as much may go wrong.
+/// Factor of the allowed rates if the camera differs from its calibration.
 const LENIENCE: f64 = 3.0;
 
 impl VisionReport {
-    /// What was measured on these views and visits.
+    /// The figures of these views and visits.
     #[must_use]
     pub fn of(views: &[JudgedView], visits: &[JudgedVisit], calibration: Calibration) -> Self {
         let mut rates = [places(views), markers(views), of_visits(visits)].concat();
@@ -112,7 +112,7 @@ impl VisionReport {
         match calibration {
             Calibration::Right => errors = all_errors(views),
             Calibration::Wrong => {
-                // Kind and entry only.
+                // Only kind and entry have targets.
                 rates.retain(|rate| rate.subject != ReportSubject::Marker);
                 for rate in &mut rates {
                     let placed = rate.what == NOT_DECIDED || rate.what == DECIDED_WRONGLY;
@@ -131,7 +131,7 @@ impl VisionReport {
         Self { calibration, rates, errors, confusion }
     }
 
-    /// Whether all is as is asked.
+    /// Whether all targets are met.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
         let rates = self.rates.iter().map(Rate::standing);
@@ -140,7 +140,7 @@ impl VisionReport {
     }
 }
 
-/// What is counted of views in some zone: its name, what counts, and how often it may happen.
+/// A failure to count in a zone: its name, its test, and its target.
 type Counted = (&'static str, fn(&JudgedView) -> bool, Option<f64>);
 
 const NOT_DECIDED: &str = "not decided";
@@ -228,7 +228,7 @@ fn of_visits(visits: &[JudgedVisit]) -> Vec<Rate> {
         let seen = cases.iter().filter(|&&seen| seen).count();
         Rate { subject: ReportSubject::Visit, what, seen, cases: cases.len(), limit }
     };
-    // Of the marker a visit tells once it is decided.
+    // The marker counts once a visit is decided.
     let sightings = |visit: &JudgedVisit| {
         let (_, percept) = visit.decided.filter(|_| !visit.is_wrong())?;
         Some((visit.percept.sighting, percept.sighting))
@@ -308,7 +308,7 @@ fn all_errors(views: &[JudgedView]) -> Vec<Errors> {
     ]
 }
 
-/// The truth and the view of a hallway that was called one.
+/// The truth and the view of a hallway that was recognized as one.
 fn hallway(judged: &JudgedView) -> Option<(&HallwayTruth, &HallwayView)> {
     match (&judged.truth, &judged.scene.place) {
         (Truth::Hallway(truth), Place::Hallway(view)) => Some((truth, view)),
@@ -316,7 +316,7 @@ fn hallway(judged: &JudgedView) -> Option<(&HallwayTruth, &HallwayView)> {
     }
 }
 
-/// The truth and the view of a junction that was called one.
+/// The truth and the view of a junction that was recognized as one.
 fn junction(judged: &JudgedView) -> Option<(&JunctionTruth, &JunctionView)> {
     match (&judged.truth, &judged.scene.place) {
         (Truth::Junction(truth), Place::Junction(view)) => Some((truth, view)),
@@ -325,19 +325,19 @@ fn junction(judged: &JudgedView) -> Option<(&JunctionTruth, &JunctionView)> {
 }
 
 impl Rate {
-    /// How often it happened, as a share of the cases; `None` without any.
+    /// The share of failures; `None` without cases.
     #[must_use]
     pub fn rate(&self) -> Option<f64> {
         (self.cases > 0).then(|| self.seen as f64 / self.cases as f64)
     }
 
-    /// How often it happens at most, with a confidence of 95 %.
+    /// The upper bound of the rate, with a confidence of 95 %.
     #[must_use]
     pub fn upper_bound(&self) -> f64 {
         upper_bound(self.seen, self.cases)
     }
 
-    /// Whether it happened as seldom as is asked.
+    /// Whether the target is met.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
         match (self.limit, self.rate()) {
@@ -360,7 +360,7 @@ impl Errors {
         self.sample.quantile(quantile.part()).map(|value| value * factor)
     }
 
-    /// Whether the errors are as small as is asked.
+    /// Whether the targets are met.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
         let standing = self.limits.iter().map(|&(quantile, limit)| match self.quantile(quantile) {
@@ -373,7 +373,7 @@ impl Errors {
 }
 
 impl ReportSubject {
-    /// In a word.
+    /// The name of the subject.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

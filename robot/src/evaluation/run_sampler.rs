@@ -1,4 +1,4 @@
-//! Whole runs: on many plans, from several starts, with and without things that go wrong. Section 6.
+//! Whole runs on many plans, from several starts, with and without faults. Section 6.
 
 use std::sync::Arc;
 
@@ -17,75 +17,75 @@ use crate::{
     simulator::{Effects, FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
 
-/// All runs of a seed: in each plan from as many starts.
+/// All runs of a seed: the same number of starts in each plan.
 #[derive(Clone, Debug)]
 pub struct RunSampler {
     plans: Vec<(String, Arc<FloorPlan>)>,
-    /// The number of the plan, and the facing dart.
+    /// The index of the plan, and the facing dart.
     starts: Vec<(usize, Dart)>,
     seed: u64,
     noise: f64,
     faults: Faults,
 }
 
-/// Whether things go wrong.
+/// Whether faults are injected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Faults {
-    /// Nothing does.
+    /// No faults.
     None,
-    /// In each run one thing does, each kind in turn, at some picture.
+    /// One fault in each run, of each kind in turn.
     Each,
 }
 
-/// A run to be.
+/// A run to make.
 #[derive(Clone, Debug)]
 pub struct RunCase {
-    /// Its number among those of its seed.
+    /// Its number among the runs of the seed.
     pub number: u64,
     /// The plan's name.
     pub plan_name: String,
-    /// Where the robot starts and what is around it.
+    /// The robot and its surroundings.
     pub config: SimulationConfig,
 }
 
-/// A run that was made.
+/// A finished run.
 #[derive(Clone, Debug)]
 pub struct JudgedRun {
-    /// Which.
+    /// The run.
     pub case: RunCase,
-    /// How it ended.
+    /// Its outcome.
     pub ending: RunOutcome,
-    /// Moves that the robot made, those that Algorithm 1 makes in the plan's embedded graph.
+    /// The robot's moves, and the moves of Algorithm 1 in the plan's embedded graph.
     pub moves: [u64; 2],
-    /// Seconds of simulated time.
+    /// Simulated time, in seconds.
     pub seconds: f64,
-    /// How many pictures the robot asked for.
+    /// The number of images that were requested.
     pub pictures: u64,
 }
 
 impl JudgedRun {
-    /// What went wrong, on purpose.
+    /// The injected fault.
     #[must_use]
     pub fn fault(&self) -> Option<FaultKind> {
         self.case.config.faults.first().map(|fault| fault.kind)
     }
 
-    /// Whether the robot has a wrong map, or a wrong pose, and does not know; but a robot that was
-    /// carried, unseen, to a place that looks and goes on alike cannot know.
+    /// Whether the map or the pose is wrong and the robot did not notice. A robot that was carried
+    /// to a place that looks the same cannot notice.
     #[must_use]
     pub fn is_violation(&self) -> bool {
         matches!(self.ending, RunOutcome::Wrong(_)) && self.fault() != Some(FaultKind::Carried)
     }
 }
 
-/// A run is given up with so many more than twice the darts that there are.
+/// The robot gives up if it knows more than twice the plan's darts and this many.
 const SPARE_DARTS: usize = 20;
-/// So many pictures a robot takes on one move, about: a fault comes up somewhere in a run.
+/// The approximate number of images per move, to place faults within a run.
 const PICTURES_A_MOVE: u64 = 16;
 
 impl RunSampler {
-    /// The runs of a seed in these plans, from so many starts each; those without an L are left out,
-    /// where a robot cannot put its marker down. Where it has fewer starts than that, from all of them.
+    /// The runs of a seed in these plans. Plans without an L are left out, because the marker needs
+    /// one. A plan with fewer starts than `starts` is mapped from all of them.
     #[must_use]
     pub fn new(
         plans: Vec<(String, Arc<FloorPlan>)>,
@@ -97,7 +97,7 @@ impl RunSampler {
         let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
             let all = starts_of(plan);
             let wanted = starts.min(all.len());
-            // Evenly spread, beginning with another one in each plan.
+            // Evenly spread starts, with another first one in each plan.
             let nth = move |n: usize| (number, all[(number + n * all.len() / wanted) % all.len()]);
             (0..wanted).map(nth).collect::<Vec<_>>()
         };
@@ -111,7 +111,7 @@ impl RunSampler {
         self.starts.len()
     }
 
-    /// The run of a number; `None` where there is no start.
+    /// The run with this number; `None` without starts.
     #[must_use]
     pub fn case(&self, number: u64) -> Option<RunCase> {
         let start = number.checked_rem(self.starts.len() as u64)?;
@@ -129,8 +129,8 @@ impl RunSampler {
         Some(RunCase { number, plan_name, config })
     }
 
-    /// Makes runs by their numbers, on all threads; with pictures where there are eyes for them. Where
-    /// the watch breaks off, some are missing.
+    /// Makes runs by their numbers on all threads; with rendered images if there are sensors. If
+    /// the watch stops, some are missing.
     #[must_use]
     pub fn judged(
         &self,
@@ -142,10 +142,10 @@ impl RunSampler {
     }
 }
 
-/// A run, made.
+/// Makes a run.
 fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
     let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
-    // A robot that has gone astray would go on mapping what is not there.
+    // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
     let (robot, sensor) = match eyes {
         None => (case.config.by_scene(), None),
@@ -166,7 +166,7 @@ fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
     }
 }
 
-/// Where a robot can start to explore a plan: the darts of its Ls.
+/// The possible starts in a plan: the darts of its Ls.
 #[must_use]
 pub fn starts_of(plan: &FloorPlan) -> Vec<Dart> {
     let graph = plan.graph();

@@ -1,4 +1,4 @@
-//! What an image shows, in a word: the rows and columns of a confusion matrix.
+//! Classes of views: the rows and columns of a confusion matrix.
 
 use std::fmt;
 
@@ -7,20 +7,20 @@ use toposlam_model::driving::{
     visit::JunctionShape,
 };
 
-/// What an image shows, or what a scene says that it does.
+/// The class of a view or of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SceneClass {
     /// A hallway.
     Hallway,
-    /// A junction, as seen from its entry.
+    /// A junction, seen from its entry.
     Junction(JunctionShape),
-    /// A junction whose doors are none of the [`FORMS`]'.
+    /// A junction with none of the [`FORMS`].
     Other,
-    /// The image does not tell.
+    /// An unknown place.
     Unknown,
 }
 
-/// What junctions there are, as seen from their entry, and their names.
+/// The shapes of junctions seen from their entry, and their names.
 pub const FORMS: [(JunctionShape, &str); 6] = [
     (JunctionShape([true, false, false, false]), "dead-end"),
     (JunctionShape([true, true, false, false]), "l-left"),
@@ -31,13 +31,13 @@ pub const FORMS: [(JunctionShape, &str); 6] = [
 ];
 
 impl SceneClass {
-    /// The classes that a truth can be, and then those that only a scene can say.
+    /// All classes. The last two occur only in scenes.
     pub fn all() -> impl Iterator<Item = Self> {
         let junctions = FORMS.into_iter().map(|(form, _)| Self::Junction(form));
         [Self::Hallway].into_iter().chain(junctions).chain([Self::Other, Self::Unknown])
     }
 
-    /// What a scene says.
+    /// The class of a scene.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         match &scene.place {

@@ -1,5 +1,5 @@
-//! Control: for each door at each junction, the junction that the robot reaches and the door by which
-//! it comes in, against those of the specification. Sections 4.2 and 4.3.
+//! Driving: compares, for each door of each junction, the junction that the robot reaches and its
+//! entry door with the specification. Sections 4.2 and 4.3.
 
 use std::{f64::consts::FRAC_PI_2, fmt, sync::Arc};
 
@@ -22,59 +22,59 @@ use crate::{
     simulator::{Effects, SimulationConfig, start_pose},
 };
 
-/// Before it takes the door the robot stands up to so far from the turning point, along its entry and
-/// across it, in metres,
+/// The greatest distance of the robot from the turning point at the start, along and across the
+/// entry hallway, in metres.
 const OFF: f64 = 0.10;
-/// and looks so far to either side of straight on from its entry, in degrees.
+/// The greatest angle between the robot's heading at the start and straight on, in degrees.
 const TURNED: f64 = 15.0;
 
-/// All traversals of a seed: each door of each junction, entered by each of its doors, of some plans;
-/// again and again, each time from another pose.
+/// All traversals of a seed: each door of each junction, entered by each of its doors, repeatedly
+/// and from different poses.
 #[derive(Clone, Debug)]
 pub struct TraversalSampler {
     plans: Vec<(String, Arc<FloorPlan>)>,
-    /// The number of the plan, the entry dart, the door.
+    /// The index of the plan, the entry dart, the door.
     cases: Vec<(usize, Dart, Door)>,
     seed: u64,
     noise: f64,
 }
 
-/// A traversal to be.
+/// A traversal to make.
 #[derive(Clone, Debug)]
 pub struct Traversal {
-    /// Its number among those of its seed.
+    /// Its number among the traversals of the seed.
     pub number: u64,
     /// The plan's name.
     pub plan_name: String,
-    /// The dart by which the robot came to where it stands.
+    /// The dart by which the robot entered its junction.
     pub entry: Dart,
-    /// The door that it is to take.
+    /// The door that it takes.
     pub door: Door,
-    /// Where it stands and what is around it.
+    /// The robot and its surroundings.
     pub config: SimulationConfig,
 }
 
-/// A traversal that was made.
+/// A finished traversal.
 #[derive(Clone, Debug)]
 pub struct JudgedTraversal {
-    /// Which.
+    /// The traversal.
     pub traversal: Traversal,
-    /// How it ended.
+    /// Its outcome.
     pub outcome: TraversalOutcome,
-    /// Seconds of simulated time.
+    /// Simulated time, in seconds.
     pub seconds: f64,
-    /// How many pictures the robot asked for.
+    /// The number of images that were requested.
     pub pictures: u64,
 }
 
-/// How a traversal ended.
+/// The outcome of a traversal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TraversalOutcome {
-    /// The robot is where it should be, and perceives what it should.
+    /// The robot is at the specified pose and has the specified percept.
     Right,
-    /// It is not, or does not.
+    /// The pose or the percept is wrong.
     Wrong(TruthDivergence),
-    /// It gave up and said why.
+    /// The robot gave up, with this reason.
     GaveUp(ExplorerError),
 }
 
@@ -89,8 +89,8 @@ impl fmt::Display for TraversalOutcome {
 }
 
 impl TraversalSampler {
-    /// The traversals of a seed in these plans, those without an L left out: there is no place for a
-    /// marker in them. The robot is so many times as inexact as by default.
+    /// The traversals of a seed in these plans. Plans without an L are left out, because the marker
+    /// needs one. `noise` is a multiple of the default noise.
     #[must_use]
     pub fn new(plans: Vec<(String, Arc<FloorPlan>)>, seed: u64, noise: f64) -> Self {
         let plans: Vec<_> =
@@ -104,7 +104,7 @@ impl TraversalSampler {
         Self { cases: cases.collect(), plans, seed, noise }
     }
 
-    /// The number of doors, counted from each entry of each junction.
+    /// The number of pairs of entry door and exit door.
     #[must_use]
     pub fn cases(&self) -> usize {
         self.cases.len()
@@ -116,7 +116,7 @@ impl TraversalSampler {
         self.plans.len()
     }
 
-    /// The traversal of a number; `None` where there is no plan.
+    /// The traversal with this number; `None` without plans.
     #[must_use]
     pub fn traversal(&self, number: u64) -> Option<Traversal> {
         let case = number.checked_rem(self.cases.len() as u64)?;
@@ -133,8 +133,8 @@ impl TraversalSampler {
         Some(Traversal { number, plan_name, entry, door, config })
     }
 
-    /// Makes traversals by their numbers, on all threads; with pictures where there are eyes for them.
-    /// Where the watch breaks off, some are missing.
+    /// Makes traversals by their numbers on all threads; with rendered images if there are sensors.
+    /// If the watch stops, some are missing.
     #[must_use]
     pub fn judged(
         &self,
@@ -146,7 +146,7 @@ impl TraversalSampler {
     }
 }
 
-/// A traversal, made.
+/// Makes a traversal.
 fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
     let (robot, sensor) = match eyes {
         None => (case.config.by_scene(), None),
@@ -180,7 +180,7 @@ fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
     }
 }
 
-/// Where the marker lies: at every other traversal to an L there, else at any L.
+/// The marker's dart: at every other traversal to an L it lies there, else at any L.
 fn marker(plan: &FloorPlan, entry: Dart, door: Door, chance: &mut impl Rng) -> Option<Dart> {
     let graph = plan.graph();
     let there: Vertex = graph.vertex(graph.after(entry, door));
@@ -190,7 +190,7 @@ fn marker(plan: &FloorPlan, entry: Dart, door: Door, chance: &mut impl Rng) -> O
     candidates.choose(chance).copied()
 }
 
-/// A pose about another one.
+/// A random pose near another one.
 fn about(pose: Pose, chance: &mut impl Rng) -> Pose {
     let [along, aside] = [(); 2].map(|()| chance.random_range(-OFF..=OFF));
     let turned = chance.random_range(-TURNED..=TURNED).to_radians();

@@ -1,4 +1,4 @@
-//! What a scene says, held against the truth.
+//! Compares scenes with the ground truth.
 
 use std::{f64::consts::FRAC_PI_4, fmt};
 
@@ -12,65 +12,65 @@ use toposlam_vision::params::{MARKER_LENGTH, MARKER_WIDTH};
 
 use crate::truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth};
 
-/// How a scene's place compares with the truth.
+/// The verdict on a scene's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PlaceVerdict {
     /// It is right.
     Right,
-    /// The scene does not tell.
+    /// The scene is unknown.
     Unknown,
-    /// A junction was taken for a hallway.
+    /// A junction was reported as a hallway.
     HallwayForJunction,
-    /// A hallway was taken for a junction.
+    /// A hallway was reported as a junction.
     JunctionForHallway,
-    /// A junction of another kind.
+    /// A junction was reported as another kind.
     WrongKind,
-    /// A junction of the right kind, entered by another door.
+    /// The kind is right, but the entry door is wrong.
     WrongEntry,
 }
 
 impl PlaceVerdict {
-    /// Whether what the scene says is false: neither right nor unknown.
+    /// Whether the scene is wrong: neither right nor unknown.
     #[must_use]
     pub fn is_wrong(self) -> bool {
         !matches!(self, Self::Right | Self::Unknown)
     }
 }
 
-/// How far a hallway is from where a scene says that it is.
+/// The errors of a hallway in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallwayErrors {
-    /// Of its direction, in radians.
+    /// Error of the direction, in radians.
     pub heading: f64,
-    /// Of the distances to the wall on the left and to that on the right, in metres.
+    /// Errors of the distances to the left and the right wall, in metres.
     pub sides: [f64; 2],
 }
 
-/// How far a junction is from where a scene says that it is.
+/// The errors of a junction in a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JunctionErrors {
-    /// For each centre line, clockwise from the entry door: how far from it the turning point really
-    /// is, in metres, and the error of its direction, in radians.
+    /// For each centre line, clockwise from the entry door: its distance from the true turning
+    /// point in metres, and the error of its direction in radians.
     pub lines: Vec<(f64, f64)>,
-    /// Of the turning point, in metres.
+    /// Error of the turning point, in metres.
     pub turning_point: f64,
 }
 
-/// How what a scene says of the marker compares with the truth.
+/// The verdict on a scene's marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MarkerVerdict {
-    /// It is not said to be there. Whether it should have been seen depends on where the robot is.
+    /// The scene has no marker. Whether it should have one depends on the robot's pose.
     NotSeen,
-    /// It is where it is said to be; and the door along which it points is right, wrong or not told.
+    /// The marker is where the scene has it. Its door is right, wrong or not reported.
     Seen(Option<bool>),
-    /// It is not where it is said to be, or nowhere at all.
+    /// The marker is somewhere else, or nowhere.
     Phantom,
 }
 
-/// How far beyond its border the marker may be seen, in metres.
+/// The greatest distance of a reported marker from the border of the true one, in metres.
 const MARKER_OFF: f64 = 0.15;
 
-/// How a scene's place compares with the truth.
+/// The verdict on a scene's place.
 #[must_use]
 pub fn judge(truth: &Truth, scene: &Scene) -> PlaceVerdict {
     match (truth, &scene.place) {
@@ -81,7 +81,7 @@ pub fn judge(truth: &Truth, scene: &Scene) -> PlaceVerdict {
         (Truth::Junction(truth), Place::Junction(view)) => judge_junction(truth, view),
         (Truth::Between(_, truths), Place::Junction(view)) => {
             let verdicts = truths.iter().map(|truth| judge_junction(truth, view));
-            // The best of them: the junction that was meant.
+            // The best verdict is that of the junction that was meant.
             let worse = [PlaceVerdict::Right, PlaceVerdict::WrongEntry, PlaceVerdict::WrongKind];
             let rank = |verdict: &PlaceVerdict| worse.iter().position(|other| other == verdict);
             verdicts.min_by_key(rank).unwrap_or(PlaceVerdict::JunctionForHallway)
@@ -99,7 +99,7 @@ fn judge_junction(truth: &JunctionTruth, view: &JunctionView) -> PlaceVerdict {
     }
 }
 
-/// The kind of a junction by its number of doors.
+/// The kind of a junction with this number of doors.
 fn kind(view: &JunctionView) -> Option<JunctionKind> {
     match view.doors.len() {
         1 => Some(JunctionKind::DeadEnd),
@@ -109,8 +109,8 @@ fn kind(view: &JunctionView) -> Option<JunctionKind> {
     }
 }
 
-/// The true directions of the doors, in the view's order; `None` where one of them is another door.
-/// Where the robot has turned, any door may be the first.
+/// The true directions of the doors in the view's order; `None` if one of them is another door. If
+/// the robot has turned, any door may come first.
 fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
     let rotations = if truth.form.is_some() { 1 } else { truth.doors.len() };
     let mut doors = truth.doors.clone();
@@ -125,10 +125,10 @@ fn same_doors(truth: &JunctionTruth, view: &JunctionView) -> Option<Vec<f64>> {
     None
 }
 
-/// How far a hallway is from where it is said to be.
+/// The errors of a hallway in a scene.
 #[must_use]
 pub fn hallway_errors(truth: &HallwayTruth, view: &HallwayView) -> HallwayErrors {
-    // A direction on the other side of a right angle is that of somebody who looks the other way.
+    // The view may have the opposite direction.
     let turned = (truth.heading - view.heading).cos() < 0.0;
     let [left, right] = if turned { [truth.right, truth.left] } else { [truth.left, truth.right] };
     HallwayErrors {
@@ -137,7 +137,7 @@ pub fn hallway_errors(truth: &HallwayTruth, view: &HallwayView) -> HallwayErrors
     }
 }
 
-/// How far a junction is from where it is said to be; `None` where it is not that junction.
+/// The errors of a junction in a scene; `None` if the doors are not its doors.
 #[must_use]
 pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<JunctionErrors> {
     let doors = same_doors(truth, view)?;
@@ -151,7 +151,7 @@ pub fn junction_errors(truth: &JunctionTruth, view: &JunctionView) -> Option<Jun
     Some(JunctionErrors { lines: lines.collect(), turning_point: (x - u).hypot(y - v) })
 }
 
-/// How what a scene says of the marker compares with the truth: where it is, if it is anywhere.
+/// The verdict on a scene's marker, given the true marker, if there is one.
 #[must_use]
 pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> MarkerVerdict {
     match (truth, seen) {
@@ -163,7 +163,7 @@ pub fn judge_marker(truth: Option<&MarkerTruth>, seen: Option<&MarkerView>) -> M
     }
 }
 
-/// Whether a position is on the marker, or near.
+/// Whether a position is on the marker or near it.
 fn is_on(marker: &MarkerTruth, [x, y]: [f64; 2]) -> bool {
     let [u, v] = [x - marker.position[0], y - marker.position[1]];
     let (sine, cosine) = marker.axis.sin_cos();
@@ -201,7 +201,7 @@ mod tests {
 
     const HALLWAY: HallwayTruth = HallwayTruth { heading: 0.1, left: 0.9, right: 0.7 };
 
-    /// Which form it is does not matter here.
+    /// The shape does not matter here.
     const ENTERED: Option<JunctionShape> = Some(JunctionShape([true; 4]));
 
     fn junction(doors: &[f64], form: Option<JunctionShape>) -> JunctionTruth {
@@ -281,7 +281,7 @@ mod tests {
         let errors = hallway_errors(&HALLWAY, &hallway(0.15, 0.92, 0.71));
         assert!((errors.heading - 0.05).abs() < 1e-12);
         assert!((errors.sides[0] - 0.02).abs() < 1e-12 && (errors.sides[1] - 0.01).abs() < 1e-12);
-        // Across, either end may be ahead.
+        // Across the hallway, both of its directions are equally near to ahead.
         let across = HallwayTruth { heading: FRAC_PI_2 - 0.01, ..HALLWAY };
         let errors = hallway_errors(&across, &hallway(-FRAC_PI_2 + 0.01, 0.7, 0.9));
         assert!((errors.heading - 0.02).abs() < 1e-12, "{errors:?}");

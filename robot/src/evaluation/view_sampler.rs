@@ -1,4 +1,4 @@
-//! Views drawn by chance, each from its number alone.
+//! Random views. Each follows from its number alone.
 
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
@@ -20,29 +20,31 @@ use super::{
 use crate::simulator::{BuildingLook, Effects, Pose};
 use crate::truth::{JunctionTruth, angle};
 
-/// From so far before a turning point, to so far beyond it junctions are looked at, in metres.
+/// Views of a junction lie from this distance before its turning point to this distance behind it,
+/// in metres.
 const APPROACH: [f64; 2] = [1.5, -0.3];
-/// So far aside of a hallway's middle the robot may be, in metres.
+/// The greatest distance of the robot from the middle of the hallway, in metres.
 const ASIDE: f64 = 0.3;
-/// Nearer to a wall it never is: the robot's radius, and where its sonars stop it; in metres.
+/// The least distance from a wall, in metres: the robot's radius, and the distance at which its
+/// sonars stop it.
 const CLEAR: f64 = 0.205 + 0.2;
-/// So far to either side of its hallway's direction it may look, in degrees.
+/// The greatest angle between the robot's heading and its hallway, in degrees.
 const TURNED: f64 = 25.0;
-/// The share of views at junctions; the others are anywhere in hallways.
+/// The share of views at junctions. The others are anywhere in hallways.
 const AT_JUNCTIONS: f64 = 0.6;
-/// The share of views with a marker at the L at which they are, and somewhere else.
+/// The shares of views with a marker at the L in view, and with a marker elsewhere.
 const MARKED: [f64; 2] = [0.5, 0.2];
 
-/// Pictures of a visit: the first so far before the turning point, the last so far beyond it,
+/// Distances of the first and the last image of a visit from the turning point, in metres.
 const VISIT: [f64; 2] = [1.5, -0.1];
-/// so far apart, a little more or less, in metres.
+/// Least and greatest distance between images of a visit, in metres.
 const STEP: [f64; 2] = [0.22, 0.28];
-/// On its way the robot turns by so much to either side of its hallway's direction, in degrees,
+/// The greatest angle between the robot's heading and its hallway during a visit, in degrees.
 const SWAY: f64 = 12.0;
-/// and moves aside by so much a picture, in metres.
+/// The greatest sideways movement between two images of a visit, in metres.
 const DRIFT: f64 = 0.04;
 
-/// What views are for: each purpose has views of its own.
+/// The purpose of views. Each purpose has its own random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewPurpose {
     /// To be judged one by one.
@@ -56,33 +58,33 @@ pub enum ViewPurpose {
 /// All views of a seed.
 #[derive(Clone, Debug)]
 pub struct ViewSampler {
-    /// From which everything follows.
+    /// Random seed.
     pub seed: u64,
-    /// The floor plans, by their names.
+    /// The floor plans and their names.
     pub plans: Vec<(String, Arc<FloorPlan>)>,
-    /// Whether there are random plans, too.
+    /// Whether random plans are added.
     pub random_plans: bool,
-    /// What the buildings look like.
+    /// The looks of the buildings.
     pub looks: Vec<&'static BuildingLook>,
-    /// The sizes of pictures, which views have in turn.
+    /// The image sizes, which views have in turn.
     pub sizes: Vec<[u32; 2]>,
-    /// Which effects there are.
+    /// The effects.
     pub effects: WhichEffects,
 }
 
-/// Why a view cannot be drawn.
+/// Why a view cannot be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ViewError {
-    /// There is nothing to look at.
+    /// There is no floor plan.
     #[error("there is neither a floor plan nor are there random ones")]
     NoPlan,
-    /// There is nothing to look with.
+    /// There is no image size.
     #[error("there is no size of pictures")]
     NoSize,
-    /// Nothing looks like anything.
+    /// There is no look.
     #[error("there is no look")]
     NoLook,
-    /// There is something wrong with the random plans.
+    /// A random plan is not valid.
     #[error("random plan {seed} is not valid")]
     RandomPlan {
         /// The plan's seed.
@@ -91,11 +93,10 @@ pub enum ViewError {
 }
 
 impl ViewSampler {
-    /// Views of these looks in the floor plans of `worlds/` and no others, with all effects, as pictures
-    /// of one size.
+    /// Views of these looks in the floor plans of `worlds/`, with all effects and one image size.
     ///
     /// # Errors
-    /// Never, as [`plans`].
+    /// Returns an error as [`plans`] does.
     pub fn of(
         looks: impl IntoIterator<Item = &'static BuildingLook>,
         size: [u32; 2],
@@ -111,26 +112,26 @@ impl ViewSampler {
         })
     }
 
-    /// The floor plan of this name; of random ones there is none.
+    /// The floor plan with this name. Random plans are not found.
     #[must_use]
     pub fn plan(&self, name: &str) -> Option<&FloorPlan> {
         self.plans.iter().find(|(other, _)| other == name).map(|(_, plan)| &**plan)
     }
 
-    /// The view of a number.
+    /// The view with this number.
     ///
     /// # Errors
-    /// Where there are no plans, or no sizes.
+    /// Returns an error if there are no plans, looks or sizes.
     pub fn view(&self, number: u64) -> Result<RenderedView, ViewError> {
         let (mut view, mut chance) = self.setting(ViewPurpose::Single, number)?;
         place(&mut view, &mut chance, AT_JUNCTIONS);
         Ok(view)
     }
 
-    /// The pictures of one approach to a junction, in their order.
+    /// The images of one approach to a junction, in order.
     ///
     /// # Errors
-    /// As [`Self::view`].
+    /// Returns an error as [`Self::view`] does.
     pub fn visit(&self, number: u64) -> Result<Vec<RenderedView>, ViewError> {
         let (mut view, mut chance) = self.setting(ViewPurpose::Visit, number)?;
         let Some(entry) = an_entry(&view.plan, &mut chance) else { return Ok(Vec::new()) };
@@ -150,10 +151,10 @@ impl ViewSampler {
         Ok(pictures)
     }
 
-    /// A view to learn the colours of a look from, at this size; often with a marker nearby.
+    /// A view of a junction from which to learn the colours of a look, often with a marker nearby.
     ///
     /// # Errors
-    /// As [`Self::view`].
+    /// Returns an error as [`Self::view`] does.
     pub fn to_learn_from(
         &self,
         look: &'static BuildingLook,
@@ -167,7 +168,7 @@ impl ViewSampler {
         Ok(view)
     }
 
-    /// A building and a camera, and what else follows from a number.
+    /// A view without a pose, and the random numbers to complete it.
     fn setting(
         &self,
         purpose: ViewPurpose,
@@ -206,7 +207,7 @@ impl ViewSampler {
     }
 }
 
-/// Puts the robot somewhere, and the marker perhaps.
+/// Chooses a pose, and a place for the marker.
 fn place(view: &mut RenderedView, chance: &mut Xoshiro256PlusPlus, at_junctions: f64) {
     let entry = an_entry(&view.plan, chance).filter(|_| chance.random_bool(at_junctions));
     let reach = reach(&view.plan);
@@ -225,7 +226,7 @@ fn place(view: &mut RenderedView, chance: &mut Xoshiro256PlusPlus, at_junctions:
     put_marker(view, entry, chance);
 }
 
-/// Puts the marker on an L: on that of the door, if there is one, or on any other, or nowhere.
+/// Puts the marker on an L: on the one with the entry door, on any other, or on none.
 fn put_marker(view: &mut RenderedView, entry: Option<Dart>, chance: &mut Xoshiro256PlusPlus) {
     let graph = view.plan.graph();
     let is_l = |vertex: Vertex| view.plan.junction(vertex).kind == JunctionKind::L;
@@ -243,19 +244,19 @@ fn put_marker(view: &mut RenderedView, entry: Option<Dart>, chance: &mut Xoshiro
     view.marker = vertex.and_then(|vertex| graph.dart(vertex, index));
 }
 
-/// The stream of random numbers of a number.
+/// The random numbers for a purpose and a number.
 fn stream(seed: u64, purpose: ViewPurpose, number: u64) -> Xoshiro256PlusPlus {
     let mut of_seed = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut salt = 0;
     for _ in 0..=purpose as u8 {
         salt = of_seed.next_u64();
     }
-    // Neighbouring seeds have unlike streams: the generator is seeded by SplitMix64.
+    // Neighbouring seeds give unrelated streams, because SplitMix64 seeds the generator.
     Xoshiro256PlusPlus::seed_from_u64(salt.wrapping_add(number))
 }
 
-/// A door by which a junction may be entered: first what the junction looks like from it is drawn, of
-/// what there is in the plan, so that rare forms are not rare.
+/// An entry door of a junction. Its shape is drawn first, among the shapes in the plan, so that
+/// rare shapes are not rare.
 fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
     let entries = FORMS.map(|(form, _)| {
         let entries = plan.graph().darts().filter(|&dart| form_from(plan, dart) == Some(form));
@@ -265,24 +266,24 @@ fn an_entry(plan: &FloorPlan, chance: &mut Xoshiro256PlusPlus) -> Option<Dart> {
     there.choose(chance)?.choose(chance).copied()
 }
 
-/// What the junction of a dart looks like to a robot that enters by it.
+/// The shape of a dart's junction as seen by a robot that enters by the dart.
 fn form_from(plan: &FloorPlan, dart: Dart) -> Option<JunctionShape> {
     let pose = before_junction(plan, dart, 0.0, 0.0, 0.0);
     JunctionTruth::of(plan, plan.graph().vertex(dart), pose).form
 }
 
-/// How far aside of the middle the robot may be.
+/// The greatest distance from the middle of the hallway, in metres.
 fn reach(plan: &FloorPlan) -> f64 {
     (plan.hallway_width() / 2.0 - CLEAR).clamp(0.0, ASIDE)
 }
 
-/// A pose so far before the turning point of the dart's junction, on the way in by the dart.
+/// A pose this far before the turning point of the dart's junction, on the way in by the dart.
 fn before_junction(plan: &FloorPlan, entry: Dart, before: f64, aside: f64, turned: f64) -> Pose {
     let junction = plan.junction(plan.graph().vertex(entry));
     along(junction.position, plan.direction(entry).reversed(), -before, aside, turned)
 }
 
-/// A pose in a hallway; `part` says in which and where.
+/// A pose in a hallway. `part` selects the hallway and the place in it.
 fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64) -> Pose {
     let ends =
         |hallway: &Hallway| [hallway.from, hallway.to].map(|vertex| plan.junction(vertex).position);
@@ -320,8 +321,8 @@ fn in_a_hallway(plan: &FloorPlan, part: f64, back: bool, aside: f64, turned: f64
     along(from, direction, left.min(length(at)), aside, turned)
 }
 
-/// A pose so far along a direction from a position, so far to the left of it, turned by so many
-/// degrees to the left.
+/// A pose this far along a direction from a position, `aside` to the left of it, and turned by this
+/// many degrees to the left.
 fn along(from: [f64; 2], direction: Direction, by: f64, aside: f64, turned: f64) -> Pose {
     let ahead = angle(direction);
     let (left, ahead_vector) = ((ahead + FRAC_PI_2).sin_cos(), direction.vector());

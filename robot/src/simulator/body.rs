@@ -1,19 +1,19 @@
-//! What the robot's camera sees of the robot: its body with a laptop on it, the mirror's two struts,
-//! and the camera itself in the middle of the mirror. Section 2.5.
+//! The robot in its own camera's image: its body with a laptop on it, the mirror's two struts, and
+//! the camera in the middle of the mirror. Section 2.5.
 
 use super::effects::Effects;
 use super::optics::RayPath;
 use super::rig::PixelRay;
 
-/// Radius of the robot's body, and how high its top is, in metres.
+/// Radius of the robot's body and height of its top, in metres.
 const RADIUS: f32 = 0.205;
 const TOP: f32 = 0.35;
 
-/// Half the laptop's length and width, and how high it is, in metres.
+/// Half the laptop's length and width, and its height, in metres.
 const LAPTOP: [f32; 2] = [0.150, 0.105];
 const LAPTOP_TOP: f32 = 0.37;
 
-/// How far the struts stand from the axis, and from how far below the pinhole, in metres.
+/// Distance of the struts from the axis, and of their feet below the pinhole, in metres.
 const STRUT_AT: f32 = 0.055;
 const STRUT_FOOT: f32 = 0.03;
 
@@ -29,15 +29,15 @@ pub(super) enum RobotPart {
     Body,
 }
 
-/// What of the robot can be seen in one picture.
+/// The parts of the robot that are visible in one image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     seen: bool,
     lens: f32,
-    /// Half of what a strut hides, and where it is, of 65,536 to a full turn.
+    /// Half the angle that a strut hides, and its direction, in 1/65,536 of a turn.
     strut_half: i32,
     strut_at: u16,
-    /// The pinhole's height.
+    /// Height of the pinhole, in metres.
     height: f32,
 }
 
@@ -57,13 +57,13 @@ impl Body {
     #[inline]
     pub(super) fn met(&self, ray: &PixelRay) -> Option<RobotPart> {
         if self.strut_half > 0 {
-            // Opposite struts: half a turn more or less is the same.
+            // The struts are opposite each other: half a turn makes no difference.
             let away = i32::from((ray.turn.wrapping_sub(self.strut_at) << 1).cast_signed()) / 2;
             if away.abs() <= self.strut_half && self.strut_reaches(ray) {
                 return Some(RobotPart::Strut);
             }
         }
-        // No part of the body is to be seen but steeply downwards.
+        // The body is visible only in steep rays downwards.
         if ray.by == RayPath::Direct || ray.direction[2] > -0.7 {
             return None;
         }
@@ -93,7 +93,7 @@ impl Body {
         })
     }
 
-    /// Whether a ray is as high as the struts are where they stand.
+    /// Whether a ray is at the height of the struts where they stand.
     fn strut_reaches(&self, ray: &PixelRay) -> bool {
         let [x, y, z] = ray.origin;
         let level = ray.direction[0].hypot(ray.direction[1]);
@@ -102,14 +102,14 @@ impl Body {
     }
 }
 
-/// Where a descending ray is so high.
+/// The place where a descending ray has this height.
 fn at_height(ray: &PixelRay, height: f32) -> [f32; 2] {
     let length = (height - ray.origin[2]) / ray.direction[2];
     [0, 1].map(|axis| ray.origin[axis] + length * ray.direction[axis])
 }
 
 impl RobotPart {
-    /// How much light it throws back.
+    /// The reflectance of the part.
     pub(super) fn colour(self) -> [f32; 3] {
         match self {
             Self::Lens => [0.01, 0.01, 0.015],

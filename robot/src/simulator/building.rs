@@ -13,18 +13,18 @@ use super::random_stream::{StreamPurpose, about, clouds, stream};
 use super::squares::Squares;
 use super::walls::{BuildingWall, walls};
 
-/// The marker, along its hallway and across it, in metres.
+/// Length and width of the marker, in metres.
 const MARKER: [f64; 2] = [0.60, 0.18];
 
-/// A door's width and height, and the width of its frame, in metres.
+/// Width and height of a door, and width of its frame, in metres.
 const DOOR_WIDTH: f64 = 0.90;
 const DOOR_HEIGHT: f32 = 2.05;
 const FRAME: f32 = 0.07;
 
-/// How long things on a wall are at most, in metres.
+/// The greatest length of things on a wall, in metres.
 const LONGEST: f32 = 1.01;
 
-/// A building that can be looked at.
+/// A building to render.
 #[derive(Clone, Debug)]
 pub struct Building {
     pub(super) look: BuildingLook,
@@ -33,7 +33,7 @@ pub struct Building {
     walls: Vec<BuildingWall>,
     pub(super) faces: Vec<Face>,
     things: Vec<Thing>,
-    /// Along which walls there may be tape.
+    /// The walls along which tape may lie.
     taped: Squares,
     pub(super) light: LightMap,
     lamps: Vec<Lamp>,
@@ -63,13 +63,13 @@ pub(super) struct Face {
     pub(super) plane: f32,
     pub(super) floor_side: f32,
     pub(super) span: [f32; 2],
-    /// Where tape lies along it: as far as the wall, and round a corner that juts out.
+    /// The extent of tape along the wall: the wall itself, and round outer corners.
     taped: [f32; 2],
-    /// Its things.
+    /// The range of its things.
     things: [usize; 2],
 }
 
-/// What a wall has on some stretch.
+/// A thing on a stretch of a wall.
 #[derive(Clone, Copy, Debug)]
 struct Thing {
     kind: Kind,
@@ -79,7 +79,7 @@ struct Thing {
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// The stripe is missing.
+    /// A gap in the stripe.
     Gap,
     Door {
         taped: bool,
@@ -91,7 +91,7 @@ enum Kind {
     },
 }
 
-/// What part of a wall is seen.
+/// A visible part of a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum WallPart {
     Bare,
@@ -102,10 +102,10 @@ pub(super) enum WallPart {
 }
 
 impl Building {
-    /// The building of a floor plan; with a marker on the floor of the dart's junction, along the dart's
-    /// hallway, where there is one.
+    /// The building of a floor plan. If `marker` is given, the marker lies at that dart's junction,
+    /// along the dart's hallway.
     ///
-    /// Of the effects, those of the building count. The same seed makes the same building.
+    /// Only effects with the scope `Building` matter. The same seed gives the same building.
     #[must_use]
     pub fn new(
         plan: &FloorPlan,
@@ -140,7 +140,7 @@ impl Building {
             StripeKind::OnFloor => faces.iter().map(|face| face.tape(look.stripe.width)).collect(),
             StripeKind::OnWall => Vec::new(),
         };
-        // As far as the edges of lamps may be seen blurred.
+        // Edges of lamps may be blurred this far.
         let lit: Vec<_> = lights.lamps.iter().map(|lamp| lamp.rectangle().widened(0.5)).collect();
         Self {
             look: *look,
@@ -186,13 +186,13 @@ impl Building {
         self.marker
     }
 
-    /// Whether there is floor at this place.
+    /// Whether there is floor at a position.
     #[must_use]
     pub fn has_floor(&self, position: [f64; 2]) -> bool {
         self.floors.iter().any(|floor| floor.holds(position))
     }
 
-    /// The things that a wall has at a place along it, and perhaps others near there.
+    /// The things on a wall at a place along it, and perhaps others nearby.
     #[inline]
     fn things(&self, face: &Face, along: f32) -> impl Iterator<Item = (usize, &Thing)> {
         let things = &self.things[face.things[0]..face.things[1]];
@@ -201,7 +201,7 @@ impl Building {
         (face.things[0] + first..).zip(things)
     }
 
-    /// What part of a wall is so far along it and so high up.
+    /// The part of a wall at this place along it and this height.
     pub(super) fn wall_part(&self, face: &Face, along: f32, height: f32) -> WallPart {
         let stripe = self.look.stripe;
         let low = stripe.kind == StripeKind::OnWall && height < stripe.width as f32;
@@ -225,7 +225,7 @@ impl Building {
         part
     }
 
-    /// How much light part of a wall throws back.
+    /// The reflectance of a part of a wall.
     pub(super) fn wall_colour(&self, part: WallPart, along: f32, height: f32) -> [f32; 3] {
         match part {
             WallPart::Bare => self.colours.wall,
@@ -258,19 +258,19 @@ impl Building {
         })
     }
 
-    /// The lamps above a place or near there.
+    /// The lamps above a place or nearby.
     #[inline]
     pub(super) fn lamps(&self, place: [f32; 2]) -> impl Iterator<Item = &Lamp> {
         self.lit.at(place).iter().map(|&number| &self.lamps[number as usize])
     }
 
-    /// How much light the stripe throws back.
+    /// The reflectance of the stripe.
     pub(super) fn scuffed(&self, x: f32, y: f32) -> [f32; 3] {
         if self.scuffs == 0.0 {
             return self.colours.stripe;
         }
         let wear = 0.5 * clouds(x * 5.0, y * 5.0, 77) + 0.5 * clouds(x * 31.0, y * 31.0, 78);
-        // Worn tape is nearer to the colour of what it sticks on, and dirt to grey.
+        // Worn tape looks more like what it sticks on, and dirty tape is greyer.
         let share = self.scuffs * (0.5 + 0.5 * wear);
         [0, 1, 2].map(|c| {
             self.colours.stripe[c] * (1.0 - share)
@@ -278,14 +278,14 @@ impl Building {
         })
     }
 
-    /// How much light tape throws back at a place.
+    /// The reflectance of tape at a place.
     pub(super) fn tape_colour(&self, place: [f32; 2]) -> [f32; 3] {
         self.scuffed(place[0], place[1])
     }
 }
 
 impl Face {
-    /// Where there may be tape of this width along it.
+    /// The area in which tape of this width may lie along the wall.
     fn tape(&self, width: f64) -> Rectangle {
         let plane = f64::from(self.plane);
         let inner = plane + f64::from(self.floor_side) * width;
@@ -295,7 +295,7 @@ impl Face {
     }
 }
 
-/// Doors, posters and gaps of one wall, in the order in which they begin.
+/// Doors, posters and gaps of a wall, sorted by their beginnings.
 fn things_of(wall: &BuildingWall, number: usize, effects: &Effects, seed: u64) -> Vec<Thing> {
     let length = wall.length();
     let mut things: Vec<Thing> = Vec::new();
@@ -323,7 +323,7 @@ fn things_of(wall: &BuildingWall, number: usize, effects: &Effects, seed: u64) -
     things
 }
 
-/// Puts a thing on a wall, that share of the way along it, if it has room there between the others.
+/// Puts a thing on a wall at this share of its length, if there is room between the others.
 fn place(
     wall: &BuildingWall,
     things: &mut Vec<Thing>,
@@ -344,7 +344,7 @@ fn place(
     }
 }
 
-/// A poster: a frame of paper, and two fields.
+/// The colour of a poster: a paper border and two fields.
 fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
     let edge = along.min(1.0 - along).min(up.min(1.0 - up));
     if edge < 0.05 {
@@ -356,7 +356,7 @@ fn poster(colour: [f32; 3], [along, up]: [f32; 2]) -> [f32; 3] {
     }
 }
 
-/// The marker's rectangle on a dart's junction.
+/// The marker's rectangle at a dart's junction.
 fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
     let position = plan.junction(plan.graph().vertex(dart)).position;
     let along = plan.direction(dart).vector();
@@ -367,5 +367,5 @@ fn marker_at(plan: &FloorPlan, dart: Dart) -> Rectangle {
     }
 }
 
-/// The ceiling's height, in metres.
+/// Height of the ceiling, in metres.
 pub(super) const HEIGHT: f32 = CEILING as f32;

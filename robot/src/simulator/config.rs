@@ -1,4 +1,4 @@
-//! A simulated robot to be: where it stands, how exact it is, and what goes wrong with it.
+//! The configuration of a simulated robot: its start, its noise and its faults.
 
 use std::sync::Arc;
 
@@ -7,34 +7,34 @@ use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
 use super::{faults::RobotFault, motion::MotionNoise};
 use crate::{pose::Pose, truth::angle};
 
-/// How long a picture takes unless something else is said, in seconds.
+/// The default time to take an image, in seconds.
 pub const PICTURE_TIME: f64 = 0.3;
 
-/// A simulated robot to be.
+/// The configuration of a simulated robot.
 #[derive(Clone, Debug)]
 pub struct SimulationConfig {
-    /// The plan of its building.
+    /// The floor plan of its building.
     pub plan: Arc<FloorPlan>,
     /// The dart along which the marker lies.
     pub marker: Dart,
-    /// Where it stands at first.
+    /// The robot's pose at the start.
     pub pose: Pose,
-    /// How far its wheels are from ideal ones, as a multiple of [`MotionNoise::DEFAULT`]; and without
-    /// images, sensing from what was measured.
+    /// Noise of the wheels as a multiple of [`MotionNoise::DEFAULT`]. Without images, it also
+    /// multiplies the measured errors of sensing.
     pub noise: f64,
-    /// How long a picture takes, in seconds.
+    /// The time to take an image, in seconds.
     pub picture_time: f64,
-    /// What goes wrong.
+    /// The injected faults.
     pub faults: Vec<RobotFault>,
-    /// Whether it keeps what its wheels were told, for [`Robot::track`](crate::robot::Robot::track).
+    /// Whether wheel speeds are recorded for [`Robot::track`](crate::robot::Robot::track).
     pub keeps_track: bool,
-    /// From which everything follows that is left to chance.
+    /// Random seed.
     pub seed: u64,
 }
 
 impl SimulationConfig {
-    /// A robot that begins to explore: at the turning point of the facing dart's junction, its back to
-    /// the dart's hallway, the marker along it.
+    /// A robot at the start of its exploration: at the turning point of the facing dart's junction,
+    /// its back to the dart's hallway, the marker along the dart.
     #[must_use]
     pub fn at_start(plan: Arc<FloorPlan>, facing: Dart, seed: u64) -> Self {
         let pose = start_pose(&plan, facing);
@@ -55,7 +55,7 @@ impl SimulationConfig {
     }
 }
 
-/// Where a robot stands that begins at a dart: at its junction's turning point, its back to the dart's
+/// The pose at a start: at the turning point of the dart's junction, the back to the dart's
 /// hallway.
 #[must_use]
 pub fn start_pose(plan: &FloorPlan, facing: Dart) -> Pose {

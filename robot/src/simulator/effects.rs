@@ -1,51 +1,51 @@
-//! Effects: what makes a picture harder to read than a plain one, each with a knob.
+//! Effects that make images harder to read. Each has a name, a range and a value.
 
 use std::ops::RangeInclusive;
 
 use rand::{Rng, RngExt};
 use thiserror::Error;
 
-/// What a knob changes.
+/// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EffectScope {
-    /// The building: the same in every picture of it.
+    /// The building: the effect is the same in all of its images.
     Building,
-    /// The robot and its camera, and the one picture.
+    /// The robot, its camera and the single image.
     Picture,
 }
 
-/// A knob: an effect's name, meaning and range.
+/// An effect's name, meaning and range.
 #[derive(Clone, Debug)]
 pub struct Knob {
     /// The name on the command line.
     pub name: &'static str,
-    /// What it changes.
+    /// Its scope.
     pub scope: EffectScope,
-    /// What it is, and in which unit.
+    /// Its meaning and unit.
     pub about: &'static str,
-    /// The value at which there is no effect.
+    /// The value without effect.
     pub plain: f64,
-    /// What a value may be.
+    /// The allowed values.
     pub allowed: RangeInclusive<f64>,
-    /// From where [`Effects::drawn`] draws it.
+    /// The range from which [`Effects::drawn`] draws.
     pub default: RangeInclusive<f64>,
 }
 
-/// Why a knob cannot be set.
+/// Why an effect cannot be set.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KnobError {
-    /// There is no such knob.
+    /// There is no effect with this name.
     #[error("there is no effect `{name}`; there are {}", names())]
     Unknown {
-        /// What was asked for.
+        /// The name.
         name: String,
     },
     /// The value is out of range.
     #[error("`{name}` is {value}; it may be from {least} to {greatest}")]
     OutOfRange {
-        /// The knob.
+        /// The effect.
         name: &'static str,
-        /// What was asked for.
+        /// The value.
         value: f64,
         /// The least value.
         least: f64,
@@ -60,13 +60,13 @@ fn names() -> String {
 
 macro_rules! knobs {
     ($($field:ident $name:literal $of:ident $plain:literal $allowed:expr, $default:expr, $about:literal;)*) => {
-        /// What makes a picture harder to read, all knobs together.
+        /// The values of all effects.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects {
             $(#[doc = $about] pub $field: f64,)*
         }
 
-        /// All knobs.
+        /// All effects.
         pub const KNOBS: &[Knob] = &[$(Knob {
             name: $name,
             scope: EffectScope::$of,
@@ -77,13 +77,13 @@ macro_rules! knobs {
         },)*];
 
         impl Effects {
-            /// No effects at all.
+            /// No effects.
             #[must_use]
             pub const fn plain() -> Self {
                 Self { $($field: $plain,)* }
             }
 
-            /// All knobs, in the order of [`KNOBS`].
+            /// All values, in the order of [`KNOBS`].
             fn values(&mut self) -> [&mut f64; KNOBS.len()] {
                 [$(&mut self.$field,)*]
             }
@@ -145,7 +145,7 @@ knobs! {
 }
 
 impl Effects {
-    /// Every knob somewhere in its default range.
+    /// Draws every effect from its default range.
     #[must_use]
     pub fn drawn(rng: &mut impl Rng) -> Self {
         let mut effects = Self::plain();
@@ -153,7 +153,7 @@ impl Effects {
         effects
     }
 
-    /// The same building in another picture: the knobs of the picture are drawn again.
+    /// Effects for another image of the same building: only the image's effects are drawn again.
     #[must_use]
     pub fn of_another_picture(&self, rng: &mut impl Rng) -> Self {
         let mut effects = self.clone();
@@ -163,7 +163,8 @@ impl Effects {
 
     fn draw(&mut self, rng: &mut impl Rng, which: impl Fn(&Knob) -> bool) {
         for (knob, value) in KNOBS.iter().zip(self.values()) {
-            // Also drawn where it is not used: no knob's value hangs on which others are.
+            // Always draw, so that the value of one effect does not depend on which others are
+            // used.
             let drawn = rng.random_range(knob.default.clone());
             if which(knob) {
                 *value = drawn;
@@ -171,16 +172,16 @@ impl Effects {
         }
     }
 
-    /// How far each knob is turned.
+    /// All effects and their values.
     #[must_use]
     pub fn settings(&self) -> Vec<(&'static Knob, f64)> {
         KNOBS.iter().zip(self.clone().values()).map(|(knob, value)| (knob, *value)).collect()
     }
 
-    /// Turns a knob.
+    /// Sets an effect.
     ///
     /// # Errors
-    /// There is no such knob, or it does not turn so far.
+    /// Returns an error if there is no such effect or the value is out of range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), KnobError> {
         let Some((knob, place)) = KNOBS.iter().zip(self.values()).find(|(k, _)| k.name == name)
         else {
@@ -234,7 +235,7 @@ mod tests {
         let values = effects.values().into_iter().zip(other.values());
         for (knob, (value, other)) in KNOBS.iter().zip(values) {
             let same = value.total_cmp(other).is_eq();
-            // Whether the robot sees itself is not left to chance.
+            // Whether the robot sees itself is not random.
             assert_eq!(
                 same,
                 knob.scope == EffectScope::Building || knob.name == "body",

@@ -1,4 +1,4 @@
-//! From light to a photograph: glare, blur, colour cast, exposure, noise, the camera's response, JPEG.
+//! Turns light into an image file: glare, blur, colour cast, exposure, noise, response, JPEG.
 
 use std::sync::LazyLock;
 
@@ -11,16 +11,16 @@ use super::effects::Effects;
 use super::random_stream::{StreamPurpose, stream};
 use super::rig::Rig;
 
-/// The light that comes to every pixel, as red, green and blue; at 1 the sensor is full.
+/// The light at every pixel, as red, green and blue; at 1 the sensor is saturated.
 pub(super) trait RowRenderer {
-    /// A row of it; rows are asked for in order.
+    /// Renders a row. Rows must be requested in order.
     fn row(&mut self, v: usize, out: &mut [f32]);
 
-    /// What it is on average.
+    /// The mean light.
     fn mean(&self) -> [f32; 3];
 }
 
-/// The photograph of this light.
+/// Exposes an image.
 pub(super) fn expose(
     light: &mut impl RowRenderer,
     rig: &Rig,
@@ -56,7 +56,7 @@ pub(super) fn expose(
     RgbImage::from_raw(width as u32, height as u32, bytes).unwrap_or_default()
 }
 
-/// The file that the camera makes of a photograph: JPEG, or PNG where nothing is to be lost.
+/// Encodes an image as JPEG, or as PNG if compression is lossless.
 pub(super) fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = if effects.jpeg_loss > 0.0 {
@@ -65,11 +65,11 @@ pub(super) fn file(image: &RgbImage, effects: &Effects) -> Vec<u8> {
     } else {
         image.write_with_encoder(PngEncoder::new(&mut bytes))
     };
-    // Only an image without pixels cannot be written; there is nothing to see in it.
+    // Only an image without pixels cannot be encoded.
     written.map_or_else(|_| Vec::new(), |()| bytes)
 }
 
-/// A photograph as it is read from the camera's file.
+/// The image after it was encoded and decoded.
 pub(super) fn compressed(image: RgbImage, effects: &Effects) -> RgbImage {
     if effects.jpeg_loss <= 0.0 {
         return image;
@@ -78,23 +78,23 @@ pub(super) fn compressed(image: RgbImage, effects: &Effects) -> RgbImage {
     read.map_or(image, image::DynamicImage::into_rgb8)
 }
 
-/// By what each channel is multiplied.
+/// The factor of each channel.
 fn gain(effects: &Effects) -> [f32; 3] {
     let exposure = effects.exposure.exp2();
     let green = (1.0 - 0.2 * effects.cast) * (1.0 + effects.tint);
     [exposure, exposure * green, exposure * (1.0 - effects.cast)].map(|gain| gain as f32)
 }
 
-/// Rows of a picture, blurred.
+/// Blurs the rows of an image.
 struct Blur {
     width: usize,
     height: usize,
     /// The weights from the middle outwards.
     weights: Vec<f32>,
-    /// The latest rows, blurred along themselves, and the number of the next.
+    /// The latest horizontally blurred rows, and the number of the next one.
     across: Vec<Vec<f32>>,
     next: usize,
-    /// A row as it comes, with its ends repeated.
+    /// A row with its ends repeated.
     source: Vec<f32>,
 }
 
@@ -114,7 +114,7 @@ impl Blur {
         }
     }
 
-    /// A row of this light; rows are asked for in order.
+    /// Returns a blurred row. Rows must be requested in order.
     fn row(&mut self, light: &mut impl RowRenderer, v: usize, out: &mut [f32]) {
         let reach = self.weights.len() - 1;
         if reach == 0 {
@@ -137,7 +137,7 @@ impl Blur {
         }
     }
 
-    /// Takes the next row, and blurs it along itself.
+    /// Renders the next row and blurs it horizontally.
     fn along(&mut self, light: &mut impl RowRenderer) {
         let (reach, width) = (3 * (self.weights.len() - 1), 3 * self.width);
         light.row(self.next, &mut self.source[reach..reach + width]);
@@ -163,12 +163,12 @@ impl Blur {
     }
 }
 
-/// Numbers of a normal distribution, in random order.
+/// Normally distributed random numbers.
 static NORMAL: LazyLock<Vec<f32>> = LazyLock::new(|| {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
     (0..1 << 13)
         .flat_map(|_| {
-            // Box and Muller.
+            // The Box-Muller transform.
             let (one, other): (f64, f64) = (rng.random(), rng.random());
             let (away, angle) = ((-2.0 * (1.0 - one).ln()).sqrt(), std::f64::consts::TAU * other);
             [(away * angle.cos()) as f32, (away * angle.sin()) as f32]
@@ -187,7 +187,7 @@ impl Noise {
         Self { deviation, rng }
     }
 
-    /// Adds noise: of the photons, which grows with the root of the light, and of the sensor itself.
+    /// Adds photon noise, which grows with the square root of the light, and sensor noise.
     fn add(&mut self, row: &mut [f32]) {
         if self.deviation == 0.0 {
             return;
@@ -204,7 +204,7 @@ impl Noise {
     }
 }
 
-/// Steps of the table of the camera's response.
+/// The number of steps of the response table.
 const STEPS: usize = 4096;
 
 static RESPONSE: LazyLock<Vec<u8>> = LazyLock::new(|| {
@@ -221,13 +221,13 @@ static RESPONSE: LazyLock<Vec<u8>> = LazyLock::new(|| {
         .collect()
 });
 
-/// What the camera makes of this light: sRGB's curve.
+/// The camera's response to light: the curve of sRGB.
 #[inline]
 fn response(light: f32) -> u8 {
     RESPONSE[(light.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as i32 as usize]
 }
 
-/// What JPEG leaves of a picture.
+/// Encodes an image as JPEG and decodes it again.
 #[cfg(test)]
 mod tests {
     use toposlam_vision::camera::Camera;

@@ -1,30 +1,30 @@
-//! What can go wrong with a simulated robot, on purpose. Section 2.5.
+//! Faults to inject into a simulated robot. Section 2.5.
 
 use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
-/// Something that goes wrong when the robot takes a picture of some number.
+/// A fault that starts when the robot takes its nth image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotFault {
-    /// What.
+    /// The kind.
     pub kind: FaultKind,
-    /// From which picture on, counted from 1.
+    /// The number of the first image that it affects, from 1.
     pub picture: u64,
-    /// For how many pictures or commands, where it passes.
+    /// The number of images or commands that it affects, if it passes.
     pub lasting: u32,
 }
 
 macro_rules! kinds {
     ($($kind:ident $name:literal $lasting:literal $about:literal;)*) => {
-        /// What goes wrong.
+        /// The kind of a fault.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum FaultKind {
             $(#[doc = $about] $kind,)*
         }
 
-        /// Everything that can go wrong: its name, for how many pictures or commands it lasts unless
-        /// something else is said, and what it is.
+        /// All kinds of faults: kind, name, default number of affected images or commands, and
+        /// meaning.
         pub const FAULTS: &[(FaultKind, &str, u32, &str)] =
             &[$((FaultKind::$kind, $name, $lasting, $about),)*];
     };
@@ -42,7 +42,7 @@ kinds! {
     Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
 
-/// A fault that cannot be read.
+/// The fault cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("write NAME@PICTURE or NAME@PICTURE:COUNT, as in dropped@12:3; there are {}", names())]
 pub struct FaultError;
@@ -60,26 +60,26 @@ impl FaultKind {
 }
 
 impl RobotFault {
-    /// A fault from a picture on that lasts as long as is usual for its kind.
+    /// A fault of this kind at an image, with its default duration.
     #[must_use]
     pub fn at(kind: FaultKind, picture: u64) -> Self {
         let lasting = FAULTS.iter().find(|(known, ..)| *known == kind).map_or(1, |fault| fault.2);
         Self { kind, picture, lasting }
     }
 
-    /// Whether it spoils the picture of a number.
+    /// Whether it affects the image with this number.
     pub(super) fn spoils(&self, picture: u64) -> bool {
         self.begins(picture)
             || picture > self.picture && picture - self.picture < u64::from(self.lasting)
     }
 
-    /// Whether it begins with the picture of a number.
+    /// Whether it starts with the image with this number.
     pub(super) fn begins(&self, picture: u64) -> bool {
         self.picture == picture
     }
 }
 
-/// As it is read.
+/// The form that `from_str` parses.
 impl fmt::Display for RobotFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}@{}:{}", self.kind.name(), self.picture, self.lasting)

@@ -1,44 +1,44 @@
-//! Looks: what floors, walls, stripes and markers of real buildings look like. Section 2.4.
+//! The looks of real buildings: floors, walls, stripes and markers. Section 2.4.
 //!
-//! A colour is red, green and blue from 0 to 255, as a camera shows the surface under white light that
-//! is neither too bright nor too dim.
+//! A colour is red, green and blue from 0 to 255, as a well exposed camera shows the surface in
+//! white light.
 
 use toposlam_vision::colour::{Stripe, StripeKind};
 
 /// A colour as a camera shows it.
 pub type Colour = [u8; 3];
 
-/// What a floor is made of.
+/// The covering of a floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FloorCovering {
-    /// One colour throughout.
+    /// One colour.
     Plain,
     /// Tiles or boards with joints between them.
     Tiled {
-        /// From joint to joint, along x and along y, in metres.
+        /// Distance between joints along x and along y, in metres.
         sides: [f64; 2],
-        /// How wide a joint is, in metres.
+        /// Width of a joint, in metres.
         joint: f64,
-        /// How bright a joint is, as a share of the tiles.
+        /// Brightness of a joint, as a share of the tiles' brightness.
         joint_shade: f64,
     },
-    /// Tufts, each of a shade of its own.
+    /// Tufts of different shades.
     Carpet {
-        /// How large a tuft is, in metres.
+        /// Size of a tuft, in metres.
         tuft: f64,
-        /// By which share their shades differ.
+        /// Spread of the shades, as a share.
         spread: f64,
     },
 }
 
-/// What a building looks like.
+/// The look of a building.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildingLook {
     /// Its name.
     pub name: &'static str,
-    /// What is to be seen, in a few words.
+    /// What it looks like, in a few words.
     pub about: &'static str,
-    /// What the floor is made of.
+    /// The floor's covering.
     pub floor: FloorCovering,
     /// The floor's colour.
     pub floor_colour: Colour,
@@ -46,7 +46,7 @@ pub struct BuildingLook {
     pub gloss: f64,
     /// The walls' colour.
     pub wall_colour: Colour,
-    /// Where the stripe is and how wide.
+    /// Kind and width of the stripe.
     pub stripe: Stripe,
     /// The stripe's colour.
     pub stripe_colour: Colour,
@@ -56,7 +56,7 @@ pub struct BuildingLook {
     pub frame_colour: Colour,
     /// The ceiling's colour.
     pub ceiling_colour: Colour,
-    /// The marker's colour, like nothing else in the building.
+    /// The marker's colour. Nothing else in the building has it.
     pub marker_colour: Colour,
 }
 
@@ -204,14 +204,14 @@ pub const LOOKS: [BuildingLook; 9] = [
 ];
 
 impl BuildingLook {
-    /// The look of this name.
+    /// The look with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         LOOKS.iter().find(|look| look.name == name)
     }
 }
 
-/// How much light a surface of this colour throws back, as a share, for red, green and blue.
+/// The reflectance of a colour for red, green and blue.
 pub(super) fn linear(colour: Colour) -> [f32; 3] {
     colour.map(|value| {
         let value = f32::from(value) / 255.0;

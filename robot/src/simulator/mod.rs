@@ -1,9 +1,9 @@
-//! A building, what the robot's camera sees of it, and a robot in it. Sections 2.4 and 2.5.
+//! A simulated building, the images of a camera in it, and a simulated robot. Sections 2.4 and 2.5.
 //!
-//! A [`Building`] is made of a floor plan, one of the [`LOOKS`] and a seed; a [`Rig`] of a calibrated
-//! camera. [`render`] is the picture that the rig takes from a [`Pose`], and [`labels`] what each pixel
-//! of it shows. [`Effects`] make pictures harder to read. A [`SimulatedRobot`] drives in it, with
-//! [`MotionNoise`] and [`RobotFault`]s.
+//! A [`Building`] is built from a floor plan, one of the [`LOOKS`] and a seed; a [`Rig`] from a
+//! calibrated camera. [`render`] returns the image that the rig takes from a [`Pose`], and
+//! [`labels`] the class of each of its pixels. [`Effects`] make images harder to read. A
+//! [`SimulatedRobot`] drives in the building, with [`MotionNoise`] and [`RobotFault`]s.
 
 #![allow(clippy::cast_sign_loss, reason = "positions in meshes and tables are not negative")]
 

@@ -1,5 +1,5 @@
-//! A simulated base: wheels that slip, a floor that is uneven, odometry that errs, walls that stop
-//! it, and time. Section 2.5.
+//! A simulated base: wheels that slip, an uneven floor, inexact odometry, walls that stop it, and
+//! time. Section 2.5.
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -18,29 +18,29 @@ use crate::{
     superscout::{Base, Odometer, PERIOD, Reading, WATCHDOG, WheelSpeeds, along_arc},
 };
 
-/// How far a simulated base is from an ideal one.
+/// The differences of a simulated base from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionNoise {
-    /// Of each motion each wheel slips by such a share; standard deviation.
+    /// Slip of each wheel in each motion, as a share; standard deviation.
     pub slip: f64,
-    /// Throughout, one wheel goes by such a share farther than the other; standard deviation.
+    /// Permanent difference of the two wheels, as a share; standard deviation.
     pub bias: f64,
-    /// On an uneven floor the robot turns by so much a metre, in radians, as the place has it.
+    /// Turn per metre on an uneven floor, in radians. It depends on the position.
     pub uneven: f64,
-    /// Each wheel is longer by such a share than odometry takes it to be; standard deviation.
+    /// Error of the wheel radii in odometry, as a share; standard deviation.
     pub odometry: f64,
 }
 
 impl MotionNoise {
-    /// A base that does what it is told.
+    /// An ideal base.
     pub const NONE: Self = Self { slip: 0.0, bias: 0.0, uneven: 0.0, odometry: 0.0 };
     /// A base like a SuperScout on tiles.
     pub const DEFAULT: Self = Self { slip: 0.02, bias: 0.006, uneven: 0.03, odometry: 0.006 };
-    /// With more than so many times the default noise a robot cannot find its way: a half turn may end
-    /// 45 degrees from where odometry puts it, at three standard deviations, and that is a contradiction.
+    /// The greatest useful multiple of the default noise. Beyond it, at three standard deviations,
+    /// a half turn may end 45 degrees from where odometry puts it, which is a contradiction.
     pub const MOST: f64 = 5.0;
 
-    /// So many times as much of everything.
+    /// This multiple of all noise.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
@@ -56,29 +56,29 @@ impl MotionNoise {
 #[derive(Clone, Debug)]
 pub struct SimulatedBase {
     pose: Pose,
-    /// What was last commanded, and how long ago.
+    /// The last command, and its age.
     wheels: WheelSpeeds,
     silent: f64,
     time: f64,
     odometer: Odometer,
     surroundings: Surroundings,
     uneven: f64,
-    /// By what shares the wheels differ from what they should be, throughout, and in this motion.
+    /// Errors of the wheels, as shares: permanent, and in this motion.
     always: [f64; 2],
     slip: [f64; 2],
     slip_deviation: f64,
-    /// By what shares odometry takes them to be longer.
+    /// Errors of the wheels in odometry, as shares.
     odometry: [f64; 2],
     chance: Xoshiro256PlusPlus,
-    /// Commands that will not be carried out.
+    /// The number of commands that will be ignored.
     deaf: u32,
     reading: Reading,
-    /// What the wheels were told, where somebody wants to know.
+    /// The recorded wheel speeds, if they are recorded.
     track: Option<Vec<Sample>>,
 }
 
 impl SimulatedBase {
-    /// A base at a pose in a building; the same seed makes the same base.
+    /// A base at a pose in a building. The same seed gives the same base.
     #[must_use]
     pub fn new(plan: &FloorPlan, pose: Pose, noise: &MotionNoise, seed: u64) -> Self {
         let mut chance = stream(seed, StreamPurpose::Wheels, 0);
@@ -106,25 +106,25 @@ impl SimulatedBase {
         }
     }
 
-    /// Where it is.
+    /// The true pose.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Seconds since it was switched on.
+    /// Time since it was switched on, in seconds.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// From now on it keeps what its wheels are told.
+    /// Starts to record wheel speeds.
     pub(super) fn keep_track(&mut self) {
         self.track = Some(Vec::new());
         self.sample();
     }
 
-    /// What its wheels were told in each period, and while a picture was taken.
+    /// The wheel speeds in each period, and while an image was taken.
     pub(super) fn track(&self) -> &[Sample] {
         self.track.as_deref().unwrap_or_default()
     }
@@ -138,7 +138,7 @@ impl SimulatedBase {
         }
     }
 
-    /// Lets time go by without a command: the wheels go on turning, until the watchdog stops them.
+    /// Lets time pass without a command. The wheels keep turning until the watchdog stops them.
     pub fn wait(&mut self, seconds: f64) {
         let mut left = seconds;
         while left > 0.0 {
@@ -154,20 +154,20 @@ impl SimulatedBase {
         self.sample();
     }
 
-    /// From now on its wheels turn so; time does not go by.
+    /// Sets the wheel speeds. No time passes.
     #[cfg(feature = "ros1")]
     pub(crate) fn command(&mut self, wheels: WheelSpeeds) {
         self.wheels = wheels;
         self.silent = 0.0;
     }
 
-    /// How its wheels turn.
+    /// The present wheel speeds.
     #[cfg(feature = "ros1")]
     pub(crate) fn wheels(&self) -> WheelSpeeds {
         self.wheels
     }
 
-    /// A new motion begins: its wheels slip in their own way. Whether it will be carried out.
+    /// Starts a motion with its own slip. Returns whether the motion will be carried out.
     pub(crate) fn begin(&mut self) -> bool {
         let slip = self.slip_deviation;
         self.slip = [(); 2].map(|()| slip * standard(&mut self.chance));
@@ -180,24 +180,25 @@ impl SimulatedBase {
         false
     }
 
-    /// The next so many motions will not be carried out.
+    /// Ignores this many motions.
     pub(super) fn ignore(&mut self, commands: u32) {
         self.deaf = commands;
     }
 
-    /// Somebody carries the robot elsewhere; its wheels do not turn.
+    /// Puts the robot at another pose. Its wheels do not turn.
     pub(super) fn carry(&mut self, pose: Pose) {
         self.pose = pose;
         self.read();
     }
 
-    /// Something stands on the floor from now on.
+    /// Puts an obstacle on the floor.
     pub(super) fn put(&mut self, obstacle: Rectangle) {
         self.surroundings.put(obstacle);
         self.read();
     }
 
-    /// The robot moves for so many seconds, unless something is in its way; its wheels turn anyway.
+    /// Moves the robot for this time unless something is in its way. Its wheels turn in either
+    /// case.
     fn advance(&mut self, seconds: f64) {
         self.time += seconds;
         let WheelSpeeds { left, right } = self.wheels;
@@ -243,7 +244,7 @@ impl Base for SimulatedBase {
     }
 }
 
-/// A number of the standard normal distribution.
+/// A random number of the standard normal distribution.
 fn standard(chance: &mut Xoshiro256PlusPlus) -> f64 {
     StandardNormal.sample(chance)
 }
@@ -257,7 +258,7 @@ mod tests {
     use super::*;
     use crate::superscout::{CLEARANCE, COMMAND, Drive, RADIUS};
 
-    /// One hallway to the east, 2 m wide; its dead ends' walls are at x = -1 and x = 7.
+    /// One hallway to the east, 2 m wide. The walls of its dead ends are at x = -1 and x = 7.
     fn base(noise: &MotionNoise, seed: u64) -> SimulatedBase {
         let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [6.0, 0.0])];
         let plan = FloorPlan::new(2.0, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
@@ -304,7 +305,7 @@ mod tests {
         let mut base = base(&MotionNoise::NONE, 1);
         base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
         base.wait(10.0);
-        // One period of the command, and one more before the watchdog.
+        // One period of the command, and one more until the watchdog stops it.
         assert!((base.pose().position[0] - 0.2 * WATCHDOG).abs() < 1e-9, "{:?}", base.pose());
     }
 
@@ -335,7 +336,7 @@ mod tests {
         let begun = base.time();
         Drive(&mut base).forward(0.1).unwrap();
         base.wait(0.3);
-        // Where it stood; 0.05 m in each of two periods; the stop; a picture.
+        // The start; 0.05 m in each of two periods; the stop; an image.
         let speeds: Vec<_> = base.track().iter().map(|sample| sample.speed).collect();
         assert_eq!(speeds.len(), 5);
         assert!(speeds[1] > 0.19 && speeds[2] > 0.15, "{speeds:?}");

@@ -1,6 +1,8 @@
-//! The mirror, ray by ray: from the pinhole up to the sphere, and reflected there. Section 2.5.
+//! The rays of a camera below a spherical mirror: from the pinhole up to the sphere and reflected
+//! there. Section 2.5.
 //!
-//! The robot's coordinates: its centre on the floor as origin, x ahead, y to the left, z up, in metres.
+//! Coordinates are the robot's: its centre on the floor is the origin, x is ahead, y left, z up, in
+//! metres.
 
 use std::f64::consts::TAU;
 
@@ -8,56 +10,56 @@ use toposlam_vision::camera::{self, Camera, SeenFrom, SphericalMirror};
 
 type Vector = [f64; 3];
 
-/// By how much a camera is not as its calibration says.
+/// The differences of a camera from its calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigErrors {
-    /// How far the axis leans, in radians.
+    /// Tilt of the axis, in radians.
     pub tilt: f64,
-    /// Whither it leans, in radians from ahead to the left.
+    /// Direction of the tilt, in radians counter-clockwise from ahead.
     pub towards: f64,
-    /// How far the mirror is from where it should be in the image, in pixels.
+    /// Offset of the mirror's centre in the image, in pixels.
     pub centre: [f64; 2],
-    /// How much too high the camera is, in metres.
+    /// Error of the camera's height, in metres; positive if it is too high.
     pub height: f64,
 }
 
-/// What a pixel looks along.
+/// The ray that a pixel sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraRay {
-    /// Where it comes from: the mirror, or the pinhole.
+    /// Its origin: on the mirror, or the pinhole.
     pub origin: Vector,
-    /// Whither; of length one.
+    /// Its direction, of length one.
     pub direction: Vector,
-    /// Whether it has met the mirror.
+    /// Whether it was reflected by the mirror.
     pub by: RayPath,
 }
 
-/// How a ray comes to the camera.
+/// The path of a ray to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayPath {
-    /// By way of the mirror.
+    /// Reflected by the mirror.
     Mirror,
     /// Past the mirror.
     Direct,
 }
 
-/// A camera, and how it leans.
+/// The optics of a camera with its errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RigOptics {
     pub(super) image: [u32; 2],
     /// The pixel that looks straight down.
     pub(super) centre: [f64; 2],
-    /// The pinhole's height, or the viewpoint's.
+    /// Height of the pinhole or viewpoint, in metres.
     pub(super) height: f64,
     kind: Kind,
     errors: RigErrors,
 }
 
-/// Which camera it is.
+/// The kind of camera.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
     UnderSphere(UnderSphere),
-    /// One with a single viewpoint.
+    /// A camera with a single viewpoint.
     Single(Camera),
 }
 
@@ -68,7 +70,7 @@ struct UnderSphere {
     focal: f64,
     radius: f64,
     distance: f64,
-    /// The image's axes, right and up, as directions in the plane of the floor.
+    /// The image's right and up, as directions in the plane of the floor.
     right: [f64; 2],
     up: [f64; 2],
 }
@@ -90,7 +92,7 @@ impl RigOptics {
         }
     }
 
-    /// The ray that a pixel looks along.
+    /// The ray that a pixel sees.
     pub(super) fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         let mut ray = match &self.kind {
             Kind::UnderSphere(rig) => {
@@ -118,7 +120,7 @@ impl RigOptics {
         ray
     }
 
-    /// A vector of the upright rig, once it leans: turned about the level axis across `towards`.
+    /// Turns a vector of the upright rig with the tilt of the axis.
     fn leaning(&self, vector: Vector) -> Vector {
         let RigErrors { tilt, towards, .. } = self.errors;
         if tilt == 0.0 {
@@ -131,8 +133,7 @@ impl RigOptics {
         [along * ahead - across * left, along * left + across * ahead, up]
     }
 
-    /// How far from its middle the view ends in the image, in pixels: the mirror's rim, or the image's
-    /// corner.
+    /// Radius of the view in the image, in pixels: the mirror's rim, or the image's corner.
     pub(super) fn rim(&self) -> f64 {
         match &self.kind {
             Kind::UnderSphere(rig) => {
@@ -164,12 +165,13 @@ impl UnderSphere {
         }
     }
 
-    /// The ray of a pixel, given from the middle to the right and to the top, in the upright rig.
+    /// The ray of a pixel in the upright rig. The pixel is given from the centre, to the right and
+    /// up.
     fn ray(&self, [right, top]: [f64; 2]) -> CameraRay {
         let (across, upwards) = (right / self.focal, top / self.focal);
         let [x, y] = [0, 1].map(|axis| across * self.right[axis] + upwards * self.up[axis]);
         let out = unit([x, y, 1.0]);
-        // The sphere's centre is straight above the pinhole, which is the origin for now.
+        // The sphere's centre is straight above the pinhole, which is the origin here.
         let middle = [0.0, 0.0, self.distance];
         let along = dot(out, middle);
         let beyond = along * along - (self.distance * self.distance - self.radius * self.radius);
@@ -185,7 +187,7 @@ impl UnderSphere {
 }
 
 impl CameraRay {
-    /// Where it meets the floor, in the robot's coordinates, if nothing is in its way.
+    /// The place where it meets the floor, if nothing is in its way.
     #[must_use]
     pub fn floor(&self) -> Option<[f64; 2]> {
         let length = -self.origin[2] / self.direction[2];
@@ -193,12 +195,12 @@ impl CameraRay {
             .then(|| [0, 1].map(|axis| self.origin[axis] + length * self.direction[axis]))
     }
 
-    /// The share of a full turn from ahead to the left, in [0, 1).
+    /// Its direction as a share of a full turn from ahead to the left, in [0, 1).
     pub(super) fn turn(&self) -> f64 {
         (self.direction[1].atan2(self.direction[0]) / TAU).rem_euclid(1.0)
     }
 
-    /// How far it passes from the robot's axis, seen from above.
+    /// Its distance from the robot's axis, seen from above.
     pub(super) fn off_axis(&self) -> f64 {
         let [x, y, _] = self.direction;
         let level = x.hypot(y);
@@ -258,7 +260,7 @@ mod tests {
                 assert_eq!(ground.is_some(), expected.is_some(), "{pixel:?}");
                 if let (Some([x, y]), Some(expected)) = (ground, expected) {
                     let away = (x - expected[0]).hypot(y - expected[1]);
-                    // Towards the horizon the least rounding becomes a way.
+                    // Near the horizon, a small rounding error becomes a large distance.
                     assert!(away < 1e-9 * x.hypot(y).max(1.0).powi(2), "{pixel:?}: {away}");
                     seen += 1;
                 }
@@ -290,7 +292,7 @@ mod tests {
         for towards in [0.0, FRAC_PI_2, 2.5] {
             let errors = RigErrors { tilt, towards, ..RigErrors::default() };
             let ray = RigOptics::new(&camera, &errors).ray([640.0, 480.0]);
-            // The axis goes through the pinhole, 0.9 m up: below it, the floor is this far back.
+            // The axis passes through the pinhole, 0.9 m up. It meets the floor this far back.
             let back = 0.90 * tilt.tan();
             let [x, y] = ray.floor().unwrap();
             assert!((x + back * towards.cos()).abs() < 1e-12, "{x}");

@@ -1,10 +1,10 @@
-//! Chance that is the same wherever and whenever it is asked: streams of numbers from a seed, and
-//! noise that hangs on the place alone.
+//! Reproducible randomness: streams of random numbers from a seed, and noise that depends only on
+//! the position.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What a stream of random numbers is for; each has a stream of its own.
+/// The purpose of a stream. Each purpose has its own stream.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StreamPurpose {
     Lamps,
@@ -19,13 +19,13 @@ pub(super) enum StreamPurpose {
     Faults,
 }
 
-/// The stream of a seed for this purpose and, say, this wall.
+/// The stream of a seed for a purpose and an index, such as that of a wall.
 pub(super) fn stream(seed: u64, purpose: StreamPurpose, number: usize) -> Xoshiro256PlusPlus {
     let mixed = mixed(seed ^ mixed((purpose as u64) << 32 | number as u64));
     Xoshiro256PlusPlus::seed_from_u64(mixed)
 }
 
-/// How many there are where so many are to be expected: that number, rounded up or down by chance.
+/// A random number with this expectation: the expectation rounded up or down.
 pub(super) fn about(expected: f64, rng: &mut Xoshiro256PlusPlus) -> usize {
     (expected.min(500.0) + rng.random::<f64>()) as usize
 }
@@ -38,7 +38,7 @@ fn mixed(mut bits: u64) -> u64 {
     bits ^ bits >> 31
 }
 
-/// A number from -1 to 1 for each cell of a plane.
+/// A random number from -1 to 1 for each cell of a plane.
 #[inline]
 pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
     let mut bits = (x as u32).wrapping_mul(0x9e37_79b1)
@@ -50,14 +50,14 @@ pub(super) fn speckle(x: i32, y: i32, salt: u32) -> f32 {
     bits as f32 * (2.0 / u32::MAX as f32) - 1.0
 }
 
-/// The greatest integer that is no greater.
+/// The greatest integer not above a value.
 #[inline]
 pub(super) fn floor(value: f32) -> i32 {
     let whole = value as i32;
     whole.wrapping_sub(i32::from(value < whole as f32))
 }
 
-/// The same, smooth: cells of side one flow into each other.
+/// Smooth noise from -1 to 1; its cells have side one.
 #[inline]
 pub(super) fn clouds(x: f32, y: f32, salt: u32) -> f32 {
     let (left, low) = (floor(x), floor(y));

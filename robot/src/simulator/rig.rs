@@ -1,27 +1,27 @@
-//! A camera on a robot, with what each of its pixels looks along. Section 2.5.
+//! A camera on a robot, and the ray of each of its pixels. Section 2.5.
 
 use toposlam_vision::camera::Camera;
 
 use super::optics::{CameraRay, RayPath, RigErrors, RigOptics};
 
-/// A camera under its mirror, on a robot; made once and used for any number of pictures.
+/// A camera under its mirror. It is built once and used for any number of images.
 #[derive(Clone, Debug)]
 pub struct Rig {
     pub(super) optics: RigOptics,
     pub(super) rays: Vec<PixelRay>,
-    /// How much farther out on the floor each pixel looks than the one before it, by pixels from the
-    /// middle; in metres, with the rig upright.
+    /// Radial size of a pixel on the floor by its distance from the centre in pixels; in metres,
+    /// for the upright rig.
     strides: Vec<f32>,
-    /// How far rays pass from the robot's axis at most, seen from above, in metres.
+    /// The greatest distance of a ray from the robot's axis, seen from above, in metres.
     pub(super) off_axis: f64,
 }
 
-/// What the middle of a pixel looks along, in the robot's coordinates.
+/// The ray through the middle of a pixel, in the robot's coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelRay {
     pub(super) origin: [f32; 3],
     pub(super) direction: [f32; 3],
-    /// From ahead to the left, of 65,536 to a full turn.
+    /// Direction from ahead to the left, in 1/65,536 of a turn.
     pub(super) turn: u16,
     pub(super) by: RayPath,
 }
@@ -38,13 +38,13 @@ impl From<CameraRay> for PixelRay {
 }
 
 impl Rig {
-    /// A camera as its calibration says.
+    /// A camera that agrees with its calibration.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         Self::with_errors(camera, &RigErrors::default())
     }
 
-    /// A camera that is not quite as its calibration says.
+    /// A camera that differs from its calibration.
     #[must_use]
     pub fn with_errors(camera: &Camera, errors: &RigErrors) -> Self {
         let optics = RigOptics::new(camera, errors);
@@ -73,19 +73,19 @@ impl Rig {
         Self { optics, rays, strides, off_axis }
     }
 
-    /// Width and height of its pictures, in pixels.
+    /// Width and height of its images, in pixels.
     #[must_use]
     pub fn image(&self) -> [u32; 2] {
         self.optics.image
     }
 
-    /// What a pixel looks along.
+    /// The ray that a pixel sees.
     #[must_use]
     pub fn ray(&self, pixel: [f64; 2]) -> CameraRay {
         self.optics.ray(pixel)
     }
 
-    /// The radial extent on the floor of a pixel that is so far from the middle.
+    /// Radial size on the floor of a pixel at this distance from the centre, in metres.
     #[inline]
     pub(super) fn stride(&self, from_middle: f32) -> f32 {
         let last = self.strides.last().copied().unwrap_or(1.0);

@@ -1,25 +1,25 @@
-//! Which walls can be seen in which direction from a place.
+//! The walls that are visible from a place in each direction.
 
 use std::f64::consts::TAU;
 
 use super::walls::BuildingWall;
 
-/// Directions that are told apart, of 65,536 to a full turn each so many.
+/// The number of sectors of a full turn.
 const SECTORS: u16 = 512;
 const PER_SECTOR: u16 = (65_536 / SECTORS as u32) as u16;
 
-/// The direction that a ray is said to have may be wrong by so much, of 65,536 to a full turn.
+/// The greatest error of a ray's direction, in 1/65,536 of a turn.
 pub(super) const TURN_ERROR: i64 = 64;
 
-/// For each sector of directions, counter-clockwise from east, the walls that a ray may meet first,
-/// nearest first.
+/// For each sector, counter-clockwise from east, the walls that a ray may meet first, nearest
+/// first.
 #[derive(Clone, Debug)]
 pub(super) struct SightLines {
     begin: Vec<u32>,
     walls: Vec<u32>,
 }
 
-/// A wall as it is seen: the sectors that it is in, and how near and far it is in them.
+/// A wall in a sector, with its least and greatest distance.
 struct Seen {
     wall: u32,
     near: f64,
@@ -28,7 +28,7 @@ struct Seen {
 }
 
 impl SightLines {
-    /// The walls around a place, for rays that pass from it by no more than so far.
+    /// The walls around a place, for rays that pass it within this distance.
     pub(super) fn from(place: [f64; 2], off_axis: f64, walls: &[BuildingWall]) -> Self {
         let mut sectors: Vec<Vec<Seen>> = (0..SECTORS).map(|_| Vec::new()).collect();
         for (number, wall) in walls.iter().enumerate() {
@@ -50,7 +50,8 @@ impl SightLines {
         lines
     }
 
-    /// The walls that a ray in this direction may meet first; of 65,536 to a full turn from east.
+    /// The walls that a ray in this direction may meet first. The direction is in 1/65,536 of a
+    /// turn from east.
     #[inline]
     pub(super) fn walls(&self, turn: u16) -> &[u32] {
         let sector = usize::from(turn / PER_SECTOR);
@@ -58,7 +59,7 @@ impl SightLines {
     }
 }
 
-/// Enters a wall in all sectors in which it may be seen.
+/// Adds a wall to all sectors in which it may be visible.
 fn enter(
     number: usize,
     wall: &BuildingWall,
@@ -74,7 +75,7 @@ fn enter(
     let along = [wall.span[0] - place[wall.along], wall.span[1] - place[wall.along]];
     let beside = along[0].max(-along[1]).max(0.0);
     let near = across.hypot(beside);
-    // Rays that pass beside the place see the wall turned by this at most.
+    // Rays that pass beside the place see the wall turned by at most this angle.
     let rounded = TURN_ERROR as f64 / 65_536.0 * TAU;
     let slack = if near > 2.0 * off_axis { (off_axis / near).asin() + rounded } else { TAU };
     let angles = ends.map(|[x, y]| y.atan2(x));
@@ -91,7 +92,7 @@ fn enter(
     for sector in first..first + count {
         let (low, high) = (sector as f64 / per_turn, (sector + 1) as f64 / per_turn);
         let covers = slack < TAU && low >= from + slack && high <= from + extent - slack;
-        // How far the wall is along the sector's edges, or its nearer point where it is no farther.
+        // Distance of the wall along the sector's edges, if it covers the sector.
         let far = if covers {
             let normal = across.max(1e-9);
             let towards =
@@ -101,7 +102,7 @@ fn enter(
             f64::INFINITY
         };
         let index = sector.rem_euclid(i64::from(SECTORS)) as usize;
-        // As near as a sector's edge sees it, or as its nearest point.
+        // The distance along the sector's edge, or that of the wall's nearest point.
         sectors[index].push(Seen {
             wall: number as u32,
             near: near_in(low, high, wall, place, near) - off_axis,
@@ -111,16 +112,16 @@ fn enter(
     }
 }
 
-/// How near a wall's plane is at least within a sector.
+/// The least distance of a wall's plane within a sector.
 fn near_in(low: f64, high: f64, wall: &BuildingWall, place: [f64; 2], near: f64) -> f64 {
     let across = (place[1 - wall.along] - wall.plane).abs();
     let share = |angle: f64| if wall.along == 0 { angle.sin() } else { angle.cos() }.abs();
-    // Within a sector as narrow as this the greatest share is at most this much more than at an edge.
+    // Within such a narrow sector, the share is at most this much greater than at an edge.
     let most = (share(low).max(share(high)) + (high - low)).min(1.0);
     near.max(across / most)
 }
 
-/// An angle brought into [-pi, pi).
+/// The angle in [-pi, pi).
 fn wrapped(angle: f64) -> f64 {
     (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
 }
@@ -134,7 +135,7 @@ mod tests {
     use super::super::walls::walls;
     use super::*;
 
-    /// The first wall that a ray meets, among these.
+    /// The first of these walls that a ray meets.
     fn first<'a>(
         walls: impl Iterator<Item = (usize, &'a BuildingWall)>,
         origin: [f64; 2],

@@ -1,4 +1,4 @@
-//! A simulated SuperScout: a base, a camera, and what goes wrong with them. Section 2.5.
+//! A simulated SuperScout: a base, a camera and faults. Section 2.5.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub struct SimulatedRobot {
     plan: Arc<FloorPlan>,
     base: SimulatedBase,
     camera: Box<dyn SimulatedCamera>,
-    /// How long a picture takes, in seconds.
+    /// The time to take an image, in seconds.
     picture_time: f64,
     faults: Vec<RobotFault>,
     seed: u64,
@@ -37,15 +37,14 @@ pub struct SimulatedRobot {
     last: Option<Frame>,
 }
 
-/// How overexposed a picture is that is burnt out, in stops.
+/// How much an overexposed image is overexposed, in stops.
 const BURNT_OUT: f64 = 4.0;
-/// Something that blocks a hallway stands so far ahead of the robot's middle, and is so deep, in
-/// metres.
+/// Distance of an obstacle ahead of the robot's centre, and its depth, in metres.
 const AHEAD: f64 = 1.2;
 const DEEP: f64 = 0.3;
 
 impl SimulationConfig {
-    /// The robot with a camera that renders pictures of a building.
+    /// A robot with a camera that renders images of a building.
     #[must_use]
     pub fn with_images(
         &self,
@@ -58,7 +57,7 @@ impl SimulationConfig {
         SimulatedRobot::new(self, camera)
     }
 
-    /// The robot with a camera that tells scenes itself.
+    /// A robot with a camera that reports scenes without images.
     #[must_use]
     pub fn by_scene(&self) -> SimulatedRobot {
         let marker = Some(self.marker);
@@ -78,19 +77,19 @@ impl SimulatedRobot {
         Self { plan, base, camera, picture_time, faults, seed, pictures: 0, last: None }
     }
 
-    /// Where it really is.
+    /// The true pose.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.base.pose()
     }
 
-    /// Seconds since it was switched on.
+    /// Time since it was switched on, in seconds.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.base.time()
     }
 
-    /// How many pictures it was asked for.
+    /// The number of images that were requested.
     #[must_use]
     pub fn pictures(&self) -> u64 {
         self.pictures
@@ -126,13 +125,13 @@ impl SimulatedRobot {
         Some(frame)
     }
 
-    /// How long a picture takes, in seconds.
+    /// The time to take an image, in seconds.
     #[cfg(feature = "ros1")]
     pub(crate) fn picture_time(&self) -> f64 {
         self.picture_time
     }
 
-    /// The base, for whoever tells its wheels themselves.
+    /// The base, for a caller that controls the wheels itself.
     #[cfg(feature = "ros1")]
     pub(crate) fn base(&mut self) -> &mut SimulatedBase {
         &mut self.base
@@ -181,7 +180,7 @@ impl Robot for SimulatedRobot {
     }
 }
 
-/// Something across the hallway ahead of a pose.
+/// An obstacle across the hallway ahead of a pose.
 fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
     let (sine, cosine) = pose.heading.sin_cos();
     let direction = match (cosine.abs() > sine.abs(), cosine > 0.0, sine > 0.0) {
@@ -199,7 +198,7 @@ fn across_hallway(pose: Pose, plan: &FloorPlan) -> Rectangle {
     }
 }
 
-/// A pose somewhere in a hallway, along it.
+/// A random pose in a hallway, along it.
 fn elsewhere(plan: &FloorPlan, seed: u64, picture: u64) -> Pose {
     let mut chance = stream(seed, StreamPurpose::Faults, picture as usize);
     let ends = plan

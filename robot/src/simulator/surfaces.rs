@@ -1,17 +1,17 @@
-//! What a ray meets in a building, and how it looks there.
+//! The surface that a ray meets in a building, and its colour there.
 
 use super::building::{Building, HEIGHT, WallPart};
 use super::looks::FloorCovering;
 use super::random_stream::{clouds, floor, speckle};
 use super::sight_lines::SightLines;
 
-/// How a ceiling is lit, as a share of the floor.
+/// Light on the ceiling, as a share of that on the floor.
 const CEILING_LIGHT: f32 = 0.6;
 
-/// How wide the edge of a lamp is, in metres.
+/// Width of a lamp's blurred edge, in metres.
 const LAMP_EDGE: f32 = 0.02;
 
-/// What is seen.
+/// A visible surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     Floor,
@@ -23,12 +23,12 @@ pub(super) enum Surface {
     Robot(super::body::RobotPart),
     /// The holder around the mirror.
     Holder,
-    /// Nothing: there is no building in this direction.
+    /// Nothing: the ray leaves the building.
     Nothing,
 }
 
 impl Surface {
-    /// A number that different surfaces do not share.
+    /// A number that is different for different surfaces.
     #[inline]
     pub(super) fn number(self) -> u32 {
         match self {
@@ -46,7 +46,7 @@ impl Surface {
                     WallPart::Baseboard => 1,
                     WallPart::Leaf => 2,
                     WallPart::Frame => 3,
-                    // Of posters that are seen beside each other, each differs from the next.
+                    // Neighbouring posters have different numbers.
                     WallPart::Poster(number) => 4 + number % 4,
                 };
                 16 + 8 * wall + part
@@ -60,11 +60,11 @@ impl Surface {
 pub(super) struct WorldRay {
     pub(super) origin: [f32; 3],
     pub(super) direction: [f32; 3],
-    /// From east counter-clockwise, of 65,536 to a full turn.
+    /// Direction counter-clockwise from east, in 1/65,536 of a turn.
     pub(super) turn: u16,
 }
 
-/// Where a ray ends.
+/// The end of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RayEnd {
     Floor { place: [f32; 2] },
@@ -73,10 +73,10 @@ pub(super) enum RayEnd {
     Nothing,
 }
 
-/// How large a pixel is on the floor: along the ray as seen from above, and across it, in metres.
+/// Size of a pixel on the floor, along the ray seen from above and across it, in metres.
 pub(super) type Footprint = [f32; 2];
 
-/// A building from one place.
+/// A building and the sight lines from one place in it.
 #[derive(Clone, Copy)]
 pub(super) struct BuildingView<'a> {
     pub(super) building: &'a Building,
@@ -84,7 +84,7 @@ pub(super) struct BuildingView<'a> {
 }
 
 impl BuildingView<'_> {
-    /// How far a ray goes as far as the first wall, and which wall that is.
+    /// The length of a ray up to the first wall, the wall's index, and the place along the wall.
     #[inline]
     fn wall(&self, ray: &WorldRay) -> Option<(f32, u32, f32)> {
         let mut nearest = (f32::INFINITY, u32::MAX, 0.0);
@@ -94,7 +94,7 @@ impl BuildingView<'_> {
             let length = (face.plane - ray.origin[across]) / ray.direction[across];
             if length > 0.0 && length < nearest.0 {
                 let along = ray.origin[face.along] + length * ray.direction[face.along];
-                // Rounding leaves no gap at corners.
+                // The tolerance keeps rounding from opening gaps at corners.
                 if face.span[0] - 1e-4 <= along && along <= face.span[1] + 1e-4 {
                     nearest = (length, number, along);
                 }
@@ -103,7 +103,7 @@ impl BuildingView<'_> {
         (nearest.1 != u32::MAX).then_some(nearest)
     }
 
-    /// Where a ray ends, given the first wall on its way.
+    /// The end of a ray, given the first wall on its way.
     #[inline]
     fn end(ray: &WorldRay, wall: Option<(f32, u32, f32)>) -> RayEnd {
         let (origin, direction) = (ray.origin, ray.direction);
@@ -121,7 +121,7 @@ impl BuildingView<'_> {
         }
     }
 
-    /// What there is where a ray ends.
+    /// The surface at the end of a ray.
     #[inline]
     pub(super) fn surface(&self, ray: &WorldRay) -> Surface {
         match Self::end(ray, self.wall(ray)) {
@@ -135,7 +135,7 @@ impl BuildingView<'_> {
         }
     }
 
-    /// What a ray meets, and the light that comes back along it.
+    /// The surface at the end of a ray, and the light that comes back along the ray.
     #[inline]
     pub(super) fn seen(
         &self,
@@ -204,7 +204,7 @@ impl BuildingView<'_> {
             FloorCovering::Carpet { tuft, spread } => {
                 let [radial, across] = footprint();
                 let (tuft, spread) = (tuft as f32, spread as f32 * strength);
-                // Where a pixel holds many tufts, it shows what they are on average.
+                // A pixel with many tufts shows their mean.
                 let faint = (tuft / radial.max(tuft)) * (tuft / across.max(tuft)).sqrt();
                 let [x, y] = place.map(|at| floor(at / tuft));
                 1.0 + spread * faint * speckle(x, y, 9)
@@ -222,8 +222,8 @@ impl BuildingView<'_> {
         (Surface::Wall(wall, part), colour.map(|channel| channel * light))
     }
 
-    /// What there is at a place of the ceiling, and its light; lamps are seen with edges so wide, in
-    /// metres.
+    /// The surface at a place of the ceiling, and its light. Lamps have blurred edges of this
+    /// width, in metres.
     #[inline]
     fn on_ceiling(&self, place: [f32; 2], blurred: f32) -> (Surface, [f32; 3]) {
         let ceiling = self.building.colours.ceiling.map(|channel| channel * CEILING_LIGHT);
@@ -240,13 +240,14 @@ impl BuildingView<'_> {
         (Surface::Ceiling, ceiling)
     }
 
-    /// What the floor mirrors: the ray goes on below it as if the building stood on its head there.
+    /// Adds the reflection on the floor: the ray continues below it in the mirrored building.
     fn add_reflection(&self, ray: &WorldRay, wall: Option<(f32, u32, f32)>, colour: &mut [f32; 3]) {
         let gloss = self.building.gloss;
         let down = -ray.direction[2];
         let graze = 1.0 - down;
         let square = graze * graze;
-        // Schlick's approximation of Fresnel's share, of a surface that is not quite smooth.
+        // Schlick's approximation of the Fresnel reflectance, for a surface that is not quite
+        // smooth.
         let share = gloss * (0.04 + 0.6 * square * square * graze);
         let above = HEIGHT + ray.origin[2];
         let up = above / down;
@@ -265,9 +266,9 @@ impl BuildingView<'_> {
     }
 }
 
-/// Which share of a stretch of this size around a place is joint.
+/// The share of joint in a stretch of this size around a place.
 fn joint_share(at: f32, size: f32, side: f32, joint: f32) -> f32 {
-    // How much joint there is from 0 as far as a place.
+    // The length of joint between 0 and a place.
     let before = |at: f32| {
         let tiles = floor(at / side) as f32;
         tiles * joint + (at - tiles * side).min(joint)

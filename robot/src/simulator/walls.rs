@@ -2,39 +2,39 @@
 
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
-/// Coordinates that differ by no more are the same, in metres.
+/// Coordinates with a smaller difference are equal, in metres.
 const TOLERANCE: f64 = 1e-6;
 
 /// A straight wall along an axis, with floor on one side of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildingWall {
-    /// Along which axis it runs: 0 for x, 1 for y.
+    /// The axis along which it runs: 0 for x, 1 for y.
     pub along: usize,
-    /// Where it stands on the other axis, in metres.
+    /// Its coordinate on the other axis, in metres.
     pub plane: f64,
-    /// On which side of it the floor is: 1 to greater coordinates, -1 to lesser ones.
+    /// The side of the floor: 1 for greater coordinates, -1 for smaller ones.
     pub floor_side: f64,
-    /// Where it begins and ends along its axis, in metres.
+    /// Its ends along its axis, in metres.
     pub span: [f64; 2],
-    /// At either end, whether the floor goes round it: the wall juts out there.
+    /// For each end, whether it is an outer corner, around which the floor continues.
     pub juts: [bool; 2],
 }
 
 impl BuildingWall {
-    /// How long it is, in metres.
+    /// Its length, in metres.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.span[1] - self.span[0]
     }
 
-    /// The point of its foot that is so far along its axis.
+    /// The point of its foot at this place along its axis.
     #[must_use]
     pub fn foot(&self, along: f64) -> [f64; 2] {
         if self.along == 0 { [along, self.plane] } else { [self.plane, along] }
     }
 }
 
-/// The walls around a union of rectangles, those along x first, in order of plane and beginning.
+/// The walls around the floor of a plan: first those along x, sorted by plane and beginning.
 #[must_use]
 pub fn walls(plan: &FloorPlan) -> Vec<BuildingWall> {
     let floors: Vec<Rectangle> = plan.floor().collect();
@@ -46,8 +46,8 @@ pub fn walls(plan: &FloorPlan) -> Vec<BuildingWall> {
     walls
 }
 
-/// The walls along one axis. On every line on which a rectangle ends, each stretch between two
-/// rectangles' corners has floor on both sides, on neither, or on one: then it is wall.
+/// The walls along one axis. Rectangles end on certain lines. A stretch of such a line between two
+/// corners is a wall if it has floor on exactly one side.
 fn walls_along(floors: &[Rectangle], along: usize) -> Vec<BuildingWall> {
     let across = 1 - along;
     let ends = |axis: usize, floor: &Rectangle| [floor.least[axis], floor.greatest[axis]];
@@ -105,7 +105,7 @@ fn juts(wall: &BuildingWall, end: usize, floors: &[Rectangle]) -> bool {
     floors.iter().any(|floor| floor.holds(beyond))
 }
 
-/// Sorted, each once.
+/// Sorted, without duplicates.
 fn distinct(mut coordinates: Vec<f64>) -> Vec<f64> {
     coordinates.sort_by(f64::total_cmp);
     coordinates.dedup_by(|one, other| (*one - *other).abs() <= TOLERANCE);
@@ -125,7 +125,7 @@ mod tests {
 
     const PLANS: [&str; 4] = ["shape-6", "shape-8", "building-12", "building-25"];
 
-    /// The area of a plan's floor: its rectangles, of which those at a junction share a square.
+    /// The area of a plan's floor. The rectangles at a junction share a square.
     fn area(plan: &FloorPlan) -> f64 {
         let size = |floor: Rectangle| {
             (floor.greatest[0] - floor.least[0]) * (floor.greatest[1] - floor.least[1])
@@ -138,7 +138,8 @@ mod tests {
     fn walls_enclose_the_area_of_the_floor() {
         for plan in PLANS.map(plan) {
             for along in 0..2 {
-                // Gauss: the area is the sum of plane times length, counted by the side of the floor.
+                // By Gauss, the area is the sum of plane times length, signed by the side of the
+                // floor.
                 let enclosed: f64 = walls(&plan)
                     .iter()
                     .filter(|wall| wall.along == along)
@@ -171,7 +172,7 @@ mod tests {
     fn the_digit_8_has_four_walls_around_it_and_four_in_each_loop() {
         let walls = walls(&plan("shape-8"));
         assert_eq!(walls.len(), 12);
-        // Around it all corners are in corners of the floor; within a loop the floor goes round them.
+        // The outer walls have inner corners only, the walls of the loops have outer corners only.
         let juts = walls.iter().filter(|wall| wall.juts == [true; 2]).count();
         let fits = walls.iter().filter(|wall| wall.juts == [false; 2]).count();
         assert_eq!((juts, fits), (8, 4));

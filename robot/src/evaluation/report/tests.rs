@@ -102,7 +102,7 @@ fn views_are_counted_where_they_are() {
     assert!(count == 2 && (most - 1.0).abs() < 1e-9, "{count} {most}");
     let said = &report.confusion[&SceneClass::Hallway];
     assert_eq!((said[&SceneClass::Hallway], said[&SceneClass::Unknown]), (2, 1));
-    // What lies beyond the turning point or between is not in the confusion.
+    // Views past the turning point or between places are not in the confusion matrix.
     assert_eq!(report.confusion.values().flat_map(BTreeMap::values).sum::<usize>(), 6);
 }
 
