@@ -1,7 +1,7 @@
-//! What fuzzers try to break: what the readers of logs promise of any bytes.
+//! Fuzz targets: the properties of the log readers on any bytes.
 //!
-//! Each body is run by a target of cargo-fuzz, in `fuzz/`, and by `tests/fuzz.rs` on stable Rust, on the
-//! seeds in `fuzz/corpus/` and on mutations of them. It panics where what it holds does not hold.
+//! cargo-fuzz runs each target from `fuzz/`, and `tests/fuzz.rs` runs it on stable Rust, on the
+//! seeds in `fuzz/corpus/` and on mutations of them. A target panics if its property is violated.
 
 use std::fmt;
 
@@ -13,10 +13,10 @@ use crate::log::{
     value::Value,
 };
 
-/// A body, and its name: that of the target in `fuzz/`, and of the folder of its seeds.
+/// A target and its name, which is also the name in `fuzz/` and of the folder of its seeds.
 pub type RobotFuzzTarget = (&'static str, fn(&[u8]));
 
-/// All bodies.
+/// All targets.
 pub const TARGETS: &[RobotFuzzTarget] = &[
     ("bag", bag),
     ("mcap", mcap),
@@ -25,20 +25,21 @@ pub const TARGETS: &[RobotFuzzTarget] = &[
     ("log_mapping", log_mapping),
 ];
 
-/// Any bytes are a ROS 1 bag: see [`mcap()`].
+/// Any bytes are read as a ROS 1 bag, as in [`mcap()`].
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if the property is violated.
 pub fn bag(bytes: &[u8]) {
     log(bytes);
 }
 
-/// Any bytes are an MCAP file, whole or not, whose messages come in the order of their times, each with
-/// its number, and what it tells of a run can be read as far as it goes; or there is one message that says
+/// Any bytes are read as an MCAP file, whole or truncated. Its messages come in the order of their
+/// times with consecutive numbers, and the run in it can be read up to its end; or there is one
+/// error message.
 /// why not.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if the property is violated.
 pub fn mcap(bytes: &[u8]) {
     log(bytes);
 }
@@ -71,11 +72,11 @@ fn log(bytes: &[u8]) {
         assert!(truncation.offset <= log.size());
         assert_is_a_message(truncation);
     }
-    tells(&log, &TopicMap::unambiguous(&log));
+    read_run(&log, &TopicMap::unambiguous(&log));
 }
 
-/// What a log tells, or what is wrong.
-fn tells(log: &Log, mapping: &TopicMap) {
+/// Reads the run in a log, or returns the error.
+fn read_run(log: &Log, mapping: &TopicMap) {
     match mapping.bind(log) {
         Ok(bound) => {
             if let Some(Err(error)) = log.entries(&bound).find(Result::is_err) {
@@ -86,11 +87,11 @@ fn tells(log: &Log, mapping: &TopicMap) {
     }
 }
 
-/// Any bytes are a definition, and after a zero byte a message of it in the serialisation of ROS 1: no
-/// part of it is a message, too; or there is one message that says why not.
+/// Any bytes are a message definition and, after a zero byte, a message of it in the serialization
+/// of ROS 1. No prefix of the message is a message too. Or there is one error message.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if the property is violated.
 pub fn ros1_message(bytes: &[u8]) {
     if let Some((definition, message)) = parts(Dialect::Ros1, bytes)
         && message_of(&definition, message)
@@ -100,10 +101,10 @@ pub fn ros1_message(bytes: &[u8]) {
     }
 }
 
-/// The same in CDR.
+/// The same for CDR.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if the property is violated.
 pub fn cdr_message(bytes: &[u8]) {
     if let Some((definition, message)) = parts(Dialect::Ros2, bytes) {
         message_of(&definition, message);
@@ -122,7 +123,7 @@ fn parts(dialect: Dialect, bytes: &[u8]) -> Option<(Definition, &[u8])> {
     }
 }
 
-/// Whether bytes are a message; then each of its fields is where the definition says.
+/// Whether bytes are a message. If so, each of its fields is where the definition says.
 fn message_of(definition: &Definition, bytes: &[u8]) -> bool {
     let value = match decode(definition, bytes) {
         Ok(value) => value,
@@ -146,11 +147,11 @@ fn message_of(definition: &Definition, bytes: &[u8]) -> bool {
 /// A log with a topic of every kind.
 const LOG: &[u8] = include_bytes!("../../fuzz/corpus/mcap/of-a-run");
 
-/// Any bytes are a mapping file, which is written so that it reads as the same, and which fits a log or
-/// does not; or there is one message that says why not.
+/// Any bytes are a topic map file. It is written so that it reads as the same, and fits a log or
+/// does not; or there is one error message.
 ///
 /// # Panics
-/// Where that does not hold.
+/// Panics if the property is violated.
 pub fn log_mapping(bytes: &[u8]) {
     let mapping = match TopicMap::read(bytes) {
         Ok(mapping) => mapping,
@@ -162,7 +163,7 @@ pub fn log_mapping(bytes: &[u8]) {
         Err(error) => panic!("{error}\n{text}"),
     }
     match Log::of_bytes(LOG.to_vec()) {
-        Ok(log) => tells(&log, &mapping),
+        Ok(log) => read_run(&log, &mapping),
         Err(error) => panic!("the log of the seeds: {error}"),
     }
 }

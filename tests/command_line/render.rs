@@ -85,8 +85,8 @@ fn invalid_input_is_refused_and_nothing_is_written() {
     rejected(&with(&["--pose", "2,6,0"]), "--pose: there is no floor at 2,6");
     rejected(&with(&["--pose", "2,8"]), "write three numbers");
     rejected(&with(&["--pose", "2,8,nan"]), "write three numbers");
-    rejected(&with(&["--effect", "fog=1"]), "--effect: there is no effect `fog`; there are ");
-    rejected(&with(&["--effect", "blur=9"]), "--effect: `blur` is 9; it may be from 0 to 4");
+    rejected(&with(&["--effect", "fog=1"]), "--effect: there is no effect `fog`; the effects are ");
+    rejected(&with(&["--effect", "blur=9"]), "--effect: `blur` is 9; it must be from 0 to 4");
     rejected(&with(&["--effect", "blur"]), "write NAME=VALUE");
     rejected(&with(&["--look", "cave"]), "laboratory");
     rejected(&with(&["--calibration", "nowhere.toml"]), "nowhere.toml: cannot be read");

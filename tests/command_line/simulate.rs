@@ -181,7 +181,7 @@ fn bad_arguments_are_reported_before_the_run() {
             &[SHAPE_6, "--noise", "9"],
             "with more than 5 times the default a robot cannot find its way",
         ),
-        (&[SHAPE_6, "--fault", "fog@3"], "there are dropped, late, frozen"),
+        (&[SHAPE_6, "--fault", "fog@3"], "the faults are dropped, late, frozen"),
     ];
     for (arguments, cause) in cases {
         let output = run([&["simulate"][..], arguments].concat());

@@ -14,26 +14,26 @@ use crate::{
     superscout::{Base, PERIOD, Reading, WheelSpeeds},
 };
 
-/// A command outlasts its period by about this, in seconds: odometry comes ten times a second, is on its
-/// way as long as the command is, and the wheels follow by and by.
+/// Delay of a command in seconds, in addition to its period: odometry comes ten times a second,
+/// messages take time, and wheels respond gradually.
 const LAG: f64 = 0.15;
 
-/// A base behind topics. Wherever it fails it has been told to stand.
+/// A base behind topics. After any error its wheels have been told to stop.
 pub(super) struct LiveBase {
     wheels: Wheels,
     odometry: Subscription<Reckoning>,
-    /// So long nothing may come.
+    /// The longest time without a message.
     patience: Duration,
-    /// Whether somebody ends the run.
+    /// Whether the run is to stop.
     stop: Box<dyn Fn() -> bool>,
-    /// When the robot's time begins.
+    /// The time of the robot's time 0.
     epoch: Nanoseconds,
     last: Reckoning,
     track: Vec<Sample>,
 }
 
 impl LiveBase {
-    /// A base that stands, as soon as it tells where it is.
+    /// A base at rest, as soon as odometry has come.
     pub(super) fn new(
         wheels: Wheels,
         odometry: Subscription<Reckoning>,
@@ -47,14 +47,14 @@ impl LiveBase {
         Ok(base)
     }
 
-    /// Seconds of the robot's time; below 0 before its beginning.
+    /// The robot's time in seconds; negative before its time 0.
     pub(super) fn seconds(&self, stamp: Nanoseconds) -> f64 {
         let since =
             |later: Nanoseconds, earlier: Nanoseconds| (later - earlier) as f64 / SECOND as f64;
         if stamp >= self.epoch { since(stamp, self.epoch) } else { -since(self.epoch, stamp) }
     }
 
-    /// The same with another patience.
+    /// The same base with another longest time without a message.
     pub(super) fn patient(self, patience: Duration) -> Self {
         Self { patience, ..self }
     }
@@ -71,13 +71,13 @@ impl LiveBase {
         &self.track
     }
 
-    /// Tells the wheels to stand: something is wrong.
+    /// Stops the wheels after an error.
     pub(super) fn halt(&self) {
-        // What is wrong is what will be told.
-        let _ = self.wheels.tell(WheelSpeeds::STOP);
+        // The first error is reported, not one of stopping.
+        let _ = self.wheels.set(WheelSpeeds::STOP);
     }
 
-    /// Reads where the robot is now, if it tells.
+    /// The present odometry, if it comes.
     pub(super) fn read(&mut self) {
         if let Some(now) = self.odometry.take().filter(|now| now.stamp > self.last.stamp) {
             self.last = now;
@@ -92,20 +92,21 @@ impl LiveBase {
         self.track.push(Sample { speed, turning, reckoned });
     }
 
-    /// Tells the wheels, and waits until the period is over; after a stop, until the robot stands.
-    fn told(&mut self, wheels: WheelSpeeds) -> Result<(), RobotError> {
+    /// Sets the wheel speeds and waits until the period is over; after a stop, until the robot
+    /// stands.
+    fn command(&mut self, wheels: WheelSpeeds) -> Result<(), RobotError> {
         if (self.stop)() {
             return Err(RobotError::Stopped);
         }
-        // The period begins now, not when odometry was last read.
+        // The period begins now, not at the last odometry.
         let mut last = self.odometry.take().filter(|now| now.stamp > self.last.stamp);
         let begun = last.unwrap_or(self.last).stamp;
-        self.wheels.tell(wheels)?;
+        self.wheels.set(wheels)?;
         let over = begun + (PERIOD * SECOND as f64) as Nanoseconds;
         let mut moves = false;
         let stopping = wheels == WheelSpeeds::STOP;
         let arrived = |now: Reckoning| {
-            // Odometry that goes back in time is no odometry.
+            // Ignore odometry that goes back in time.
             let before = last.filter(|before| before.stamp < now.stamp);
             let stood = before.is_some_and(|before| stands(&before, &now));
             if now.stamp > begun {
@@ -127,7 +128,7 @@ impl LiveBase {
 
 impl Base for LiveBase {
     fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError> {
-        match self.told(wheels) {
+        match self.command(wheels) {
             Ok(()) => Ok(self.reading()),
             Err(error) => {
                 self.halt();
@@ -146,7 +147,7 @@ impl Base for LiveBase {
         LAG
     }
 
-    /// Nobody listens to its sonars.
+    /// The live robot's sonars are not used.
     fn sonar(&self, _: usize) -> f64 {
         f64::INFINITY
     }

@@ -1,4 +1,4 @@
-//! A live robot: whatever answers on the topics of a SuperScout. Section 2.5.
+//! A live robot behind the topics of a SuperScout. Section 2.5.
 
 use std::time::Duration;
 
@@ -17,14 +17,15 @@ use crate::{
 
 /// A robot behind the topics of ROS 1.
 ///
-/// It turns and goes ahead by the same control loop as the simulated one, within a SuperScout's limits.
-/// Wherever it fails, and wherever it is dropped, the last that its wheels are told is that they stand.
+/// It turns and drives with the same control loop as the simulated robot, within a SuperScout's
+/// limits. After an error, and when it is dropped, the last command to its wheels is to stop.
 ///
-/// A picture counts that was taken after the end of the last motion. Odometry and pictures are stamped by
-/// one clock.
+/// Only images that were taken after the end of the last motion count. Odometry and images are
+/// stamped by one clock.
 // paper: hardware.ros
 pub struct LiveRobot {
-    // Dropped in this order: the node last, for the wheels are told through it to stand.
+    // The fields are dropped in this order. The node is last, because the wheels are stopped
+    // through it.
     base: LiveBase,
     pictures: Subscription<Photograph>,
     asked: u64,
@@ -32,29 +33,29 @@ pub struct LiveRobot {
 }
 
 impl LiveRobot {
-    /// The robot behind these topics, as soon as odometry and a picture have come.
+    /// The robot behind these topics, as soon as odometry and an image have come.
     ///
-    /// No more than so many seconds may pass without odometry, or without a picture where one is waited
-    /// for. As soon as `stop` says so, it stands, and does nothing any more.
+    /// `patience` is the longest time without odometry, and without an image if one is expected. If
+    /// `stop` returns true, the robot stops and does nothing more.
     ///
     /// # Errors
-    /// Where there is no master, or no robot.
+    /// Returns an error if there is no master or no robot.
     pub fn connect(
         topics: &RobotTopics,
         patience: Duration,
         stop: impl Fn() -> bool + 'static,
     ) -> Result<Self, RobotError> {
         let node = Node::new(&topics.master, "/toposlam")?;
-        let odometry = node.listen(&topics.odometry, read_odometry)?;
-        let pictures = node.listen(&topics.pictures, read_picture)?;
-        let wheels = Wheels::new(node.speak(&topics.wheels, TWIST)?, odometry.clone());
+        let odometry = node.subscribe(&topics.odometry, read_odometry)?;
+        let pictures = node.subscribe(&topics.pictures, read_picture)?;
+        let wheels = Wheels::new(node.advertise(&topics.wheels, TWIST)?, odometry.clone());
         let base = LiveBase::new(wheels, odometry, patience.max(FIRST), Box::new(stop))?;
         pictures.wait(patience.max(FIRST), base.stop(), |_| Some(()))?;
         let base = base.patient(patience);
         Ok(Self { base, pictures, asked: 0, _node: node })
     }
 
-    /// How many pictures it was asked for.
+    /// The number of images that were requested.
     #[must_use]
     pub fn pictures(&self) -> u64 {
         self.asked
@@ -80,7 +81,7 @@ impl LiveRobot {
     }
 }
 
-/// Nodes find each other within this.
+/// The longest time until nodes have found each other.
 const FIRST: Duration = Duration::from_secs(10);
 
 impl Robot for LiveRobot {

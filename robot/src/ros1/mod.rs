@@ -1,8 +1,8 @@
-//! A SuperScout behind the topics of ROS 1, as its drivers name them: wheels that are told their speeds
-//! on one, odometry on another, pictures on a third. Section 2.5.
+//! A SuperScout behind the topics of ROS 1, with the usual names: one for wheel speeds, one for
+//! odometry, one for images. Section 2.5.
 //!
-//! [`LiveRobot`] drives whatever answers on these topics; [`serve`] answers on them with a simulated
-//! robot. Both are nodes of the same master, and know nothing else of each other.
+//! [`LiveRobot`] drives any robot behind these topics. [`serve`] is a simulated robot behind them.
+//! Both are nodes of one master and have no other connection.
 
 mod base;
 mod live;
@@ -16,21 +16,21 @@ pub use simulated::{MOST_SPEED, ServeSummary, serve};
 
 use crate::log::recorder;
 
-/// Where a robot is reached.
+/// The master and the topics of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotTopics {
-    /// The master's address, as in `http://127.0.0.1:11311`.
+    /// Address of the master, as in `http://127.0.0.1:11311`.
     pub master: String,
-    /// The topic of its pictures, `sensor_msgs/CompressedImage`.
+    /// Topic of the images, `sensor_msgs/CompressedImage`.
     pub pictures: String,
-    /// The topic of its odometry, `nav_msgs/Odometry`.
+    /// Topic of the odometry, `nav_msgs/Odometry`.
     pub odometry: String,
-    /// The topic of what its wheels are told, `geometry_msgs/Twist`.
+    /// Topic of the wheel speeds, `geometry_msgs/Twist`.
     pub wheels: String,
 }
 
 impl RobotTopics {
-    /// The topics that drivers use unless somebody says otherwise, as in a log, at a master.
+    /// The usual topics, as in a log, at a master.
     #[must_use]
     pub fn usual(master: &str) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! A node of ROS 1 for a program that waits: topics on which it speaks, and the last message of those to
-//! which it listens.
+//! A ROS 1 node for blocking programs: topics to which it publishes, and the last message of each
+//! topic to which it subscribes.
 
 use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
@@ -16,26 +16,27 @@ use tokio::{
 use super::messages::MessageKind;
 use crate::robot::RobotError;
 
-/// The master answers within this, or is taken not to be there.
+/// The longest time until the master answers.
 const ANSWER: Duration = Duration::from_secs(10);
-/// Before a node is gone, what it said last goes out.
+/// The time for the last messages to leave before the node is gone.
 const LEAVE: Duration = Duration::from_millis(200);
-/// So many messages of a topic may be under way; older ones are dropped.
+/// The most messages of a topic that are queued. Older ones are dropped.
 const UNDER_WAY: usize = 16;
-/// A message begins with its length.
+/// A message begins with its length, in bytes.
 const LENGTH: usize = 4;
 
-/// A node. Dropped, it takes its leave of the master; whoever speaks through it is to be dropped before.
+/// A node. When it is dropped, it unregisters from the master. Its publishers must be dropped
+/// before it.
 pub(super) struct Node {
     handle: Option<NodeHandle>,
-    /// There until it is dropped.
+    /// `None` once it is dropped.
     runtime: Option<Runtime>,
     runner: tokio::runtime::Handle,
     master: String,
 }
 
 impl Node {
-    /// A node of this master, under this name and the number of the process.
+    /// A node of this master. The process number is added to the name.
     pub(super) fn new(master: &str, name: &str) -> Result<Self, RobotError> {
         let unreachable =
             |cause: String| RobotError::Unreachable { master: master.to_owned(), cause };
@@ -53,8 +54,12 @@ impl Node {
         Ok(Self { handle: Some(handle), runtime: Some(runtime), runner, master })
     }
 
-    /// Says that it will speak on a topic.
-    pub(super) fn speak(&self, topic: &str, kind: MessageKind) -> Result<Publisher, RobotError> {
+    /// Advertises a topic.
+    pub(super) fn advertise(
+        &self,
+        topic: &str,
+        kind: MessageKind,
+    ) -> Result<Publisher, RobotError> {
         let handle = self.handle(topic)?;
         let advertised = async {
             let MessageKind { name, definition } = kind;
@@ -68,8 +73,8 @@ impl Node {
         Ok(Publisher { publisher, runner: self.runner.clone(), topic: topic.to_owned() })
     }
 
-    /// Listens to a topic. What cannot be read is counted, and left.
-    pub(super) fn listen<T: Send + 'static>(
+    /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
+    pub(super) fn subscribe<T: Send + 'static>(
         &self,
         topic: &str,
         read: fn(&[u8]) -> Option<T>,
@@ -83,20 +88,20 @@ impl Node {
         };
         let last = Last { message: None, unread: 0, closed: false };
         let shared = Arc::new(Shared { last: Mutex::new(last), news: Condvar::new() });
-        let heard = Subscription { shared: shared.clone(), topic: topic.to_owned() };
+        let subscription = Subscription { shared: shared.clone(), topic: topic.to_owned() };
         self.runner.spawn(async move {
             while let Some(message) = subscriber.next().await {
-                // That some were dropped is no error: the newer ones follow.
+                // Dropped messages are no error: newer ones follow.
                 let Ok(bytes) = message else { continue };
                 let message = bytes.get(LENGTH..).and_then(read);
-                shared.hear(|last| match message {
+                shared.update(|last| match message {
                     Some(message) => last.message = Some(message),
                     None => last.unread += 1,
                 });
             }
-            shared.hear(|last| last.closed = true);
+            shared.update(|last| last.closed = true);
         });
-        Ok(heard)
+        Ok(subscription)
     }
 
     fn handle(&self, topic: &str) -> Result<&NodeHandle, RobotError> {
@@ -123,7 +128,7 @@ impl Drop for Node {
     }
 }
 
-/// A topic on which a node speaks.
+/// A topic to which a node publishes.
 pub(super) struct Publisher {
     publisher: PublisherAny,
     runner: tokio::runtime::Handle,
@@ -131,16 +136,16 @@ pub(super) struct Publisher {
 }
 
 impl Publisher {
-    /// Says the body of a message to all who listen.
-    pub(super) fn say(&self, body: &[u8]) -> Result<(), RobotError> {
+    /// Publishes the body of a message.
+    pub(super) fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
         let message = [&length[..], body].concat();
-        let said = self.runner.block_on(self.publisher.publish(message));
-        said.map_err(|_| RobotError::Closed { topic: self.topic.clone() })
+        let published = self.runner.block_on(self.publisher.publish(message));
+        published.map_err(|_| RobotError::Closed { topic: self.topic.clone() })
     }
 }
 
-/// A topic to which a node listens.
+/// A topic to which a node subscribes.
 #[derive(Debug)]
 pub(super) struct Subscription<T> {
     shared: Arc<Shared<T>>,
@@ -162,37 +167,37 @@ struct Shared<T> {
 #[derive(Debug)]
 struct Last<T> {
     message: Option<T>,
-    /// How many messages could not be read.
+    /// The number of messages that could not be read.
     unread: u64,
     closed: bool,
 }
 
 impl<T> Shared<T> {
     fn last(&self) -> MutexGuard<'_, Last<T>> {
-        // What it guards is right at any time.
+        // The guarded data is valid at any time, even after a panic.
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn hear(&self, change: impl FnOnce(&mut Last<T>)) {
+    fn update(&self, change: impl FnOnce(&mut Last<T>)) {
         change(&mut self.last());
         self.news.notify_all();
     }
 }
 
-/// Whoever waits looks up so often whether somebody ends the run.
-const LOOK_UP: Duration = Duration::from_millis(20);
+/// Interval at which a waiting thread checks whether the run is to stop.
+const STOP_INTERVAL: Duration = Duration::from_millis(20);
 
 impl<T> Subscription<T> {
-    /// Takes the last message, if there is one that nobody took.
+    /// Takes the last message, if it was not taken yet.
     pub(super) fn take(&self) -> Option<T> {
         self.shared.last().message.take()
     }
 
-    /// Waits for messages, each of which is shown, up to one that is wanted.
+    /// Waits for messages until `wanted` accepts one.
     ///
     /// # Errors
-    /// [`RobotError::Silent`] where none is in that time, [`RobotError::Stopped`] where somebody ends
-    /// the run, [`RobotError::Closed`] where there will be none any more.
+    /// Returns [`RobotError::Silent`] if none is accepted in time, [`RobotError::Stopped`] if the
+    /// run is to stop, and [`RobotError::Closed`] if no more messages can come.
     pub(super) fn wait<W>(
         &self,
         patience: Duration,
@@ -217,7 +222,7 @@ impl<T> Subscription<T> {
                 let (seconds, unread) = (patience.as_secs_f64(), last.unread);
                 return Err(RobotError::Silent { topic: topic(), seconds, unread });
             }
-            let waited = self.shared.news.wait_timeout(last, left.min(LOOK_UP));
+            let waited = self.shared.news.wait_timeout(last, left.min(STOP_INTERVAL));
             last = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
     }

@@ -1,4 +1,4 @@
-//! A simulated robot as a node of ROS 1: whoever drives it cannot tell it from a live one.
+//! A simulated robot as a ROS 1 node. To its driver it looks like a live robot.
 
 use std::{
     thread,
@@ -21,35 +21,36 @@ use crate::{
     superscout::{Base, WheelSpeeds},
 };
 
-/// What its wheels are told takes effect after this at most, in seconds of its time.
+/// Wheel speeds take effect after at most this time, in seconds of simulated time.
 const TICK: f64 = 0.05;
-/// Of so many ticks, one is told by odometry: ten times a second.
+/// Odometry is published every this many ticks: ten times a second.
 const READING: u64 = 2;
-/// A picture is taken every second, or as often as the camera can: to render one is most of the work.
+/// Interval between images in seconds, if the camera is fast enough. Rendering takes most of the
+/// time.
 const PICTURE_EVERY: f64 = 1.0;
-/// The simulated time goes by at most so many times as fast as the real one: faster, a motion would be
-/// over before it is known of.
+/// The greatest speed of simulated time relative to real time. At higher speeds a motion would be
+/// over before odometry reports it.
 pub const MOST_SPEED: f64 = 20.0;
 
-/// What a simulated robot did as a node.
+/// Summary of a served run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServeSummary {
-    /// Seconds of the simulated time.
+    /// Simulated time, in seconds.
     pub seconds: f64,
-    /// Seconds of the real time.
+    /// Real time, in seconds.
     pub real_seconds: f64,
-    /// How many pictures it took.
+    /// The number of images.
     pub pictures: u64,
 }
 
-/// Lets a simulated robot be driven through topics, until somebody says `stop`.
+/// Serves a simulated robot on topics until `stop` returns true.
 ///
-/// Its time goes by `speed` times as fast as the real one, or slower, never in jumps: while a picture is
-/// rendered, time stands. Its watchdog stops its wheels half a second after they were last told
-/// something, in its time. Stamps begin at the present time.
+/// Simulated time passes `speed` times as fast as real time or slower, without jumps: it stands
+/// still while an image is rendered. The watchdog stops the wheels half a second of simulated time
+/// after the last command. Time stamps begin at the present time.
 ///
 /// # Errors
-/// Where there is no master, or the connection is closed.
+/// Returns an error if there is no master or the connection is closed.
 pub fn serve(
     robot: SimulatedRobot,
     topics: &RobotTopics,
@@ -58,12 +59,12 @@ pub fn serve(
 ) -> Result<ServeSummary, RobotError> {
     let node = Node::new(&topics.master, "/toposlam_simulator")?;
     let mut scout = Scout {
-        told: node.listen(&topics.wheels, read_twist)?,
-        odometry: node.speak(&topics.odometry, ODOMETRY)?,
-        frames: node.speak(recorder::TF, FRAMES)?,
-        pictures: node.speak(&topics.pictures, PICTURE)?,
+        commands: node.subscribe(&topics.wheels, read_twist)?,
+        odometry: node.advertise(&topics.odometry, ODOMETRY)?,
+        frames: node.advertise(recorder::TF, FRAMES)?,
+        pictures: node.advertise(&topics.pictures, PICTURE)?,
         epoch: now(),
-        deaf: false,
+        ignores: false,
         exposed: None,
         next_picture: 0.0,
         robot,
@@ -75,7 +76,7 @@ pub fn serve(
     while !stop() {
         scout.tick(ticks)?;
         ticks += 1;
-        // Time that was lost is not made up for.
+        // Lost time is not made up for.
         due = (due + tick).max(Instant::now());
         thread::sleep(due.saturating_duration_since(Instant::now()));
     }
@@ -90,66 +91,66 @@ fn now() -> Nanoseconds {
 
 /// A simulated robot and its topics.
 struct Scout {
-    told: Subscription<WheelSpeeds>,
+    commands: Subscription<WheelSpeeds>,
     odometry: Publisher,
     frames: Publisher,
     pictures: Publisher,
     /// The stamp of its time 0.
     epoch: Nanoseconds,
-    /// It does not carry out the present motion.
-    deaf: bool,
-    /// A picture that is on its way, and when it comes.
+    /// Whether the present motion is ignored.
+    ignores: bool,
+    /// An image that is on its way, and its time of arrival.
     exposed: Option<(f64, Frame)>,
     next_picture: f64,
     robot: SimulatedRobot,
 }
 
 impl Scout {
-    /// What happens in one tick, of this number.
+    /// Advances by one tick, with this number.
     fn tick(&mut self, number: u64) -> Result<(), RobotError> {
-        if let Some(wheels) = self.told.take() {
+        if let Some(wheels) = self.commands.take() {
             self.command(wheels);
         }
         self.robot.base().wait(TICK);
         if number.is_multiple_of(READING) {
-            self.tell((number / READING) as u32)?;
+            self.publish_odometry((number / READING) as u32)?;
         }
         self.photograph()
     }
 
-    /// A motion begins whenever the wheels stood.
+    /// A motion begins when the wheels are set in motion.
     fn command(&mut self, wheels: WheelSpeeds) {
         let base = self.robot.base();
         let stood = base.wheels() == WheelSpeeds::STOP;
         if wheels == WheelSpeeds::STOP {
-            self.deaf = false;
-        } else if stood && !self.deaf {
-            self.deaf = !base.begin();
+            self.ignores = false;
+        } else if stood && !self.ignores {
+            self.ignores = !base.begin();
         }
-        base.command(if self.deaf { WheelSpeeds::STOP } else { wheels });
+        base.command(if self.ignores { WheelSpeeds::STOP } else { wheels });
     }
 
     fn stamp(&self, seconds: f64) -> Nanoseconds {
         self.epoch + (seconds * SECOND as f64).round() as Nanoseconds
     }
 
-    /// Odometry, and the same as a frame.
-    fn tell(&mut self, number: u32) -> Result<(), RobotError> {
+    /// Publishes odometry, also as a transform.
+    fn publish_odometry(&mut self, number: u32) -> Result<(), RobotError> {
         let base = self.robot.base();
         let (reading, wheels) = (base.reading(), base.wheels());
         let reckoning = Reckoning { stamp: self.stamp(reading.time), at: reading.odometry, wheels };
-        self.odometry.say(&odometry(number, &reckoning))?;
-        self.frames.say(&frames(number, &reckoning))
+        self.odometry.publish(&odometry(number, &reckoning))?;
+        self.frames.publish(&frames(number, &reckoning))
     }
 
-    /// Takes a picture where one is due, and gives it when it is there.
+    /// Takes an image if one is due, and publishes it when it has arrived.
     fn photograph(&mut self) -> Result<(), RobotError> {
         let time = self.robot.time();
         if let Some((_, exposed)) = self.exposed.take_if(|(there, _)| *there <= time) {
             let number = self.robot.pictures() as u32;
             let stamp = self.stamp(exposed.taken);
             if let Some(file) = exposed.image.as_ref().and_then(|image| image.file()) {
-                self.pictures.say(&picture(number, stamp, file))?;
+                self.pictures.publish(&picture(number, stamp, file))?;
             }
         }
         if time >= self.next_picture {

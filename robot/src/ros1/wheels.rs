@@ -1,4 +1,4 @@
-//! What the wheels are told; the last of it is always that they stand.
+//! Publishes wheel speeds. The last command is always to stop.
 
 use std::time::{Duration, Instant};
 
@@ -8,20 +8,20 @@ use super::{
 };
 use crate::{robot::RobotError, superscout::WheelSpeeds};
 
-/// The wheels of a robot. Dropped, whatever happened, they are told to stand, until odometry tells that
-/// they do, or for a second.
+/// The wheels of a robot. When they are dropped, they are told to stop until odometry reports that
+/// they stand, or for a second.
 pub(super) struct Wheels {
     topic: Publisher,
     odometry: Subscription<Reckoning>,
 }
 
-/// They are told so long to stand, where odometry does not tell that they do;
-const INSIST: Duration = Duration::from_secs(1);
-/// as often as this.
-const AGAIN: Duration = Duration::from_millis(50);
-/// A robot stands that by odometry goes no farther than this from one reading to the next, in metres:
+/// The longest time in seconds for which the stop command is repeated,
+const STOP_TIMEOUT: Duration = Duration::from_secs(1);
+/// and its interval.
+const REPEAT_INTERVAL: Duration = Duration::from_millis(50);
+/// The greatest distance between two odometry readings of a robot that stands, in metres,
 const STANDS: f64 = 0.002;
-/// nor turns by more than this, in radians.
+/// and the greatest turn, in radians.
 const STANDS_ANGLE: f64 = 0.004;
 
 /// Whether a robot stood between two readings.
@@ -35,23 +35,23 @@ impl Wheels {
         Self { topic, odometry }
     }
 
-    /// Tells them to turn so.
-    pub(super) fn tell(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
-        self.topic.say(&twist(wheels))
+    /// Sets the wheel speeds.
+    pub(super) fn set(&self, wheels: WheelSpeeds) -> Result<(), RobotError> {
+        self.topic.publish(&twist(wheels))
     }
 
-    /// Tells them to stand, and waits until they do.
+    /// Stops the wheels, and waits until the robot stands.
     fn halt(&self) {
-        let until = Instant::now() + INSIST;
+        let until = Instant::now() + STOP_TIMEOUT;
         let mut last: Option<Reckoning> = None;
         while Instant::now() < until {
-            // There is nobody left to tell that the connection is gone.
-            let _ = self.tell(WheelSpeeds::STOP);
+            // A closed connection cannot be reported here.
+            let _ = self.set(WheelSpeeds::STOP);
             let mut stood = |now: Reckoning| {
                 let before = last.replace(now)?;
                 stands(&before, &now).then_some(())
             };
-            match self.odometry.wait(AGAIN, &|| false, &mut stood) {
+            match self.odometry.wait(REPEAT_INTERVAL, &|| false, &mut stood) {
                 Ok(()) | Err(RobotError::Closed { .. }) => break,
                 Err(_) => {}
             }

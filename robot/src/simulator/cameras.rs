@@ -1,5 +1,5 @@
-//! What a simulated robot's camera gives: a photograph, or, where nothing is rendered, a scene as
-//! sensing would tell it. Sections 2.5 and 3.
+//! The cameras of simulated robots: one renders images, the other reports scenes without images.
+//! Sections 2.5 and 3.
 
 use std::{
     f64::consts::{FRAC_PI_2, PI, TAU},
@@ -34,17 +34,17 @@ use crate::{
     truth::{HallwayTruth, JunctionTruth, MarkerTruth, Truth},
 };
 
-/// A camera on a simulated robot.
+/// The camera of a simulated robot.
 pub trait SimulatedCamera: Debug + Send {
-    /// The frame of a number from a pose, overexposed by this many stops. The robot fills in time and
-    /// odometry.
+    /// The frame with this number from a pose, overexposed by this many stops. The robot fills in
+    /// time and odometry.
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame;
 
-    /// The lights go out.
+    /// Turns the lights out.
     fn lights_out(&mut self);
 }
 
-/// A frame that was damaged on the way from the camera, of this number.
+/// Damages the frame with this number.
 pub(super) fn corrupt(frame: Frame, number: u64) -> Frame {
     let unknown = Scene { place: Place::Unknown(Reason::NothingFits), marker: None };
     let scene = frame.scene.and(Some(unknown));
@@ -62,46 +62,46 @@ pub(super) fn corrupt(frame: Frame, number: u64) -> Frame {
     Frame { image, scene, ..frame }
 }
 
-/// A camera that renders what it sees of a building, and gives the file of a photograph: JPEG, or PNG
-/// where its effects have no loss.
+/// A camera that renders images of a building and encodes them as JPEG, or as PNG if its effects
+/// have no compression.
 ///
-/// It sets its exposure as cameras do: after a picture whose middle is burnt out it exposes the next
-/// one less, and by and by as before.
+/// It adapts its exposure like a real camera: after an overexposed image it exposes the next one
+/// less, and then gradually returns to the exposure of its effects.
 #[derive(Clone, Debug)]
 pub struct RenderingCamera {
     rig: Arc<Rig>,
     building: Building,
     effects: Effects,
     seed: u64,
-    /// By how many stops it exposes less than its effects say.
+    /// Exposure below that of its effects, in stops.
     less: f64,
 }
 
-/// How dark it is when the lights are out, in stops.
+/// Change of the exposure when the lights are out, in stops.
 const OUT: f64 = -8.0;
-/// One byte of so many is damaged in a corrupt picture.
+/// One of this many bytes of a damaged file is changed.
 const DAMAGED: usize = 400;
-/// A channel at this level is burnt out.
+/// Level from which a channel is overexposed, of 255.
 const BURNT: u8 = 250;
-/// The light is metered in the middle of the picture, in this part of the mirror's radius.
+/// Radius of the metered area in the middle of the image, as a share of the mirror's radius.
 const METERED: f64 = 0.35;
-/// With more than this share burnt out there, a picture is followed by one
+/// Share of overexposed pixels above which the exposure is reduced.
 const TOO_MUCH: f64 = 0.1;
-/// that is exposed less by so many stops;
+/// Reduction of the exposure after such an image, in stops.
 const LESS: f64 = 0.4;
-/// with less than this share
+/// Share of overexposed pixels below which the exposure is raised again.
 const LITTLE: f64 = 0.02;
-/// it is followed by one that is exposed more by so many, up to what the effects say.
+/// Rise of the exposure after such an image, up to that of the effects, in stops.
 const MORE: f64 = 0.1;
 
 impl RenderingCamera {
-    /// A camera in a building; the noise of its pictures follows from the seed.
+    /// A camera in a building. The noise of its images follows from the seed.
     #[must_use]
     pub fn new(rig: Arc<Rig>, building: Building, effects: Effects, seed: u64) -> Self {
         Self { rig, building, effects, seed, less: 0.0 }
     }
 
-    /// Sets the exposure of the next picture by the middle of this one.
+    /// Sets the exposure of the next image from this one.
     fn adapt(&mut self, image: &RgbImage) {
         let ([u, v], reach) = (self.rig.optics.centre, METERED * self.rig.optics.rim());
         let (mut metered, mut burnt) = (0_u32, 0_u32);
@@ -136,44 +136,44 @@ impl SimulatedCamera for RenderingCamera {
     }
 }
 
-/// A camera and sensing in one, without pictures: it tells scenes as often right, and as exactly, as
-/// sensing was measured to do.
+/// A camera and sensing in one, without images. It reports scenes with the error rates and errors
+/// that were measured for sensing.
 #[derive(Clone, Debug)]
 pub struct SceneCamera {
     /// The plan of the building.
     pub plan: Arc<FloorPlan>,
     /// The dart along which the marker lies.
     pub marker: Option<Dart>,
-    /// How much more often it errs, and by how much more, than was measured.
+    /// Multiple of the measured error rates and errors.
     pub noise: f64,
-    /// From which its errors follow.
+    /// Random seed.
     pub seed: u64,
     dark: bool,
 }
 
-/// Sensing does not tell a place in this share of its pictures: in `toposlam evaluate vision --views
-/// 20000 --seed 100`, 4 of 3,786 hallways and 7 of 4,758 junctions;
+/// Share of unknown scenes: in `toposlam evaluate vision --views 20000 --seed 100`, 4 of 3,786
+/// hallways and 7 of 4,758 junctions.
 const UNKNOWN: f64 = 11.0 / 8_544.0;
-/// it told a wrong junction in none of 14,263 pictures of junctions and of their surroundings: this is
-/// about half the rate above which that would be less likely than one in twenty;
+/// Share of wrong junctions: there were none in 14,263 images of junctions and their surroundings.
+/// This is about half the upper bound with a confidence of 95 %.
 const WRONG: f64 = 1e-4;
-/// it missed the marker in 4 of 816 pictures.
+/// Share of missed markers: 4 of 816 images.
 const MISSED: f64 = 4.0 / 816.0;
-/// Standard deviations that have the 95 % of the errors seen there: of a hallway's direction, of a
-/// centre line's, in radians, of the distance to a side and of a centre line, in metres.
+/// Standard deviations, from the 95 % quantiles of the measured errors: directions of a hallway and
+/// of a centre line in radians, distances to a side and to a centre line in metres.
 const HEADING: f64 = 0.17 / 1.96 / 180.0 * PI;
 const DIRECTION: f64 = 0.11 / 1.96 / 180.0 * PI;
 const SIDE: f64 = 0.0081 / 1.96;
 const PLACE: f64 = 0.0033 / 1.96;
-/// A junction is told from so far before its turning point to so far behind it, in metres,
+/// Range in which a junction is recognized, from before its turning point to behind it, in metres.
 const HERE: [f64; 2] = [-1.0, 0.75];
-/// a little more or less: standard deviation.
+/// Standard deviation of both limits, in metres.
 const HERE_OFF: f64 = 0.03;
-/// The marker is seen from so far away, in metres.
+/// Distances at which the marker is recognized, in metres.
 const MARKER_SEEN: std::ops::Range<f64> = 0.2..1.5;
 
 impl SceneCamera {
-    /// What sensing tells of the buildings of this plan.
+    /// A camera in a building of this plan.
     #[must_use]
     pub fn new(plan: Arc<FloorPlan>, marker: Option<Dart>, noise: f64, seed: u64) -> Self {
         Self { plan, marker, noise, seed, dark: false }
@@ -187,7 +187,7 @@ impl SceneCamera {
             return Place::Unknown(Reason::NothingFits);
         }
         match truth {
-            Truth::Junction(junction) => told_junction(junction, chance),
+            Truth::Junction(junction) => reported_junction(junction, chance),
             Truth::Between(hallway, junctions) => {
                 let here = junctions.iter().find(|junction| {
                     let [ahead, aside] = in_axes(junction);
@@ -195,11 +195,11 @@ impl SceneCamera {
                     (HERE[0]..=HERE[1]).contains(&(-ahead + off)) && aside.abs() <= -HERE[0]
                 });
                 match here {
-                    Some(junction) => told_junction(junction, chance),
-                    None => told_hallway(hallway, junctions, chance),
+                    Some(junction) => reported_junction(junction, chance),
+                    None => reported_hallway(hallway, junctions, chance),
                 }
             }
-            Truth::Hallway(hallway) => told_hallway(hallway, &[], chance),
+            Truth::Hallway(hallway) => reported_hallway(hallway, &[], chance),
         }
     }
 
@@ -221,7 +221,7 @@ impl SceneCamera {
     }
 }
 
-/// Errors of a picture.
+/// Random errors of one image.
 struct Chance {
     numbers: Xoshiro256PlusPlus,
     noise: f64,
@@ -238,7 +238,7 @@ impl Chance {
     }
 }
 
-/// Where the turning point is, along the axis of the hallways that is nearest to ahead and across it.
+/// The turning point along the hallway axis that is nearest to ahead, and across it.
 fn in_axes(junction: &JunctionTruth) -> [f64; 2] {
     let door = junction.doors.first().copied().unwrap_or(0.0);
     let axis = door - (door / FRAC_PI_2).round() * FRAC_PI_2;
@@ -246,7 +246,7 @@ fn in_axes(junction: &JunctionTruth) -> [f64; 2] {
     [x * cosine + y * sine, y * cosine - x * sine]
 }
 
-fn told_hallway(truth: &HallwayTruth, near: &[JunctionTruth], chance: &mut Chance) -> Place {
+fn reported_hallway(truth: &HallwayTruth, near: &[JunctionTruth], chance: &mut Chance) -> Place {
     let ahead = near.iter().any(|junction| in_axes(junction)[0] > 0.0);
     Place::Hallway(HallwayView {
         heading: undirected(truth.heading + chance.off(HEADING)),
@@ -261,13 +261,13 @@ fn told_hallway(truth: &HallwayTruth, near: &[JunctionTruth], chance: &mut Chanc
     })
 }
 
-fn told_junction(truth: &JunctionTruth, chance: &mut Chance) -> Place {
+fn reported_junction(truth: &JunctionTruth, chance: &mut Chance) -> Place {
     let off = [chance.off(PLACE), chance.off(PLACE)];
     let turning_point = [0, 1].map(|axis| truth.turning_point[axis] + off[axis]);
     let turned = chance.off(DIRECTION);
     let mut doors = truth.doors.clone();
     if chance.happens(WRONG) {
-        // Another door is seen, or one is not.
+        // One door too many or too few.
         mistaken(&mut doors, &mut chance.numbers);
     }
     let line = |direction: &f64| CentreLine {
@@ -279,7 +279,7 @@ fn told_junction(truth: &JunctionTruth, chance: &mut Chance) -> Place {
     Place::Junction(view.entered_from(PI))
 }
 
-/// One door of three is not seen, or one that is not there is; they stand clockwise afterwards, too.
+/// Removes one of three doors, or adds one. The doors stay in clockwise order.
 fn mistaken(doors: &mut Vec<f64>, numbers: &mut Xoshiro256PlusPlus) {
     let entry = doors[0];
     if doors.len() == 3 {
@@ -298,7 +298,7 @@ impl SimulatedCamera for SceneCamera {
     fn picture(&mut self, pose: Pose, number: u64, stops: f64) -> Frame {
         let numbers = stream(self.seed, StreamPurpose::Scenes, number as usize);
         let mut chance = Chance { numbers, noise: self.noise };
-        // Sensing does not know the light of a picture that is burnt out.
+        // Sensing fails on overexposed images.
         let truth = Truth::at(&self.plan, pose).filter(|_| stops < 1.0);
         let scene = match truth {
             Some(truth) => Scene {
@@ -334,23 +334,23 @@ mod tests {
     fn scenes_are_told_right_but_for_the_share_that_was_measured() {
         let plan = shape_6();
         let facing = starts_of(&plan)[0];
-        // At the start, of an L whose other door is to the left.
+        // The start is an L whose other door is to the left.
         let pose = start_pose(&plan, facing);
         let junction = JunctionTruth::of(&plan, plan.graph().vertex(facing), pose);
         let right = SceneClass::Junction(junction.form.unwrap());
         let count = |noise: f64| {
             let mut camera = SceneCamera::new(plan.clone(), Some(facing), noise, 4);
-            let told: Vec<_> = (0..20_000)
+            let classes: Vec<_> = (0..20_000)
                 .map(|n| SceneClass::of(&camera.picture(pose, n, 0.0).scene.unwrap()))
                 .collect();
-            let unknown = told.iter().filter(|&&class| class == SceneClass::Unknown).count();
+            let unknown = classes.iter().filter(|&&class| class == SceneClass::Unknown).count();
             let wrong =
-                told.iter().filter(|&&class| class != SceneClass::Unknown && class != right);
+                classes.iter().filter(|&&class| class != SceneClass::Unknown && class != right);
             (unknown, wrong.count())
         };
         assert_eq!(count(0.0), (0, 0));
         let (unknown, wrong) = count(1.0);
-        // 25.7 and 2 are to be expected.
+        // The expected numbers are 25.7 and 2.
         assert!((10..45).contains(&unknown) && wrong < 9, "{unknown} {wrong}");
         let (unknown, wrong) = count(20.0);
         assert!((400..640).contains(&unknown) && (15..70).contains(&wrong), "{unknown} {wrong}");

@@ -35,13 +35,13 @@ pub struct Knob {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KnobError {
     /// There is no effect with this name.
-    #[error("there is no effect `{name}`; there are {}", names())]
+    #[error("there is no effect `{name}`; the effects are {}", names())]
     Unknown {
         /// The name.
         name: String,
     },
     /// The value is out of range.
-    #[error("`{name}` is {value}; it may be from {least} to {greatest}")]
+    #[error("`{name}` is {value}; it must be from {least} to {greatest}")]
     OutOfRange {
         /// The effect.
         name: &'static str,
@@ -93,55 +93,55 @@ macro_rules! knobs {
 
 knobs! {
     lamp_spread "lamp-spread" Building 0.0 0.0..=1.0, 0.0..=0.35,
-        "By which share the lamps' brightnesses differ.";
+        "Spread of the lamps' brightness, as a share.";
     lamp_falloff "lamp-falloff" Building 0.0 0.0..=1.0, 0.3..=0.8,
-        "How much less light there is away from the lamps: 0 is even light, 1 lamps alone.";
+        "Fall of the light away from the lamps: 0 even light, 1 lamps only.";
     lamps_out "lamps-out" Building 0.0 0.0..=1.0, 0.0..=0.15,
-        "Share of the lamps that are out.";
+        "Share of the lamps that are off.";
     hot_spots "hot-spots" Building 0.0 0.0..=5.0, 0.0..=0.5,
-        "How much more light there is in hot spots on the floor, as a share.";
+        "Additional light in hot spots on the floor, as a share.";
     shadows "shadows" Building 0.0 0.0..=1.0, 0.0..=0.45,
-        "Which share of the light is gone in shadows.";
+        "Share of the light missing in shadows.";
     texture "texture" Building 0.0 0.0..=2.0, 0.6..=1.2,
-        "How strongly tiles' joints and carpets' tufts show; 1 as the look has them.";
+        "Contrast of joints and tufts on the floor; 1 as in the look.";
     gloss "gloss" Building 0.0 0.0..=2.0, 0.4..=1.2,
-        "How much the floor shines; 1 as the look has it.";
+        "Gloss of the floor; 1 as in the look.";
     gaps "gaps" Building 0.0 0.0..=10.0, 0.0..=3.0,
-        "Gaps in the stripe for each 10 m of wall.";
+        "Gaps in the stripe per 10 m of wall.";
     gap_length "gap-length" Building 0.25 0.0..=1.0, 0.08..=0.25,
         "Length of the longest gap in the stripe, in metres.";
     scuffs "scuffs" Building 0.0 0.0..=1.0, 0.0..=0.25,
-        "By which share the stripe's brightness differs from place to place.";
+        "Variation of the stripe's brightness, as a share.";
     doors "doors" Building 0.0 0.0..=10.0, 0.0..=2.0,
-        "Doors for each 10 m of wall; a baseboard ends at them.";
+        "Doors per 10 m of wall; they interrupt a baseboard.";
     untaped_doors "untaped-doors" Building 0.0 0.0..=1.0, 0.0..=0.4,
-        "Share of the doors across which no tape runs.";
+        "Share of the doors without tape across them.";
     posters "posters" Building 0.0 0.0..=10.0, 0.0..=3.0,
-        "Posters for each 10 m of wall.";
+        "Posters per 10 m of wall.";
     body "body" Picture 0.0 0.0..=1.0, 1.0..=1.0,
-        "Whether the robot sees itself: below 0.5 it does not.";
+        "Whether the robot's body is visible: 0.5 or more is yes.";
     lens "lens" Picture 0.0 0.0..=0.03, 0.012..=0.016,
-        "Radius of the camera that the mirror shows in the middle, in metres.";
+        "Radius of the camera visible in the middle of the mirror, in metres.";
     struts "struts" Picture 0.0 0.0..=20.0, 1.5..=4.0,
-        "Angle that each of the mirror's two struts hides, in degrees.";
+        "Angle hidden by each of the mirror's two struts, in degrees.";
     strut_bearing "strut-bearing" Picture 90.0 0.0..=180.0, 0.0..=180.0,
-        "Where one of the struts is, the other being opposite, in degrees from ahead to the left.";
+        "Direction of the struts, in degrees from ahead to the left.";
     exposure "exposure" Picture 0.0 -5.0..=5.0, -1.2..=0.3,
-        "How much the picture is overexposed, in stops.";
+        "Overexposure, in stops.";
     cast "cast" Picture 0.0 0.0..=1.0, 0.0..=0.7,
-        "How yellow the light is: which share of the blue is gone, and a fifth of it of the green.";
+        "Yellow cast: missing share of blue; a fifth of it is missing in green.";
     tint "tint" Picture 0.0 -0.5..=0.5, -0.08..=0.08,
-        "How green the light is, or, below 0, how magenta: by which share green differs.";
+        "Green tint, or magenta below 0: change of green, as a share.";
     vignetting "vignetting" Picture 0.0 0.0..=1.0, 0.1..=0.5,
-        "Which share of the light is gone at the mirror's rim.";
+        "Share of the light missing at the mirror's rim.";
     blur "blur" Picture 0.0 0.0..=4.0, 0.3..=1.1,
-        "How blurred the picture is: standard deviation in pixels of an image 1280 wide.";
+        "Blur: standard deviation in pixels of an image 1280 wide.";
     glare "glare" Picture 0.0 0.0..=0.5, 0.0..=0.03,
-        "Share of all light that is spread evenly over the picture by a dusty mirror.";
+        "Share of the light that a dusty mirror spreads over the image.";
     noise "noise" Picture 0.0 0.0..=0.5, 0.004..=0.02,
-        "Sensor noise: standard deviation at white, as a share of it.";
+        "Sensor noise: standard deviation at white, as a share of white.";
     jpeg_loss "jpeg-loss" Picture 0.0 0.0..=99.0, 5.0..=35.0,
-        "How much JPEG loses: 100 less its quality; at 0 there is no compression.";
+        "JPEG loss: 100 minus quality; 0 is no compression.";
 }
 
 impl Effects {
@@ -204,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn knobs_have_names_of_their_own_and_ranges_that_are_allowed() {
+    fn effects_have_unique_names_and_allowed_ranges() {
         for (number, knob) in KNOBS.iter().enumerate() {
             assert!(KNOBS[..number].iter().all(|other| other.name != knob.name));
             for value in [knob.default.start(), knob.default.end(), &knob.plain] {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn effects_are_drawn_from_their_ranges() {
+    fn effects_are_drawn_from_their_default_ranges() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
         let mut earlier = Effects::plain();
         for _ in 0..100 {
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn another_picture_is_of_the_same_building() {
+    fn another_image_has_the_same_building() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
         let mut effects = Effects::drawn(&mut rng);
         let mut other = effects.of_another_picture(&mut rng);
@@ -246,14 +246,14 @@ mod tests {
     }
 
     #[test]
-    fn a_knob_turns_as_far_as_it_may() {
+    fn effects_outside_their_range_are_refused() {
         let mut effects = Effects::plain();
         assert_eq!(effects.set("lamp-spread", 0.25), Ok(()));
         assert_eq!(effects, Effects { lamp_spread: 0.25, ..Effects::plain() });
         let refused = effects.set("blur", 7.0).unwrap_err().to_string();
-        assert_eq!(refused, "`blur` is 7; it may be from 0 to 4");
+        assert_eq!(refused, "`blur` is 7; it must be from 0 to 4");
         assert!(effects.set("blur", f64::NAN).is_err());
         let refused = effects.set("fog", 1.0).unwrap_err().to_string();
-        assert!(refused.starts_with("there is no effect `fog`; there are lamp-spread, "));
+        assert!(refused.starts_with("there is no effect `fog`; the effects are lamp-spread, "));
     }
 }

@@ -31,20 +31,20 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Dropped "dropped" 3 "Pictures do not come.";
-    Late "late" 3 "Pictures come that were taken before the last motion.";
-    Frozen "frozen" 3 "The same picture comes again and again, as if it were new.";
-    OverExposed "over-exposed" 3 "Pictures are burnt out.";
-    Corrupt "corrupt" 3 "Pictures are damaged on their way.";
-    Ignored "ignored" 2 "Commands are not carried out.";
+    Dropped "dropped" 3 "No images arrive.";
+    Late "late" 3 "Images arrive that are older than the last motion.";
+    Frozen "frozen" 3 "The same image arrives repeatedly, as if it were new.";
+    OverExposed "over-exposed" 3 "Images are overexposed.";
+    Corrupt "corrupt" 3 "Image files are damaged.";
+    Ignored "ignored" 2 "Commands are ignored.";
     Blocked "blocked" 1 "An obstacle ahead, unseen by the camera, stops the robot.";
-    LightsOut "lights-out" 1 "The lights go out for good.";
+    LightsOut "lights-out" 1 "The lights go out.";
     Carried "carried" 1 "The robot is carried elsewhere; odometry does not notice.";
 }
 
 /// The fault cannot be parsed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("write NAME@PICTURE or NAME@PICTURE:COUNT, as in dropped@12:3; there are {}", names())]
+#[error("write NAME@PICTURE or NAME@PICTURE:COUNT, as in dropped@12:3; the faults are {}", names())]
 pub struct FaultError;
 
 fn names() -> String {
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_is_read_with_its_picture_and_how_long_it_lasts() {
+    fn a_fault_is_parsed_with_its_image_and_its_duration() {
         let fault = RobotFault { kind: FaultKind::Dropped, picture: 12, lasting: 3 };
         assert_eq!("dropped@12".parse(), Ok(fault));
         assert_eq!("dropped@12:9".parse(), Ok(RobotFault { lasting: 9, ..fault }));
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_spoils_as_many_pictures_as_it_lasts() {
+    fn a_fault_affects_as_many_images_as_it_lasts() {
         let fault: RobotFault = "frozen@5:2".parse().unwrap();
         let spoilt: Vec<_> = (1..10).filter(|&picture| fault.spoils(picture)).collect();
         assert_eq!(spoilt, [5, 6]);

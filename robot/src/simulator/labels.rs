@@ -1,4 +1,4 @@
-//! What each pixel shows, for training and judging the classifier of colours. Section 3.
+//! The class of each pixel, to train and judge the colour classifier. Section 3.
 
 use image::{Rgb, RgbImage};
 use toposlam_vision::colour::PixelClass;
@@ -11,8 +11,8 @@ use super::sight_lines::SightLines;
 use super::surfaces::Surface;
 use crate::pose::Pose;
 
-/// What the middle of each pixel shows, row by row: [`PixelClass::Unseen`] on the robot, its struts and
-/// beyond the mirror, and never [`PixelClass::Unknown`].
+/// The class of the middle of each pixel, row by row: [`PixelClass::Unseen`] on the robot, its
+/// struts and outside the mirror, and never [`PixelClass::Unknown`].
 #[must_use]
 pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> Vec<PixelClass> {
     let lines = SightLines::from(pose.position, rig.off_axis, building.walls());
@@ -32,8 +32,8 @@ pub fn labels(rig: &Rig, building: &Building, pose: Pose, effects: &Effects) -> 
         .collect()
 }
 
-/// The label mask of these classes: floor green, stripe red, marker blue, anything else black, what is
-/// to be ignored white.
+/// The label image of these classes: floor green, stripe red, marker blue, ignored pixels white,
+/// anything else black.
 #[must_use]
 pub fn label_mask(rig: &Rig, classes: &[PixelClass]) -> RgbImage {
     let [width, height] = rig.image();

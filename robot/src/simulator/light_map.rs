@@ -1,4 +1,4 @@
-//! How much light falls where: on the floor, and on each wall, at the corners of a mesh.
+//! The light on the floor and on each wall, at the nodes of meshes.
 
 use toposlam_model::floor_plan::Rectangle;
 
@@ -6,13 +6,13 @@ use super::lights::{CEILING, Lights};
 use super::squares::{extent, side};
 use super::walls::BuildingWall;
 
-/// From corner to corner of the mesh, in metres.
+/// Distance of the mesh's nodes, in metres.
 const MESH: f64 = 0.2;
 
-/// Corners of a wall's mesh from floor to ceiling.
+/// The number of nodes of a wall's mesh from floor to ceiling.
 const ROWS: usize = 7;
 
-/// Light in a building; 1 is what falls on the floor on average.
+/// The light in a building; 1 is the mean light on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct LightMap {
     floor: Mesh,
@@ -30,7 +30,7 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// Between the four corners around a place.
+    /// Interpolates between the four nodes around a place.
     #[inline]
     fn at(&self, place: [f32; 2]) -> f32 {
         let [x, y] = [0, 1].map(|axis| (place[axis] - self.least[axis]) * self.per_metre[axis]);
@@ -62,7 +62,7 @@ impl LightMap {
         let (least, size) = extent(floors);
         let side = side(MESH, size);
         let [columns, rows] = size.map(|length| (length / side) as usize + 2);
-        // Corners that no floor is near stay dark; nobody looks there.
+        // Nodes far from any floor stay undefined; they are never read.
         let mut lamplight = vec![f64::NAN; columns * rows];
         let mut grounds = Vec::new();
         for floor in floors {
@@ -78,7 +78,7 @@ impl LightMap {
                         continue;
                     }
                     let place = [least[0] + column as f64 * side, least[1] + row as f64 * side];
-                    // A corner behind the wall has the light before it.
+                    // A node behind the wall gets the light in front of it.
                     let inset = 0.01;
                     let ground = [0, 1].map(|axis| {
                         let least = floor.least[axis] + inset;

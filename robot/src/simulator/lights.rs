@@ -1,4 +1,4 @@
-//! The light in a building: lamps along the hallways, hot spots and shadows.
+//! The lights of a building: lamps along the hallways, hot spots and shadows.
 
 use rand::RngExt;
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
@@ -8,13 +8,13 @@ use super::random_stream::{StreamPurpose, about, stream};
 use super::squares::Squares;
 use super::walls::BuildingWall;
 
-/// From floor to ceiling, in metres.
+/// Height of the ceiling, in metres.
 pub(super) const CEILING: f64 = 2.5;
 
-/// How bright a lamp is to look at; a white surface in its mean light has 1.
+/// Brightness of a lamp that is seen directly; a white surface in mean light has 1.
 const LAMP_BRIGHTNESS: f64 = 6.0;
 
-/// How far the light of a lamp reaches, in metres.
+/// Range of a lamp's light, in metres.
 const REACH: f64 = 6.0;
 
 /// A lamp in the ceiling.
@@ -26,16 +26,16 @@ pub(super) struct Lamp {
     pub(super) brightness: f32,
 }
 
-/// A place on the floor where there is more light or less.
+/// A hot spot or a shadow on the floor.
 struct Spot {
     middle: [f64; 2],
     /// Half its extent along x and along y.
     half: [f64; 2],
-    /// By how much the light changes in its middle, as a share.
+    /// Relative change of the light in its middle.
     change: f64,
 }
 
-/// So many times its half extent from a spot's middle there is nothing of it left.
+/// The spot ends at this multiple of its half extent.
 const FADED: f64 = 2.5;
 
 impl Spot {
@@ -46,20 +46,20 @@ impl Spot {
     }
 }
 
-/// Lamps and other lights, before it is known what they shine on.
+/// Lamps, spots and the walls near them.
 pub(super) struct Lights {
     pub(super) lamps: Vec<Lamp>,
     spots: Vec<Spot>,
-    /// How far each spot reaches.
+    /// The reach of each spot.
     spotted: Squares,
     falloff: f64,
     /// For each lamp, the walls that its light may meet.
     walls_near: Vec<Vec<BuildingWall>>,
-    /// How far each lamp reaches.
+    /// The reach of each lamp.
     reaches: Squares,
 }
 
-/// The middle line of a hallway: where it begins, its length and its axis.
+/// The middle line of a hallway: its beginning, length and axis.
 fn middle_line(floor: &Rectangle, width: f64) -> ([f64; 2], f64, usize) {
     let size = [0, 1].map(|axis| floor.greatest[axis] - floor.least[axis]);
     let along = usize::from(size[1] > size[0]);
@@ -133,7 +133,7 @@ impl Lights {
         self.falloff == 0.0 && self.spots.is_empty()
     }
 
-    /// The light that lamps throw on a surface at this place, up to a factor.
+    /// The light of the lamps on a surface at this place, up to a factor.
     pub(super) fn lamplight(&self, place: [f64; 3], normal: [f64; 3]) -> f64 {
         let mut sum = 0.0;
         for &number in self.reaches.at([place[0] as f32, place[1] as f32]) {
@@ -148,7 +148,7 @@ impl Lights {
                 continue;
             }
             let size = f64::from(lamp.half[0].max(lamp.half[1]));
-            // The lamp is no point: its nearness has a limit.
+            // A lamp has an extent, which limits how near it can be.
             let square = square + size * size / 3.0;
             let ground = [place[0], place[1]];
             if walls.iter().all(|wall| !wall.between(ground, middle)) {
@@ -158,7 +158,7 @@ impl Lights {
         sum
     }
 
-    /// The light at a place, where so much lamplight falls and so much falls on the floor's average.
+    /// The light at a place, given its lamplight and the floor's average lamplight.
     pub(super) fn light(&self, ground: [f64; 2], lamplight: f64, average: f64) -> f32 {
         let lamps = if average > 0.0 { lamplight / average } else { 0.0 };
         let mut light = 1.0 - self.falloff + self.falloff * lamps;

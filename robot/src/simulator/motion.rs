@@ -267,7 +267,7 @@ mod tests {
 
     // paper: hardware.drive
     #[test]
-    fn an_ideal_base_does_what_it_is_told_and_no_faster_than_it_may() {
+    fn an_ideal_base_obeys_commands_within_its_limits() {
         let mut base = base(&MotionNoise::NONE, 1);
         Drive(&mut base).forward(0.4).unwrap();
         assert!((base.pose().position[0] - 0.4).abs() < 0.005, "{:?}", base.pose());
@@ -276,14 +276,15 @@ mod tests {
         Drive(&mut base).turn(FRAC_PI_2).unwrap();
         assert!((base.pose().heading - FRAC_PI_2).abs() < 0.005, "{:?}", base.pose());
         assert!(base.time() - begun >= 4.5, "a quarter turn takes 4.5 s at 20 degrees a second");
-        let told = base.reading().odometry;
+        let measured = base.reading().odometry;
         assert!(
-            told.distance(&Odometry::default()) > 0.39 && (told.heading - FRAC_PI_2).abs() < 0.005
+            measured.distance(&Odometry::default()) > 0.39
+                && (measured.heading - FRAC_PI_2).abs() < 0.005
         );
     }
 
     #[test]
-    fn no_command_takes_it_farther_than_half_a_metre() {
+    fn no_command_moves_it_more_than_half_a_metre() {
         let mut base = base(&MotionNoise::NONE, 1);
         Drive(&mut base).forward(9.0).unwrap();
         assert!((base.pose().position[0] - COMMAND).abs() < 0.005);
@@ -291,7 +292,7 @@ mod tests {
 
     // paper: hardware.sonar
     #[test]
-    fn its_sonars_stop_it_short_of_a_wall() {
+    fn sonars_stop_it_before_a_wall() {
         let mut base = base(&MotionNoise::NONE, 1);
         for _ in 0..20 {
             Drive(&mut base).forward(0.5).unwrap();
@@ -310,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_stop_it_and_its_wheels_turn_on() {
+    fn walls_stop_it_while_its_wheels_turn() {
         let mut base = base(&MotionNoise::NONE, 1);
         for _ in 0..400 {
             base.drive(WheelSpeeds::of(0.2, 0.0)).unwrap();
@@ -320,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_not_carried_out_takes_time_and_nothing_else() {
+    fn an_ignored_command_only_takes_time() {
         let mut base = base(&MotionNoise::NONE, 1);
         base.ignore(1);
         assert!(!base.begin() && base.begin());
@@ -328,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn its_track_tells_each_period_where_somebody_wants_to_know() {
+    fn its_track_has_every_period_if_recorded() {
         let mut base = base(&MotionNoise::NONE, 1);
         Drive(&mut base).forward(0.1).unwrap();
         assert!(base.track().is_empty());
@@ -347,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_that_of_the_seed_and_grows_with_its_factor() {
+    fn noise_follows_from_the_seed_and_grows_with_its_factor() {
         let off = |factor: f64| {
             let end = |seed| {
                 let mut base = base(&MotionNoise::DEFAULT.times(factor), seed);

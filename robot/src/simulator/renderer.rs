@@ -1,4 +1,4 @@
-//! What the robot's camera sees: a picture of a building from a pose. Section 2.5.
+//! Renders the camera's image of a building from a pose. Section 2.5.
 
 use image::RgbImage;
 
@@ -12,19 +12,19 @@ use super::sight_lines::SightLines;
 use super::surfaces::{BuildingView, Surface, WorldRay};
 use crate::pose::Pose;
 
-/// How many rays along and across a pixel there are where different things meet in it.
+/// The number of rays along and across a pixel in which several surfaces meet.
 const FINE: usize = 3;
 
-/// How much of the light that passes the mirror by reaches the camera.
+/// The share of the light that reaches the camera past the mirror.
 const BESIDE_MIRROR: f32 = 0.35;
 
-/// How much wider than the mirror its holder is.
+/// Radius of the mirror's holder, as a multiple of the mirror's.
 const HOLDER: f32 = 1.03;
 
-/// The picture that a rig takes of a building from a pose.
+/// The image of a building that a rig takes from a pose.
 ///
-/// The same arguments give the same picture, byte for byte. From a pose that is not on the building's
-/// floor there is a picture too, of no use.
+/// The same arguments give the same image, byte for byte. From a pose that is not on the floor, the
+/// image is meaningless.
 #[must_use]
 pub fn render(
     rig: &Rig,
@@ -36,7 +36,7 @@ pub fn render(
     compressed(exposed(rig, building, pose, effects, seed), effects)
 }
 
-/// The same picture before it is made a file.
+/// The image before it is compressed.
 pub(super) fn exposed(
     rig: &Rig,
     building: &Building,
@@ -54,7 +54,7 @@ pub(super) struct Shot<'a> {
     rig: &'a Rig,
     view: BuildingView<'a>,
     body: Body,
-    /// Where the robot is, and its heading as cosine and sine and in 65,536 to a full turn.
+    /// The robot's position, its heading as cosine and sine, and its heading in 1/65,536 of a turn.
     position: [f32; 2],
     heading: [f32; 2],
     turn: u16,
@@ -86,7 +86,7 @@ impl<'a> Shot<'a> {
         }
     }
 
-    /// What a pixel shows in its middle.
+    /// The surface in the middle of a pixel.
     pub(super) fn surface(&self, u: u32, v: u32) -> Surface {
         let ray = &self.rig.rays[(v * self.rig.image()[0] + u) as usize];
         if let Some(part) = self.body.met(ray) {
@@ -98,8 +98,8 @@ impl<'a> Shot<'a> {
         }
     }
 
-    /// What a ray through a place in the image meets, and the light that comes back; of a pixel so
-    /// large.
+    /// The surface that a ray through a place in the image meets, and its light; for a pixel of
+    /// this size.
     #[inline]
     fn seen(&self, ray: &PixelRay, place: [f32; 2], size: f32) -> (Surface, [f32; 3]) {
         if let Some(part) = self.body.met(ray) {
@@ -121,7 +121,7 @@ impl<'a> Shot<'a> {
         })
     }
 
-    /// The light that comes to a pixel, as the mean of many rays.
+    /// The light at a pixel, as the mean of many rays.
     #[cold]
     fn finely(&self, u: usize, v: usize) -> [f32; 3] {
         let mut sum = [0.0; 3];
@@ -147,7 +147,7 @@ impl<'a> Shot<'a> {
         (u * u + v * v).sqrt()
     }
 
-    /// A ray in the building's coordinates.
+    /// The ray in the building's coordinates.
     #[inline]
     fn world(&self, ray: &PixelRay) -> WorldRay {
         let [cosine, sine] = self.heading;
@@ -163,9 +163,9 @@ impl<'a> Shot<'a> {
 
 /// The rays within a pixel.
 enum Bundle<'a> {
-    /// As they change from the pixel's neighbours to it, which within a pixel is as good as straight.
+    /// Linear interpolation between the pixel's neighbours, which is exact enough within a pixel.
     Straight { middle: PixelRay, rightwards: [f32; 7], downwards: [f32; 7] },
-    /// At the mirror's rim and the image's border: each by itself.
+    /// At the mirror's rim and the image's border, each ray is computed.
     Each { rig: &'a Rig, pixel: [f64; 2] },
 }
 
@@ -179,7 +179,7 @@ impl<'a> Bundle<'a> {
         let at = v * width + u;
         let around = [at - 1, at + 1, at - width, at + width].map(|at| rig.rays[at]);
         let middle = rig.rays[at];
-        // In the middle of the mirror, too, rays go apart in no straight manner.
+        // In the middle of the mirror, interpolation is not exact enough.
         if around.iter().any(|ray| ray.by != middle.by) || middle.direction[2] < -0.98 {
             return each;
         }
@@ -209,7 +209,7 @@ impl<'a> Bundle<'a> {
     }
 }
 
-/// Half of how two rays differ: origin, direction and turn.
+/// Half of the difference of two rays: origin, direction and turn.
 fn change(one: &PixelRay, other: &PixelRay) -> [f32; 7] {
     let half = |one: f32, other: f32| (other - one) / 2.0;
     let [x, y, z] = [0, 1, 2].map(|axis| half(one.origin[axis], other.origin[axis]));
@@ -218,12 +218,12 @@ fn change(one: &PixelRay, other: &PixelRay) -> [f32; 7] {
     [x, y, z, along, left, up, turn]
 }
 
-/// The rows of a picture, from the first to the last.
+/// The rows of an image, from the first to the last.
 struct Rows<'a> {
     shot: &'a Shot<'a>,
     width: usize,
     height: usize,
-    /// The latest rows looked at: what their pixels show, and the light that comes from there.
+    /// The latest rows: the surface and the light of each pixel.
     looked: [Row; 3],
 }
 
@@ -241,7 +241,7 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// One ray a pixel.
+    /// Renders a row with one ray per pixel.
     fn look(&mut self, v: usize) {
         if v >= self.height {
             return;
@@ -259,7 +259,7 @@ impl<'a> Rows<'a> {
 }
 
 impl RowRenderer for Rows<'_> {
-    /// Rows are asked for in order. Looks more closely where neighbouring pixels show different things.
+    /// Rows must be requested in order. Pixels whose neighbours show other surfaces get more rays.
     fn row(&mut self, v: usize, out: &mut [f32]) {
         self.look(v + 1);
         let here = &self.looked[v % 3];
@@ -276,7 +276,7 @@ impl RowRenderer for Rows<'_> {
         }
     }
 
-    /// The mean of the light, by a pixel here and there.
+    /// The mean light of some pixels.
     fn mean(&self) -> [f32; 3] {
         let mut sum = [0.0; 3];
         let mut count = 0;
@@ -323,7 +323,7 @@ mod tests {
                 let exact = |right, down| PixelRay::from(rig.ray([u + right, v + down]));
                 let here = exact(0.0, 0.0);
                 let pixel = apart(&here, &exact(1.0, 0.0)).max(apart(&here, &exact(0.0, 1.0)));
-                // At the rim the mirror turns away faster and faster.
+                // At the rim the mirror is curved more and more.
                 let [middle_u, middle_v] = rig.optics.centre;
                 let within = (u - middle_u).hypot(v - middle_v) < 0.97 * rig.optics.rim();
                 let allowed = if within { 0.03 } else { 0.5 };

@@ -1,20 +1,20 @@
-//! Squares of the floor, and what lies in each: so that nobody has to look at everything.
+//! An index of rectangles by squares of the floor.
 
 use toposlam_model::floor_plan::Rectangle;
 
-/// For each square of a mesh, the numbers of the rectangles that reach into it.
+/// For each square of a mesh, the numbers of the rectangles that overlap it.
 #[derive(Clone, Debug)]
 pub(super) struct Squares {
     least: [f32; 2],
     per_metre: f32,
     columns: usize,
     rows: usize,
-    /// Where the numbers of each square begin in `numbers`.
+    /// The beginning of each square's numbers in `numbers`.
     begin: Vec<u32>,
     numbers: Vec<u32>,
 }
 
-/// The least corner of all floors, and the size of their surroundings.
+/// The least corner of all floors, and the size of their bounding box.
 pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
     let least = |axis: usize| floors.iter().map(|floor| floor.least[axis]).fold(f64::MAX, f64::min);
     let greatest =
@@ -22,13 +22,13 @@ pub(super) fn extent(floors: &[Rectangle]) -> ([f64; 2], [f64; 2]) {
     ([least(0), least(1)], [greatest(0) - least(0), greatest(1) - least(1)])
 }
 
-/// The side of a mesh's squares: that wished for, unless there would be millions of them.
+/// The side of a mesh's squares: the given one, or more to avoid millions of squares.
 pub(super) fn side(wished: f64, size: [f64; 2]) -> f64 {
     wished.max((size[0] * size[1] / 2.5e5).sqrt()).max(size[0].max(size[1]) / 1e5)
 }
 
 impl Squares {
-    /// The rectangles on these floors.
+    /// Indexes rectangles on these floors.
     pub(super) fn new(floors: &[Rectangle], wished: f64, rectangles: &[Rectangle]) -> Self {
         let (least, size) = extent(floors);
         let side = side(wished, size);
@@ -36,7 +36,7 @@ impl Squares {
         let mut squares = vec![Vec::new(); columns * rows];
         for (number, rectangle) in rectangles.iter().enumerate() {
             let reach = |axis: usize, count: usize| {
-                // Wider by what rounding may do to a place.
+                // The margin is larger than any rounding error.
                 let at = |at: f64| ((at - least[axis]) / side).clamp(0.0, (count - 1) as f64);
                 at(rectangle.least[axis] - 1e-3) as usize
                     ..=at(rectangle.greatest[axis] + 1e-3) as usize
@@ -62,7 +62,7 @@ impl Squares {
         }
     }
 
-    /// The numbers of all rectangles that hold a place, and perhaps of others.
+    /// The numbers of all rectangles that contain a place, and perhaps of others.
     #[inline]
     pub(super) fn at(&self, place: [f32; 2]) -> &[u32] {
         let [column, row] = [0, 1].map(|axis| {

@@ -1,4 +1,4 @@
-//! What stands in a simulated robot's way, and what its sonars hear. Section 2.5.
+//! Walls and obstacles around a simulated robot, and the ranges of its sonars. Section 2.5.
 
 use toposlam_model::floor_plan::{FloorPlan, Rectangle};
 
@@ -11,13 +11,13 @@ use crate::{
     superscout::{RADIUS, sonar_direction},
 };
 
-/// Sonars hear nothing that is farther from the robot's middle, in metres.
+/// Range of the sonars from the robot's centre, in metres.
 const RANGE: f64 = 1.5;
 
-/// The walls of a building, and other things that stand on its floor.
+/// The walls of a building and the obstacles on its floor.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
-    /// A wall is a rectangle without depth.
+    /// The walls as rectangles without depth.
     walls: Vec<Rectangle>,
     /// The walls within a sonar's range of each place.
     near: Squares,
@@ -32,18 +32,18 @@ impl Surroundings {
         Self { near: Squares::new(&floors, 0.5, &around), walls, obstacles: Vec::new() }
     }
 
-    /// Puts something on the floor.
+    /// Puts an obstacle on the floor.
     pub(super) fn put(&mut self, obstacle: Rectangle) {
         self.obstacles.push(obstacle);
     }
 
-    /// All that stands within a sonar's range of a place.
+    /// The walls near a place, and all obstacles.
     fn near(&self, [x, y]: [f64; 2]) -> impl Iterator<Item = Rectangle> {
         let walls = self.near.at([x as f32, y as f32]).iter();
         walls.map(|&number| self.walls[number as usize]).chain(self.obstacles.iter().copied())
     }
 
-    /// Whether the robot's body has room at a place.
+    /// Whether there is room for the robot's body at a place.
     pub(super) fn has_room(&self, place: [f64; 2]) -> bool {
         self.near(place).all(|thing| {
             let off = |axis: usize| {
@@ -53,7 +53,7 @@ impl Surroundings {
         })
     }
 
-    /// How far from its body a sonar of a robot hears something, in metres.
+    /// The distance from the robot's body that a sonar measures, in metres.
     pub(super) fn sonar(&self, pose: Pose, sonar: usize) -> f64 {
         let (sine, cosine) = (pose.heading + sonar_direction(sonar)).sin_cos();
         let steepness = [cosine, sine].map(|part| if part == 0.0 { 1e300 } else { 1.0 / part });
@@ -73,8 +73,8 @@ fn rectangle(wall: &BuildingWall) -> Rectangle {
     Rectangle { least, greatest }
 }
 
-/// How far along a ray a rectangle is first met, infinite if never; `steepness` is how far one has to go along the ray to
-/// get one metre farther along each axis.
+/// The distance along a ray to a rectangle; infinite if they do not meet. `steepness` is the length
+/// of the ray per metre along each axis.
 #[inline]
 fn first_on(thing: &Rectangle, from: [f64; 2], steepness: [f64; 2]) -> f64 {
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// One hallway to the east, 2 m wide; its dead ends' walls are at x = -1 and x = 7.
+    /// One hallway to the east, 2 m wide. The walls of its dead ends are at x = -1 and x = 7.
     fn hallway() -> Surroundings {
         let junctions = [("a".to_owned(), [0.0, 0.0]), ("b".to_owned(), [6.0, 0.0])];
         let plan = FloorPlan::new(2.0, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
@@ -102,13 +102,13 @@ mod tests {
 
     // paper: hardware.sonar
     #[test]
-    fn sonars_hear_the_walls_from_the_robots_body_on() {
+    fn sonars_measure_from_the_robots_body_to_the_walls() {
         let hallway = hallway();
-        let heard = |sonar| hallway.sonar(Pose { position: [0.0, 0.2], heading: 0.0 }, sonar);
+        let range = |sonar| hallway.sonar(Pose { position: [0.0, 0.2], heading: 0.0 }, sonar);
         let close = |sonar: usize, expected: f64| {
-            assert!((heard(sonar) - expected).abs() < 1e-6, "{sonar}: {}", heard(sonar));
+            assert!((range(sonar) - expected).abs() < 1e-6, "{sonar}: {}", range(sonar));
         };
-        assert_eq!(heard(0), f64::INFINITY, "seven metres ahead");
+        assert_eq!(range(0), f64::INFINITY, "seven metres ahead");
         close(4, 0.8 - RADIUS);
         close(12, 1.2 - RADIUS);
         close(8, 1.0 - RADIUS);
@@ -124,7 +124,7 @@ mod tests {
         assert!(!hallway.has_room([3.0, 1.001 - RADIUS]));
         hallway.put(Rectangle { least: [3.5, -0.2], greatest: [3.7, 0.2] });
         assert!(!hallway.has_room([3.4, 0.0]) && hallway.has_room([3.2, 0.0]));
-        let heard = hallway.sonar(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 }, 0);
-        assert!((heard - (0.5 - RADIUS)).abs() < 1e-6);
+        let range = hallway.sonar(Pose { position: [3.6, -0.7], heading: FRAC_PI_2 }, 0);
+        assert!((range - (0.5 - RADIUS)).abs() < 1e-6);
     }
 }
