@@ -43,7 +43,7 @@ const INDEPENDENT: [(&[&str], &[&str]); 2] = [
 ];
 
 /// In the robot's crate, the modules that may import the simulator.
-const SIMULATES: [&str; 3] = ["evaluation", "ros1::simulated", "simulator"];
+const SIMULATES: [&str; 4] = ["evaluation", "ros1::simulated", "run", "simulator"];
 
 /// A token of Rust source; of literals only that there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]

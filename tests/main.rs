@@ -1,5 +1,6 @@
 //! Tests of the whole program: the command line, the pages, the documents.
 
+mod architecture;
 mod atlas;
 mod browser;
 mod command_line;

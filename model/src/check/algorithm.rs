@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{EveryWay, Flaw, every_way};
+use super::{EveryWay, Flaw};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
@@ -179,50 +179,6 @@ impl Algorithm for Algorithm1 {
 }
 
 impl OpenChoices for Algorithm1 {}
-
-/// Algorithm 1, or a variant of it, with the default choices, and then with all choices.
-#[derive(Clone, Copy, Debug)]
-pub struct AllChoices<A> {
-    /// The algorithm.
-    pub algorithm: A,
-    /// The number of states of one start that may be explored.
-    pub budget: u64,
-}
-
-impl<A: OpenChoices> Algorithm for AllChoices<A> {
-    type Marker = Directional;
-    type State = Exploration;
-
-    fn name(&self) -> &'static str {
-        self.algorithm.name()
-    }
-
-    fn order(&self) -> CostOrder {
-        self.algorithm.order()
-    }
-
-    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        self.algorithm.move_bound(edges, vertices)
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g>,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
-        self.algorithm.run(world, exploration, observer)
-    }
-
-    fn other_runs(
-        &self,
-        graph: &EmbeddedGraph,
-        facing: Dart,
-        watch: &impl Watch,
-    ) -> Result<Option<EveryWay>, Flaw> {
-        every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
-    }
-}
 
 /// The movable marker algorithm with the default choices, for worlds without loops and parallel
 /// edges.

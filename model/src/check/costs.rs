@@ -1,4 +1,18 @@
-//! A set of costs: how many moves the runs of a start can take.
+//! The runs of a start and their costs.
+
+/// All runs of Algorithm 1 on one start.
+// paper: cost.shape-6, cost.shape-8
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EveryWay {
+    /// Distinct states at line 4: the map, numbered by discovery, and the robot's vertex in it.
+    pub states: u64,
+    /// Distinct sequences of choices. Stays at the largest `u128` if there are more.
+    pub runs: u128,
+    /// The numbers of moves that occur among the runs.
+    pub costs: Costs,
+    /// Whether these are all: the budget of states was not used up.
+    pub complete: bool,
+}
 
 /// A set of small numbers, as bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

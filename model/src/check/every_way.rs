@@ -3,28 +3,15 @@
 
 use std::collections::HashMap;
 
-use super::{Costs, Flaw, OpenChoices, judge};
+use super::{Algorithm, CostOrder, Costs, EveryWay, Flaw, OpenChoices, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Exploration, MappingChoice, PartialMap},
-    world::GraphWorld,
+    mapping::{Exploration, MappingChoice, MappingError, Observer, PartialMap},
+    marker::Directional,
+    world::{GraphWorld, Refused},
 };
-
-/// All runs of Algorithm 1 on one start.
-// paper: cost.shape-6, cost.shape-8
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EveryWay {
-    /// Distinct states at line 4: the map, numbered by discovery, and the robot's vertex in it.
-    pub states: u64,
-    /// Distinct sequences of choices. Stays at the largest `u128` if there are more.
-    pub runs: u128,
-    /// The numbers of moves that occur among the runs.
-    pub costs: Costs,
-    /// Whether these are all: the budget of states was not used up.
-    pub complete: bool,
-}
 
 /// The default number of states of one start that may be explored.
 pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
@@ -32,6 +19,50 @@ pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
 /// The search is as deep as the number of edges. A larger world is not searched: it has too many
 /// states anyway.
 const MAX_EDGES: usize = 100;
+
+/// Algorithm 1, or a variant of it, with the default choices, and then with all choices.
+#[derive(Clone, Copy, Debug)]
+pub struct AllChoices<A> {
+    /// The algorithm.
+    pub algorithm: A,
+    /// The number of states of one start that may be explored.
+    pub budget: u64,
+}
+
+impl<A: OpenChoices> Algorithm for AllChoices<A> {
+    type Marker = Directional;
+    type State = Exploration;
+
+    fn name(&self) -> &'static str {
+        self.algorithm.name()
+    }
+
+    fn order(&self) -> CostOrder {
+        self.algorithm.order()
+    }
+
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        self.algorithm.move_bound(edges, vertices)
+    }
+
+    fn run<'g>(
+        &self,
+        world: &mut GraphWorld<'g>,
+        exploration: &mut Exploration,
+        observer: &mut impl Observer<GraphWorld<'g>>,
+    ) -> Result<(), MappingError<Refused>> {
+        self.algorithm.run(world, exploration, observer)
+    }
+
+    fn other_runs(
+        &self,
+        graph: &EmbeddedGraph,
+        facing: Dart,
+        watch: &impl Watch,
+    ) -> Result<Option<EveryWay>, Flaw> {
+        every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
+    }
+}
 
 /// Runs an algorithm on a start with all choices, and judges the end of every run. States are
 /// explored once, runs are counted. The search stops after `budget` states, including those within a

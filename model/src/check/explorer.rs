@@ -1,8 +1,9 @@
 //! Judges any explorer: an algorithm that walks through a world and returns a map of it.
 
-use std::borrow::Cow;
-
-use super::{Algorithm, Flaw, RunState, judge::judge_map};
+use super::{
+    Algorithm, ExploredMap, Flaw, RunState,
+    judge::{explored, judge_map},
+};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::Candidate,
@@ -38,36 +39,6 @@ pub trait Explorer {
 
 /// How many moves an explorer may make if it states no bound.
 pub const DEFAULT_MOVE_BOUND: u64 = 1_000_000;
-
-/// What an explorer returns: a map, and the robot's pose in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ExploredMap<'a> {
-    /// The map.
-    pub graph: Cow<'a, EmbeddedGraph>,
-    /// The dart of the map that is the facing dart.
-    pub facing: Dart,
-    /// The dart of the map by which the robot has come in.
-    pub pose: Dart,
-}
-
-impl ExploredMap<'_> {
-    /// A map from its two permutations of the darts `0 .. 2m`: the other end of each dart's edge, and
-    /// the next dart clockwise around its vertex. `facing` and `pose` are darts in that numbering.
-    ///
-    /// # Errors
-    /// Returns an error if they are not the permutations of a connected graph, or a dart is missing.
-    pub fn from_permutations(
-        opposite: &[u32],
-        clockwise: &[u32],
-        facing: u32,
-        pose: u32,
-    ) -> Result<Self, Flaw> {
-        let (graph, number) = EmbeddedGraph::from_permutations(opposite, clockwise)?;
-        let dart = |dart: u32| number.get(dart as usize).copied().ok_or(Flaw::NoSuchDart { dart });
-        let (facing, pose) = (dart(facing)?, dart(pose)?);
-        Ok(Self { graph: Cow::Owned(graph), facing, pose })
-    }
-}
 
 /// The world that an explorer gets: it can be sensed and moved in, and nothing else. It counts the
 /// moves.
@@ -169,16 +140,4 @@ impl<A: Algorithm> Explorer for AlgorithmExplorer<'_, A> {
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
         self.algorithm.move_bound(edges, vertices)
     }
-}
-
-/// The map of a finished run.
-pub(super) fn explored(state: &impl RunState) -> Result<ExploredMap<'_>, Flaw> {
-    let journey = state.journey();
-    let unexplored = journey.map().unexplored_count();
-    let graph = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
-    Ok(ExploredMap {
-        graph: Cow::Borrowed(graph),
-        facing: crate::mapping::FACING,
-        pose: journey.robot(),
-    })
 }

@@ -1,72 +1,51 @@
 //! Judges a finished run. Section 2.1 (the map is isomorphic to the world), Section 2.3.
 
-use std::fmt;
+use std::{borrow::Cow, fmt};
 
-use thiserror::Error;
-
-use super::{Algorithm, ExploredMap, RunState, explorer::explored};
+use super::{Algorithm, Flaw, RunState};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, GraphError},
+    embedded_graph::{Dart, EmbeddedGraph},
     isomorphism::{Bijection, Candidate},
-    mapping::{FACING, Journey, MappingError, MappingEvent, PartialMap},
-    world::{GraphWorld, Refused},
+    mapping::{FACING, Journey, MappingEvent, PartialMap},
+    world::GraphWorld,
 };
 
-/// What is wrong with a run.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Flaw {
-    /// It ended with an error: a door that does not exist, a contradiction, the bound.
-    #[error(transparent)]
-    Error(#[from] MappingError<Refused>),
-    /// It ended with unexplored edges.
-    #[error("it ended with {unexplored} edge ends unexplored")]
-    Unfinished {
-        /// Their number.
-        unexplored: u32,
-    },
-    /// The map is not isomorphic to the world, start to start.
-    #[error("the map is not isomorphic to the world")]
-    WrongMap,
-    /// The robot is not where it believes it is.
-    #[error(
-        "the robot believes it came in by the map's dart {}, which is dart {} of the world, but it \
-         came in by dart {}",
-        believed.0, image.0, truly.0
-    )]
-    WrongPose {
-        /// The pose in the map.
-        believed: Dart,
-        /// The image of that dart in the world.
-        image: Dart,
-        /// The pose in the world.
-        truly: Dart,
-    },
-    /// The explorer gave up.
-    #[error("the explorer gave up: {0}")]
-    GaveUp(String),
-    /// The explorer's map is not an embedded graph.
-    #[error("the map is not an embedded graph: {0}")]
-    NoGraph(#[from] GraphError),
-    /// The facing dart or the robot's pose is not a dart of the map.
-    #[error("the map has no dart {dart}")]
-    NoSuchDart {
-        /// The number of the dart.
-        dart: u32,
-    },
-    /// More moves than the bound.
-    #[error("it took {moves} moves; the bound is {bound}")]
-    TooManyMoves {
-        /// The moves.
-        moves: u64,
-        /// The bound.
-        bound: u64,
-    },
+/// What an explorer returns: a map, and the robot's pose in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExploredMap<'a> {
+    /// The map.
+    pub graph: Cow<'a, EmbeddedGraph>,
+    /// The dart of the map that is the facing dart.
+    pub facing: Dart,
+    /// The dart of the map by which the robot has come in.
+    pub pose: Dart,
 }
 
-impl From<Refused> for Flaw {
-    fn from(refused: Refused) -> Self {
-        Self::Error(MappingError::World(refused))
+impl ExploredMap<'_> {
+    /// A map from its two permutations of the darts `0 .. 2m`: the other end of each dart's edge, and
+    /// the next dart clockwise around its vertex. `facing` and `pose` are darts in that numbering.
+    ///
+    /// # Errors
+    /// Returns an error if they are not the permutations of a connected graph, or a dart is missing.
+    pub fn from_permutations(
+        opposite: &[u32],
+        clockwise: &[u32],
+        facing: u32,
+        pose: u32,
+    ) -> Result<Self, Flaw> {
+        let (graph, number) = EmbeddedGraph::from_permutations(opposite, clockwise)?;
+        let dart = |dart: u32| number.get(dart as usize).copied().ok_or(Flaw::NoSuchDart { dart });
+        let (facing, pose) = (dart(facing)?, dart(pose)?);
+        Ok(Self { graph: Cow::Owned(graph), facing, pose })
     }
+}
+
+/// The map of a finished run.
+pub(super) fn explored(state: &impl RunState) -> Result<ExploredMap<'_>, Flaw> {
+    let journey = state.journey();
+    let unexplored = journey.map().unexplored_count();
+    let graph = journey.map().complete().ok_or(Flaw::Unfinished { unexplored })?;
+    Ok(ExploredMap { graph: Cow::Borrowed(graph), facing: FACING, pose: journey.robot() })
 }
 
 /// Judges a finished run: the map is isomorphic to the world as a start, by a bijection that is

@@ -4,19 +4,17 @@ mod algorithm;
 mod costs;
 mod every_way;
 mod explorer;
+mod flaw;
 mod judge;
 mod sweep;
 mod tally;
 
-pub use algorithm::{
-    Algorithm, Algorithm1, AllChoices, CostOrder, MovableMarker, OpenChoices, RunState,
-};
-pub use costs::Costs;
-pub use every_way::{DEFAULT_STATE_BUDGET, EveryWay, every_way};
-pub use explorer::{
-    AlgorithmExplorer, DEFAULT_MOVE_BOUND, ExploredMap, Explorer, ExplorerWorld, judge_start,
-};
-pub use judge::{FalseStep, Flaw, first_false_step, judge};
+pub use algorithm::{Algorithm, Algorithm1, CostOrder, MovableMarker, OpenChoices, RunState};
+pub use costs::{Costs, EveryWay};
+pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
+pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
+pub use flaw::Flaw;
+pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
 pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{FailedStart, Tally, WorstStart};
 

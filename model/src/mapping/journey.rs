@@ -4,7 +4,7 @@
 use std::mem;
 
 use super::{
-    Choices, Contradiction, FACING, InvalidStep, MappingError, MappingEvent, Observer, PartialMap,
+    Choices, Contradiction, FACING, InvalidStep, MappingError, MappingEvent, PartialMap,
     tree::BreadthFirstTree,
 };
 use crate::{
@@ -12,6 +12,27 @@ use crate::{
     percept::{Door, Percept, Sighting},
     world::World,
 };
+
+/// Observes a run in a world `W`.
+///
+/// It also gets the world, so that an observer inside the world needs no shared ownership.
+pub trait Observer<W: ?Sized> {
+    /// Called after each event. The journey is as it is afterwards, except that at
+    /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent);
+}
+
+/// Ignores every event.
+impl<W: ?Sized> Observer<W> for () {
+    #[inline]
+    fn event(&mut self, _: &mut W, _: &Journey, _: MappingEvent) {}
+}
+
+impl<W: ?Sized, F: FnMut(&mut W, &Journey, MappingEvent)> Observer<W> for F {
+    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
+        self(world, journey, event);
+    }
+}
 
 /// The robot's map, its pose in the map and its moves.
 #[derive(Clone, Debug)]

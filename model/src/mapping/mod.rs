@@ -6,9 +6,9 @@ mod choices;
 mod contradiction;
 mod exploration;
 mod journey;
+mod mapping_event;
 mod marker_search;
 mod movable_marker;
-mod observer;
 mod partial_map;
 mod tree;
 
@@ -16,10 +16,10 @@ pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
 pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
-pub use journey::Journey;
+pub use journey::{Journey, Observer};
+pub use mapping_event::{MappingEvent, MovableEvent};
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{
     ReachedPlace, explore_edge, map_with_movable_marker, validate_back_link, validate_place,
 };
-pub use observer::{MappingEvent, MovableEvent, Observer};
 pub use partial_map::{FACING, PartialMap};

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::calibration::SIDES;
+/// The least and the greatest number of pixels on a side of an image.
+pub const SIDES: [u32; 2] = [16, 16384];
 
 /// Why a file is not a calibration.
 #[derive(Clone, Debug, PartialEq, Error)]

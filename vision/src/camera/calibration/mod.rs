@@ -32,7 +32,7 @@ mod error;
 mod read;
 mod write;
 
+pub use super::optics_file::SIDES;
 pub use error::{CalibrationError, CalibrationErrorKind};
-pub use read::SIDES;
 pub use read::{Files, read};
 pub use write::to_toml;

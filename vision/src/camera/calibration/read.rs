@@ -4,7 +4,10 @@ use std::{io, ops::RangeInclusive};
 
 use toposlam_model::format::document::{Document, DocumentTable, DocumentValue};
 
-use super::error::{CalibrationError, CalibrationErrorKind};
+use super::{
+    super::optics_file::SIDES,
+    error::{CalibrationError, CalibrationErrorKind},
+};
 use crate::camera::{
     Camera, Mask, Mei, OCam, OpticsFileError, OpticsModel, SeenFrom, SphericalMirror,
 };
@@ -14,9 +17,6 @@ pub type Files<'a> = dyn FnMut(&str) -> io::Result<Vec<u8>> + 'a;
 
 /// The keys of every camera.
 const COMMON: [&str; 5] = ["kind", "image", "ahead", "seen_from", "mask"];
-
-/// The least and the greatest number of pixels on a side of an image.
-pub const SIDES: [u32; 2] = [16, 16384];
 
 const FOCAL: RangeInclusive<f64> = 1.0..=1e6;
 const MIRROR_RADIUS: RangeInclusive<f64> = 1e-3..=1.0;

@@ -1,8 +1,7 @@
-//! The events of a run, and their observers.
+//! The events of a run.
 
 use crate::{
     embedded_graph::{Dart, Vertex},
-    mapping::Journey,
     percept::{Door, Percept},
     world::Action,
 };
@@ -128,25 +127,4 @@ pub enum MovableEvent {
         /// The dart.
         dart: Dart,
     },
-}
-
-/// Observes a run in a world `W`.
-///
-/// It also gets the world, so that an observer inside the world needs no shared ownership.
-pub trait Observer<W: ?Sized> {
-    /// Called after each event. The journey is as it is afterwards, except that at
-    /// [`MappingEvent::Moved`] the robot's pose in the map is still that before the move.
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent);
-}
-
-/// Ignores every event.
-impl<W: ?Sized> Observer<W> for () {
-    #[inline]
-    fn event(&mut self, _: &mut W, _: &Journey, _: MappingEvent) {}
-}
-
-impl<W: ?Sized, F: FnMut(&mut W, &Journey, MappingEvent)> Observer<W> for F {
-    fn event(&mut self, world: &mut W, journey: &Journey, event: MappingEvent) {
-        self(world, journey, event);
-    }
 }
