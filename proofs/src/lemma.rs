@@ -4,7 +4,7 @@ use crate::{
     bytes::Bytes,
     choose::CaseResult,
     odometer::{ChoiceOdometer, Counterexample},
-    replay::{CaseReplay, CaseView, ChoicesError},
+    replay::{CaseReplay, ChoicesError, ReplayedCase},
 };
 
 /// A lemma: a statement, and the engines that check it.
@@ -96,7 +96,7 @@ impl Lemma {
     ///
     /// # Errors
     /// Returns an error if the choices are not those of a case.
-    pub fn replay(&self, choices: &[u8]) -> Result<CaseView, ChoicesError> {
+    pub fn replay(&self, choices: &[u8]) -> Result<ReplayedCase, ChoicesError> {
         CaseReplay::show(self.exhaustive.replay, choices)
     }
 }

@@ -60,7 +60,7 @@ impl fmt::Display for ChoicesError {
 
 /// A case, made again.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CaseView {
+pub struct ReplayedCase {
     /// The result of the lemma.
     pub case: CaseResult,
     /// What was chosen, as the lemma shows it.
@@ -75,7 +75,7 @@ impl CaseReplay {
     pub fn show(
         lemma: impl FnOnce(&mut Self) -> CaseResult,
         choices: &[u8],
-    ) -> Result<CaseView, ChoicesError> {
+    ) -> Result<ReplayedCase, ChoicesError> {
         let mut replay = Self { choices: choices.to_vec(), ..Self::default() };
         let case = unless_it_panics(|| lemma(&mut replay));
         let (choices, needed) = (replay.choices.len(), replay.made);
@@ -83,7 +83,7 @@ impl CaseReplay {
             Some(misfit) => Err(misfit),
             None if needed > choices => Err(ChoicesError::TooFew { choices, needed }),
             None if needed < choices => Err(ChoicesError::TooMany { choices, needed }),
-            None => Ok(CaseView { case, exhibits: replay.exhibits }),
+            None => Ok(ReplayedCase { case, exhibits: replay.exhibits }),
         }
     }
 }

@@ -12,7 +12,7 @@ use toposlam_model::driving;
 use toposlam_robot::log::{
     messages::{Door, Percept, ProjectMessage, Scene, Stamp},
     recorder::ODOM,
-    standard::{Odometry, Twist},
+    standard::{OdometryMessage, Twist},
     writer::LogWriter,
 };
 
@@ -248,7 +248,7 @@ fn the_shorter_log_contains_the_scenes_before_the_robot_strayed() {
         let stamp = Stamp { sec: second, nanosec: 0 };
         let time = stamp.nanoseconds();
         let at = driving::odometry::Odometry { position: [x, 0.0], heading };
-        let odometry = Odometry::new(stamp, &at, Twist::default());
+        let odometry = OdometryMessage::new(stamp, &at, Twist::default());
         writer.write(ODOM, time, &odometry).unwrap();
         let mut scene =
             Scene { stamp, place: "hallway".into(), status: "clear".into(), ..Scene::default() };

@@ -9,7 +9,7 @@ use super::{
     encode,
     message::Message,
     messages::{self, ProjectMessage, Stamp},
-    standard::{CompressedImage, Odometry, TFMessage, Twist},
+    standard::{CompressedImage, OdometryMessage, TFMessage, Twist},
     writer::{LogWriteError, LogWriter},
 };
 use crate::record::{Event, EventKind, Frame, RunObserver, nanoseconds};
@@ -136,7 +136,7 @@ impl<W: Write> RunObserver for Recorder<W> {
             }
             EventKind::Odometry(odometry) => {
                 let stamp = Stamp::of(event.time);
-                let odometry = Odometry::new(stamp, odometry, self.twist);
+                let odometry = OdometryMessage::new(stamp, odometry, self.twist);
                 self.write(ODOM, &odometry);
                 self.write(TF, &TFMessage { transforms: &[odometry.transform()] });
             }

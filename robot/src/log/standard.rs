@@ -143,7 +143,7 @@ pub type Covariance = [[f64; 6]; 6];
 
 /// Where something is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Pose {
+pub struct PoseMessage {
     /// Its place.
     pub position: Vector3,
     /// Where it looks.
@@ -154,7 +154,7 @@ pub struct Pose {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseWithCovariance {
     /// Where.
-    pub pose: Pose,
+    pub pose: PoseMessage,
     /// How sure.
     pub covariance: Covariance,
 }
@@ -170,7 +170,7 @@ pub struct TwistWithCovariance {
 
 /// Where the robot is by its wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Odometry {
+pub struct OdometryMessage {
     /// When, in which frame.
     pub header: Header,
     /// The frame that is there, and in which the twist is.
@@ -181,7 +181,7 @@ pub struct Odometry {
     pub twist: TwistWithCovariance,
 }
 
-impl Message for Odometry {
+impl Message for OdometryMessage {
     const TYPE: &'static str = "nav_msgs/msg/Odometry";
     const DEFINITION: &'static str = definition!("nav_msgs", "Odometry").text;
     const USES: &'static [TypeDefinition] = &[
@@ -197,13 +197,13 @@ impl Message for Odometry {
     ];
 }
 
-impl Odometry {
+impl OdometryMessage {
     /// The robot was there by its wheels, and moved so fast.
     #[must_use]
     pub fn new(stamp: Stamp, at: &odometry::Odometry, twist: Twist) -> Self {
         let [x, y] = at.position;
         let position = Vector3 { x, y, z: 0.0 };
-        let pose = Pose { position, orientation: Quaternion::turn(at.heading) };
+        let pose = PoseMessage { position, orientation: Quaternion::turn(at.heading) };
         let covariance = Covariance::default();
         Self {
             header: Header { stamp, frame_id: ODOM },
@@ -216,7 +216,7 @@ impl Odometry {
     /// The same, as the frame of the robot in that of odometry.
     #[must_use]
     pub fn transform(&self) -> TransformStamped {
-        let Pose { position, orientation } = self.pose.pose;
+        let PoseMessage { position, orientation } = self.pose.pose;
         TransformStamped {
             header: self.header,
             child_frame_id: self.child_frame_id,
@@ -325,7 +325,7 @@ mod tests {
     fn every_definition_comes_with_those_that_it_uses_and_no_others() {
         closed::<CompressedImage>();
         closed::<Twist>();
-        closed::<Odometry>();
+        closed::<OdometryMessage>();
         closed::<TFMessage>();
         closed::<crate::log::messages::Percept>();
     }

@@ -28,7 +28,7 @@ const LONGEST: f32 = 1.01;
 #[derive(Clone, Debug)]
 pub struct Building {
     pub(super) look: BuildingLook,
-    pub(super) colours: Colours,
+    pub(super) colours: BuildingColours,
     floors: Vec<Rectangle>,
     walls: Vec<BuildingWall>,
     pub(super) faces: Vec<Face>,
@@ -46,7 +46,7 @@ pub struct Building {
 
 /// The look's colours, in linear light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Colours {
+pub(super) struct BuildingColours {
     pub(super) floor: [f32; 3],
     pub(super) wall: [f32; 3],
     pub(super) stripe: [f32; 3],
@@ -144,7 +144,7 @@ impl Building {
         let lit: Vec<_> = lights.lamps.iter().map(|lamp| lamp.rectangle().widened(0.5)).collect();
         Self {
             look: *look,
-            colours: Colours {
+            colours: BuildingColours {
                 floor: linear(look.floor_colour),
                 wall: linear(look.wall_colour),
                 stripe: linear(look.stripe_colour),

@@ -161,6 +161,6 @@ impl Told {
     }
 }
 
-fn odometry(stamp: Stamp, at: &Odometry) -> standard::Odometry {
-    standard::Odometry::new(stamp, at, standard::Twist::default())
+fn odometry(stamp: Stamp, at: &Odometry) -> standard::OdometryMessage {
+    standard::OdometryMessage::new(stamp, at, standard::Twist::default())
 }
