@@ -1,6 +1,6 @@
-//! How long it takes to hold a long log against the specification, once its events are read:
-//! `cargo bench -p toposlam-robot --bench conform`. Runs in the plans with 12, 50, 100 and 200 junctions
-//! have 141, 5,763, 34,393 and 95,411 events.
+//! Benchmark of `conform` on long logs, after their events are read: `cargo bench -p toposlam-robot
+//! --bench conform`. Runs in the plans with 12, 50, 100 and 200 junctions have 141, 5,763, 34,393
+//! and 95,411 events.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -41,7 +41,7 @@ fn main() {
     divan::main();
 }
 
-/// A run of Algorithm 1 in a plan with so many junctions.
+/// A run of Algorithm 1 in a plan with this number of junctions.
 fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     let graph = plan.graph();
     let mut events = vec![TraceEventKind::Percept(GraphWorld::new(graph, Dart(0)).sensed())];
@@ -56,7 +56,7 @@ fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     Trace::new(events).unwrap()
 }
 
-/// A run against a known world from an unknown start, and without one; with the number of its events.
+/// Follows a run in a known world, with and without a known start.
 #[divan::bench(args = [12, 50, 100, 200], sample_count = 5)]
 fn a_run(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
@@ -78,7 +78,7 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
     bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
 }
 
-/// A log of 10,000 events in memory: opened, read, and held against its world.
+/// Opens, reads and follows a log of 10,000 events in memory.
 #[divan::bench(sample_count = 10)]
 fn ten_thousand_events(bencher: divan::Bencher) {
     let plan = random_plan_with(1, 100).unwrap();
@@ -112,7 +112,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     });
 }
 
-/// The smallest world for half of a run, as far as the search goes where nobody says otherwise.
+/// Searches the smallest world for half of a run, with the default limits.
 #[divan::bench(args = [12, 50, 100], sample_count = 3)]
 fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();

@@ -1,4 +1,4 @@
-//! How fast logs are read: `cargo bench -p toposlam-robot --bench logs`.
+//! Benchmark of log readers: `cargo bench -p toposlam-robot --bench logs`.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -17,7 +17,7 @@ fn main() {
 
 const DEFINITION: &str = "builtin_interfaces/Time stamp\nfloat64[9] numbers\nuint8[] data\n";
 
-/// A message with so many bytes of data, which do not compress.
+/// A message with this number of incompressible bytes.
 fn message(data: u32) -> Vec<u8> {
     let mut message = vec![0; 88];
     message[1] = 1;
@@ -30,7 +30,7 @@ fn message(data: u32) -> Vec<u8> {
     message
 }
 
-/// A log with so many messages, each with so many bytes of data.
+/// A log with this number of messages of this size.
 fn log(messages: u64, data: u32, compression: Option<Compression>) -> Log {
     let options = WriteOptions::new().compression(compression);
     let mut writer = options.create(Cursor::new(Vec::new())).unwrap();

@@ -1,8 +1,10 @@
-//! Sensing against OpenCV, frame by frame in turn, on one thread each: the stages that both have, from
-//! a picture of 1280 x 960 pixels to pieces of wall in a ground view of 800 x 800.
+//! Benchmark of sensing against OpenCV, frame by frame in turn, on one thread each. It compares the
+//! common stages, from an image of 1280 x 960 pixels to pieces of wall in a ground view of 800 x
+//! 800.
 //!
-//! `cargo bench -p toposlam-robot --bench opencv` needs Python with `opencv-python-headless==4.12.*`;
-//! `PYTHON` names the interpreter. Without them it says so, and times nothing.
+//! `cargo bench -p toposlam-robot --bench opencv` needs Python with
+//! `opencv-python-headless==4.12.*`. `PYTHON` names the interpreter. Without them it prints a
+//! message and measures nothing.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -29,7 +31,7 @@ use toposlam_vision::{
     params::SensingParams,
 };
 
-/// Frames of each.
+/// The number of frames of each.
 const FRAMES: usize = 101;
 const OURS: [&str; 3] = ["common light", "classes on the ground", "boundary, clusters"];
 const THEIRS: [&str; 4] = ["HSV", "back-projection", "unwrapping", "connected components"];
@@ -82,7 +84,7 @@ fn main() {
     println!("OpenCV takes {:.1} times as long, at the median", whole_theirs / whole_ours);
 }
 
-/// Prints the median of each stage, and gives that of their sum, in microseconds.
+/// Prints the median of each stage. Returns the median of their sum, in microseconds.
 fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64; STAGES]]) -> f64 {
     let median = |time: &dyn Fn(&[f64; STAGES]) -> f64| {
         let mut times: Vec<f64> = times.iter().map(time).collect();
@@ -97,7 +99,7 @@ fn print<const STAGES: usize>(name: &str, stages: &[&str; STAGES], times: &[[f64
     whole
 }
 
-/// Where each pixel of the ground view is in the picture, as OpenCV's remap wants it.
+/// The pixel of the image for each pixel of the ground view, for OpenCV's remap.
 fn write_maps(camera: &Camera, folder: &Path) {
     let pixels: Vec<[f32; 2]> = (0..GroundView::SIDE * GroundView::SIDE)
         .map(|index| camera.ground_to_pixel(GroundView::ground(index)))
@@ -109,7 +111,7 @@ fn write_maps(camera: &Camera, folder: &Path) {
     }
 }
 
-/// A Python that times OpenCV.
+/// A Python process that times OpenCV.
 struct OpenCv {
     child: Child,
     answers: BufReader<std::process::ChildStdout>,

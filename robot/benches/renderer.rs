@@ -1,4 +1,5 @@
-//! How fast pictures are rendered. `cargo bench -p toposlam-robot`; a picture takes one thread.
+//! Benchmark of rendering: `cargo bench -p toposlam-robot --bench renderer`. An image takes one
+//! thread.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -25,7 +26,7 @@ fn rig(width: u32) -> Rig {
 
 const POSE: Pose = Pose { position: [0.3, 4.2], heading: 1.2 };
 
-/// One picture with all effects, JPEG's losses included.
+/// One image with all effects, including JPEG compression.
 #[divan::bench(args = [
     (640, "laboratory"), (640, "tiles"), (640, "vinyl"), (640, "school"),
     (1280, "laboratory"), (1280, "tiles"), (1280, "vinyl"), (1280, "school"),
@@ -39,7 +40,7 @@ fn picture(bencher: Bencher, (width, look): (u32, &str)) {
     bencher.bench_local(|| render(&rig, &building, POSE, &effects, 7));
 }
 
-/// The classes of all pixels of a picture.
+/// The classes of all pixels of an image.
 #[divan::bench(args = [640, 1280], sample_count = 20, sample_size = 1)]
 fn classes(bencher: Bencher, width: u32) {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
@@ -59,7 +60,7 @@ fn building(bencher: Bencher, name: &str) {
     });
 }
 
-/// What each pixel looks along, once for a camera.
+/// The rays of all pixels, computed once per camera.
 #[divan::bench(args = [640, 1280], sample_count = 10, sample_size = 1)]
 fn rays(width: u32) -> Rig {
     rig(width)

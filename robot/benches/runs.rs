@@ -1,4 +1,4 @@
-//! How long whole runs take: `cargo bench -p toposlam-robot --bench runs`.
+//! Benchmark of whole runs: `cargo bench -p toposlam-robot --bench runs`.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// A random plan with so many junctions, and a start in it.
+/// A random plan with this number of junctions, and a start in it.
 fn random(junctions: usize) -> (Arc<FloorPlan>, Dart) {
     let plan = Arc::new(random_plan_with(1, junctions).unwrap());
     let facing = starts_of(&plan)[0];
@@ -40,7 +40,7 @@ fn right(run: &Run) {
     assert_eq!(run.outcome(), RunOutcome::Right);
 }
 
-/// A whole run without pictures.
+/// A whole run without images.
 #[divan::bench(args = [25, 100], sample_count = 10)]
 fn by_scene(bencher: Bencher, junctions: usize) {
     let (plan, facing) = random(junctions);
@@ -50,7 +50,7 @@ fn by_scene(bencher: Bencher, junctions: usize) {
     });
 }
 
-/// Shape 6 with rendered pictures of 1280 x 960.
+/// Shape 6 with rendered images of 1280 x 960.
 #[divan::bench(sample_count = 2)]
 fn shape_6_with_images(bencher: Bencher) {
     let (plan, facing) = shape_6();
@@ -65,7 +65,7 @@ fn shape_6_with_images(bencher: Bencher) {
     });
 }
 
-/// The same pictures, off-line: decoding, sensing and both algorithms alone.
+/// The same images off-line: decoding, sensing and both algorithms.
 #[divan::bench(sample_count = 10)]
 fn shape_6_off_line(bencher: Bencher) {
     let (plan, facing) = shape_6();

@@ -1,5 +1,5 @@
-//! How fast sensing is, and each of its steps. `cargo bench -p toposlam-robot --bench sensing`; all on
-//! one thread, decoding apart.
+//! Benchmark of sensing and of each stage: `cargo bench -p toposlam-robot --bench sensing`. All run
+//! on one thread, without decoding.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -31,14 +31,14 @@ fn main() {
     divan::main();
 }
 
-/// Places of the floor plan shape-8: their name and a pose there.
+/// Names and poses of places in the floor plan shape-8.
 const PLACES: [(&str, Pose); 3] = [
     ("hallway", Pose { position: [0.1, 2.1], heading: 1.5 }),
     ("corner", Pose { position: [0.1, 7.6], heading: 1.4 }),
     ("tee", Pose { position: [-0.1, 3.6], heading: 1.7 }),
 ];
 
-/// All that is made once, and pictures with all effects, by the width of the picture.
+/// What is built once, and images with all effects, by image width.
 struct Case {
     camera: Camera,
     colours: ColourModel,
@@ -65,7 +65,7 @@ fn whole<const PLACE: usize>(bencher: Bencher, width: u32) {
     bencher.bench_local(|| sensor.sense(&case.pictures[PLACE]).unwrap());
 }
 
-/// The common light of an image, and the table for it.
+/// The light of an image, and its table.
 #[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
 fn step_1_light(bencher: Bencher, width: u32) {
     let case = case(width);
@@ -76,7 +76,7 @@ fn step_1_light(bencher: Bencher, width: u32) {
     });
 }
 
-/// The ground view, its colours classified.
+/// The ground view with classified colours.
 #[divan::bench(args = [640, 1280], sample_count = 200, sample_size = 1)]
 fn step_2_ground_view(bencher: Bencher, width: u32) {
     let case = case(width);
@@ -88,7 +88,7 @@ fn step_2_ground_view(bencher: Bencher, width: u32) {
     bencher.bench_local(|| unwrapping.view(&case.pictures[0], &lit, &mut view));
 }
 
-/// A ground view, to go on from.
+/// A ground view for the following stages.
 fn view(case: &Case, place: usize) -> GroundView {
     let (ring, table) = (FloorRing::new(&case.camera), case.colours.table());
     let gain = case.colours.gain(&ring.colours(&case.pictures[place])).unwrap();
@@ -125,7 +125,7 @@ fn step_4_walls(bencher: Bencher) {
     bencher.bench_local(|| walls(&boundary, &params));
 }
 
-/// Whether it is a hallway.
+/// Finds a hallway.
 #[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
 fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);
@@ -135,7 +135,7 @@ fn step_5_hallway<const PLACE: usize>(bencher: Bencher) {
     bencher.bench_local(|| hallway(&walls, &boundary, &frame, &params));
 }
 
-/// Corners, and which junction it is.
+/// Finds corners and the junction.
 #[divan::bench(consts = [0, 1, 2], sample_count = 200, sample_size = 1)]
 fn step_6_junction<const PLACE: usize>(bencher: Bencher) {
     let case = case(1280);

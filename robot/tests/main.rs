@@ -1,6 +1,5 @@
 //! Tests of the robot through its public interface.
 
 mod logs;
-mod modules;
 mod renderer;
 mod sensing;

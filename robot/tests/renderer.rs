@@ -1,5 +1,5 @@
-//! What rendered pictures show, held against the floor plan: the camera's closed form says which pixel
-//! shows a place, and the plan says what is there.
+//! Compares rendered images with the floor plan: the camera's closed form gives the pixel of a
+//! place, and the plan gives its surface.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![allow(clippy::cast_sign_loss, reason = "pixels are not negative")]
@@ -41,7 +41,7 @@ fn at_an_l(plan: &FloorPlan) -> Dart {
     graph.darts().find(|&dart| plan.junction(graph.vertex(dart)).kind == JunctionKind::L).unwrap()
 }
 
-/// Poses on the floor, at least so far from all walls.
+/// Poses on the floor with at least this distance from all walls.
 fn poses(plan: &FloorPlan, clear: f64, count: usize, seed: u64) -> Vec<Pose> {
     let floors: Vec<_> = plan.floor().collect();
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -55,14 +55,14 @@ fn poses(plan: &FloorPlan, clear: f64, count: usize, seed: u64) -> Vec<Pose> {
         .collect()
 }
 
-/// From the building's coordinates to the robot's.
+/// Transforms from the building's coordinates to the robot's.
 fn seen_from(pose: Pose, place: [f64; 2]) -> [f64; 2] {
     let (sine, cosine) = pose.heading.sin_cos();
     let [x, y] = [0, 1].map(|axis| place[axis] - pose.position[axis]);
     [x * cosine + y * sine, y * cosine - x * sine]
 }
 
-/// And back.
+/// Transforms from the robot's coordinates to the building's.
 fn in_building(pose: Pose, [x, y]: [f64; 2]) -> [f64; 2] {
     let (sine, cosine) = pose.heading.sin_cos();
     let [along, across] = pose.position;
@@ -73,7 +73,7 @@ fn is_floor(floors: &[Rectangle], place: [f64; 2]) -> bool {
     floors.iter().any(|floor| floor.holds(place))
 }
 
-/// Whether all of the straight way is floor.
+/// Whether the straight line is on the floor.
 fn sees(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
     (0..=400).all(|step| {
         let share = f64::from(step) / 400.0;
@@ -81,7 +81,7 @@ fn sees(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
     })
 }
 
-/// Whether a place is nearer than this to what is no floor, along either axis.
+/// Whether a place is nearer than this to the border of the floor, along either axis.
 fn near_walls(floors: &[Rectangle], [x, y]: [f64; 2], distance: f64) -> bool {
     let steps = [-distance, 0.0, distance];
     steps
@@ -90,11 +90,12 @@ fn near_walls(floors: &[Rectangle], [x, y]: [f64; 2], distance: f64) -> bool {
         .any(|place| !is_floor(floors, place))
 }
 
-/// Which place of the floor a pixel shows, if nothing is in the way, and from above which place it is
-/// seen; both in the robot's coordinates.
+/// The place on the floor that a pixel shows if nothing is in the way, and the place of the mirror
+/// above the floor; both in the robot's coordinates.
 type Grounds<'a> = &'a dyn Fn([f64; 2]) -> Option<[[f64; 2]; 2]>;
 
-/// Holds labels against the plan, pixel by pixel; answers how many showed floor, stripe and marker.
+/// Compares labels with the plan, pixel by pixel. Returns the numbers of floor, stripe and marker
+/// pixels.
 fn hold_against_plan(
     plan: &FloorPlan,
     look: &BuildingLook,
@@ -129,7 +130,7 @@ fn hold_against_plan(
                     PixelClass::Floor
                 }
             };
-            // Borders, to a millimetre; and ways that graze a corner.
+            // Skip borders, to a millimetre, and lines that graze a corner.
             if expected(1e-3) != expected(-1e-3)
                 || near_walls(&floors, place, 2e-3)
                 || class == PixelClass::Other && grazes(&floors, origin, place)
@@ -150,7 +151,7 @@ fn hold_against_plan(
 
 // paper: env.boundary
 #[test]
-fn each_pixel_shows_what_the_plan_has_at_its_place() {
+fn each_pixel_shows_the_surface_at_its_place() {
     let camera = small_camera();
     let rig = Rig::new(&camera);
     let grounds = |pixel| camera.pixel_to_ground(pixel).map(|ground| [[0.0; 2], ground]);
@@ -161,7 +162,7 @@ fn each_pixel_shows_what_the_plan_has_at_its_place() {
 }
 
 #[test]
-fn a_rig_that_leans_shows_what_lies_along_its_rays() {
+fn a_tilted_rig_shows_the_surfaces_along_its_rays() {
     let errors = RigErrors { tilt: 0.03, towards: 2.0, centre: [3.0, -2.0], height: 0.01 };
     let rig = Rig::with_errors(&small_camera(), &errors);
     let grounds = |pixel| {
@@ -173,7 +174,7 @@ fn a_rig_that_leans_shows_what_lies_along_its_rays() {
     assert!(counts[0] > 50_000 && counts[1] > 1_500 && counts[2] > 150, "{counts:?}");
 }
 
-/// Whether a way on the floor comes near a wall before its end.
+/// Whether a line on the floor comes near a wall before its end.
 fn grazes(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
     (0..400).any(|step| {
         let share = f64::from(step) / 400.0;
@@ -183,7 +184,7 @@ fn grazes(floors: &[Rectangle], from: [f64; 2], to: [f64; 2]) -> bool {
 }
 
 #[test]
-fn the_pixel_of_a_place_shows_it() {
+fn the_pixel_of_a_place_shows_its_surface() {
     let plan = plan("shape-8");
     let floors: Vec<_> = plan.floor().collect();
     let camera = Camera::superscout();
@@ -196,7 +197,7 @@ fn the_pixel_of_a_place_shows_it() {
         for _ in 0..500 {
             let place = [rng.random_range(-0.8..4.8), rng.random_range(-0.8..8.8)];
             let ground = seen_from(pose, place);
-            // A pixel's width and more away from the wall's foot.
+            // At least a pixel's width away from the wall's foot.
             let range = ground[0].hypot(ground[1]);
             if range > 4.0
                 || near_walls(&floors, place, 0.1)
@@ -214,7 +215,7 @@ fn the_pixel_of_a_place_shows_it() {
 }
 
 #[test]
-fn a_baseboard_is_as_high_as_its_look_says() {
+fn a_baseboard_has_the_height_of_its_look() {
     // A long straight hallway along x, its left wall at y = 0.8.
     let junctions = [("a", [0.0, 0.0]), ("b", [40.0, 0.0])].map(|(n, at)| (n.to_owned(), at));
     let plan = FloorPlan::new(1.6, &junctions, &[("a".to_owned(), "b".to_owned())]).unwrap();
@@ -228,7 +229,7 @@ fn a_baseboard_is_as_high_as_its_look_says() {
         for (at, &class) in classes.iter().enumerate() {
             let ray = rig.ray([at % 1280, at / 1280].map(|at| at as f64));
             let [_, left, up] = ray.direction;
-            // To the left, and not far ahead or behind.
+            // To the left, and neither far ahead nor far behind.
             if left < ray.direction[0].abs() || class == PixelClass::Unseen {
                 continue;
             }
@@ -285,7 +286,7 @@ fn without_effects_colours_are_those_of_the_look() {
     }
 }
 
-/// Effects without a loss by JPEG or noise, in a building with some of everything.
+/// Effects without JPEG loss and noise, in a building with some of everything.
 fn some_effects() -> Effects {
     let mut effects = Effects::plain();
     for (name, value) in [("doors", 3.0), ("gaps", 4.0), ("struts", 3.0), ("gap-length", 0.25)] {
@@ -295,11 +296,11 @@ fn some_effects() -> Effects {
 }
 
 #[test]
-fn every_knob_changes_the_picture_and_at_its_plain_value_nothing() {
+fn every_effect_changes_the_image_unless_it_is_plain() {
     let plan = plan("shape-8");
     let rig = Rig::new(&small_camera());
     let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
-    // Glossy tiles with tape: there every effect has something to act on.
+    // With glossy tiles and tape, every effect has something to change.
     let picture = |effects: &Effects| {
         let building = Building::new(&plan, look("tiles"), None, effects, 6);
         render(&rig, &building, pose, effects, 6)
@@ -311,7 +312,7 @@ fn every_knob_changes_the_picture_and_at_its_plain_value_nothing() {
             "doors" | "gaps" | "struts" => knob.plain,
             "gap-length" => 0.1,
             "strut-bearing" => 20.0,
-            // By chance no lamp might be out.
+            // A random share of lamps might be zero.
             "lamps-out" => 1.0,
             _ => *knob.default.end(),
         };
@@ -325,7 +326,7 @@ fn every_knob_changes_the_picture_and_at_its_plain_value_nothing() {
 }
 
 #[test]
-fn the_same_seed_is_the_same_picture_on_any_thread() {
+fn the_same_seed_gives_the_same_image_on_any_thread() {
     let plan = plan("building-12");
     let rig = Rig::new(&small_camera());
     let picture = |seed: u64| -> RgbImage {
@@ -348,7 +349,7 @@ fn the_same_seed_is_the_same_picture_on_any_thread() {
 }
 
 #[test]
-fn another_seed_is_another_building_and_another_picture() {
+fn another_seed_gives_another_building_and_another_image() {
     let plan = plan("shape-8");
     let rig = Rig::new(&small_camera());
     let pose = Pose { position: [0.1, 4.3], heading: 0.3 };
@@ -361,7 +362,7 @@ fn another_seed_is_another_building_and_another_picture() {
 }
 
 #[test]
-fn the_robot_hides_the_floor_around_it_and_none_beyond() {
+fn the_robot_hides_only_the_floor_around_it() {
     let plan = plan("shape-8");
     let camera = Camera::superscout();
     let rig = Rig::new(&camera);
@@ -406,7 +407,7 @@ fn struts_hide_two_opposite_directions() {
 }
 
 #[test]
-fn a_marker_lies_on_its_turning_point_along_its_hallway() {
+fn the_marker_lies_at_the_turning_point_along_its_hallway() {
     let plan = plan("shape-8");
     let building =
         |dart| Building::new(&plan, &LOOKS[0], Some(dart), &Effects::plain(), 1).marker().unwrap();
@@ -422,10 +423,10 @@ fn a_marker_lies_on_its_turning_point_along_its_hallway() {
 }
 
 #[test]
-fn a_small_picture_shows_what_a_large_one_shows() {
+fn a_small_image_shows_the_same_as_a_large_one() {
     let (large, small) = (Camera::superscout(), small_camera());
     for pixel in [[100.0, 200.0], [319.5, 239.5], [500.0, 77.0]] {
-        // A pixel of the small picture is a square of four.
+        // A pixel of the small image is a square of four pixels.
         let middle = pixel.map(|at: f64| 2.0 * at + 0.5);
         let (one, other) = (small.pixel_to_ground(pixel), large.pixel_to_ground(middle));
         assert_eq!(one.is_some(), other.is_some());
@@ -436,7 +437,7 @@ fn a_small_picture_shows_what_a_large_one_shows() {
 }
 
 #[test]
-fn the_label_mask_has_the_colours_that_training_reads() {
+fn the_label_image_has_the_colours_of_training() {
     let rig = Rig::new(&Camera::superscout().sized([4, 3]));
     let mut classes = vec![PixelClass::Floor; 12];
     classes[1] = PixelClass::Stripe;
@@ -449,7 +450,7 @@ fn the_label_mask_has_the_colours_that_training_reads() {
 }
 
 #[test]
-fn odd_buildings_and_poses_are_no_panic() {
+fn odd_buildings_and_poses_do_not_panic() {
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(9));
     let errors = RigErrors { tilt: 0.3, towards: -2.0, centre: [900.0, -40.0], height: 0.4 };
     let rigs = [

@@ -1,5 +1,5 @@
-//! Sensing on a few hundred rendered views, held against the floor plan: the small sister of
-//! `toposlam evaluate vision`.
+//! Sensing on a few hundred rendered views against the floor plan: a small `toposlam evaluate
+//! vision`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -16,7 +16,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::camera::Camera;
 
-/// The views and visits that are looked at.
+/// The numbers of views and visits.
 const VIEWS: u64 = 240;
 const VISITS: u64 = 16;
 
@@ -24,7 +24,7 @@ fn views() -> ViewSampler {
     ViewSampler { random_plans: true, ..ViewSampler::of(&LOOKS, [640, 480], 2024).unwrap() }
 }
 
-/// How many views in a zone there are, and how many of them are right.
+/// The number of views in a zone, and the number of right ones.
 fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
     let there = judged.iter().filter(|judged| judged.zone() == zone);
     (there.clone().count(), there.filter(|judged| judged.verdict == PlaceVerdict::Right).count())
@@ -34,7 +34,7 @@ fn right(judged: &[JudgedView], zone: Zone) -> (usize, usize) {
 // paper: sense.junction.type
 // paper: sense.junction.entry
 #[test]
-fn sensing_is_never_wrong_and_seldom_at_a_loss() {
+fn sensing_is_never_wrong_and_seldom_unknown() {
     let views = views();
     let judge = Judge::new(&Camera::superscout(), &views, &[Calibration::Right], &()).unwrap();
     let judged = judge.views(&views, 0..VIEWS, Calibration::Right, &()).unwrap();

@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn of_none_seen_the_bound_is_the_rule_of_three() {
+    fn the_bound_of_no_failure_is_the_rule_of_three() {
         for of in [1, 10, 100, 3000, 20_000] {
             // 1 - 0.05^(1/n), computed in another way.
             let exact = -(0.05_f64.ln() / of as f64).exp_m1();
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_the_published_ones() {
+    fn bounds_equal_published_ones() {
         // By the incomplete beta function of mpmath, with 40 digits.
         for (seen, of, bound) in [
             (1, 10, 0.394_163_302_436_505),
@@ -84,12 +84,12 @@ mod tests {
     }
 
     #[test]
-    fn what_always_happens_has_no_bound() {
+    fn a_certain_event_has_bound_one() {
         assert_eq!((upper_bound(5, 5), upper_bound(0, 0)), (1.0, 1.0));
     }
 
     #[test]
-    fn more_seen_is_a_higher_bound_and_more_cases_a_lower_one() {
+    fn more_failures_raise_the_bound_and_more_cases_lower_it() {
         let mut before = 0.0;
         for seen in 0..1000 {
             let bound = upper_bound(seen, 1000);

@@ -167,7 +167,7 @@ mod tests {
     };
 
     #[test]
-    fn failures_show_in_the_groups_in_which_they_are_more_often() {
+    fn groups_with_more_failures_have_higher_rates() {
         let views = ViewSampler::of(&LOOKS, [640, 480], 0).unwrap();
         // Sensing fails in blurred views of the theatre only.
         let judged: Vec<_> = (0..600)

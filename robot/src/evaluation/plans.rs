@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_floor_plans_of_worlds_are_known() {
+    fn all_floor_plans_of_worlds_are_included() {
         let worlds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds");
         let files = fs::read_dir(worlds).unwrap().map(|entry| entry.unwrap().path());
         let files = files.filter(|path| path.extension().is_some_and(|ending| ending == "toml"));

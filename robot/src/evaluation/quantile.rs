@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_quantile() {
+    fn an_empty_sample_has_no_quantile() {
         assert_eq!(ErrorSample::default().quantile(0.5), None);
         assert_eq!([7.0].into_iter().collect::<ErrorSample>().quantile(0.99), Some(7.0));
     }

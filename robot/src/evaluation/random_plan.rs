@@ -255,13 +255,13 @@ mod tests {
     }
 
     #[test]
-    fn a_seed_is_a_plan() {
+    fn the_same_seed_gives_the_same_plan() {
         assert_eq!(random_plan(7), random_plan(7));
         assert_ne!(random_plan(7), random_plan(8));
     }
 
     #[test]
-    fn a_plan_has_as_many_junctions_as_it_should() {
+    fn a_plan_has_the_requested_number_of_junctions() {
         for (seed, junctions) in (2..=25).chain([100]).enumerate() {
             let plan = random_plan_with(seed as u64, junctions).unwrap();
             assert_eq!(plan.junctions().len(), junctions);
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_something_of_everything() {
+    fn plans_have_every_kind_of_junction_and_loops() {
         let plans: Vec<_> = (0..200).map(|seed| random_plan(seed).unwrap()).collect();
         let with = |kind| {
             let has = |plan: &&FloorPlan| plan.junctions().iter().any(|found| found.kind == kind);

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_robot_has_turned_any_door_is_the_entry() {
+    fn after_a_turn_any_door_may_be_the_entry() {
         let truth = Truth::Junction(junction(&[FRAC_PI_2, 0.0], None));
         assert_eq!(says(&truth, &[FRAC_PI_2, 0.0]), PlaceVerdict::Right);
         assert_eq!(says(&truth, &[0.0, FRAC_PI_2]), PlaceVerdict::Right);
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn between_either_answer_is_right_if_it_is_the_right_junction() {
+    fn between_places_the_hallway_and_the_right_junction_are_right() {
         let near = junction(&[PI, FRAC_PI_2], ENTERED);
         let truth = Truth::Between(HALLWAY, vec![near.clone()]);
         let place = Place::Hallway(hallway(0.0, 0.8, 0.8));
@@ -270,14 +270,14 @@ mod tests {
     }
 
     #[test]
-    fn far_from_any_junction_none_is_right() {
+    fn far_from_junctions_only_the_hallway_is_right() {
         assert_eq!(says(&Truth::Hallway(HALLWAY), &[PI]), PlaceVerdict::JunctionForHallway);
         let place = Place::Hallway(hallway(0.5, 0.1, 0.1));
         assert_eq!(judge(&Truth::Hallway(HALLWAY), &scene(place)), PlaceVerdict::Right);
     }
 
     #[test]
-    fn the_errors_of_a_hallway_are_those_of_its_direction_and_its_sides() {
+    fn a_hallway_has_errors_of_direction_and_sides() {
         let errors = hallway_errors(&HALLWAY, &hallway(0.15, 0.92, 0.71));
         assert!((errors.heading - 0.05).abs() < 1e-12);
         assert!((errors.sides[0] - 0.02).abs() < 1e-12 && (errors.sides[1] - 0.01).abs() < 1e-12);
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn the_errors_of_a_junction_are_those_of_its_centre_lines() {
+    fn a_junction_has_errors_of_centre_lines() {
         let truth = junction(&[PI, FRAC_PI_2], ENTERED);
         let mut seen = view(&[PI - 0.02, FRAC_PI_2]);
         seen.turning_point = [0.43, 0.04];

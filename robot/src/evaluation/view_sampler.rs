@@ -76,10 +76,10 @@ pub struct ViewSampler {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ViewError {
     /// There is no floor plan.
-    #[error("there is neither a floor plan nor are there random ones")]
+    #[error("there are no floor plans")]
     NoPlan,
     /// There is no image size.
-    #[error("there is no size of pictures")]
+    #[error("there is no image size")]
     NoSize,
     /// There is no look.
     #[error("there is no look")]
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn no_view_is_nearer_to_a_wall_than_a_robot_can_be() {
+    fn no_view_is_nearer_to_a_wall_than_the_robot_can_be() {
         let views = views();
         let visits = (0..60).flat_map(|number| views.visit(number).unwrap());
         for view in (0..600).map(|number| views.view(number).unwrap()).chain(visits) {
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truth_is_looked_at_often() {
+    fn every_kind_of_place_is_viewed_often() {
         let views = views();
         let mut forms = BTreeMap::new();
         let (mut hallways, mut between, mut random, mut marked) = (0, 0, 0, 0);
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn without_plans_there_is_no_view() {
+    fn without_plans_sizes_or_looks_there_is_no_view() {
         let none = ViewSampler { plans: Vec::new(), random_plans: false, ..views() };
         assert_eq!(none.view(0), Err(ViewError::NoPlan));
         assert_eq!(ViewSampler { sizes: Vec::new(), ..views() }.view(0), Err(ViewError::NoSize));

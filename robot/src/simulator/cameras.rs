@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_are_told_right_but_for_the_share_that_was_measured() {
+    fn scenes_are_wrong_as_often_as_measured() {
         let plan = shape_6();
         let facing = starts_of(&plan)[0];
         // The start is an L whose other door is to the left.
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_picture_that_is_burnt_out_the_next_is_exposed_less() {
+    fn after_an_overexposed_image_the_next_is_exposed_less() {
         let plan = shape_6();
         let facing = starts_of(&plan)[0];
         let pose = start_pose(&plan, facing);

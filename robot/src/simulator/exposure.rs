@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_has_the_deviation_that_its_knob_says() {
+    fn noise_has_the_standard_deviation_of_its_effect() {
         let mut noise = Noise::new(0.02, stream(1, StreamPurpose::Sensor, 0));
         for light in [0.1_f32, 0.5, 1.0] {
             let mut row = vec![light; 60_000];
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn jpeg_loses_more_the_more_it_may() {
+    fn a_higher_jpeg_loss_loses_more() {
         let off = |loss: f64| -> u64 {
             let clear = photograph(spotted(), &Effects::plain());
             let lossy = photograph(spotted(), &with(&[("jpeg-loss", loss)]));

@@ -248,7 +248,7 @@ mod tests {
 
     // paper: hardware.camera
     #[test]
-    fn the_mirror_ray_by_ray_agrees_with_its_closed_form() {
+    fn traced_rays_agree_with_the_closed_form_of_the_mirror() {
         for camera in cameras() {
             let optics = RigOptics::new(&camera, &RigErrors::default());
             let mut seen = 0;
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rig_that_leans_sees_along_its_leaning_axis() {
+    fn a_tilted_rig_sees_along_its_tilted_axis() {
         let camera = Camera::superscout();
         let tilt = 0.05_f64;
         for towards in [0.0, FRAC_PI_2, 2.5] {
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_centre_and_height_move_what_a_pixel_shows() {
+    fn errors_of_centre_and_height_move_the_view() {
         let camera = Camera::superscout();
         let errors = RigErrors { centre: [4.0, -3.0], height: 0.02, ..RigErrors::default() };
         let optics = RigOptics::new(&camera, &errors);

@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_within_a_pixel_are_as_good_as_straight() {
+    fn interpolated_rays_are_exact_enough() {
         for width in [640, 1280] {
             let camera = Camera::superscout().sized([width, width * 3 / 4]);
             let errors = RigErrors { tilt: 0.03, towards: 1.0, ..RigErrors::default() };

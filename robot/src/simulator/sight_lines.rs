@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn no_wall_that_a_ray_meets_first_is_left_out() {
+    fn the_first_wall_of_every_ray_is_found() {
         let bytes = include_bytes!("../../../worlds/building-25.toml");
         let plan = world_file::read(bytes).unwrap().plan.unwrap();
         let walls = walls(&plan);

@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whatever_holds_a_place_is_in_its_square() {
+    fn every_rectangle_around_a_place_is_in_its_square() {
         let rectangle = |x: f64, y: f64, width: f64, height: f64| Rectangle {
             least: [x, y],
             greatest: [x + width, y + height],

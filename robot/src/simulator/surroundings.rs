@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_body_has_room_up_to_its_radius() {
+    fn the_body_fits_up_to_its_radius() {
         let mut hallway = hallway();
         assert!(hallway.has_room([3.0, 0.999 - RADIUS]));
         assert!(!hallway.has_room([3.0, 1.001 - RADIUS]));

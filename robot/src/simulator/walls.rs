@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_floor_on_one_side_of_a_wall_only() {
+    fn a_wall_has_floor_on_one_side_only() {
         for plan in PLANS.map(plan) {
             let floors: Vec<_> = plan.floor().collect();
             for wall in walls(&plan) {

@@ -7,7 +7,7 @@ use super::written::{Closed, Said, bag, in_order, said};
 const COMPRESSIONS: [&str; 3] = ["none", "bz2", "lz4"];
 
 #[test]
-fn a_bag_says_what_was_written_however_it_is_compressed() {
+fn a_bag_is_read_with_any_compression() {
     let all = in_order(40);
     for compression in COMPRESSIONS {
         let log = Log::of_bytes(bag(&[&all[..15], &all[15..]], compression, Closed::Yes)).unwrap();
@@ -26,7 +26,7 @@ fn a_bag_says_what_was_written_however_it_is_compressed() {
 }
 
 #[test]
-fn a_bag_without_an_index_says_the_same_and_was_not_closed() {
+fn a_bag_without_an_index_is_read_and_reported_as_not_closed() {
     let all = in_order(40);
     for compression in COMPRESSIONS {
         let bytes = bag(&[&all[..15], &all[15..]], compression, Closed::No);
@@ -40,7 +40,7 @@ fn a_bag_without_an_index_says_the_same_and_was_not_closed() {
 }
 
 #[test]
-fn messages_come_in_the_order_of_their_times_whatever_that_of_the_chunks() {
+fn messages_come_in_order_of_time_for_any_order_of_chunks() {
     let chunks: [&[Said]; 4] = [
         &[(0, 50, 0), (1, 10, 1), (0, 10, 2)],
         &[(1, 10, 3), (0, 5, 4), (0, 60, 5)],
@@ -53,7 +53,7 @@ fn messages_come_in_the_order_of_their_times_whatever_that_of_the_chunks() {
 }
 
 #[test]
-fn a_bag_that_is_cut_says_what_stands_before_the_cut() {
+fn a_truncated_bag_is_read_up_to_the_cut() {
     let all = in_order(12);
     for compression in COMPRESSIONS {
         for closed in [Closed::Yes, Closed::No] {
@@ -75,8 +75,8 @@ fn a_bag_that_is_cut_says_what_stands_before_the_cut() {
 }
 
 #[test]
-fn a_recorder_that_fell_within_a_chunk_leaves_what_it_wrote() {
-    // What rosbag writes as the length of a chunk before it knows it.
+fn a_chunk_of_a_crashed_recorder_is_read() {
+    // The placeholder that rosbag writes as the length of a chunk before the length is known.
     let all = in_order(8);
     let mut bytes = bag(&[&all], "none", Closed::No);
     let find = |bytes: &[u8], what: &[u8]| {
@@ -85,7 +85,7 @@ fn a_recorder_that_fell_within_a_chunk_leaves_what_it_wrote() {
     let size = find(&bytes, b"size=") + 5;
     bytes[size..size + 8].fill(0);
     assert_eq!(said(&Log::of_bytes(bytes.clone()).unwrap()), all);
-    // What it compressed is lost.
+    // The compressed rest is lost.
     let mut bytes = bag(&[&all[..4], &all[4..]], "bz2", Closed::No);
     let first = find(&bytes, b"BZh");
     let second = first + 3 + find(&bytes[first + 3..], b"BZh");

@@ -1,11 +1,11 @@
-//! What is wrong with a log is told in one message, with its place; and no bytes make a reader panic.
+//! Damaged logs: one error message with its place, and no bytes make a reader panic.
 
 use proptest::prelude::*;
 use toposlam_robot::log::{decode::decode, reader::Log};
 
 use super::written::{Closed, Said, Way, bag, in_order, mcap_file, ways};
 
-/// Reads all that there is; what is wrong, if anything.
+/// Reads everything. Returns the error, if there is one.
 fn read(bytes: &[u8]) -> Result<Vec<u64>, String> {
     let log = Log::of_bytes(bytes.to_vec()).map_err(|error| error.to_string())?;
     let mut numbers = Vec::new();
@@ -24,7 +24,7 @@ fn find(bytes: &[u8], what: &[u8]) -> usize {
     bytes.windows(what.len()).position(|part| part == what).unwrap()
 }
 
-/// A chunk with one compression, with this done to its bytes.
+/// A bag with one compressed chunk whose bytes were changed.
 fn changed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> String {
     change(&mut bytes);
     read(&bytes).unwrap_err()
@@ -35,7 +35,7 @@ const ZSTD: Way =
 const PLAIN: Way = Way { compression: None, ..ZSTD };
 
 #[test]
-fn what_is_no_log_is_refused() {
+fn other_files_are_refused() {
     let no_log = "byte 0: this is not a log; it must be a ROS 1 bag or an MCAP file";
     for bytes in [&b""[..], b"name = \"x\"", b"\x89MCAP", b"\x89PNG\r\n\x1a\n", b"#ROSBAG"] {
         assert_eq!(read(bytes).unwrap_err(), no_log);
@@ -47,7 +47,7 @@ fn what_is_no_log_is_refused() {
 }
 
 #[test]
-fn what_is_wrong_with_a_chunk_is_told() {
+fn damaged_chunks_are_reported() {
     let all = in_order(9);
     let bag = |compression| bag(&[&all], compression, Closed::Yes);
     let message = read(&bag("zip")).unwrap_err();
@@ -90,7 +90,7 @@ fn what_is_wrong_with_a_chunk_is_told() {
 }
 
 #[test]
-fn what_is_wrong_with_an_mcap_file_is_told() {
+fn damaged_mcap_files_are_reported() {
     let all = in_order(9);
     let message = changed(mcap_file(&[&all], PLAIN), |bytes| {
         let word = find(bytes, b"word\0");
@@ -118,7 +118,7 @@ fn what_is_wrong_with_an_mcap_file_is_told() {
 }
 
 #[test]
-fn a_message_of_an_unknown_connection_is_told() {
+fn messages_of_unknown_connections_are_reported() {
     let said: [Said; 2] = [(0, 1, 0), (1, 2, 1)];
     let message = changed(bag(&[&said], "none", Closed::No), |bytes| {
         let conn = b"conn=\x01\0\0\0";
@@ -132,7 +132,7 @@ fn a_message_of_an_unknown_connection_is_told() {
     );
 }
 
-/// A log of some kind, and some bytes of it other than they were.
+/// Some bytes of a log are changed.
 fn damaged() -> impl Strategy<Value = Vec<u8>> {
     let all = in_order(8);
     let mut logs: Vec<Vec<u8>> =

@@ -5,7 +5,7 @@ use toposlam_robot::log::{Format, error::TruncationKind, reader::Log, topic::Enc
 use super::written::{Said, Way, in_order, mcap_file, said, ways};
 
 #[test]
-fn an_mcap_file_says_what_was_written_in_whatever_way() {
+fn an_mcap_file_is_read_with_any_options() {
     let all = in_order(40);
     for way in ways() {
         let log = Log::of_bytes(mcap_file(&[&all[..15], &all[15..]], way)).unwrap();
@@ -24,7 +24,7 @@ fn an_mcap_file_says_what_was_written_in_whatever_way() {
 }
 
 #[test]
-fn messages_come_in_the_order_of_their_times_whatever_that_of_the_file() {
+fn messages_come_in_order_of_time_for_any_order_in_the_file() {
     let chunks: [&[Said]; 3] =
         [&[(0, 50, 0), (1, 10, 1), (0, 10, 2)], &[(1, 10, 3), (0, 5, 4), (0, 60, 5)], &[(0, 1, 6)]];
     for way in ways() {
@@ -35,7 +35,7 @@ fn messages_come_in_the_order_of_their_times_whatever_that_of_the_file() {
 }
 
 #[test]
-fn an_mcap_file_that_is_cut_says_what_stands_before_the_cut() {
+fn a_truncated_mcap_file_is_read_up_to_the_cut() {
     let all = in_order(12);
     for way in ways() {
         let bytes = mcap_file(&[&all[..4], &all[4..8], &all[8..]], way);
@@ -58,7 +58,7 @@ fn an_mcap_file_that_is_cut_says_what_stands_before_the_cut() {
 }
 
 #[test]
-fn topics_that_cannot_be_decoded_are_listed_all_the_same() {
+fn topics_that_cannot_be_decoded_are_still_listed() {
     use std::{collections::BTreeMap, io::Cursor};
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
     for (name, schema, encoding, text) in [
@@ -90,8 +90,8 @@ fn topics_that_cannot_be_decoded_are_listed_all_the_same() {
 }
 
 #[test]
-fn chunks_that_overlap_beyond_what_is_held_are_read_again() {
-    // Ten chunks of 10 MB from and to the same times.
+fn overlapping_chunks_beyond_the_memory_limit_are_read_again() {
+    // Ten chunks of 10 MB with the same times.
     use std::{collections::BTreeMap, io::Cursor};
     let way = Way { ros1: false, compression: None, chunked: true, summary: true };
     let mut writer = mcap::WriteOptions::new()

@@ -1,5 +1,5 @@
-//! Logs as they are found: whole, cut off, damaged, without an index, compressed in every way, written by
-//! the tools of ROS themselves or by the `mcap` crate.
+//! Logs: whole, cut off, damaged, without an index, in every compression, written by ROS tools or
+//! by the `mcap` crate.
 
 // What was written is what is read, to the last bit.
 #![allow(clippy::float_cmp)]

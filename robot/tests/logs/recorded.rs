@@ -1,4 +1,4 @@
-//! Bags that ROS itself recorded: a session of turtlesim. They are no part of the repository.
+//! Bags that ROS recorded in a session of turtlesim. They are not part of the repository.
 
 use std::{
     env, fs,
@@ -8,7 +8,7 @@ use std::{
 
 use toposlam_robot::log::{decode::decode, reader::Log};
 
-/// The bags, if they are there; `TOPOSLAM_LOGS` tells where.
+/// The bags, if they exist; `TOPOSLAM_LOGS` names their folder.
 fn folder() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/logs");
     let folder = env::var_os("TOPOSLAM_LOGS").map_or(beside, PathBuf::from);
@@ -30,7 +30,7 @@ fn topics(log: &Log) -> Vec<(String, String, u64)> {
     topics
 }
 
-/// As PyPI's `rosbags` 0.11.9 counts them.
+/// The counts of PyPI's `rosbags` 0.11.9.
 const SESSION: [(&str, &str, u64); 9] = [
     ("/rosout", "rosgraph_msgs/Log", 10),
     ("/tf", "tf/tfMessage", 2688),
@@ -44,7 +44,7 @@ const SESSION: [(&str, &str, u64); 9] = [
 ];
 
 #[test]
-fn a_session_is_the_same_however_it_was_compressed() {
+fn a_session_is_the_same_with_any_compression() {
     let Some(folder) = folder() else { return };
     let mut all = Vec::new();
     for name in ["example.bag", "example-bz2.bag", "example-lz4.bag"] {
@@ -84,7 +84,7 @@ fn a_bag_whose_chunks_are_out_of_order_is_read_in_order() {
 }
 
 #[test]
-fn a_recorded_bag_that_is_cut_says_what_stands_before_the_cut() {
+fn a_truncated_recorded_bag_is_read_up_to_the_cut() {
     let Some(folder) = folder() else { return };
     for (name, step) in
         [("example.bag", 9973), ("example-bz2.bag", 9973), ("example-unsorted-chunks.bag", 1)]
@@ -99,7 +99,7 @@ fn a_recorded_bag_that_is_cut_says_what_stands_before_the_cut() {
     }
 }
 
-/// Prints, for each message, its time, its topic and the sum of its bytes.
+/// Prints time, topic and byte sum of each message.
 const OTHER_READER: &str = "
 import sys
 from rosbags.rosbag1 import Reader
@@ -132,7 +132,7 @@ fn another_reader_reads_the_same() {
             .collect();
         let theirs = String::from_utf8(output.stdout).unwrap();
         let mut theirs: Vec<_> = theirs.lines().map(str::to_owned).collect();
-        // Of messages of one time each reader has an order of its own.
+        // Readers order messages with equal times differently.
         ours.sort();
         theirs.sort();
         assert_eq!(ours, theirs);

@@ -1,4 +1,4 @@
-//! What logs tell of runs, through mappings: those of the project, and those of others.
+//! Runs in logs, read through topic maps: topics of the project and of others.
 
 use std::{collections::BTreeMap, io::Cursor};
 
@@ -17,10 +17,11 @@ use toposlam_robot::{
     record::{Arrival, CameraImage, EventKind},
 };
 
-/// A topic: its name, the type and the definition of its messages, and what these say, one a second.
+/// A topic: its name, the type, definition and bodies of its messages, one a second.
 pub(crate) type Topic = (&'static str, &'static str, &'static str, Vec<Vec<u8>>);
 
-/// A log in the serialisation of ROS 1, which needs no padding; compressed, for definitions are long.
+/// A log in the serialization of ROS 1, which needs no padding. It is compressed, because
+/// definitions are long.
 pub(crate) fn log_of(topics: &[Topic]) -> Vec<u8> {
     let options = WriteOptions::new()
         .emit_statistics(false)
@@ -80,7 +81,7 @@ fn twist() -> Topic {
     ("/cmd_vel", "geometry_msgs/Twist", DEFINITION, vec![message])
 }
 
-/// The project's own, as a tool that makes ROS 1 of ROS 2 writes it.
+/// The project's topics, as a tool writes them that converts ROS 2 to ROS 1.
 fn percept() -> Topic {
     const DEFINITION: &str =
         "time stamp\nuint32 move\nuint32 degree\nint32 marker\nbool[4] form\nfloat64 entry\n";
@@ -93,7 +94,7 @@ fn percept() -> Topic {
     ("/toposlam/percept", "toposlam_msgs/Percept", DEFINITION, vec![message.concat()])
 }
 
-/// Those of somebody else.
+/// Topics of another project.
 fn junction() -> Topic {
     const DEFINITION: &str = "uint8 exits\nint8[] arrow\n";
     let messages = vec![vec![4, 1, 0, 0, 0, 2], vec![3, 1, 0, 0, 0, 255]];
@@ -106,7 +107,7 @@ fn place() -> Topic {
     ("/place", "lab_msgs/Place", DEFINITION, vec![message])
 }
 
-/// One of every kind.
+/// One topic of every kind.
 pub(crate) fn all() -> Vec<u8> {
     log_of(&[image(), odometry(), twist(), percept(), junction(), place()])
 }
@@ -116,7 +117,7 @@ fn entries(log: &Log, mapping: &TopicMap) -> Vec<Entry> {
 }
 
 #[test]
-fn what_is_usual_needs_no_mapping_file() {
+fn the_usual_topics_need_no_topic_map_file() {
     let log = Log::of_bytes(all()).unwrap();
     let mapping = TopicMap::from_log(&log).unwrap();
     let roles: Vec<_> = mapping.carriers().map(|(role, carrier)| (role, &*carrier.topic)).collect();
@@ -138,7 +139,7 @@ fn what_is_usual_needs_no_mapping_file() {
     assert!((at.heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     let forward = EventKind::Motion { forward: 0.25, turn: -1.0 };
     assert_eq!(motion.content, Content::Event(forward));
-    // A twist does not say when it was.
+    // A twist has no time stamp.
     assert_eq!(motion.stamp, Stamp { sec: 1, nanosec: 0 });
     let arrival = Arrival {
         number: Some(3),
@@ -151,7 +152,7 @@ fn what_is_usual_needs_no_mapping_file() {
 }
 
 #[test]
-fn messages_of_others_are_read_through_paths_and_units() {
+fn topics_of_others_are_read_through_paths_and_units() {
     let log = Log::of_bytes(all()).unwrap();
     let mapping = "[odometry]\ntopic = \"/place\"\nx = \"x\"\ny = \"y\"\nheading = \"theta\"\n\
         length = \"inches\"\nangle = \"degrees\"\n\
@@ -177,7 +178,7 @@ fn messages_of_others_are_read_through_paths_and_units() {
 }
 
 #[test]
-fn where_several_topics_could_carry_the_same_none_is_chosen() {
+fn ambiguous_topics_are_not_chosen() {
     let mut other = odometry();
     other.0 = "/goal";
     let mut annotated = image();
@@ -201,7 +202,7 @@ fn where_several_topics_could_carry_the_same_none_is_chosen() {
 }
 
 #[test]
-fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
+fn a_topic_map_that_does_not_fit_is_reported_with_its_place() {
     let log = Log::of_bytes(all()).unwrap();
     for (mapping, message) in [
         (
@@ -232,7 +233,7 @@ fn a_mapping_that_does_not_fit_its_log_is_told_with_its_place() {
 }
 
 #[test]
-fn a_message_that_does_not_say_what_it_should_is_told_with_its_number() {
+fn invalid_messages_are_reported_with_their_numbers() {
     let wrong = |topic: Topic, mapping: &str| {
         let log = Log::of_bytes(log_of(&[topic])).unwrap();
         let mapping = TopicMap::read(mapping.as_bytes()).unwrap();

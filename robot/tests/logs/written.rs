@@ -1,4 +1,4 @@
-//! Logs that are written for a test.
+//! Logs that tests write.
 
 use std::{
     borrow::Cow,
@@ -9,13 +9,13 @@ use std::{
 use mcap::{Compression, WriteOptions, Writer, records::MessageHeader};
 use toposlam_robot::log::{RawMessage, reader::Log};
 
-/// A message to be written: its topic, its time, its number.
+/// A message to write: its topic, its time, its number.
 pub(crate) type Said = (u32, u64, u32);
 
-/// The definition of what is written.
+/// The definition of the messages.
 pub(crate) const DEFINITION: &str = "uint32 number\nstring word\n";
 
-/// What a message says in ROS 1, and in CDR.
+/// The body of a message in ROS 1 and in CDR.
 pub(crate) fn ros1_body(number: u32) -> Vec<u8> {
     let mut body = number.to_le_bytes().to_vec();
     body.extend(*b"\x04\0\0\0word");
@@ -29,7 +29,7 @@ pub(crate) fn cdr_body(number: u32) -> Vec<u8> {
     body
 }
 
-/// Messages in order: `many`, on three topics.
+/// `many` messages in order, on three topics.
 pub(crate) fn in_order(many: u32) -> Vec<Said> {
     (0..many).map(|number| (number % 3, 1_000_000_000 + 7 * u64::from(number), number)).collect()
 }
@@ -62,16 +62,16 @@ fn connection(id: u32) -> Vec<u8> {
     record(&header, &body.concat())
 }
 
-/// Whether a bag is closed.
+/// The end of a bag.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Closed {
     /// With its index.
     Yes,
-    /// The recorder fell.
+    /// The recorder crashed.
     No,
 }
 
-/// A bag, a chunk for each list of messages.
+/// A bag with one chunk for each list of messages.
 pub(crate) fn bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> Vec<u8> {
     let mut ids: Vec<u32> = chunks.iter().flat_map(|said| said.iter().map(|said| said.0)).collect();
     ids.sort_unstable();
@@ -168,7 +168,7 @@ pub(crate) fn bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> Vec<
     bag
 }
 
-/// How an MCAP file is written.
+/// The options of an MCAP file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     pub(crate) ros1: bool,
@@ -177,7 +177,7 @@ pub(crate) struct Way {
     pub(crate) summary: bool,
 }
 
-/// Every way.
+/// All options.
 pub(crate) fn ways() -> Vec<Way> {
     let mut ways = Vec::new();
     for ros1 in [false, true] {
@@ -191,7 +191,7 @@ pub(crate) fn ways() -> Vec<Way> {
     ways
 }
 
-/// An MCAP file, a chunk for each list of messages.
+/// An MCAP file with one chunk for each list of messages.
 pub(crate) fn mcap_file(chunks: &[&[Said]], way: Way) -> Vec<u8> {
     let mut options = WriteOptions::new().compression(way.compression).use_chunks(way.chunked);
     if !way.summary {
@@ -222,7 +222,7 @@ pub(crate) fn mcap_file(chunks: &[&[Said]], way: Way) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-/// What a log says, message for message, and what it is asked for is right in each.
+/// Checks the messages of a log one by one, and its answers to queries.
 pub(crate) fn said(log: &Log) -> Vec<Said> {
     log.read_all().enumerate().map(|(nth, message)| one(log, nth, &message.unwrap())).collect()
 }

@@ -1,4 +1,4 @@
-//! No bytes make a reader of logs, of messages or of mappings take more memory than it states.
+//! Readers of logs, messages and topic maps stay within their memory limits, whatever the bytes.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
@@ -13,7 +13,7 @@ use toposlam_robot::log::{
 
 use super::MEMORY;
 
-/// The most memory taken at any time while this runs.
+/// The peak of the allocated memory during a call.
 fn peak(run: impl FnOnce()) -> usize {
     let before = MEMORY.current_usage();
     MEMORY.reset_peak_usage();
@@ -21,10 +21,10 @@ fn peak(run: impl FnOnce()) -> usize {
     MEMORY.peak_usage().saturating_sub(before)
 }
 
-/// As [`Log::new`] and [`Log::read`] state, all bytes taken for those of the largest chunk.
+/// The limit of [`Log::new`] and [`Log::read`], if all bytes are those of the largest chunk.
 fn log_holds(bytes: &[u8]) -> usize {
     let taken = peak(|| {
-        // In memory it is there twice.
+        // It is in memory twice.
         if let Ok(log) = Log::of_bytes(bytes.to_vec()) {
             for message in log.read_all() {
                 let _ = black_box(message.map_err(|error| error.to_string()));
@@ -116,7 +116,7 @@ pub(crate) fn reading_takes_no_more_memory_than_stated() {
     }
 }
 
-/// The seeds of fuzzers, and every four bytes of them as large as can be.
+/// The seeds of fuzzers, and the same with every four bytes set to the maximum.
 fn seeds_hold() {
     for target in ["bag", "mcap"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus").join(target);
@@ -132,7 +132,7 @@ fn seeds_hold() {
     }
 }
 
-/// What becomes far larger than it is.
+/// Data that expands a lot when decompressed.
 fn zeros_hold() {
     for (compression, read) in [(mcap::Compression::Lz4, true), (mcap::Compression::Zstd, false)] {
         let options = mcap::WriteOptions::new().compression(Some(compression)).chunk_size(None);
@@ -145,7 +145,8 @@ fn zeros_hold() {
         writer.finish().unwrap();
         let bytes = writer.into_inner().into_inner();
         let taken = log_holds(&bytes);
-        // By LZ4 it is 255 times as large, and read; by Zstandard far more, and refused.
+        // With LZ4 it is 255 times as large, and is read. With Zstandard it is far larger, and is
+        // refused.
         assert_eq!(taken > 100_000_000, read, "{taken}");
     }
 }

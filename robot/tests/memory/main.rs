@@ -1,5 +1,5 @@
-//! Memory limits. The allocator of the whole program is measured, so this is a program of its own, with
-//! one test.
+//! Memory limits. The allocator of the whole process is measured, so this is a separate program
+//! with one test.
 
 use peak_alloc::PeakAlloc;
 

@@ -1,4 +1,4 @@
-//! Sensing takes the same memory for the hundredth frame as for the first.
+//! Sensing takes no more memory for the hundredth frame than for the first.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -22,7 +22,7 @@ const POSES: [Pose; 3] = [
     Pose { position: [-0.1, 3.6], heading: 1.7 },
 ];
 
-/// What the pictures and their scenes keep after these rounds, and the most that was taken.
+/// Memory that images and scenes keep after these rounds, and the peak.
 fn taken(sensor: &mut Sensor, pictures: &[RgbImage], rounds: u32) -> (usize, usize) {
     MEMORY.reset_peak_usage();
     for _ in 0..rounds {

@@ -64,7 +64,7 @@ fn rate(report: &VisionReport, subject: ReportSubject, what: &str) -> Rate {
 }
 
 #[test]
-fn views_are_counted_where_they_are() {
+fn views_are_counted_in_their_zones() {
     let hallway = Truth::Hallway(HALLWAY);
     let (l, unknown) = (at_junction(&[PI, FRAC_PI_2]), Place::Unknown(Reason::FewWalls));
     let views = [
@@ -153,7 +153,7 @@ fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
 }
 
 #[test]
-fn with_a_wrong_calibration_three_times_as_much_may_go_wrong() {
+fn a_wrong_calibration_triples_the_allowed_rates() {
     let reports =
         [Calibration::Right, Calibration::Wrong].map(|which| VisionReport::of(&[], &[], which));
     for what in ["kind and entry not right", "kind or entry wrong"] {
