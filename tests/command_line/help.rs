@@ -72,7 +72,7 @@ fn no_line_is_wider_than_80_columns() {
     let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [page, map, log] = ["page.html", "map.toml", "run.mcap"].map(file);
     let case = ["proofs", "--run", "the_way_back", "--choices", "2,2,1,1,1,0,0,1,2,1,1,0"];
-    let runs: [&[&str]; 28] = [
+    let runs: [&[&str]; 29] = [
         &[],
         &["check", "--edges", "1..=4"],
         &["check", "--edges", "1..=4", "--choices", "all"],
@@ -98,6 +98,7 @@ fn no_line_is_wider_than_80_columns() {
         &["simulate", "worlds/shape-6.toml", "--by-scene", "--log", &log],
         &["info", &log],
         &["conform", &log, "--world", "worlds/shape-6.toml"],
+        &["conform", &log, "--world", "worlds/shape-8.toml"],
         &["conform", &log],
         &["replay", &log],
         &["evaluate", "control", "--traversals", "20"],

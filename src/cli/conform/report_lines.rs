@@ -7,7 +7,10 @@ use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
 
 use super::Failure;
-use crate::cli::{json::print_object, text::counted, text::print_hanging};
+use crate::cli::{
+    json::print_object,
+    text::{counted, print_command, print_hanging},
+};
 
 /// The number of steps shown before a divergence.
 const BEFORE: usize = 6;
@@ -159,7 +162,8 @@ fn diverged(
     }
     for line in before {
         let then = if line.then.is_empty() { "" } else { " -> " };
-        writeln!(out, "    {:>5}  {}{then}{}", line.number, line.what, line.then)?;
+        let step = format!("{}{then}{}", line.what, line.then);
+        print_hanging(out, &format!("    {:>5}  ", line.number), &step)?;
     }
     if !report.shorter.is_empty() {
         let mut events: Vec<_> = report.shorter.iter().take(SHORT).cloned().collect();
@@ -173,7 +177,7 @@ fn diverged(
         print_hanging(out, &head, &events.join("; "))?;
     }
     if let Some(command) = &report.command {
-        writeln!(out, "  {command}")?;
+        print_command(out, "  ", command)?;
     }
     Ok(())
 }
