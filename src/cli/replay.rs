@@ -11,7 +11,7 @@ use super::{
     json::print_object,
     open_log::{LogOptions, OpenLog},
     output,
-    text::{counted, grouped, vertices},
+    text::{counted, grouped, print_hanging, vertices},
 };
 
 /// Run sensing and mapping again on the images of a log, without a robot
@@ -145,7 +145,7 @@ impl ReplayArguments {
         let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
         writeln!(out, "  map         {vertices}, {edges}")?;
         if let Some(error) = &replay.error {
-            writeln!(out, "  ended early {error}")?;
+            print_hanging(out, "  ended early ", &error.to_string())?;
         }
         writeln!(out, "As recorded:")?;
         let rows = [
@@ -163,8 +163,8 @@ impl ReplayArguments {
         if let Some(difference) = &comparison.difference {
             let ReplayDifference { picture, time, what, recorded, found } = difference;
             writeln!(out, "First difference: the {what} at picture {picture}, {time:.1} s")?;
-            writeln!(out, "  recorded    {recorded}")?;
-            writeln!(out, "  replayed    {found}")?;
+            print_hanging(out, "  recorded    ", recorded)?;
+            print_hanging(out, "  replayed    ", found)?;
         }
         // paper: exp.off-line-time
         let ratio = (replay.recorded_seconds / seconds.max(1e-9)) as u128;

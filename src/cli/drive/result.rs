@@ -10,7 +10,10 @@ use toposlam_model::{
 use toposlam_robot::explorer::ExplorerError;
 
 use super::{Failure, Outcome};
-use crate::cli::{json::print_object, text::sentence};
+use crate::cli::{
+    json::print_object,
+    text::{print_paragraph, sentence},
+};
 
 /// The result of a run.
 pub(super) struct DriveResult<'a> {
@@ -72,7 +75,8 @@ impl DriveResult<'_> {
             None => format!("the map is complete, after {moves} moves"),
             Some(error) => format!("the robot gave up: {error}"),
         };
-        writeln!(out, "\n{}", sentence(&ended))?;
+        writeln!(out)?;
+        print_paragraph(out, &sentence(&ended))?;
         writeln!(out, "  map               {vertices} vertices, {} edges", self.edges())?;
         let minutes = self.seconds / 60.0;
         writeln!(out, "  pictures          {}", self.pictures)?;

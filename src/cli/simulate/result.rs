@@ -14,7 +14,10 @@ use toposlam_robot::{
 };
 
 use super::{Failure, Outcome};
-use crate::cli::{json::print_object, text::sentence};
+use crate::cli::{
+    json::print_object,
+    text::{print_paragraph, sentence},
+};
 
 /// The result of a run.
 pub(super) struct SimulationResult<'a> {
@@ -90,9 +93,10 @@ impl SimulationResult<'_> {
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
         let edges = self.world.graph.edge_count();
-        writeln!(out, "\n{}", sentence(&self.in_words()))?;
+        writeln!(out)?;
+        print_paragraph(out, &sentence(&self.in_words()))?;
         if let (Some(divergence), Some(_)) = (run.divergence(), &run.error) {
-            writeln!(out, "{}", sentence(&divergence.to_string()))?;
+            print_paragraph(out, &sentence(&divergence.to_string()))?;
         }
         let map = run.exploration.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
