@@ -76,7 +76,8 @@ pub(crate) fn convex_polygon(image: &mut RgbImage, corners: &[[i32; 2]], colour:
     let rows = corners.iter().map(|corner| corner[1]);
     let (Some(first), Some(last)) = (rows.clone().min(), rows.max()) else { return };
     let sides = || corners.iter().zip(corners.iter().cycle().skip(1));
-    for v in first.max(0)..=last.min(image.height() as i32 - 1) {
+    let height = i32::try_from(image.height()).unwrap_or(i32::MAX);
+    for v in first.max(0)..=last.min(height - 1) {
         let crossings = sides().filter_map(|(from, to)| {
             let [from, to] = if from[1] <= to[1] { [from, to] } else { [to, from] };
             let share = (v - from[1]) as f32 / (to[1] - from[1]) as f32;
