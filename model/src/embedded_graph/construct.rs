@@ -262,7 +262,7 @@ mod tests {
         );
         assert_eq!(
             message(neighbours(&[("a", &["c"])])),
-            "vertex `a` lists the neighbour `c`, which is no vertex"
+            "vertex `a` lists the neighbour `c`, which is not a vertex"
         );
         assert_eq!(
             message(neighbours(&[("a", &["a"])])),
@@ -278,19 +278,19 @@ mod tests {
         );
         assert_eq!(
             message(edges(&[("a", &["e", "e"]), ("b", &["e"])])),
-            "edge `e` stands 3 times (a, a, b); an edge has two ends"
+            "edge `e` occurs 3 times (a, a, b); an edge has two ends"
         );
         assert_eq!(
             message(edges(&[("a", &["e"])])),
-            "edge `e` stands 1 times (a); an edge has two ends"
+            "edge `e` occurs 1 times (a); an edge has two ends"
         );
         assert_eq!(
             message(edges(&[("a", &["e"; 8])])),
-            "edge `e` stands 8 times (a, a, a, a, a, a, a, a); an edge has two ends"
+            "edge `e` occurs 8 times (a, a, a, a, a, a, a, a); an edge has two ends"
         );
         assert_eq!(
             message(edges(&[("a", &["e"; 9])])),
-            "edge `e` stands 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends"
+            "edge `e` occurs 9 times (a, a, a, a, a, a, a, a, ...); an edge has two ends"
         );
         assert_eq!(message(edges(&[("a", &[]), ("a", &[])])), "vertex `a` has two lists");
         assert_eq!(message(edges(&[("a", &[])])), "there is no edge; a world has at least one");
