@@ -22,7 +22,7 @@ from 1.000000000 s, for 1.000 s
            2      2.00  /junction                 lab_msgs/Junction
            1      1.00  /place                    lab_msgs/Place
 
-  carried   by
+  role      topic
   image     /camera/image/compressed
   odometry  /odom
   motion    /cmd_vel

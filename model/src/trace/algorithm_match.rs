@@ -1,5 +1,4 @@
-//! A trace against Algorithm 1: were the doors taken those that it takes, or ones that it may take?
-//! Section 2.3.
+//! Matches a trace with Algorithm 1: are the doors those that it takes, or may take? Section 2.3.
 
 use std::{collections::HashSet, fmt, mem};
 
@@ -16,27 +15,27 @@ use crate::{
     world::World,
 };
 
-/// How far Algorithm 1 goes along with a trace.
+/// How far Algorithm 1 follows a trace.
 #[derive(Clone, Debug)]
 pub struct AlgorithmMatch {
-    /// Whose choices it takes.
+    /// The choices that it takes.
     pub choices: MatchedChoices,
-    /// How far it came.
+    /// How far it follows the trace.
     pub reached: MatchEnd,
-    /// What it knew then.
+    /// Its state at that point.
     pub exploration: Exploration,
-    /// The cases that it went through.
+    /// The cases that it covers.
     pub coverage: AlgorithmCoverage,
     /// The choices that are not the default ones.
     script: Option<Vec<MappingChoice>>,
 }
 
-/// Whose choices a trace shows, as far as it goes.
+/// The choices that match a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchedChoices {
     /// The default ones.
     Default,
-    /// Others, which Algorithm 1 leaves open.
+    /// Others that Algorithm 1 allows.
     Other {
         /// The id of the first event that the default choices would not have; `None` if they would go on
         /// after the last one.
@@ -44,14 +43,14 @@ pub enum MatchedChoices {
     },
 }
 
-/// How far Algorithm 1 goes along with a trace.
+/// How far Algorithm 1 follows a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MatchEnd {
-    /// To its end: the map is complete.
+    /// To the end of both: the map is complete.
     Mapped,
-    /// As far as the trace goes.
+    /// To the end of the trace.
     EndOfTrace,
-    /// To an event that it would not have.
+    /// To an event that it does not have.
     Departure(Departure),
 }
 
@@ -60,21 +59,20 @@ pub enum MatchEnd {
 pub struct Departure {
     /// The event.
     pub event: TraceEvent,
-    /// What Algorithm 1 would have done there, for each choice that leads there; each once.
+    /// What Algorithm 1 does there instead, for each choice that leads there.
     pub allowed: Vec<AllowedStep>,
 }
 
-/// What Algorithm 1 would have done.
+/// What Algorithm 1 does instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AllowedStep {
-    /// The door that it takes; `None` where it takes none.
+    /// The door that it takes, if any.
     pub door: Option<Door>,
-    /// What for.
+    /// The purpose.
     pub purpose: StepPurpose,
 }
 
-/// Why a robot that runs Algorithm 1 goes where it goes. Darts are those of the map, told as vertex
-/// and index.
+/// The purpose of a step of Algorithm 1. Darts of the map are given by vertex and index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepPurpose {
     /// Lines 5 and 6: to explore this dart.
@@ -84,16 +82,16 @@ pub enum StepPurpose {
         /// The index of the dart.
         index: u32,
     },
-    /// Lines 10 to 15: to follow the path of the hypothesis that it has come in by this dart, or back.
+    /// Lines 10 to 15: to follow the path of the hypothesis that it arrived by this dart, or to return.
     Try {
         /// The vertex's number.
         vertex: u32,
         /// The index of the dart.
         index: u32,
     },
-    /// The map is complete; there is nowhere to go.
+    /// The map is complete.
     Done,
-    /// What is perceived cannot be.
+    /// The percept is a contradiction.
     Contradicted(Contradiction),
     /// The step is not valid: the enumeration of choices is wrong.
     InvalidStep(InvalidStep),
@@ -108,7 +106,7 @@ impl fmt::Display for StepPurpose {
                 write!(out, "line 5: explores the unexplored dart {index} of vertex v{vertex}")
             }
             Self::Try { vertex, index } => {
-                write!(out, "line 9: tries whether it came in by dart {index} of vertex v{vertex}")
+                write!(out, "line 9: tests whether it arrived by dart {index} of vertex v{vertex}")
             }
             Self::Done => write!(out, "line 4: the map is complete"),
             Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
@@ -129,14 +127,14 @@ impl fmt::Display for AllowedStep {
     }
 }
 
-/// A world that answers with what was recorded, for as long as it is asked for what was done then.
+/// A world with the recorded percepts, as long as the recorded doors are taken.
 #[derive(Clone, Debug)]
 pub struct TraceWorld<'t> {
     trace: &'t Trace,
     moves: usize,
 }
 
-/// Why a recorded world does not answer.
+/// Why a recorded world cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TraceWorldError {
     /// Another door was taken.
@@ -171,17 +169,17 @@ impl World for TraceWorld<'_> {
     }
 }
 
-/// What a trace is said to be.
+/// What a trace claims to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceClaim {
-    /// A run to its end: of choices that lead along it those count first that end there, too.
+    /// A complete run: choices that end with the trace are preferred.
     Whole,
-    /// Perhaps a part of one.
+    /// Possibly a part of a run.
     Part,
 }
 
-/// Follows a trace by Algorithm 1, with the default choices for as long as they lead along it, and
-/// otherwise with any that do. At most `bound` darts may become known.
+/// Matches a trace with Algorithm 1: with the default choices as long as they match, otherwise with any
+/// choices. At most `bound` darts may become known.
 #[must_use]
 pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> AlgorithmMatch {
     let mut world = TraceWorld { trace, moves: 0 };
@@ -196,7 +194,7 @@ pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> Algori
     let to_the_end = reached == Some(MatchEnd::Mapped);
     let part = reached == Some(MatchEnd::EndOfTrace);
     let mut search = Search { claim, ..Search::default() };
-    // Other choices may take the same doors, and be at the end of a run where these are not.
+    // Other choices may take the same doors and complete the map.
     let found = if to_the_end || (part && claim == TraceClaim::Part) {
         None
     } else {
@@ -206,7 +204,7 @@ pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> Algori
         let choices = MatchedChoices::Default;
         return AlgorithmMatch { choices, reached, exploration, coverage, script: None };
     }
-    // Where the default choices go along, it is their end that is another.
+    // If the default choices match the whole trace, they differ after its end.
     let from = match run {
         Err(MappingError::World(TraceWorldError::End)) => trace.len(),
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * world.moves,
@@ -228,7 +226,7 @@ pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> Algori
 }
 
 impl AlgorithmMatch {
-    /// Runs along the trace again, as far as Algorithm 1 goes along with it, for an observer.
+    /// Runs along the trace again, as far as Algorithm 1 follows it, for an observer.
     pub fn again(
         &self,
         trace: &Trace,
@@ -237,7 +235,7 @@ impl AlgorithmMatch {
     ) -> Exploration {
         let mut exploration = Exploration::new(bound);
         let mut world = TraceWorld { trace, moves: 0 };
-        // It ends as it was found to end.
+        // The result is known.
         let _ = match &self.script {
             None => map_world(&mut world, &mut Nearest, &mut exploration, observer),
             Some(script) => exploration.begin(&mut world, observer).and_then(|()| {
@@ -249,7 +247,7 @@ impl AlgorithmMatch {
     }
 }
 
-/// A way to go along with the trace so far.
+/// A run that matches the trace so far.
 #[derive(Clone)]
 struct Way<'t> {
     exploration: Exploration,
@@ -259,7 +257,7 @@ struct Way<'t> {
 }
 
 impl Way<'_> {
-    /// What a choice is for.
+    /// The purpose of a choice.
     fn purpose(&self, choice: MappingChoice) -> StepPurpose {
         let map = self.exploration.map();
         let named = |dart| (map.vertex(dart).0, map.index(dart));
@@ -276,18 +274,18 @@ impl Way<'_> {
     }
 }
 
-/// What tells ways apart that have come equally far: the map and the robot in it, and H.
+/// What distinguishes runs: the moves, the line, the map, the robot in it, and H.
 type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
 
 /// All choices, depth first.
 struct Search {
     claim: TraceClaim,
-    /// The choices of the first way that goes along with all of a trace, but is not at its end there.
+    /// The choices of the first run that matches the trace without completing the map.
     part: Option<Vec<MappingChoice>>,
     seen: HashSet<Known>,
-    /// The first event that none of the ways would have that came farthest,
+    /// The index of the first event that none of the longest runs has,
     farthest: usize,
-    /// what they would have instead,
+    /// what they have instead,
     allowed: Vec<AllowedStep>,
     /// and the choices of the first of them.
     script: Vec<MappingChoice>,
@@ -307,7 +305,7 @@ impl Default for Search {
 }
 
 impl Search {
-    /// A way that goes along with the whole trace.
+    /// A run that matches the whole trace.
     fn run(&mut self, trace: &Trace, bound: usize) -> Option<(MatchEnd, Vec<MappingChoice>)> {
         let mut exploration = Exploration::new(bound);
         let mut world = TraceWorld { trace, moves: 0 };
@@ -345,7 +343,7 @@ impl Search {
         self.part.take().map(|part| (MatchEnd::EndOfTrace, part))
     }
 
-    /// Every choice that leads along the trace.
+    /// Every choice that matches the trace.
     fn next<'t>(&mut self, way: &Way<'t>) -> Vec<Way<'t>> {
         let mut choices: Vec<_> = way.exploration.open_choices().collect();
         let tries_hypotheses = way.exploration.is_at_line_8();
@@ -361,9 +359,9 @@ impl Search {
             way.script.push(choice);
             match step(&mut way.exploration, choice, &mut way.world, &mut ()) {
                 Ok(()) => {
-                    // Two that fall along the trace fall after the same moves, for the way back begins
-                    // with door 0, by which no shortest path goes on. They are alike: whichever is tried
-                    // later falls after the same moves again.
+                    // Rejected hypotheses are rejected after the same moves: the way back begins with
+                    // door 0, which no shortest path takes. So one of them is enough: another one is
+                    // rejected after the same moves again.
                     let falls = tries_hypotheses && way.exploration.is_at_line_8();
                     if !falls || !mem::replace(&mut rejected, true) {
                         next.push(way);
@@ -378,14 +376,14 @@ impl Search {
         next
     }
 
-    /// A way ended before the trace.
+    /// A run ended before the trace.
     fn ended(&mut self, way: &Way, error: &MappingError<TraceWorldError>, purpose: StepPurpose) {
         let at_percept = 2 * way.world.moves;
         let (event, door, purpose) = match error {
             MappingError::World(TraceWorldError::Door { asked, .. }) => {
                 (at_percept + 1, Some(*asked), purpose)
             }
-            // The end of the trace is told otherwise.
+            // The end of the trace is no departure.
             MappingError::World(TraceWorldError::End) => return,
             MappingError::Contradiction(contradiction) => {
                 (at_percept, None, StepPurpose::Contradicted(*contradiction))
@@ -396,7 +394,7 @@ impl Search {
         self.departed(event, AllowedStep { door, purpose }, &way.script);
     }
 
-    /// Instead of an event of the trace a way would have had something else.
+    /// A run has something else instead of an event of the trace.
     fn departed(&mut self, event: usize, allowed: AllowedStep, script: &[MappingChoice]) {
         if self.allowed.is_empty() || event > self.farthest {
             self.farthest = event;
@@ -408,7 +406,7 @@ impl Search {
         }
     }
 
-    /// Where the ways ended that came farthest.
+    /// The departure of the longest runs.
     fn departure(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
         let departure = Departure { event: trace.event(self.farthest), allowed: self.allowed };
         (MatchEnd::Departure(departure), self.script)
@@ -459,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn a_door_that_no_choice_takes_is_told_with_those_that_may_be_taken() {
+    fn a_door_that_no_choice_takes_departs_with_the_allowed_doors() {
         let graph = lollipop();
         // At the fork the robot goes back where it came from, while nothing is left there.
         let trace = walked(&graph, Dart(0), &[Door(0), Door(0)]);

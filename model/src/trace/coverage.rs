@@ -1,4 +1,4 @@
-//! Which cases of Algorithm 1 and of perception a run went through. Sections 2.1 and 2.3.
+//! The cases of Algorithm 1 that a run covers. Sections 2.1 and 2.3.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -20,9 +20,9 @@ pub enum AlgorithmCase {
     Confirmed,
     /// Line 7: the percept on arrival contradicted a hypothesis at once.
     RejectedAtOnce,
-    /// Lines 13 to 15: a hypothesis fell on its way to the marker.
+    /// Lines 13 to 15: a hypothesis was rejected on the way to the marker.
     RejectedOnTheWay,
-    /// Lines 13 to 15: a hypothesis fell where the marker should have been.
+    /// Lines 13 to 15: a hypothesis was rejected where the marker should have been.
     RejectedAtTheEnd,
     /// The marker was perceived, after the start.
     MarkerSeen,
@@ -76,7 +76,7 @@ impl AlgorithmCoverage {
         self.counts.get(&case).copied().unwrap_or(0)
     }
 
-    /// Takes in what happened in another run.
+    /// Adds the counts of another run.
     pub fn include(&mut self, other: &Self) {
         for (&case, count) in &other.counts {
             *self.counts.entry(case).or_default() += count;
@@ -90,7 +90,6 @@ impl AlgorithmCoverage {
     }
 }
 
-/// Whoever counts listens.
 impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
     fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
         match event {

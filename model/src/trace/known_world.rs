@@ -1,4 +1,4 @@
-//! A trace against a known world: all the poses that fit what was perceived so far. Section 2.1.
+//! Matches a trace with a known world: the poses that fit the percepts so far. Section 2.1.
 
 use super::{Trace, TraceEvent, TraceEventKind};
 use crate::{
@@ -8,55 +8,53 @@ use crate::{
     world::{GraphWorld, Refused, State, World},
 };
 
-/// How the robot may stand in a known world, event by event.
+/// The possible states of a robot in a known world, event by event.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Poses {
-    /// How many ways are left after each event that fits.
+    /// The number of states after each event that fits.
     pub left: Vec<usize>,
-    /// The only way that is left after each such event, where there is only one.
+    /// The state after each such event, if there is only one.
     pub alone: Vec<Option<State>>,
-    /// The ways that are left after the last of them.
+    /// The states after the last event that fits.
     pub states: Vec<State>,
-    /// The first event that fits none of them.
+    /// The first event that fits no state.
     pub misfit: Option<Misfit>,
 }
 
-/// An event that fits no way in which the robot may stand.
+/// An event that fits no possible state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
     /// The event.
     pub event: TraceEvent,
     /// The number of moves before it.
     pub moves: usize,
-    /// Each way in which the robot may have stood before it (at a percept: in which it has come to
-    /// stand), and why the event does not fit it.
+    /// The possible states before it (for a percept, after the move), and why the event does not fit each.
     pub candidates: Vec<(State, MisfitReason)>,
 }
 
-/// Why an event does not fit a pose.
+/// Why an event does not fit a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MisfitReason {
-    /// Something else is perceived there.
+    /// Another percept is expected.
     Percept {
-        /// What.
+        /// The expected percept.
         expected: Percept,
     },
     /// There is no such door.
     NoSuchDoor {
-        /// How many there are.
+        /// The number of doors.
         degree: u32,
     },
 }
 
-/// Every way in which a robot may stand that has put its marker down where it stands, along its entry
-/// dart.
+/// The states of a robot that has just put its marker down along its entry dart, at every dart.
 #[must_use]
 pub fn anywhere(graph: &EmbeddedGraph, marker: &impl Marker) -> Vec<State> {
     let start = |facing| GraphWorld::with_marker(graph, marker, facing).state();
     graph.darts().map(start).collect()
 }
 
-/// Follows a trace in a known world from every way in which the robot may stand at first.
+/// Follows a trace in a known world from all possible start states.
 #[must_use]
 pub fn poses(
     graph: &EmbeddedGraph,
@@ -85,7 +83,7 @@ pub fn poses(
     Poses { left, alone, states, misfit: None }
 }
 
-/// How the robot stands after an event, if the event fits.
+/// The state after an event, if the event fits.
 fn after(
     graph: &EmbeddedGraph,
     marker: &impl Marker,
@@ -141,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_false_percept_and_a_door_that_is_not_there_are_told() {
+    fn a_wrong_percept_and_a_missing_door_are_reported() {
         let graph = lollipop();
         let start = [GraphWorld::new(&graph, Dart(0)).state()];
         let mut trace = walked(&graph, Dart(0), &[Door(0), Door(1)]);

@@ -1,4 +1,4 @@
-//! Recorded explorations, held against the specification: a known world, some world, Algorithm 1.
+//! Recorded runs, checked against a known world, against all worlds, and against Algorithm 1.
 //! Sections 2.1 and 2.3.
 
 mod algorithm_match;
@@ -60,7 +60,7 @@ pub enum TraceOrderError {
         event: usize,
     },
     /// A door follows a door, or is the first event.
-    #[error("a door is taken where no percept has come since the last one")]
+    #[error("a door follows a door: nothing was perceived in between")]
     NoPercept {
         /// The id of the door.
         event: usize,

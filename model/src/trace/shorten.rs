@@ -1,15 +1,13 @@
-//! A trace that shows something, without what it does not need to show it.
+//! Shortens a trace while it keeps a property.
 
 use super::Trace;
 
-/// So many shorter traces are tried at most.
+/// The largest number of shorter traces that are tried.
 const TRIALS: usize = 20_000;
 
-/// A trace from which no stretch of moves can be left out without its no longer showing what it is to
-/// show; the one given, where that shows nothing.
-///
-/// Stretches are left out from the longest to the shortest, and again until none can be: what is left
-/// is short, not shortest.
+/// Removes sequences of moves from a trace while `shows` holds, from the longest to the shortest, until
+/// none can be removed. The result is short, not shortest; it is the trace itself if `shows` does not
+/// hold for it.
 #[must_use]
 pub fn shortened(trace: &Trace, mut shows: impl FnMut(&Trace) -> bool) -> Trace {
     let mut shortest = trace.clone();

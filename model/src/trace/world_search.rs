@@ -1,9 +1,7 @@
-//! A trace against every world: the smallest one that explains it, found by growing worlds along the
-//! trace. Section 2.1.
+//! Finds the smallest world that explains a trace, by growing worlds along the trace. Section 2.1.
 //!
-//! A world grows as the enumeration grows it, but along what was recorded: where the robot leaves by a
-//! dart whose other end is free, it comes to a new vertex, or in by a free dart of a known one. Each
-//! start with the given number of edges has exactly one such history, so none is missed.
+//! If the robot leaves by a dart whose other end is free, it reaches a new vertex or a free dart of a known
+//! one. Each start with the given number of edges has exactly one such history, so none is missed.
 
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
@@ -14,26 +12,26 @@ use crate::{
 
 use super::Trace;
 
-/// What is searched.
+/// The worlds to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldSearch {
     /// The class of worlds.
     pub class: Class,
-    /// Worlds have at most so many edges.
+    /// The largest number of edges.
     pub edges: usize,
-    /// So many steps are tried at most.
+    /// The largest number of steps.
     pub steps: u64,
 }
 
 impl WorldSearch {
-    /// So many steps are a second's work.
+    /// About a second's work.
     pub const STEPS: u64 = 500_000;
 }
 
 /// The smallest world that explains a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SmallestWorld {
-    /// A world; of those with as few edges the first found.
+    /// A world; the first found with this number of edges.
     World {
         /// The world; the robot starts with dart 0 behind it.
         graph: EmbeddedGraph,
@@ -42,20 +40,20 @@ pub enum SmallestWorld {
     },
     /// No world up to the bound explains the trace.
     None {
-        /// The first event, from 0, that none of those explains that explain all before it.
+        /// The index of the first event that no world explains together with all before it.
         event: usize,
     },
-    /// The search was not finished: no world with so many edges explains the trace.
+    /// The search was not finished; no world with at most this many edges explains the trace.
     Unfinished {
-        /// Up to which number of edges all were tried.
+        /// The number of edges.
         edges: usize,
     },
 }
 
-/// Finds the smallest world of a class that explains a trace: in which a robot that is put down
-/// somewhere, with a directional marker somewhere or none, perceives what was recorded.
+/// Finds the smallest world of a class in which a robot from some start, with a directional marker
+/// somewhere or without one, has the recorded percepts.
 ///
-/// What is `known` is in every such world: the map that Algorithm 1 has made of the trace so far.
+/// The `known` map of Algorithm 1 for the trace is part of every such world.
 #[must_use]
 pub fn smallest(
     trace: &Trace,
@@ -65,7 +63,7 @@ pub fn smallest(
 ) -> SmallestWorld {
     let mut growing = Growing::new(trace, search.class, watch);
     growing.steps = search.steps;
-    // A world has as many darts as the vertices that were told apart by their degrees.
+    // Vertices with different degrees are different, and a world has at least their darts.
     let mut degrees: Vec<u32> = trace.percepts().iter().map(|percept| percept.degree).collect();
     degrees.sort_unstable();
     degrees.dedup();
@@ -92,10 +90,10 @@ pub fn smallest(
     SmallestWorld::None { event: growing.farthest }
 }
 
-/// Worlds with more edges are not tried: the search is as deep as a world has edges.
+/// The largest number of edges ever tried: the depth of the search is the number of edges.
 const MOST_EDGES: usize = 1000;
 
-/// A world in the making, and the way it was explained so far.
+/// A world that grows, and the state of the search.
 struct Growing<'t, W> {
     trace: &'t Trace,
     class: Class,
@@ -103,12 +101,12 @@ struct Growing<'t, W> {
     edges: usize,
     steps: u64,
     stopped: bool,
-    /// The event that no world has explained yet.
+    /// The first event that no world has explained yet.
     farthest: usize,
     world: Draft,
 }
 
-/// Where the robot is, and what was explained.
+/// The pose, and the number of moves explained.
 #[derive(Clone, Copy)]
 struct At {
     pose: u32,
@@ -466,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_told_at_its_event() {
+    fn an_impossible_event_is_reported() {
         let graph = lollipop();
         let mut trace = walked(&graph, Dart(0), &[Door(0), Door(0), Door(0)]);
         // The end of the tail is left and come back to, and looks different.
@@ -487,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_is_cut_short_says_so() {
+    fn a_search_that_reaches_its_limit_is_unfinished() {
         let trace = explored(&lollipop(), Dart(0));
         let short = WorldSearch { steps: 3, ..search(Class::Multigraph, 6) };
         assert!(matches!(smallest(&trace, None, short, &()), SmallestWorld::Unfinished { .. }));

@@ -1,8 +1,8 @@
-//! From the bytes of a message to what it says: the serialisation of ROS 1, and CDR, as ROS 2 writes it
+//! Decodes the bytes of a message to values: the serialisation of ROS 1, and CDR, as ROS 2 writes it
 //! (OMG DDSI-RTPS, 10; XCDR version 1, of either byte order).
 //!
 //! In ROS 1 all stands side by side, the lesser byte first. In CDR a number stands at a multiple of its
-//! size, counted from behind the four bytes that tell the byte order.
+//! size, counted from behind the four bytes of the byte order.
 
 use thiserror::Error;
 
@@ -15,11 +15,11 @@ use super::{
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("byte {offset} of the message{}: {cause}", in_field(.field))]
 pub struct DecodeError {
-    /// Where in the message; the first byte is 0.
+    /// The offset in the message.
     pub offset: usize,
     /// In which field of the message itself, if in one.
     pub field: String,
-    /// What is wrong.
+    /// The error.
     #[source]
     pub cause: DecodeErrorKind,
 }
@@ -28,7 +28,7 @@ fn in_field(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!(", `{field}`") }
 }
 
-/// What is wrong at a byte.
+/// The kind of an error in a message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum DecodeErrorKind {
     /// The message is shorter than its definition.
@@ -50,10 +50,10 @@ pub enum DecodeErrorKind {
         /// How long it may be.
         most: u32,
     },
-    /// The first bytes tell of a coding that is not known.
+    /// The first bytes name an unknown encoding.
     #[error("the encapsulation {0:#06x} is not known; known are 0x0000 and 0x0001, plain CDR")]
     Encapsulation(u16),
-    /// Nobody says how many bytes a letter has.
+    /// The width of a letter is not defined.
     #[error("a wstring cannot be read, for its writers do not agree on its letters")]
     WideText,
 }
@@ -61,10 +61,10 @@ pub enum DecodeErrorKind {
 /// Padding that writers of CDR leave behind a message, at most.
 const PADDING: usize = 7;
 
-/// What a message says.
+/// The value of a message.
 ///
 /// Takes at most 256 bytes of memory for each byte of the message and for each field of the definition,
-/// and 4096 besides; a length is held against what is left before anything is made of it.
+/// and 4096 besides; a length is compared with the remaining bytes before anything is allocated.
 ///
 /// # Errors
 /// If the bytes are not a message of the definition. No bytes make it panic.
@@ -98,7 +98,7 @@ pub fn decode<'a>(definition: &'a Definition, bytes: &'a [u8]) -> Result<Value<'
     Ok(Value::Struct(root, values))
 }
 
-/// What is wrong, and at which byte.
+/// An error and its offset.
 type Failure = (usize, DecodeErrorKind);
 
 struct Decoder<'a> {
@@ -106,7 +106,7 @@ struct Decoder<'a> {
     bytes: &'a [u8],
     /// Never beyond the bytes.
     next: usize,
-    /// From where multiples are counted.
+    /// The start for alignment.
     origin: usize,
     order: ByteOrder,
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with a log, and where.
+//! Errors in logs, with their offsets.
 
 use std::io;
 
@@ -6,18 +6,18 @@ use thiserror::Error;
 
 use super::decode::DecodeError;
 
-/// Why a log cannot be read, or not any further.
+/// Why a log cannot be read, or not further.
 #[derive(Debug, Error)]
 #[error("{}{cause}", place(*.offset, .cause))]
 pub struct LogError {
-    /// Where in the file: at which record, or at which chunk; the first byte is 0.
+    /// The offset of the record or chunk in the file.
     pub offset: u64,
-    /// What is wrong.
+    /// The error.
     #[source]
     pub cause: LogErrorKind,
 }
 
-/// A file that cannot be read cannot be so at any byte.
+/// The offset for the message. A file that cannot be read has none.
 fn place(offset: u64, cause: &LogErrorKind) -> String {
     match cause {
         LogErrorKind::Unreadable(_) => String::new(),
@@ -25,32 +25,32 @@ fn place(offset: u64, cause: &LogErrorKind) -> String {
     }
 }
 
-/// What is wrong at a byte of a log.
+/// The kind of an error in a log.
 #[derive(Debug, Error)]
 pub enum LogErrorKind {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
-    /// It is no log.
+    /// The file is not a log.
     #[error("this is not a log; it must be a ROS 1 bag or an MCAP file")]
     NotALog,
-    /// It is a bag of another version.
+    /// The bag has another version.
     #[error("this is a bag of version {0}; only version 2.0 can be read")]
     Version(String),
-    /// A record that is not as it should be.
+    /// A record is malformed.
     #[error("the record is malformed: {0}")]
     Malformed(&'static str),
-    /// A chunk is compressed in another way.
+    /// The compression of a chunk is not known.
     #[error("the compression {0:?} is not known; known are {1}")]
     Compression(String, &'static str),
-    /// A chunk that would be larger than any.
+    /// A chunk claims to be too large.
     #[error(
-        "{compressed} compressed bytes say that they are {size}; {most} times as many can be read"
+        "{compressed} compressed bytes claim a size of {size}; the limit is a factor of {most}"
     )]
     Growth {
-        /// The bytes that are there.
+        /// Its compressed size, in bytes.
         compressed: u64,
-        /// The bytes that they say they are.
+        /// The claimed size, in bytes.
         size: u64,
         /// The largest factor that is accepted.
         most: u64,
@@ -58,41 +58,41 @@ pub enum LogErrorKind {
     /// A chunk cannot be decompressed.
     #[error("the chunk cannot be decompressed: {0}")]
     Undecompressable(String),
-    /// A chunk is not as long as it says.
-    #[error("the chunk has {found} bytes and says {told}")]
+    /// The size of a chunk is wrong.
+    #[error("the chunk has {found} bytes and claims {claimed}")]
     Size {
-        /// What it says.
-        told: u64,
-        /// What it has; of what is too long, one more than it says.
+        /// The claimed size.
+        claimed: u64,
+        /// The size found; one more than claimed if it is too long.
         found: u64,
     },
-    /// A chunk is not what it was when it was written.
+    /// The checksum of a chunk is wrong.
     #[error("the checksum of the chunk is wrong")]
     Checksum,
-    /// A message of which nobody says on which topic it is.
-    #[error("a message of connection {0}, of which there is no record")]
+    /// The topic of a message is unknown.
+    #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
-    /// A message that is older than its chunk says.
+    /// A message is older than its chunk says.
     #[error("a message is older than its chunk says")]
     TooOld,
-    /// A message is not as its definition says.
+    /// A message does not match its definition.
     #[error("message {number}, on {topic}: {error}")]
     Message {
-        /// The how-manyeth of the log it is; the first is 1.
+        /// Its number in the log, counted from 1.
         number: u64,
         /// Its topic.
         topic: String,
-        /// What is wrong.
+        /// The error.
         error: Box<DecodeError>,
     },
-    /// A message does not say what its role needs.
+    /// A message lacks what its role needs.
     #[error("message {number}, on {topic}: {what}")]
     Content {
-        /// The how-manyeth of the log it is; the first is 1.
+        /// Its number in the log, counted from 1.
         number: u64,
         /// Its topic.
         topic: String,
-        /// What is missing.
+        /// What is missing or wrong.
         what: String,
     },
 }
@@ -103,13 +103,13 @@ impl LogErrorKind {
     }
 }
 
-/// Where a log ends that is not whole, and how that shows.
+/// Where a log is truncated.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("truncated at byte {offset}: {cause}")]
 pub struct Truncation {
-    /// Up to where it can be read.
+    /// The offset up to which it can be read.
     pub offset: u64,
-    /// What shows that there should be more.
+    /// What is missing.
     #[source]
     pub cause: TruncationKind,
 }
@@ -123,10 +123,10 @@ pub enum TruncationKind {
     /// The end of the file.
     #[error("its end is missing")]
     End,
-    /// The index, for the writer did not come to it.
+    /// The index: the log was not closed.
     #[error("it was not closed, and has no index")]
     Index,
-    /// The writer did not come to the end of a record.
+    /// The rest of a record: the log was not closed.
     #[error("it was not closed, and its last record is malformed: {0}")]
     Malformed(&'static str),
 }

@@ -1,5 +1,5 @@
-//! The project's own messages, read by the names of their fields: whoever wrote them, in ROS 1 or in
-//! ROS 2, with fields of other widths or with more of them.
+//! Reads the project's messages by the names of their fields, from ROS 1 or ROS 2; fields may have other
+//! widths, and there may be more of them.
 
 use super::{
     messages::{Command, Door, End, Hypothesis, Map, Percept, Run, Scene, Stamp},

@@ -5,7 +5,7 @@ use image::RgbImage;
 use super::value::Value;
 use crate::record::CameraImage;
 
-/// The picture that a message is, or why it is none.
+/// The image in a message, or why it has none.
 pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     let data = message.at("data").and_then(|data| data.bytes());
     let data = data.ok_or("it has no bytes `data`")?;
@@ -31,7 +31,7 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
         }
     };
     let row = u64::from(width) * u64::from(bytes);
-    // Before anything is made of what the message promises.
+    // Checked before anything is allocated.
     if row == 0
         || height == 0
         || u64::from(step) < row

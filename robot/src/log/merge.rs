@@ -15,19 +15,19 @@ use super::{
 /// A message of a log, not yet decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RawMessage {
-    /// Which topic of the log it is on.
+    /// The index of its topic.
     pub topic: usize,
     /// When it was recorded, in nanoseconds.
     pub time: u64,
-    /// Where its record is in the file, or the compressed chunk in which it is.
+    /// The offset of its record in the file, or of its compressed chunk.
     pub offset: u64,
-    /// The how-manyeth message of the log it is, in the order of their times; the first is 1.
+    /// Its number in the order of time, counted from 1.
     pub number: u64,
-    /// What it says.
+    /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
-/// How many bytes of chunks stay in memory while others are read.
+/// The largest size of the chunks in memory, in bytes.
 const HELD: u64 = 64 << 20;
 
 /// The messages of a log in the order of their times.
@@ -35,30 +35,30 @@ pub struct RawMessages<'l> {
     log: &'l Log,
     /// Whether each topic is wanted.
     wanted: Vec<bool>,
-    /// The sections that are not yet looked through, the last one first.
+    /// The sections that are not yet read, the last one first.
     ahead: Vec<usize>,
-    /// What the sections that are looked through still hold, the oldest first.
+    /// The messages of the sections that are read, the oldest first.
     waiting: BinaryHeap<Reverse<Waiting>>,
     held: BTreeMap<usize, Held>,
     held_bytes: u64,
-    /// How often something was asked for.
+    /// The number of requests.
     asked: u64,
     number: u64,
 }
 
-/// A message that waits for its turn. Those of one time come in the order of the file.
+/// A message that waits. Those of the same time come in the order of the file.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting {
     time: u64,
     section: usize,
-    /// Where its record begins in the section.
+    /// The place of its record in the section.
     at: usize,
     start: usize,
     end: usize,
     topic: usize,
 }
 
-/// A section of which some messages wait.
+/// A section with waiting messages.
 struct Held {
     bytes: Option<Vec<u8>>,
     waiting: usize,
@@ -99,7 +99,7 @@ impl<'l> RawMessages<'l> {
         }
     }
 
-    /// There are to be no more.
+    /// Ends the iteration.
     pub(super) fn end(&mut self) {
         self.ahead.clear();
         self.waiting.clear();
@@ -119,7 +119,7 @@ impl<'l> RawMessages<'l> {
                     break;
                 }
                 self.ahead.pop();
-                self.look_through(section, start)?;
+                self.read_section(section, start)?;
             }
             let Some(Reverse(next)) = self.waiting.pop() else { return Ok(None) };
             self.number += 1;
@@ -141,8 +141,8 @@ impl<'l> RawMessages<'l> {
         }
     }
 
-    /// Puts the messages of a section to those that wait.
-    fn look_through(&mut self, index: usize, start: u64) -> Result<(), LogError> {
+    /// Adds the messages of a section to those that wait.
+    fn read_section(&mut self, index: usize, start: u64) -> Result<(), LogError> {
         let log = self.log;
         let Some(section) = log.sections.get(index) else { return Ok(()) };
         let bytes = section.load(&log.source)?;
@@ -163,12 +163,12 @@ impl<'l> RawMessages<'l> {
             self.asked += 1;
             self.held_bytes += section.size();
             self.held.insert(index, Held { bytes: Some(bytes), waiting, asked: self.asked });
-            self.let_go();
+            self.free_memory();
         }
         Ok(())
     }
 
-    /// Some bytes of a section, which is read again if it had to go.
+    /// A part of a section, which is read again if it was released.
     fn take(&mut self, index: usize, part: Range<usize>) -> Result<Vec<u8>, LogError> {
         let Some(section) = self.log.sections.get(index) else { return Ok(Vec::new()) };
         let Some(held) = self.held.get_mut(&index) else { return Ok(Vec::new()) };
@@ -182,11 +182,11 @@ impl<'l> RawMessages<'l> {
             }
         };
         let taken = bytes.get(part).unwrap_or_default().to_vec();
-        self.let_go();
+        self.free_memory();
         Ok(taken)
     }
 
-    /// A message of a section has had its turn.
+    /// A message of a section was returned.
     fn release(&mut self, index: usize) {
         let Some(held) = self.held.get_mut(&index) else { return };
         held.waiting -= 1;
@@ -199,8 +199,8 @@ impl<'l> RawMessages<'l> {
         }
     }
 
-    /// Forgets the bytes of those that nobody has asked for the longest, but the last.
-    fn let_go(&mut self) {
+    /// Releases the least recently requested sections, except the last request.
+    fn free_memory(&mut self) {
         while self.held_bytes > HELD {
             let last = self.asked;
             let held = self.held.iter_mut();

@@ -1,4 +1,4 @@
-//! What makes a type a message of ROS 2: its name, and definitions from which any reader can read it.
+//! Messages of ROS 2: a type name, and the definitions that a reader needs.
 
 use std::fmt::Write;
 
@@ -36,7 +36,7 @@ macro_rules! definition {
 }
 pub(super) use definition;
 
-/// A time, which nearly every message tells.
+/// A time, which nearly every message has.
 pub(super) const TIME: TypeDefinition = definition!("builtin_interfaces", "Time");
 
 /// The project's messages are made of numbers, words and a time.
@@ -46,8 +46,8 @@ impl<M: ProjectMessage> Message for M {
     const USES: &'static [TypeDefinition] = &[TIME];
 }
 
-/// All that a reader needs to know of a message, as the encoding `ros2msg` of MCAP has it: its
-/// definition, and those of the types that it uses.
+/// The schema of a message in MCAP's encoding `ros2msg`: its definition, and those of the types that it
+/// uses.
 #[must_use]
 pub fn schema<M: Message>() -> String {
     let mut text = M::DEFINITION.to_owned();

@@ -79,7 +79,7 @@ own! {
         /// The command, if one made it.
         command: String,
     }
-    /// What sensing tells of one picture.
+    /// The scene of an image.
     Scene "/toposlam/scene" {
         /// `hallway`, `junction` or `unknown`.
         place: String,
@@ -108,9 +108,9 @@ own! {
         /// The door along which it points; -1: none.
         marker_door: i32,
     }
-    /// What Algorithm 2 answers to one scene.
+    /// The command of Algorithm 2 for a scene.
     Command "/toposlam/command" {
-        /// What the robot is about.
+        /// The state of Algorithm 2.
         state: String,
         /// Radians counter-clockwise.
         turn: f64,
@@ -124,9 +124,9 @@ own! {
         /// Clockwise from the entry door.
         door: u32,
     }
-    /// What the robot perceives where it stands.
+    /// The percept at a junction.
     Percept "/toposlam/percept" {
-        /// After how many moves.
+        /// The number of moves before it.
         r#move: u32,
         /// The number of doors.
         degree: u32,
@@ -139,7 +139,7 @@ own! {
     }
     /// A step of Algorithm 1.
     Hypothesis "/toposlam/hypothesis" {
-        /// After how many moves.
+        /// The number of moves before it.
         r#move: u32,
         /// Which step.
         step: String,
@@ -147,16 +147,16 @@ own! {
         dart: i32,
         /// The other end, or the new vertex; -1: none.
         other: i32,
-        /// How many hypotheses fell at once.
+        /// The number of hypotheses that were rejected at once.
         contradicted: u32,
-        /// How many are left.
+        /// The number that is left.
         hypotheses: u32,
-        /// How many moves the path was followed.
+        /// The number of moves that the path was followed.
         followed: u32,
     }
     /// The map, whenever it has grown.
     Map "/toposlam/map" {
-        /// After how many moves.
+        /// The number of moves before it.
         r#move: u32,
         /// The degree of each vertex.
         degrees: Vec<u32>,
@@ -171,7 +171,7 @@ own! {
         moves: u32,
         /// `mapped`, `gave-up` or `stopped`.
         ending: String,
-        /// Why, where it gave up.
+        /// Why, if it gave up.
         cause: String,
     }
 }

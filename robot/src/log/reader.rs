@@ -1,4 +1,4 @@
-//! A log that is read: its topics, and its messages in the order of their times.
+//! A log that is open for reading, and its topics.
 
 use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
 
@@ -41,21 +41,20 @@ impl Log {
         Self::new(Cursor::new(bytes))
     }
 
-    /// Looks through a log. Where it has no index, that is decompressing all of it once, a chunk at a
-    /// time.
+    /// Scans a log. Without an index, this decompresses the whole log once, a chunk at a time.
     ///
     /// Takes at most 1,100 bytes of memory for each byte of the largest chunk, 256 for each byte outside
     /// of chunks, and 32 MiB besides.
     ///
     /// # Errors
-    /// If it is no log, cannot be read, or is damaged, with where; not where it only ends too early. No
-    /// bytes make it panic.
+    /// Returns an error if the file is not a log, cannot be read, or is damaged. A truncated log is not an
+    /// error.
     pub fn new(storage: impl Storage + 'static) -> Result<Self, LogError> {
         let source =
             Source::new(Box::new(storage)).map_err(|error| LogErrorKind::from(error).at(0))?;
         let format = format(&source)?;
         let mut topics = Topics::default();
-        let scan = container::scan(format, &source, &mut |record| topics.hear(record))?;
+        let scan = container::scan(format, &source, &mut |record| topics.add_record(record))?;
         let mut sections = scan.sections;
         for section in &mut sections {
             let known = section.counts.as_ref().is_some_and(|counts| {
@@ -63,7 +62,7 @@ impl Log {
                 told && (section.times.is_some() || counts.values().all(|count| *count == 0))
             });
             if !known {
-                look_through(section, format, &source, &mut topics)?;
+                scan_section(section, format, &source, &mut topics)?;
             }
         }
         let Topics { list: topics, connections, .. } = topics;
@@ -97,19 +96,19 @@ impl Log {
         self.times = times.reduce(|[first, last], [start, end]| [first.min(start), last.max(end)]);
     }
 
-    /// What kind of file it is.
+    /// Its format.
     #[must_use]
     pub fn format(&self) -> Format {
         self.format
     }
 
-    /// How many bytes it has.
+    /// Its size, in bytes.
     #[must_use]
     pub fn size(&self) -> u64 {
         self.source.length()
     }
 
-    /// Its topics, in the order in which the file tells them.
+    /// Its topics, in the order of the file.
     #[must_use]
     pub fn topics(&self) -> &[Topic] {
         &self.topics
@@ -127,13 +126,13 @@ impl Log {
         self.times.map(|[_, end]| end)
     }
 
-    /// How many messages it has, on all topics.
+    /// The number of its messages, on all topics.
     #[must_use]
     pub fn messages_total(&self) -> u64 {
         self.topics.iter().fold(0, |sum, topic| sum.saturating_add(topic.messages))
     }
 
-    /// Where it ends too early, if it does.
+    /// Where it is truncated, if it is.
     #[must_use]
     pub fn truncation(&self) -> Option<&Truncation> {
         self.truncation.as_ref()
@@ -160,8 +159,8 @@ fn format(source: &Source) -> Result<Format, LogError> {
     .at(0))
 }
 
-/// Learns from a section itself what no index tells.
-fn look_through(
+/// Scans a section that has no index.
+fn scan_section(
     section: &mut Section,
     format: Format,
     source: &Source,
@@ -172,7 +171,7 @@ fn look_through(
     let mut times: Option<[u64; 2]> = None;
     for read in section.records(format, &bytes) {
         let (at, record) = read?;
-        topics.hear(&record);
+        topics.add_record(&record);
         let Record::Message { connection, time, .. } = record else { continue };
         if !topics.connections.contains_key(&connection) {
             return Err(LogErrorKind::UnknownConnection(connection).at(section.place(at)));

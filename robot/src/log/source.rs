@@ -1,4 +1,4 @@
-//! The bytes of a log, wherever they are.
+//! The bytes of a log, in a file or in memory.
 
 use std::{
     io::{self, Read, Seek, SeekFrom},
@@ -6,12 +6,12 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// What a log is read from.
+/// A source of bytes.
 pub trait Storage: Read + Seek + Send {}
 
 impl<S: Read + Seek + Send> Storage for S {}
 
-/// A file, of which any part can be read.
+/// A file with random access.
 pub(super) struct Source {
     storage: Mutex<Box<dyn Storage>>,
     length: u64,
@@ -62,7 +62,7 @@ impl<'s> Window<'s> {
         Self { source, start: 0, bytes: Vec::new() }
     }
 
-    /// A part of the file; `None` where the file ends before it does.
+    /// A part of the file; `None` if the file ends before it.
     pub(super) fn get(&mut self, start: u64, length: u64) -> io::Result<Option<&[u8]>> {
         let Some(end) = start.checked_add(length).filter(|end| *end <= self.source.length) else {
             return Ok(None);

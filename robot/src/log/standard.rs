@@ -37,7 +37,7 @@ pub struct Header {
 /// The file of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct CompressedImage<'a> {
-    /// When it was taken, by what.
+    /// When it was taken, and by which camera.
     pub header: Header,
     /// `jpeg` or `png`.
     pub format: &'static str,
@@ -53,7 +53,7 @@ impl Message for CompressedImage<'_> {
 }
 
 impl<'a> CompressedImage<'a> {
-    /// A picture; its format is told by its first bytes, and is empty where they are of no known one.
+    /// An image; its first bytes determine its format, which is empty if it is not known.
     #[must_use]
     pub fn new(taken: Stamp, data: &'a [u8]) -> Self {
         let format = match data {
@@ -138,37 +138,37 @@ impl Twist {
     }
 }
 
-/// How sure one is of six numbers, pair by pair; nothing but zeros: nobody knows.
+/// The covariance of six numbers; zeros: unknown.
 pub type Covariance = [[f64; 6]; 6];
 
-/// Where something is.
+/// A position and orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseMessage {
     /// Its place.
     pub position: Vector3,
-    /// Where it looks.
+    /// Its orientation.
     pub orientation: Quaternion,
 }
 
-/// Where something is, and how sure that is.
+/// A pose with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseWithCovariance {
-    /// Where.
+    /// The pose.
     pub pose: PoseMessage,
-    /// How sure.
+    /// Its covariance.
     pub covariance: Covariance,
 }
 
-/// How fast something moves, and how sure that is.
+/// A velocity with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TwistWithCovariance {
     /// How fast.
     pub twist: Twist,
-    /// How sure.
+    /// Its covariance.
     pub covariance: Covariance,
 }
 
-/// Where the robot is by its wheels.
+/// The robot's odometry.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OdometryMessage {
     /// When, in which frame.
@@ -198,7 +198,7 @@ impl Message for OdometryMessage {
 }
 
 impl OdometryMessage {
-    /// The robot was there by its wheels, and moved so fast.
+    /// Odometry with a velocity.
     #[must_use]
     pub fn new(stamp: Stamp, at: &odometry::Odometry, twist: Twist) -> Self {
         let [x, y] = at.position;
@@ -225,7 +225,7 @@ impl OdometryMessage {
     }
 }
 
-/// Where one frame is in another.
+/// The transform between two frames.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Transform {
     /// Where its origin is.
@@ -245,7 +245,7 @@ pub struct TransformStamped {
     pub transform: Transform,
 }
 
-/// Where frames are in each other.
+/// Transforms between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TFMessage<'a> {
     /// Each of them.

@@ -1,4 +1,4 @@
-//! The topics of a log, and what their messages are.
+//! The topics of a log, and the definitions of their messages.
 
 use std::collections::BTreeMap;
 
@@ -14,17 +14,17 @@ use super::{
 pub struct Topic {
     /// Its name.
     pub name: String,
-    /// The type of its messages, as the log tells it; empty if it does not.
+    /// The type of its messages in the log; empty if it has none.
     pub type_name: String,
-    /// How they are written.
+    /// The encoding of its messages.
     pub encoding: Encoding,
-    /// What they are made of.
+    /// The definition of its messages.
     pub definition: Result<Definition, Undecodable>,
-    /// How many there are.
+    /// The number of its messages.
     pub messages: u64,
 }
 
-/// How messages are written.
+/// The encoding of messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// As ROS 1 does.
@@ -62,7 +62,7 @@ impl Topic {
     }
 }
 
-/// The topics of a log, as its records tell them one by one. What is told again is passed over.
+/// Collects the topics of a log from its records. Repetitions are ignored.
 #[derive(Default)]
 pub(super) struct Topics {
     pub(super) list: Vec<Topic>,
@@ -80,7 +80,7 @@ struct Schema {
 }
 
 impl Topics {
-    pub(super) fn hear(&mut self, record: &Record<'_>) {
+    pub(super) fn add_record(&mut self, record: &Record<'_>) {
         match *record {
             Record::Connection { id, topic, type_name, definition } => {
                 if !self.connections.contains_key(&id) {

@@ -1,4 +1,4 @@
-//! What a message says, by the names of its fields. Texts and lists of numbers stay where they are in
+//! The values of a message by the names of its fields. Texts and lists of numbers stay where they are in
 //! the message.
 
 use std::borrow::Cow;
@@ -8,7 +8,7 @@ use super::{
     messages::Stamp,
 };
 
-/// What a message or a field says.
+/// The value of a message or a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value<'a> {
     /// True or false.
@@ -109,7 +109,7 @@ pub(super) fn number<'a>(kind: FieldType, order: ByteOrder, bytes: &[u8]) -> Val
 }
 
 impl<'a> Value<'a> {
-    /// What stands at a path such as `pose.pose.position.x` or `doors[0]`; the empty path is the
+    /// The value at a path such as `pose.pose.position.x` or `doors[0]`; the empty path is the
     /// message itself. Of a time `sec` and `nanosec` are parts (`secs` and `nsecs`, too).
     #[must_use]
     pub fn at(&self, path: &str) -> Option<Value<'a>> {
@@ -129,7 +129,7 @@ impl<'a> Value<'a> {
         Some(here.into_owned())
     }
 
-    /// A number, as near as 53 bits can tell.
+    /// A number, with a precision of 53 bits.
     #[must_use]
     pub fn f64(&self) -> Option<f64> {
         match *self {

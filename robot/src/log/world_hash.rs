@@ -1,4 +1,4 @@
-//! By what a log tells in which world it was made, whatever its vertices are called.
+//! The hash that identifies a world in a log, independent of its names.
 
 use std::fmt::Write;
 

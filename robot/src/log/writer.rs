@@ -20,7 +20,7 @@ use super::{
 
 /// The messages of a chunk are so long apart at most, in nanoseconds: ten seconds.
 pub const CHUNK_TIME: u64 = 10_000_000_000;
-/// So many bytes before compression fill a chunk.
+/// The size of a full chunk before compression, in bytes.
 pub const CHUNK_BYTES: usize = 1 << 20;
 
 /// Before the body of a message: plain CDR, the lesser byte first.
@@ -32,12 +32,12 @@ pub enum LogWriteError {
     /// The file does not take it.
     #[error(transparent)]
     File(#[from] io::Error),
-    /// A message cannot be told in CDR.
+    /// A message cannot be encoded in CDR.
     #[error("{topic}: {cause}")]
     Message {
         /// The topic of the message.
         topic: String,
-        /// What is wrong with it.
+        /// Why.
         cause: cdr::Error,
     },
 }
@@ -59,7 +59,7 @@ struct Topic {
     sequence: u32,
 }
 
-/// What is in the chunk that is being filled.
+/// The chunk that is being filled.
 #[derive(Clone, Copy, Debug)]
 struct Chunk {
     begun: u64,
@@ -70,7 +70,7 @@ impl<W: Write> LogWriter<W> {
     /// Begins a log.
     ///
     /// # Errors
-    /// Where the file does not take it.
+    /// Returns an error if the file cannot be written.
     pub fn new(out: W) -> Result<Self, LogWriteError> {
         let out = McapWriter::new(out, "ros2", "toposlam")?;
         Ok(Self { out, topics: BTreeMap::new(), body: Vec::new(), chunk: None })
@@ -79,7 +79,7 @@ impl<W: Write> LogWriter<W> {
     /// Writes something that is known of the whole log, under a name.
     ///
     /// # Errors
-    /// Where the file does not take it.
+    /// Returns an error if the file cannot be written.
     pub fn note(
         &mut self,
         name: &str,
@@ -92,7 +92,7 @@ impl<W: Write> LogWriter<W> {
     /// Writes a message, at a time in nanoseconds.
     ///
     /// # Errors
-    /// Where the file does not take it, or the message cannot be told.
+    /// Returns an error if the file cannot be written, or the message cannot be encoded.
     pub fn write<M: Message>(
         &mut self,
         topic: &str,
@@ -119,7 +119,7 @@ impl<W: Write> LogWriter<W> {
     /// Ends the chunk: what was written so far is in the file.
     ///
     /// # Errors
-    /// Where the file does not take it.
+    /// Returns an error if the file cannot be written.
     pub fn flush(&mut self) -> Result<(), LogWriteError> {
         self.chunk = None;
         Ok(self.out.flush()?)
@@ -128,7 +128,7 @@ impl<W: Write> LogWriter<W> {
     /// Ends the log.
     ///
     /// # Errors
-    /// Where the file does not take it.
+    /// Returns an error if the file cannot be written.
     pub fn finish(mut self) -> Result<W, LogWriteError> {
         let closed = || io::Error::other("the log is closed");
         Ok(self.out.finish()?.ok_or_else(closed)?)
@@ -262,7 +262,7 @@ mod tests {
         assert!(lengths.iter().zip([600_000, 500_000, 3_000_000, 1000]).all(|(&l, n)| l == n + 36));
     }
 
-    /// A file that takes so many bytes.
+    /// A file with room for this many bytes.
     struct Full(usize);
 
     impl Write for Full {

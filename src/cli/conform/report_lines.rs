@@ -170,11 +170,9 @@ fn diverged(
         if let Some(more) = report.shorter.len().checked_sub(SHORT + 1) {
             events.push(format!("and {} more", more + 1));
         }
-        let head = format!(
-            "  shorter log with this divergence, {}: ",
-            counted(report.shorter.len(), "event")
-        );
-        print_hanging(out, &head, &events.join("; "))?;
+        let count = counted(report.shorter.len(), "event");
+        writeln!(out, "  shorter log with this divergence, {count}:")?;
+        print_hanging(out, "    ", &events.join("; "))?;
     }
     if let Some(command) = &report.command {
         print_command(out, "  ", command)?;

@@ -1,4 +1,4 @@
-//! Which cases were gone through, and how often.
+//! The coverage of the cases.
 
 use super::each;
 use crate::{picture::escaped, report::CoveredCase};
@@ -22,7 +22,7 @@ fn row(case: &CoveredCase, most: u64) -> String {
         (count, reachable) => {
             let part = 100.0 * count as f64 / most as f64;
             let bar = format!("<span class=\"bar\" style=\"--part:{part:.1}%\"></span>");
-            // A run that diverged may go through what its world does not have.
+            // A run that diverged may cover cases that its world does not have.
             let note = match reachable {
                 Some(false) => "<span class=\"faint\">not in the known world</span>",
                 _ => "",

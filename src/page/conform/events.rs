@@ -1,4 +1,4 @@
-//! The events of a log: the last ones before it diverged, and all of them.
+//! The events of a log: the last ones before the divergence, and all of them.
 
 use std::collections::BTreeSet;
 
@@ -11,12 +11,12 @@ use crate::{
     report::{EventLine, LogReport},
 };
 
-/// So many steps led to a divergence.
+/// The number of events shown before a divergence.
 const BEFORE: usize = 3;
-/// So many events stand in one table: the browser lays out those tables that are on the screen.
+/// The number of events in a table. The browser lays out only the tables on the screen.
 const LEAF: usize = 100;
 
-/// The steps before the divergence, and it.
+/// The events before the divergence, and the diverging one.
 pub(super) fn before(report: &LogReport) -> Option<String> {
     let told = report.divergence.as_ref()?;
     let earlier = report.events.partition_point(|line| line.number < told.event);
@@ -27,7 +27,7 @@ pub(super) fn before(report: &LogReport) -> Option<String> {
     Some(table(&(rows + &diverging(told.event, time, &told.what, ""))))
 }
 
-/// All events, in a part of the page that a reader has to open.
+/// All events, folded.
 pub(super) fn all(report: &LogReport, log: usize) -> String {
     let off = report.divergence.as_ref().map(|told| told.event);
     let let_pass: BTreeSet<_> =
@@ -44,7 +44,7 @@ pub(super) fn all(report: &LogReport, log: usize) -> String {
     };
     let leaf =
         |lines: &[EventLine]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
-    // What is missing at the end has no line of its own.
+    // An event that is missing at the end has no line.
     let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
     let missing = missing.map_or_else(String::new, |told| {
         table(&diverging(told.event, told.time, &told.what, &id(log, told.event)))
@@ -77,12 +77,12 @@ fn has_divergence(report: &LogReport) -> bool {
 fn table(rows: &str) -> String {
     format!(
         "<table class=\"events\">\n<thead><tr><th scope=\"col\">Event</th><th scope=\"col\">Time</th>\
-         <th scope=\"col\">What happened</th><th scope=\"col\">What is different then</th></tr></thead>\n\
+         <th scope=\"col\">What happened</th><th scope=\"col\">Change</th></tr></thead>\n\
          <tbody>\n{rows}</tbody>\n</table>\n"
     )
 }
 
-/// A line. End tags may be left out, and there are many of them.
+/// A line. Optional end tags are left out, since there are many.
 fn row(line: &EventLine, class: &str, id: &str) -> String {
     format!(
         "<tr{class}{id}><td>{}<td>{}<td>{}<td>{}\n",

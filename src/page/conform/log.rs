@@ -1,4 +1,4 @@
-//! What is said of one log.
+//! The section of one log.
 
 use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
@@ -7,16 +7,16 @@ use crate::{
     report::{DivergenceReport, LogReport},
 };
 
-/// So much of a list is shown at once.
+/// The number of items of a list that are not folded.
 const FEW: usize = 12;
 
-/// All that is said of a log, by its number among the logs.
+/// The section of a log.
 pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String {
     let beneath = level.beneath();
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
     let seen = [picture(report, beneath), world(report, beneath)].concat();
-    // Where nothing diverged there is room on the left.
+    // Without a divergence there is room on the left.
     let (left, right) = if report.divergence.is_some() {
         let led =
             [allowed(report, beneath), before(report, number, beneath), shorter(report, beneath)];
@@ -24,7 +24,7 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     } else {
         (judged + &covered, seen)
     };
-    // A column without anything gives its room to the other.
+    // An empty column leaves its room to the other.
     let column = |panels: &str| format!("<div>{panels}</div>\n");
     format!(
         "<section id=\"log-{number}\">\n{}<div class=\"columns\">\n{}{}</div>\n{}</section>\n",
@@ -56,7 +56,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
     )
 }
 
-/// Where the run diverged, how, and whose fault that is.
+/// The divergence: where, why, and the class of the fault.
 fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
     let DivergenceReport { event, time, message, fault, cause, what, why, .. } = told;
     let of = report.events.len();
@@ -87,7 +87,7 @@ fn allowed(report: &LogReport, level: Level) -> String {
         return String::new();
     };
     let list = short_list(allowed, FEW, |it| format!("<li>{}</li>\n", escaped(it)));
-    panel(level, "allowed", "What would have been allowed here", &list)
+    panel(level, "allowed", "What is allowed here", &list)
 }
 
 fn before(report: &LogReport, log: usize, level: Level) -> String {
@@ -99,7 +99,7 @@ fn before(report: &LogReport, log: usize, level: Level) -> String {
         None => String::new(),
     };
     let more = format!("<p class=\"faint\">{all}</p>\n");
-    panel(level, "before", "What led there", &(table + &more))
+    panel(level, "before", "Events before it", &(table + &more))
 }
 
 fn shorter(report: &LogReport, level: Level) -> String {
@@ -122,7 +122,7 @@ fn shorter(report: &LogReport, level: Level) -> String {
     if events.is_empty() && command.is_empty() {
         return String::new();
     }
-    panel(level, "late", "A shorter log that diverges in the same way", &(events + &command))
+    panel(level, "late", "A shorter log with the same divergence", &(events + &command))
 }
 
 fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
@@ -141,7 +141,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
             places.push(format!("{} more", rest.len()));
         }
         let places = if places.is_empty() {
-            "not met".to_owned()
+            "not used".to_owned()
         } else {
             format!("at {} {}", if at.len() == 1 { "event" } else { "events" }, places.join(", "))
         };
@@ -156,7 +156,7 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
         )
     };
     let list = format!("<ul>\n{}</ul>\n", each(&report.tolerated, quirk));
-    panel(level, "late", "Known, and tolerated", &list)
+    panel(level, "late", "Tolerated divergences", &list)
 }
 
 fn facts(report: &LogReport, level: Level) -> String {
@@ -170,14 +170,14 @@ fn facts(report: &LogReport, level: Level) -> String {
         "<table class=\"facts\">\n<tbody>\n{}</tbody>\n</table>\n",
         each(&report.facts, row)
     );
-    panel(level, "late", "What was judged", &table)
+    panel(level, "late", "What was checked", &table)
 }
 
 fn picture(report: &LogReport, level: Level) -> String {
     let Some(address) = report.picture.as_deref().and_then(wording::picture_address) else {
         return String::new();
     };
-    let image = format!("<img alt=\"The picture of the robot's camera\" src=\"{address}\">\n");
+    let image = format!("<img alt=\"The image of the robot's camera\" src=\"{address}\">\n");
     panel(level, "camera", "What the camera saw", &image)
 }
 
@@ -185,7 +185,7 @@ fn world(report: &LogReport, level: Level) -> String {
     let Some(svg) = &report.world else {
         return String::new();
     };
-    // Only of a known world is it known what can be reached.
+    // What can be reached is known only for a known world.
     let known = report.coverage.iter().any(|case| case.reachable.is_some());
     let name = if known { "The known world" } else { "The smallest world that explains the log" };
     let address = wording::svg_address(svg);
@@ -198,5 +198,5 @@ fn covered(report: &LogReport, level: Level) -> String {
         return String::new();
     }
     let content = coverage::summary(&report.coverage) + &coverage::table(&report.coverage);
-    panel(level, "late", "What was covered", &content)
+    panel(level, "late", "Coverage", &content)
 }

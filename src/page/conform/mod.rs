@@ -1,7 +1,7 @@
-//! A page of what the specification says of one log or several: the verdict, where a run first diverged
-//! and what would have been allowed there, what led there, what was covered. Sections 2 and 6.
+//! The page of `conform`: for each log its verdict, the first divergence with what is allowed there
+//! instead, the events before it, and the coverage. Sections 2 and 6.
 //!
-//! All of it can be read without a script.
+//! The page can be read without scripts.
 
 mod coverage;
 mod events;
@@ -18,8 +18,8 @@ use crate::{picture::escaped, report::LogReport};
 const PAGE: &str = include_str!("../browser/conform.html");
 const SCRIPT: &str = include_str!("../browser/conform.js");
 
-/// The page of these reports as an HTML document, in their order; of several, with what is said of them
-/// together above. The same reports give the same bytes.
+/// The page of these reports as an HTML document; several have a summary above. The same reports give the
+/// same bytes.
 #[must_use]
 pub fn conform_page(reports: &[LogReport]) -> String {
     let alone = matches!(reports, [_]);
@@ -37,7 +37,7 @@ pub fn conform_page(reports: &[LogReport]) -> String {
     })
 }
 
-/// How deep in the page a heading stands.
+/// The level of a heading.
 #[derive(Clone, Copy)]
 enum Level {
     First,
@@ -64,15 +64,15 @@ impl Level {
     }
 }
 
-/// What is written of each, one after another.
+/// The concatenated text of all items.
 fn each<T>(items: impl IntoIterator<Item = T>, of: impl Fn(T) -> String) -> String {
     items.into_iter().map(of).collect()
 }
 
-/// A list, of which a reader has to ask for what is beyond the first few.
+/// A list whose items beyond the first few are folded.
 fn short_list<T>(items: &[T], few: usize, of: impl Fn(&T) -> String) -> String {
     let list = |items: &[T]| format!("<ul>\n{}</ul>\n", each(items, &of));
-    // One more is no longer than to say so.
+    // One more item is as short as the note that would replace it.
     if items.len() <= few + 1 {
         return list(items);
     }
@@ -82,7 +82,7 @@ fn short_list<T>(items: &[T], few: usize, of: impl Fn(&T) -> String) -> String {
     list(first) + &more
 }
 
-/// A frame with a heading around some HTML.
+/// A panel with a heading.
 fn panel(level: Level, class: &str, name: &str, content: &str) -> String {
     format!("<section class=\"panel {class}\">\n{}{content}</section>\n", level.heading(name))
 }

@@ -1,4 +1,4 @@
-//! What is said of several logs together.
+//! The summary of several logs.
 
 use super::{Level, coverage, each, panel, wording};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     report::{DivergenceReport, LogReport},
 };
 
-/// The verdicts, each with a link to its log, and what all logs cover.
+/// The verdicts with links to the logs, and the coverage of all logs.
 pub(super) fn section(reports: &[LogReport]) -> String {
     let worst = wording::worst(reports);
     let heading = Level::First.heading(&format!(
@@ -21,7 +21,7 @@ pub(super) fn section(reports: &[LogReport]) -> String {
     } else {
         format!(
             "<div class=\"because\"><table class=\"logs\">\n<thead><tr><th scope=\"col\">Log</th>\
-             <th scope=\"col\">ConformVerdict</th><th scope=\"col\">Why</th>\
+             <th scope=\"col\">Verdict</th><th scope=\"col\">Why</th>\
              <th scope=\"col\" class=\"right\">Events</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\
              </div>\n",
             each(&numbered, |(report, number)| row(report, *number))
@@ -32,7 +32,7 @@ pub(super) fn section(reports: &[LogReport]) -> String {
         String::new()
     } else {
         let content = coverage::summary(&cases) + &coverage::table(&cases);
-        let panel = panel(Level::Second, "", "What all of them cover together", &content);
+        let panel = panel(Level::Second, "", "Coverage of all logs", &content);
         format!("<div class=\"columns\">\n<div>{panel}</div>\n<div></div>\n</div>\n")
     };
     format!(

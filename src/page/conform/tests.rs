@@ -74,7 +74,7 @@ fn incomplete() -> LogReport {
 
 /// The table of the steps that led to the divergence.
 fn led_there(page: &str) -> &str {
-    let (_, from) = page.split_once("What led there").unwrap();
+    let (_, from) = page.split_once("Events before it").unwrap();
     from.split_once("</table>").unwrap().0
 }
 
@@ -178,7 +178,7 @@ fn a_divergence_may_be_the_first_event_or_missing_at_the_end() {
 fn what_there_is_not_takes_no_room() {
     let page = conform_page(&[conforming(2)]);
     assert!(!page.contains("<img"));
-    for name in ["What the camera saw", "What led there", "tolerated", "A shorter log"] {
+    for name in ["What the camera saw", "Events before it", "tolerated", "A shorter log"] {
         assert!(!page.contains(name), "{name}");
     }
     let odd = LogReport { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
@@ -193,7 +193,7 @@ fn what_is_tolerated_leads_to_its_events() {
     let quirk = ("glare".to_owned(), "the sun stands low".to_owned(), at);
     let page = conform_page(&[LogReport { tolerated: vec![quirk], ..conforming(5) }]);
     assert!(page.contains("<b>glare</b>, 3 times: The sun stands low."));
-    assert!(page.contains("<p>All 5 events fit, but for 3 that are tolerated.</p>"));
+    assert!(page.contains("<p>All 5 events fit, except 3 that are tolerated.</p>"));
     for event in [2, 4] {
         assert!(page.contains(&format!("<a href=\"#event-1-{event}\">{event}</a>")));
         assert!(page.contains(&format!("<tr class=let id=event-1-{event}>")));

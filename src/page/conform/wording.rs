@@ -1,4 +1,4 @@
-//! What the page says of a report, in words and signs.
+//! The words and signs of the page.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use crate::report::LogReport;
 
-/// The worst verdict of all; where there is none, nothing is known.
+/// The worst verdict; incomplete without any log.
 pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
     let any = |verdict| reports.iter().any(|report| report.verdict == verdict);
     if any(ConformVerdict::Diverged) {
@@ -19,7 +19,7 @@ pub(super) fn worst(reports: &[LogReport]) -> ConformVerdict {
     }
 }
 
-/// What a window is called.
+/// The title of the window.
 pub(super) fn title(reports: &[LogReport]) -> String {
     match reports {
         [report] => format!("{}: {}", report.log, report.verdict.name()),
@@ -27,10 +27,10 @@ pub(super) fn title(reports: &[LogReport]) -> String {
     }
 }
 
-/// How many logs have which verdict, the worst first.
+/// The number of logs with each verdict, the worst first.
 pub(super) fn tally(reports: &[LogReport]) -> String {
     if reports.is_empty() {
-        return "no log was judged".to_owned();
+        return "no log was checked".to_owned();
     }
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let told = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
@@ -51,7 +51,7 @@ pub(super) fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// What happened or was found, as a sentence.
+/// A sentence with a capital letter and a full stop.
 pub(super) fn sentence(words: &str) -> String {
     let mut letters = words.trim().chars();
     let first = letters.next().map(|letter| letter.to_uppercase().to_string());
@@ -60,7 +60,7 @@ pub(super) fn sentence(words: &str) -> String {
     if ended { sentence } else { sentence + "." }
 }
 
-/// What is to be said of the events where none diverged.
+/// The text about the events of a log without a divergence.
 pub(super) fn fits(report: &LogReport) -> String {
     let all = match report.events.len() {
         0 => return "There are no events.".to_owned(),
@@ -70,20 +70,18 @@ pub(super) fn fits(report: &LogReport) -> String {
     let tolerated = report.tolerated.iter().flat_map(|(_, _, events)| events);
     match tolerated.collect::<BTreeSet<_>>().len() {
         0 => all + ".",
-        1 => all + ", but for one that is tolerated.",
-        count => format!("{all}, but for {count} that are tolerated."),
+        1 => all + ", except one that is tolerated.",
+        count => format!("{all}, except {count} that are tolerated."),
     }
 }
 
-/// What a fault did.
+/// The description of a fault class.
 pub(super) fn did(fault: FaultClass) -> &'static str {
     match fault {
-        FaultClass::Perception => "the robot perceived what is not so",
-        FaultClass::Motion => "the robot did not go where it was told to go",
-        FaultClass::Algorithm => {
-            "the robot was told to go where Algorithm 1 does not go, or its map is wrong"
-        }
-        FaultClass::Log => "the log does not agree with itself",
+        FaultClass::Perception => "a wrong percept",
+        FaultClass::Motion => "the robot did not drive as commanded",
+        FaultClass::Algorithm => "a door that Algorithm 1 does not take, or a wrong map",
+        FaultClass::Log => "the log contradicts itself",
     }
 }
 
@@ -119,12 +117,12 @@ pub(super) fn icon(verdict: ConformVerdict) -> String {
     ))
 }
 
-/// A drawing as the address of an image: as such it can neither act nor share names with the page.
+/// A drawing as the address of an image, so that it cannot run scripts or share names with the page.
 pub(super) fn svg_address(svg: &str) -> String {
     format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg))
 }
 
-/// A JPEG or PNG file as the address of an image, where it is one.
+/// A JPEG or PNG file as the address of an image; `None` if it is neither.
 pub(super) fn picture_address(file: &[u8]) -> Option<String> {
     let kind = if file.starts_with(b"\xff\xd8\xff") {
         "jpeg"

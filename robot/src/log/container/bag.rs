@@ -2,7 +2,7 @@
 //!
 //! A record is the length of its header, the header, the length of its body and the body. A header is
 //! fields `name=value`, each behind its length. Behind each chunk stand the records that index it; at
-//! the end the connections are told again, and where each chunk is.
+//! the end the connections are repeated, and where each chunk is.
 
 use std::{collections::BTreeMap, ops::Range};
 
@@ -67,8 +67,8 @@ const MESSAGE_HEADER: &str = "a message without conn and time";
 const CONNECTION_HEADER: &str = "a connection without conn, topic, type and message_definition";
 
 fn message(header: Fields<'_>) -> Result<(u32, u64), &'static str> {
-    let told = header.u32("conn").zip(header.get("time").and_then(time));
-    told.ok_or(MESSAGE_HEADER)
+    let found = header.u32("conn").zip(header.get("time").and_then(time));
+    found.ok_or(MESSAGE_HEADER)
 }
 
 fn connection<'a>(header: Fields<'a>, body: Fields<'a>) -> Result<Record<'a>, &'static str> {
@@ -108,7 +108,7 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
     ))
 }
 
-/// What the first record says of the bag.
+/// The first record of a bag.
 struct Head {
     index: u64,
     connections: u32,
@@ -134,7 +134,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
             Ok(CHUNK_INFO) => chunks += 1,
             Ok(HEADER) => head = head_of(&mut window, at).map_err(unreadable(at))?,
             Ok(_) => {}
-            // A recorder that fell writes no length of its last chunk, and what stands there is no record.
+            // A recorder that crashed has not written the length of its last chunk.
             Err(what) if head.as_ref().is_some_and(|head: &Head| head.index == 0) => {
                 return Ok(scan.truncated(truncated(TruncationKind::Malformed(what))));
             }
@@ -156,12 +156,12 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
     Ok(scan.truncated(Truncation { offset: at, cause }))
 }
 
-/// Whether a record stands where the connections are told again.
+/// Whether a record is among the repeated connections.
 fn is_in_index(head: Option<&Head>, at: u64) -> bool {
     head.is_some_and(|head| at >= head.index)
 }
 
-/// How long the header of a record is, and where its body is; `None` where the file ends before it.
+/// The length of a record's header, and the place of its body; `None` if the file ends before it.
 fn lengths(window: &mut Window<'_>, at: u64) -> std::io::Result<Option<(u32, Range<u64>)>> {
     let Some(header) = window.u32(at)? else { return Ok(None) };
     let header_end = at + 4 + u64::from(header);
@@ -181,7 +181,7 @@ fn head_of(window: &mut Window<'_>, at: u64) -> std::io::Result<Option<Head>> {
     }))
 }
 
-/// Takes one record in, and tells what it is.
+/// Reads one record.
 fn one(
     window: &mut Window<'_>,
     at: u64,
@@ -193,7 +193,7 @@ fn one(
     let header_bytes = window.get(at + 4, header_length.into()).map_err(unreadable(at))?;
     let header = Fields(header_bytes.unwrap_or_default());
     let Some(op) = header.op() else { return Ok(Err("it does not say what it is")) };
-    let told = match op {
+    let found = match op {
         MESSAGE => match message(header) {
             Ok(message) => {
                 scan.add_loose(at..body.end, Some(message));
@@ -215,8 +215,8 @@ fn one(
         }
         CHUNK => {
             scan.end_loose();
-            let told = header.get("compression").zip(header.u32("size"));
-            let Some((compression, size)) = told else {
+            let found = header.get("compression").zip(header.u32("size"));
+            let Some((compression, size)) = found else {
                 return Ok(Err("a chunk without compression and size"));
             };
             let compression = Compression::of_bag(compression).map_err(|cause| cause.at(at))?;
@@ -237,10 +237,10 @@ fn one(
             Ok(op)
         }
         INDEX => {
-            let told = header.u32("ver").zip(header.u32("conn"));
+            let found = header.u32("ver").zip(header.u32("conn"));
             let length = body.end - body.start;
             let bytes = window.get(body.start, length).map_err(unreadable(at))?.unwrap_or_default();
-            if let (Some((1, connection)), Some(chunk)) = (told, scan.sections.last_mut()) {
+            if let (Some((1, connection)), Some(chunk)) = (found, scan.sections.last_mut()) {
                 let counts = chunk.counts.get_or_insert_default();
                 *counts.entry(connection).or_default() += length / 12;
                 for time in bytes.chunks_exact(12).filter_map(time) {
@@ -252,5 +252,5 @@ fn one(
         }
         other => Ok(other),
     };
-    Ok(told)
+    Ok(found)
 }

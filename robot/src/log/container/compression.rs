@@ -7,7 +7,7 @@ use ruzstd::decoding::FrameDecoder;
 
 use crate::log::error::LogErrorKind;
 
-/// How many times as long as it is in the file a chunk can be; what says more is not decompressed.
+/// The largest factor between the size of a chunk and its compressed size.
 pub const MOST_GROWTH: u64 = 1000;
 
 /// Every decoder of Zstandard supports a window of this many bytes.
@@ -56,7 +56,7 @@ fn unknown(name: &[u8], known: &'static str) -> LogErrorKind {
     LogErrorKind::Compression(String::from_utf8_lossy(beginning).into_owned(), known)
 }
 
-/// The bytes of a chunk, which says how long it is, and perhaps its checksum.
+/// The decompressed bytes of a chunk, checked for their size and checksum.
 pub(super) fn decompress(
     compression: Compression,
     bytes: Vec<u8>,
@@ -65,7 +65,7 @@ pub(super) fn decompress(
 ) -> Result<Vec<u8>, LogErrorKind> {
     let compressed = bytes.len() as u64;
     if compressed == 0 && size == 0 {
-        // What a recorder that falls leaves of a chunk that it is compressing.
+        // A recorder that crashes leaves this of the chunk that it compresses.
         return Ok(bytes);
     }
     if size > compressed.saturating_mul(MOST_GROWTH) {
@@ -86,7 +86,7 @@ pub(super) fn decompress(
     };
     let found = whole.len() as u64;
     if found != size {
-        return Err(LogErrorKind::Size { told: size, found });
+        return Err(LogErrorKind::Size { claimed: size, found });
     }
     if checksum != 0 && crc32fast::hash(&whole) != checksum {
         return Err(LogErrorKind::Checksum);

@@ -1,4 +1,4 @@
-//! MCAP files (mcap.dev/spec): a record is what it is, its length and its content.
+//! MCAP files (mcap.dev/spec): a record has an opcode, a length and its content.
 
 use std::{collections::BTreeMap, io, ops::Range};
 
@@ -19,9 +19,9 @@ const CHUNK: u8 = 6;
 const MESSAGE_INDEX: u8 = 7;
 const STATISTICS: u8 = 11;
 
-/// What a record is, and its length.
+/// The opcode and length of a record.
 const HEAD: usize = 9;
-/// What stands before the bytes of a message: channel, sequence, and two times.
+/// The fields before the bytes of a message: channel, sequence, and two times.
 const MESSAGE_HEAD: usize = 22;
 
 /// A text or a list of bytes behind its length, and where it ends.
@@ -106,7 +106,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
         return Ok(scan.truncated(Truncation { offset: at, cause: TruncationKind::End }));
     }
     scan.end_loose();
-    // An index that does not tell all is none.
+    // An incomplete index is not used.
     let counts = scan.sections.iter().filter_map(|section| section.counts.as_ref());
     let counted: u64 = counts.flat_map(BTreeMap::values).fold(0, |sum, n| sum.saturating_add(*n));
     if total.is_some_and(|total| total != counted) {
@@ -117,7 +117,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
     Ok(scan)
 }
 
-/// Takes one record in; `total` becomes the number of messages that the file says it has.
+/// Reads one record; `total` becomes the number of messages by the statistics of the file.
 fn one(
     window: &mut Window<'_>,
     op: u8,
@@ -147,10 +147,10 @@ fn one(
             None => Err(SHORT),
         },
         SCHEMA | CHANNEL => {
-            let told = if op == SCHEMA { schema(bytes) } else { channel(bytes) };
-            match told {
-                Some(told) => {
-                    listener(&told);
+            let definition = if op == SCHEMA { schema(bytes) } else { channel(bytes) };
+            match definition {
+                Some(definition) => {
+                    listener(&definition);
                     scan.add_loose(record.clone(), None);
                     Ok(())
                 }
@@ -192,7 +192,7 @@ fn one(
 fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Section, LogErrorKind>> {
     let times = [u64_at(bytes, 0)?, u64_at(bytes, 8)?];
     let (size, checksum) = (u64_at(bytes, 16)?, u32_at(bytes, 24)?);
-    // A name that goes beyond what was read is not that of a compression.
+    // A longer name is of no known compression.
     let name_length = u32_at(bytes, 28)? as usize;
     let name = bytes.get(32..).map(|rest| rest.get(..name_length).unwrap_or(rest))?;
     let compression = match Compression::of_mcap(name) {
@@ -209,7 +209,7 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
         compression,
         size,
         checksum,
-        // What ends before it starts is not believed.
+        // An end before the start is ignored.
         times: (size > 0 && times[0] <= times[1]).then_some(times),
         counts: (size == 0).then(BTreeMap::new),
     }))

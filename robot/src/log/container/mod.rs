@@ -1,5 +1,4 @@
-//! What holds the messages of a log: ROS 1 bags and MCAP files, both of records, most of them in
-//! chunks.
+//! The containers of logs: ROS 1 bags and MCAP files. Both consist of records, most of them in chunks.
 //!
 //! Either is first looked through from record to record, by their lengths, from which comes a list of
 //! sections: chunks, and stretches of messages outside of chunks. What the indices at the ends of files
@@ -21,7 +20,7 @@ use super::{
     source::Source,
 };
 
-/// What kind of file a log is.
+/// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A ROS 1 bag, version 2.0.
@@ -32,13 +31,13 @@ pub enum Format {
 
 /// A record that is of use.
 pub(super) enum Record<'a> {
-    /// A message: where its bytes are, counted from where the record begins.
+    /// A message, with the place of its bytes in the record.
     Message { connection: u32, time: u64, bytes: Range<usize> },
-    /// Of a bag: a topic, and what its messages are.
+    /// In a bag: a topic and the definition of its messages.
     Connection { id: u32, topic: &'a [u8], type_name: &'a [u8], definition: &'a [u8] },
-    /// Of MCAP: what messages are.
+    /// In MCAP: the definition of messages.
     Schema { id: u16, name: &'a [u8], encoding: &'a [u8], text: &'a [u8] },
-    /// Of MCAP: a topic.
+    /// In MCAP: a topic.
     Channel { id: u16, schema: u16, topic: &'a [u8], encoding: &'a [u8] },
     /// Any other.
     Other,
@@ -48,22 +47,22 @@ pub(super) enum Record<'a> {
 /// of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
-    /// Where its record begins, or its first one.
+    /// The offset of its record, or of the first one.
     pub(super) offset: u64,
-    /// Where the records in it are, perhaps compressed.
+    /// The place of its records, perhaps compressed.
     bytes: Range<u64>,
     compression: Compression,
-    /// How long it is when it is decompressed.
+    /// The decompressed size.
     size: u64,
-    /// Of what is decompressed; 0: not told.
+    /// The checksum of the decompressed bytes; 0: unknown.
     checksum: u32,
     /// The time of its first message, and of its last one.
     pub(super) times: Option<[u64; 2]>,
-    /// How many messages there are of each connection, if that is known.
+    /// The number of messages of each connection, if known.
     pub(super) counts: Option<BTreeMap<u32, u64>>,
 }
 
-/// What looking through a file shows.
+/// The structure of a file.
 #[derive(Default)]
 pub(super) struct Scan {
     pub(super) sections: Vec<Section>,
@@ -72,10 +71,10 @@ pub(super) struct Scan {
     loose: Option<Section>,
 }
 
-/// Whoever is told of topics; each record once or several times.
+/// Receives the records of topics, each once or several times.
 pub(super) type Listener<'l> = dyn FnMut(&Record<'_>) + 'l;
 
-/// Looks through a file.
+/// Scans a file.
 pub(super) fn scan(
     format: Format,
     source: &Source,
@@ -87,7 +86,7 @@ pub(super) fn scan(
     }
 }
 
-/// How long a stretch outside of chunks becomes.
+/// The largest size of a section outside of chunks.
 const LOOSE: u64 = 1 << 20;
 
 impl Scan {
@@ -118,7 +117,7 @@ impl Scan {
         }
     }
 
-    /// What comes next is not outside of chunks, or further on.
+    /// Ends the section outside of chunks.
     fn end_loose(&mut self) {
         self.sections.extend(self.loose.take().filter(|section| section.times.is_some()));
     }
@@ -144,12 +143,12 @@ impl Section {
         decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
     }
 
-    /// How many bytes it takes when it is loaded.
+    /// Its size in memory, in bytes.
     pub(super) fn size(&self) -> u64 {
         self.size
     }
 
-    /// Where a byte of its records is in the file; of one that is compressed, where it begins.
+    /// The offset in the file of a byte of its records; of the section if it is compressed.
     pub(super) fn place(&self, at: usize) -> u64 {
         match self.compression {
             Compression::None => self.bytes.start + at as u64,
@@ -157,7 +156,7 @@ impl Section {
         }
     }
 
-    /// Its records, one after the other, with where each begins.
+    /// Its records in order, with their places.
     pub(super) fn records<'a>(
         &'a self,
         format: Format,

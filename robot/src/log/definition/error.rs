@@ -1,4 +1,4 @@
-//! What can be wrong with the definition of a message, and where.
+//! Errors in the definition of a message, with their lines.
 
 use thiserror::Error;
 
@@ -8,20 +8,20 @@ use super::{MOST_BYTES, MOST_DEPTH, MOST_FIELDS};
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("line {line} of the definition: {cause}")]
 pub struct DefinitionError {
-    /// Where; the first line is 1.
+    /// The line, counted from 1.
     pub line: usize,
-    /// What is wrong.
+    /// The error.
     #[source]
     pub cause: DefinitionErrorKind,
 }
 
-/// What is wrong at a line. What is quoted is cut to a few words.
+/// The kind of an error in a definition. Quotations are short.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum DefinitionErrorKind {
     /// It is neither a field nor a constant.
     #[error("`{0}` is neither a field nor a constant")]
     Malformed(String),
-    /// A name that is none.
+    /// An invalid name.
     #[error("`{0}` is not a name")]
     NotAName(String),
     /// Two fields with one name.

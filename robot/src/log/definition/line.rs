@@ -5,12 +5,12 @@ use super::{
     error::{DefinitionErrorKind, quoted},
 };
 
-/// What a line says.
+/// The content of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum DefinitionLine<'t> {
     /// Nothing.
     Empty,
-    /// What follows belongs to another message.
+    /// The following lines define another message.
     Separator,
     /// A field.
     Field { type_name: &'t str, count: Count, name: &'t str },
@@ -54,7 +54,7 @@ pub(super) fn line(
     }
     match dialect {
         Dialect::Ros1 if !after.is_empty() => Err(malformed()),
-        // What follows the name in ROS 2 is a default, which no recorded message needs.
+        // In ROS 2 a default may follow the name; recorded messages do not need it.
         _ => Ok(DefinitionLine::Field { type_name, count, name }),
     }
 }

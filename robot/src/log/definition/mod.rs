@@ -52,22 +52,22 @@ pub struct Struct {
 pub struct Field {
     /// Its name.
     pub name: String,
-    /// What it is, or what each in its list is.
+    /// Its type, or the type of the items of its list.
     pub kind: FieldType,
     /// Whether it is a list.
     pub count: Count,
 }
 
-/// What a field is.
+/// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldType {
     /// `bool`.
     Bool,
-    /// A whole number with a sign, of so many bytes. `byte` in ROS 1.
+    /// A whole number with a sign, with this number of bytes. `byte` in ROS 1.
     Int(u8),
-    /// A whole number without a sign, of so many bytes. `char`; `byte` in ROS 2.
+    /// A whole number without a sign, with this number of bytes. `char`; `byte` in ROS 2.
     Unsigned(u8),
-    /// A number with a fraction, of so many bytes.
+    /// A number with a fraction, with this number of bytes.
     Float(u8),
     /// `string`.
     Text,
@@ -86,16 +86,16 @@ pub enum FieldType {
 pub enum Count {
     /// It is no list.
     One,
-    /// A list of always so many.
+    /// A list of fixed length.
     Fixed(u32),
     /// A list of any length.
     Any,
-    /// A list of at most so many.
+    /// A list of limited length.
     AtMost(u32),
 }
 
 impl Definition {
-    /// Reads a definition, of which the log tells the type.
+    /// Reads the definition of a type.
     ///
     /// Takes at most 256 bytes of memory for each byte of the text and of the name, and 4096 besides.
     ///
@@ -126,7 +126,7 @@ impl Definition {
         self.structs.get(index)
     }
 
-    /// What stands at a path such as `pose.position.x` or `doors[0]`, if anything can.
+    /// The field at a path such as `pose.position.x` or `doors[0]`, if anything can.
     #[must_use]
     pub fn at(&self, path: &str) -> Option<(FieldType, Count)> {
         let mut here = (FieldType::Struct(0), Count::One);

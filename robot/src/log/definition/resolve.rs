@@ -1,4 +1,4 @@
-//! From the lines of a definition to one of which every type is known.
+//! Resolves the types in the lines of a definition.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,14 +11,14 @@ use super::{
     short_name,
 };
 
-/// A message of which only the lines are known.
+/// A message as lines.
 struct Section<'t> {
     name: String,
     line: usize,
     lines: Vec<(usize, DefinitionLine<'t>)>,
 }
 
-/// What the text need not define.
+/// The types that need no definition.
 const KNOWN: [(&str, &str); 2] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec"),
@@ -44,7 +44,7 @@ pub(super) fn resolve(
     let mut names = BTreeMap::new();
     let mut last_parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, section) in sections.iter().enumerate() {
-        // A type may be told several times; all tell the same.
+        // A type may be defined several times in the same way.
         if names.insert(section.name.as_str(), index).is_none() {
             last_parts.entry(last_part(&section.name)).or_default().push(index);
         }

@@ -16,7 +16,7 @@ pub struct BoundTopicMap {
     pub(in crate::log) carried: Vec<Carried>,
 }
 
-/// What a topic of a log carries, and where in its messages. A topic may carry several things.
+/// A role that a topic carries, and the paths in its messages. A topic may carry several roles.
 #[derive(Clone, Debug)]
 pub(in crate::log) struct Carried {
     pub(in crate::log) role: Role,
@@ -114,7 +114,7 @@ fn named<'t>(name: &str, topics: &'t [Topic]) -> Result<(usize, &'t Topic), Topi
     }
 }
 
-/// Whether a path leads to what a part is.
+/// Whether a path leads to the type of a part.
 fn leads(definition: &Definition, path: &str, part: MessagePart) -> bool {
     let found = definition.at(path);
     if part != MessagePart::Quaternion {

@@ -1,4 +1,4 @@
-//! Which topics could carry what, by the types of their messages.
+//! The topics that could carry each role, by the types of their messages.
 
 use super::Role;
 use crate::log::topic::Topic;
@@ -6,7 +6,7 @@ use crate::log::topic::Topic;
 /// The topics that could carry something.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RoleGuess {
-    /// What.
+    /// The role.
     pub role: Role,
     /// Which topics of the log; at least one, and none is better than the others.
     pub topics: Vec<usize>,

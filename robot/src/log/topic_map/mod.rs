@@ -1,4 +1,4 @@
-//! Topic maps: which topics of a log carry what, whoever recorded it.
+//! Topic maps: the topics of a log that carry each role, for logs of any program.
 //!
 //! ```toml
 //! [image]                        # sensor_msgs CompressedImage, or Image in rgb8, bgr8 or mono8
@@ -48,7 +48,7 @@ use toposlam_model::format::document::TextPosition;
 
 use super::reader::Log;
 
-/// Which topics carry what.
+/// The topics that carry each role.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
@@ -61,9 +61,9 @@ pub struct Carrier {
     pub topic: String,
     /// Where in its messages each part stands; what is usual for its type is left out.
     pub paths: BTreeMap<MessagePart, String>,
-    /// In what lengths are.
+    /// The unit of lengths.
     pub length: LengthUnit,
-    /// In what angles are.
+    /// The unit of angles.
     pub angle: AngleUnit,
     /// Where the mapping file says so.
     place: TextPosition,
@@ -97,7 +97,7 @@ impl TopicMap {
         read::read(bytes)
     }
 
-    /// What the topics of a log say by their types.
+    /// The roles of a log's topics by their types.
     ///
     /// # Errors
     /// If several topics could carry the same: which.
@@ -113,7 +113,7 @@ impl TopicMap {
         Ok(Self::unambiguous(log))
     }
 
-    /// What the topics of a log say by their types, without what several topics could carry.
+    /// The roles of a log's topics by their types, without ambiguous roles.
     #[must_use]
     pub fn unambiguous(log: &Log) -> Self {
         let mut carriers = BTreeMap::new();
@@ -127,7 +127,7 @@ impl TopicMap {
         Self { carriers }
     }
 
-    /// What carries something, if anything does.
+    /// The carrier of a role, if there is one.
     #[must_use]
     pub fn carrier(&self, role: Role) -> Option<&Carrier> {
         self.carriers.get(&role)
@@ -144,7 +144,7 @@ impl TopicMap {
         Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]) }
     }
 
-    /// What it says of some things.
+    /// The map of some of the roles.
     #[must_use]
     pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {
         let carrier = |role: &Role| Some((*role, self.carriers.get(role)?.clone()));
@@ -157,7 +157,7 @@ impl TopicMap {
         self.carriers.is_empty()
     }
 
-    /// Holds it against a log: every topic is there, once, and every path leads to what it should.
+    /// Checks that it fits a log: every topic exists once, and every path leads to the right type.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place in the mapping file.

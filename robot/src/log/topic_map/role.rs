@@ -1,24 +1,24 @@
 //! What a topic can carry, of which parts that is, in which units, and where it stands in messages of
 //! the usual types.
 
-/// What a topic carries.
+/// The role of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
     /// Pictures of the robot's camera.
     Image,
-    /// Where the robot is by its wheels.
+    /// Odometry.
     Odometry,
-    /// The motion that it is told to make.
+    /// Commands to the wheels.
     Motion,
-    /// What it perceives at a junction.
+    /// Percepts.
     Percept,
     /// The door that it takes.
     Door,
     /// The head of a log of the project.
     Run,
-    /// What sensing tells.
+    /// Scenes.
     Scene,
-    /// What Algorithm 2 answers.
+    /// Commands of Algorithm 2.
     Command,
     /// A step of Algorithm 1.
     Hypothesis,
@@ -28,7 +28,7 @@ pub enum Role {
     End,
 }
 
-/// A part of what is carried.
+/// A part of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MessagePart {
     /// To the front of where the robot began.
@@ -53,7 +53,7 @@ pub enum MessagePart {
     Move,
 }
 
-/// In what a length is.
+/// A unit of length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthUnit {
     /// Metres.
@@ -62,7 +62,7 @@ pub enum LengthUnit {
     Inches,
 }
 
-/// In what an angle is.
+/// A unit of angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleUnit {
     /// Radians.
@@ -164,7 +164,7 @@ impl Role {
         }
     }
 
-    /// Of which parts it is.
+    /// Its parts.
     pub(super) fn parts(self) -> &'static [MessagePart] {
         match self {
             Self::Odometry => {
@@ -192,7 +192,7 @@ impl Role {
         }
     }
 
-    /// Where its parts stand in messages of a type, if that is usual for it.
+    /// The paths of its parts in messages of a usual type.
     pub(super) fn usual(self, type_name: &str) -> Option<&'static [(MessagePart, &'static str)]> {
         if self.own() == Some(type_name) {
             return Some(&[]);
