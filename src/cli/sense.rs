@@ -26,7 +26,8 @@ use super::{
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
-  toposlam sense view.png --calibration camera.toml --colours colours.toml --stages steps
+  toposlam sense view.png --calibration camera.toml --colours colours.toml \\
+    --stages steps
 
 Angles are relative to the robot's heading, counter-clockwise. Doors are listed
 clockwise from the entry door.")]
