@@ -123,8 +123,8 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
         (&["check", "--edges", "1.."], "not `1..`"),
         (&["check", "--edges", "99"], "--edges: worlds with 99 edges are too many to enumerate"),
         (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
-        (&["check", "--shard", "3/2"], "`3/2` is no shard; write i/n with i from 1 to n"),
-        (&["check", "--shard", "0/2"], "`0/2` is no shard; write i/n with i from 1 to n"),
+        (&["check", "--shard", "3/2"], "`3/2` is not a shard; write i/n with i from 1 to n"),
+        (&["check", "--shard", "0/2"], "`0/2` is not a shard; write i/n with i from 1 to n"),
         (&["check", "--class", "tree"], "there are multigraph, simple, corridor and planar"),
         (
             &["check", "--marker", "chalk"],
