@@ -1,5 +1,7 @@
 //! Tests of the whole program: the command line, the pages, the documents.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 mod architecture;
 mod atlas;
 mod browser;

@@ -1,5 +1,7 @@
 //! Tests of the specification through its public interface.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 mod ambiguity;
 mod broken;
 mod broken_movable;

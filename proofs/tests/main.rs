@@ -1,5 +1,7 @@
 //! Tests of the lemmas, of the Coq development and of the harnesses for Kani.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 mod argument;
 mod coq;
 mod harnesses;

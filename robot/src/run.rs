@@ -93,14 +93,14 @@ impl Run<'_> {
 
 /// A simulated robot that stands at a dart's junction maps its building.
 // paper: exp.simulated
-pub fn run<'p>(
-    plan: &'p FloorPlan,
+pub fn run(
+    plan: &FloorPlan,
     facing: Dart,
     robot: SimulatedRobot,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
     dart_bound: usize,
-) -> Run<'p> {
+) -> Run<'_> {
     let monitor = GroundTruthMonitor::new(plan, facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
     let mut exploration = Exploration::new(dart_bound);

@@ -1,5 +1,7 @@
 //! Tests of the robot through its public interface.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
 mod logs;
 mod renderer;
 mod sensing;

@@ -64,8 +64,8 @@ pub(super) fn print_paragraph(out: &mut dyn Write, text: &str) -> io::Result<()>
 pub(super) fn print_columns(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
     let widest = texts.iter().map(|text| text.chars().count()).max().unwrap_or_default();
     for row in texts.chunks((*WIDTH / (widest + 2)).max(1)) {
-        let row: String = row.iter().map(|text| format!("  {text:widest$}")).collect();
-        writeln!(out, "{}", row.trim_end())?;
+        let row: Vec<_> = row.iter().map(|text| format!("  {text:widest$}")).collect();
+        writeln!(out, "{}", row.concat().trim_end())?;
     }
     Ok(())
 }

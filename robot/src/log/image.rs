@@ -10,7 +10,7 @@ pub(super) fn image_of(message: &Value<'_>) -> Result<CameraImage, String> {
     let data = message.at("data").and_then(|data| data.bytes());
     let data = data.ok_or("it has no bytes `data`")?;
     let Some(encoding) = message.at("encoding").and_then(|encoding| encoding.text()) else {
-        return Ok(CameraImage::encoded(&*data));
+        return Ok(CameraImage::encoded(data));
     };
     let number = |name| {
         let found = message.at(name).and_then(|value| value.u64());

@@ -1,6 +1,7 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
 use std::{
+    fmt::Write as _,
     io::{self, Write},
     path::Path,
     time::Duration,
@@ -163,11 +164,12 @@ impl<'o> CheckReport<'o> {
         let mut verdict = verdict.to_owned();
         if starts > 0 {
             let (mapped, starts) = (grouped(mapped.into()), grouped(starts.into()));
-            verdict += &format!(": {mapped} of {starts} starts mapped correctly, ");
+            let _ = write!(verdict, ": {mapped} of {starts} starts mapped correctly, ");
             verdict += "each proved by a bijection";
         }
         if gave_up > 0 {
-            verdict += &format!("; {} have more states than --max-states", grouped(gave_up.into()));
+            let gave_up = grouped(gave_up.into());
+            let _ = write!(verdict, "; {gave_up} have more states than --max-states");
         }
         writeln!(self.out)?;
         print_paragraph(self.out, &verdict)?;

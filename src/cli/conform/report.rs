@@ -70,7 +70,6 @@ impl Judged {
         }
         let events = &self.judgement.events;
         match events.end.as_ref().map(|end| &end.ending) {
-            Some(RunEnding::Mapped) => {}
             Some(RunEnding::Stopped) => remarks.push("the run was stopped".to_owned()),
             Some(RunEnding::GaveUp(cause)) => {
                 let colon = if cause.is_empty() { "" } else { ": " };
@@ -79,7 +78,7 @@ impl Judged {
             None if events.has_head => {
                 remarks.push("the log does not record how the run ended".to_owned());
             }
-            None => {}
+            Some(RunEnding::Mapped) | None => {}
         }
         if let Some(SmallestWorld::Unfinished { edges }) = self.judgement.smallest {
             remarks.push(format!(

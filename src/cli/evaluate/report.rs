@@ -285,7 +285,10 @@ fn errors_row(errors: &Errors) -> [String; 7] {
     let limits = limits.map(|&(quantile, limit)| format!("{} {limit} {short}", called(quantile)));
     let targets: Vec<_> = limits.collect();
     if !targets.is_empty() {
-        what += &format!("; target {}: {}", targets.join(", "), status(errors.standing()));
+        what.push_str("; target ");
+        what.push_str(&targets.join(", "));
+        what.push_str(": ");
+        what.push_str(status(errors.standing()));
     }
     let cases = format!("{:>7}", grouped(errors.sample.count() as u128));
     [errors.subject.name().to_owned(), cases, median, p95, p99, most, what]

@@ -97,7 +97,7 @@ impl<W: Write> Story<W> {
             MappingEvent::Rejected { hypothesis, followed, expected, perceived } => {
                 let why = format!(
                     "at move {} of its path: expected {}, sensed {}",
-                    grouped(followed as u128),
+                    grouped(followed.into()),
                     percept_text(expected, perceived),
                     percept_text(perceived, expected),
                 );
