@@ -1,4 +1,4 @@
-//! A kind of marker of your own: a beacon that is heard at its vertex and at the vertices next to it.
+//! A kind of marker of your own: a beacon that is received at its vertex and at the neighbouring vertices.
 //! It tells no more worlds apart than an undirected marker, because a robot can go and look. Run it
 //! with `cargo run --release -p toposlam-model --example own_marker`.
 

@@ -178,13 +178,13 @@ fn every_pair_is_confirmed_by_a_relation_from_every_start() {
 }
 
 #[test]
-fn pairs_are_told_from_the_smallest_and_each_once() {
+fn each_pair_is_listed_once_and_the_smallest_first() {
     for marker in ["none", "undirected"] {
-        told_in_order(&search(Class::Multigraph, 4, marker));
+        assert_listed_in_order(&search(Class::Multigraph, 4, marker));
     }
 }
 
-fn told_in_order(findings: &Findings) {
+fn assert_listed_in_order(findings: &Findings) {
     let pairs = findings.pairs();
     // The larger world's size counts first, then the smaller one's, then the codes, the first
     // world's before the other's.
@@ -231,8 +231,8 @@ fn tells_apart(one: &PlacedRobot, other: &PlacedRobot, length: usize) -> Option<
     None
 }
 
-/// All walks, the shorter ones first, and those of a length in order: the first that tells the
-/// worlds apart is the one that is handed over.
+/// The reported walk is the first that tells the worlds apart, among all walks in order of length and
+/// then of their actions.
 #[test]
 fn the_walk_is_the_shortest_and_the_least() {
     let mut walks = 0;

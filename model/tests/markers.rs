@@ -135,9 +135,8 @@ fn a_marker_that_stays_where_it_is_cannot_be_picked_up() {
     }
 }
 
-/// A reference to a marker behaves like the marker.
 #[test]
-fn a_reference_to_a_marker_tells_what_the_marker_tells() {
+fn a_reference_to_a_marker_has_the_same_properties() {
     type Properties = (&'static str, &'static str, Vec<Dart>, Vec<MarkerPart>, bool);
     fn properties<M: Marker + ?Sized>(marker: &M) -> Properties {
         let (graph, facing) = (junction(), Dart(2));

@@ -40,7 +40,7 @@ fn names() -> Vec<String> {
 }
 
 #[test]
-fn every_world_is_named_told_and_begun() {
+fn every_world_has_a_name_a_description_and_a_start() {
     let readme = fs::read_to_string(folder().join("README.md")).unwrap();
     for name in names() {
         let world = read(&name);

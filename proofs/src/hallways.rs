@@ -219,17 +219,18 @@ impl HallwayDrive {
         surprise
     }
 
-    /// The scene of a picture, and what it showed.
+    /// The scene of a picture, and its evidence.
     pub fn picture(&mut self, choose: &mut impl Choose) -> (Scene, PictureEvidence) {
         let junction = *self.nearest();
         let distance = junction.distance(&self.robot);
-        let (place, told) = if distance <= self.sight {
+        let (place, evidence) = if distance <= self.sight {
             self.at_junction(choose, junction, distance)
         } else {
             self.in_hallway(choose, junction, distance)
         };
-        choose.show(|| Exhibit::Value { name: "picture", value: format!("{told:?}: {place:?}") });
-        (Scene { place, marker: None }, told)
+        choose
+            .show(|| Exhibit::Value { name: "picture", value: format!("{evidence:?}: {place:?}") });
+        (Scene { place, marker: None }, evidence)
     }
 
     fn at_junction(

@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_case_that_fails_is_told_with_its_choices() {
+    fn the_first_case_that_fails_is_returned_with_its_choices() {
         let failed = exhaust(|choose| {
             let (one, other) = (choose.below(3), choose.below(3));
             claim("they are not both 1", one != 1 || other != 1)

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn in_a_hallway_the_walls_are_told() {
+    fn in_a_hallway_the_truth_has_the_distances_of_the_walls() {
         // To the west in the hallway from the tee to the ne corner, 0.1 m north of its middle.
         let Truth::Hallway(truth) = at(2.0, 4.1, 190.0) else { panic!("in the middle") };
         close(&[truth.heading, truth.left, truth.right], &[-10_f64.to_radians(), 0.9, 0.7]);
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn doors_are_told_clockwise_from_the_one_behind() {
+    fn doors_are_listed_clockwise_from_the_one_behind() {
         let (left, ahead, right, behind) = (FRAC_PI_2, 0.0, -FRAC_PI_2, PI);
         let cases = [
             (3.6, 8.0, 0.0, vec![behind], "dead-end"),

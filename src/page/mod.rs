@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_told_in_minutes() {
+    fn times_are_shown_in_minutes() {
         assert_eq!(
             [0.0, 59.96, 61.25, 754.3].map(clock),
             ["0:00.0", "1:00.0", "1:01.3", "12:34.3"]

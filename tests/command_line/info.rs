@@ -32,7 +32,7 @@ from 1.000000000 s, for 1.000 s
 }
 
 #[test]
-fn json_tells_each_log_on_a_line() {
+fn json_has_one_line_for_each_log() {
     let text = stdout_of(["info", "--json", RUN, "fuzz/corpus/bag/bz2"]);
     let [run, bag] = &objects(&text)[..] else { panic!("{text}") };
     assert_eq!(run["schema"], 1);

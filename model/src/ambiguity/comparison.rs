@@ -78,9 +78,9 @@ impl<'a> Comparison<'a> {
         self.class()[here] == self.class()[there]
     }
 
-    /// The first pose, of those in which the robot in the second world may begin as far as the marker
-    /// tells, from which it can never tell the worlds apart from one that begins in the first with
-    /// this pose; `None` where a walk tells from each.
+    /// The first start in the second world that is indistinguishable from this pose in the first. The
+    /// robot in the second world may begin in any pose that places the marker alike. Returns `None` if
+    /// each of these starts has a walk that distinguishes it.
     #[must_use]
     pub fn start_like(&self, pose: Dart) -> Option<Dart> {
         let world = &self.worlds[1];
@@ -88,7 +88,7 @@ impl<'a> Comparison<'a> {
         starts.into_iter().find(|&other| self.indistinguishable([pose, other]))
     }
 
-    /// Why they cannot: all pairs of states that they can be in, breadth-first; `None` where they
+    /// Why they cannot: all pairs of states that they can be in, breadth-first; `None` if they
     /// can. There are at most as many pairs as states of the one times states of the other.
     #[must_use]
     pub fn relation(&self, poses: [Dart; 2]) -> Option<Relation> {
@@ -252,8 +252,8 @@ mod tests {
         EmbeddedGraph::from_edge_lists(&lists).unwrap()
     }
 
-    /// Without a marker no walk tells cycles apart: where their lengths are coprime, a robot in each
-    /// comes into every pair of poses that agree on the sense, `2 n m` of them.
+    /// Without a marker no walk tells cycles apart. If their lengths `n` and `m` are coprime, two robots
+    /// reach all `2 n m` pairs of poses that agree on the sense.
     #[test]
     fn the_partition_is_made_only_where_there_are_many_pairs() {
         let none = named("none").unwrap();

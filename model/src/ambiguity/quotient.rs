@@ -7,8 +7,8 @@ use super::{
 
 /// A placed world with indistinguishable states identified.
 ///
-/// It is no embedded graph: crossing may stay in the same class, and the degree is but a label. No
-/// two of its classes can be told apart by nothing, so it has no automorphism.
+/// It is not an embedded graph: a crossing may stay in the same class, and the degree is only a label.
+/// Any two of its classes are distinguishable, so its only automorphism is the identity.
 pub(super) struct Quotient {
     labels: Vec<StateLabel>,
     maps: Vec<Vec<u32>>,

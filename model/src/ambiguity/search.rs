@@ -245,9 +245,9 @@ mod tests {
         assert_eq!(counts(3), (5, 2));
     }
 
-    /// Of all facing darts that place a marker alike, that with the least code stands for it.
+    /// Among the facing darts that place a marker alike, the one with the least code is reported.
     #[test]
-    fn a_placed_world_is_told_by_its_least_start() {
+    fn a_placed_world_is_represented_by_its_least_start() {
         for marker in ["none", "undirected", "two-identical"].map(|name| named(name).unwrap()) {
             let findings =
                 AmbiguitySearch::new(Class::Multigraph, 4, marker).unwrap().run(&()).unwrap();

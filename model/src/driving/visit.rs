@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn a_marker_off_the_way_tells_nothing() {
+    fn a_marker_off_the_way_is_not_sighted() {
         let l = [junction(&[PI, FRAC_PI_2], 0.5), junction(&[PI, FRAC_PI_2], 0.5)];
         for position in [[0.1, 0.0], [0.9, 0.0], [-0.5, 0.0]] {
             let marker = MarkerView { position, axis: 0.0, door: None };

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_class_is_told_and_found_by_its_name() {
+    fn each_class_is_printed_and_parsed_by_its_name() {
         let names = ["multigraph", "simple", "corridor", "planar"];
         assert_eq!(Class::ALL.map(|class| class.to_string()), names);
         assert_eq!(names.map(str::parse), Class::ALL.map(Ok));

@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_tells_the_degree_of_a_new_vertex_and_is_no_dart() {
+    fn a_word_encodes_the_degree_of_a_new_vertex_and_is_no_dart() {
         for degree in 1..=DARTS as u8 {
             assert_eq!(new_vertex(new_vertex(degree)), degree);
             assert!(usize::from(new_vertex(degree)) >= DARTS);

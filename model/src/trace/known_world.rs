@@ -165,7 +165,7 @@ mod tests {
             let trace = explored(&graph, Dart(0));
             let found = poses(&graph, &Directional, &anywhere(&graph, &Directional), &trace);
             prop_assert_eq!(found.misfit, None);
-            // The directional marker tells every start from every other, but by an automorphism.
+            // A directional marker distinguishes any two starts that no automorphism relates.
             let code = |dart| crate::isomorphism::code(&graph, dart);
             let alike = graph.darts().filter(|&dart| code(dart) == code(Dart(0))).count();
             prop_assert_eq!(*found.left.last().unwrap(), alike);

@@ -295,21 +295,21 @@ fn driven<C: Choose, D: PathDriver>(
     // The number of doors by which the robot has left, and whether it has taken one more.
     let (mut left_by, mut takes) = (0, false);
     // The shapes that pictures showed since then, and the mistaken ones.
-    let (mut told_of, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
+    let (mut pictured, mut mistaken) = (vec![drive.junction(0).form; 2], Vec::new());
     let mut looked = true;
     for _ in 0..ROUNDS {
-        let (scene, told) = drive.picture(choose);
+        let (scene, evidence) = drive.picture(choose);
         // The next junction, or the one at which the robot stands.
         let here = *drive.junction(left_by);
-        match (told, &scene.place) {
+        match (evidence, &scene.place) {
             (PictureEvidence::Mistake(form), _) => {
-                told_of.push(form);
+                pictured.push(form);
                 mistaken.push(form);
             }
             (PictureEvidence::Truth, Place::Junction(view))
                 if here.distance(&drive.robot) < HALFWAY =>
             {
-                told_of.push(here.form);
+                pictured.push(here.form);
                 looked |= (0.2..=0.8).contains(&view.distance());
             }
             _ => {}
@@ -323,7 +323,7 @@ fn driven<C: Choose, D: PathDriver>(
             claim("one door is taken at a time", driver.queue().len() + 1 == open && !takes)?;
             claim(
                 "two pictures agree",
-                FORMS.into_iter().any(|form| agreeing(&told_of, form) > 1),
+                FORMS.into_iter().any(|form| agreeing(&pictured, form) > 1),
             )?;
             takes = true;
         }
@@ -331,7 +331,7 @@ fn driven<C: Choose, D: PathDriver>(
             Err(_) => return Ok(End { standing: None, mistaken, looked }),
             Ok(Step::Arrived(standing)) => {
                 claim("every door was taken", left_by == queue.len() && !takes)?;
-                claim("two pictures agree", agreeing(&told_of, standing.form) > 1)?;
+                claim("two pictures agree", agreeing(&pictured, standing.form) > 1)?;
                 return Ok(End { standing: Some(standing), mistaken, looked });
             }
             Ok(Step::Go(command)) => command,
@@ -345,7 +345,7 @@ fn driven<C: Choose, D: PathDriver>(
         }
         if takes && command.forward > 0.0 {
             (left_by, takes) = (left_by + 1, false);
-            (told_of, mistaken, looked) = (Vec::new(), Vec::new(), false);
+            (pictured, mistaken, looked) = (Vec::new(), Vec::new(), false);
         }
         drive.carry_out(choose, command);
     }

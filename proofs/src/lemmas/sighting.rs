@@ -13,7 +13,7 @@ use crate::{
 };
 
 declare! {
-    a_directional_sighting_tells_the_entry_dart {
+    a_directional_sighting_determines_the_entry_dart {
         "At the marked vertex, a directional marker is seen along a door, and along different \
          doors from different entry darts; at no other vertex is it seen.",
         paper "2.3",
@@ -33,7 +33,7 @@ declare! {
         sampled "starts with up to 40 edges": turned::<_, 1, 40>;
         kani "every start with 2 edges, every pose, every door", unwind 8: turned::<_, 2, 2>;
     }
-    an_undirected_sighting_does_not_tell_the_entry_dart {
+    an_undirected_sighting_does_not_determine_the_entry_dart {
         "There are worlds where an undirected marker gives the same sighting, at the marked \
          vertex, for two entry darts.",
         paper "2.2",

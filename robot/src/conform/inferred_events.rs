@@ -155,8 +155,8 @@ impl InferredEvents {
         approach.visit.see(&Scene { place: Place::Junction(junction), marker: scene.marker });
     }
 
-    /// What was perceived on a visit; answers how the junction lies. Where its pictures do not tell, that
-    /// is an event.
+    /// Adds the percept of a visit, and returns the junction's shape and the direction of its entry. If
+    /// the pictures do not decide the percept, adds that as an event and returns `None`.
     fn visited(&mut self, approach: &Approach) -> Option<(JunctionShape, f64)> {
         let Approach { visit, entry, visited, .. } = approach;
         let (Some(form), Some(percept)) = (visit.form(), visit.percept()) else {
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn turning_back_without_a_visit_is_told() {
+    fn turning_back_without_a_visit_is_an_event() {
         let mut places = visit();
         // In a hallway.
         places.push((hallway(), [0.0, 2.0], FRAC_PI_2));

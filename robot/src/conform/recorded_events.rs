@@ -141,15 +141,15 @@ mod tests {
     }
 
     #[test]
-    fn odometry_tells_whether_a_door_was_taken() {
+    fn odometry_decides_whether_a_door_was_taken() {
         // Door 1 is to the left, door 2 to the right.
         let (off, entry_off) = offs(1, [0.0, 4.0], -FRAC_PI_2);
         assert!(off.unwrap() < 1e-9 && entry_off.unwrap() < 1e-9);
         assert!((offs(2, [0.0, 4.0], -FRAC_PI_2).0.unwrap() - PI).abs() < 1e-9);
         assert!((offs(1, [0.0, 4.0], PI).1.unwrap() - FRAC_PI_2).abs() < 1e-9);
-        // Nor is a door that is not there one in some direction.
+        // A door that does not exist has no direction.
         assert_eq!(offs(3, [0.0, 4.0], PI).0, None);
-        // Half a metre is too little to tell.
+        // Half a metre is too short to decide.
         assert_eq!(offs(1, [0.0, 0.5], PI), (None, None));
     }
 }

@@ -1,5 +1,5 @@
-//! Is the checker any good? Good runs conform, and every mutation of one is told at its event, or is
-//! known not to show.
+//! Good runs conform. The checker finds every mutation of a good run at its event, unless the mutation
+//! is known to have no effect.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ use crate::{
 
 const DARTS: usize = 400;
 
-/// What a log of a simulated run would hold.
+/// The content of a log of a simulated run.
 #[derive(Clone, Debug, Default)]
 struct Log {
     /// Scenes, arrivals and doors.
@@ -128,7 +128,7 @@ fn good_logs_of_every_plan_conform() {
     }
 }
 
-/// Percepts and doors, without what they were made of.
+/// Percepts and doors, without their sources.
 fn bare(events: &[CheckedEvent]) -> Vec<(Option<Percept>, Option<Door>)> {
     let bare = |event: &CheckedEvent| match &event.kind {
         CheckedKind::Arrival { arrival, .. } => (Some(arrival.percept), None),
@@ -139,7 +139,7 @@ fn bare(events: &[CheckedEvent]) -> Vec<(Option<Percept>, Option<Door>)> {
 }
 
 #[test]
-fn pictures_and_motion_tell_the_same_percepts_and_doors_as_the_robot() {
+fn inferred_percepts_and_doors_are_the_recorded_ones() {
     for (name, plan) in plans().unwrap() {
         for (seed, facing) in starts_of(&plan).into_iter().enumerate() {
             let log = log(&plan, facing, seed as u64);
@@ -199,25 +199,25 @@ const MUTATIONS: [Mutation; 12] = [
     Mutation::Within,
 ];
 
-/// What is told of a mutated log.
+/// Where a mutated log diverges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shows {
-    /// The event that is told, from 0.
+    /// At this event, from 0.
     At(usize),
-    /// Nothing, and why.
+    /// Nowhere, and why.
     Never(&'static str),
-    /// There is no such mutation of this event.
+    /// This event has no such mutation.
     NotOne,
 }
 
 impl Log {
-    /// Where the events are among the lines.
+    /// The indices of the events among the lines.
     fn places(&self) -> Vec<usize> {
         let is_event = |line: &EventKind| !matches!(line, EventKind::Frame(_));
         (0..self.lines.len()).filter(|&place| is_event(&self.lines[place].1)).collect()
     }
 
-    /// Mutates an event, and answers where that shows.
+    /// Mutates an event, and returns where that shows.
     fn mutate(&mut self, event: usize, mutation: Mutation, by: u32) -> Shows {
         use Mutation::*;
         let places = self.places();
@@ -279,7 +279,7 @@ impl Log {
             },
             (Later, _) => {
                 self.lines[place].0.time = self.lines[places[event + 1]].0.time + 0.01;
-                // It is the next one that is then too early.
+                // Then the next event is too early.
                 return Shows::At(event + 1);
             }
             (Within, _) => {
@@ -294,8 +294,8 @@ impl Log {
     }
 }
 
-/// At which event a log is told not to conform, from 0.
-fn told_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usize> {
+/// The first event at which a log does not conform, from 0.
+fn divergence_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usize> {
     let mut events = log.recorded();
     events.end.as_mut().unwrap().moves = moves;
     match judge(events, question, &Quirks::default(), &()) {
@@ -306,7 +306,7 @@ fn told_at(log: &Log, moves: u64, question: &ConformConfig) -> Option<usize> {
 }
 
 #[track_caller]
-fn mutation_is_told(
+fn assert_mutation_is_found(
     good: &Log,
     plan: &FloorPlan,
     facing: Dart,
@@ -319,12 +319,12 @@ fn mutation_is_told(
         Shows::Never(_) => None,
         Shows::NotOne => return,
     };
-    let told = told_at(&log, good.moves(), &question(plan, Some(facing)));
-    assert_eq!(told, expected, "{how:?} of event {event}");
+    let found = divergence_at(&log, good.moves(), &question(plan, Some(facing)));
+    assert_eq!(found, expected, "{how:?} of event {event}");
 }
 
 #[test]
-fn every_mutation_of_every_event_is_told_at_the_event_or_does_not_show() {
+fn every_mutation_is_found_at_its_event_or_does_not_show() {
     for (name, plan) in plans().unwrap().into_iter().take(3) {
         println!("{name}");
         let facing = starts_of(&plan)[0];
@@ -332,7 +332,7 @@ fn every_mutation_of_every_event_is_told_at_the_event_or_does_not_show() {
         for event in 0..good.places().len() {
             for mutation in MUTATIONS {
                 for by in 0..2 {
-                    mutation_is_told(&good, &plan, facing, event, (mutation, by));
+                    assert_mutation_is_found(&good, &plan, facing, event, (mutation, by));
                 }
             }
         }
@@ -340,13 +340,13 @@ fn every_mutation_of_every_event_is_told_at_the_event_or_does_not_show() {
 }
 
 #[test]
-fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() {
+fn a_log_with_a_wrong_number_of_moves_or_a_wrong_map_diverges_at_its_end() {
     let (_, plan) = plans().unwrap().swap_remove(2);
     let facing = starts_of(&plan)[0];
     let good = log(&plan, facing, 1);
     let question = question(&plan, Some(facing));
     let end = good.places().len();
-    assert_eq!(told_at(&good, good.moves() + 1, &question), Some(end));
+    assert_eq!(divergence_at(&good, good.moves() + 1, &question), Some(end));
     let mut events = good.recorded();
     events.map = Some(MapRecord {
         moves: 0,
@@ -359,7 +359,7 @@ fn a_log_that_tells_another_number_of_moves_or_another_map_is_told_at_its_end() 
 }
 
 #[test]
-fn half_a_run_is_incomplete_and_one_that_says_that_it_is_whole_diverges() {
+fn half_a_run_is_incomplete_and_diverges_if_it_is_recorded_as_complete() {
     let (_, plan) = plans().unwrap().swap_remove(2);
     let facing = starts_of(&plan)[0];
     let good = log(&plan, facing, 1).recorded();
@@ -373,12 +373,12 @@ fn half_a_run_is_incomplete_and_one_that_says_that_it_is_whole_diverges() {
 }
 
 #[test]
-fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
+fn a_wrong_percept_is_a_fault_of_perception_and_a_wrong_door_one_of_motion() {
     // In shape 8 every junction has a door 1.
     let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "shape-8").unwrap();
     let graph = plan.graph();
     let facing = starts_of(&plan)[0];
-    let told = [1; 8].map(Door);
+    let doors = [1; 8].map(Door);
     let walk = |made: &[Door]| {
         let mut world = GraphWorld::new(graph, facing);
         let mut kinds = vec![world.sensed()];
@@ -394,28 +394,28 @@ fn a_robot_that_came_elsewhere_is_told_from_one_that_saw_wrongly() {
         for (moves, &percept) in percepts.iter().enumerate() {
             let number = Some(moves as u32);
             observe(EventKind::Arrival(Arrival { number, percept, form: None, entry: None }));
-            if let Some(&door) = told.get(moves) {
+            if let Some(&door) = doors.get(moves) {
                 observe(EventKind::Door { number: Some(moves as u32 + 1), door });
             }
         }
         RunEvents { events: recorded.finish(), ..RunEvents::default() }
     };
     let question = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, Some(facing)) };
-    let right = walk(&told);
+    let right = walk(&doors);
     assert_eq!(judged(&events(&right), &question).divergence, None);
     // One percept is false.
     let mut false_percept = right.clone();
     false_percept[3].degree = 5;
     let divergence = judged(&events(&false_percept), &question).divergence.unwrap();
     assert_eq!((divergence.event, divergence.fault), (6, FaultClass::Perception));
-    // Nothing follows that could tell: a percept that is so elsewhere is false all the same.
+    // The last percept is false, although it would be true elsewhere.
     let mut last = right.clone();
     let degree = &mut last.last_mut().unwrap().degree;
     *degree = if *degree == 2 { 3 } else { 2 };
     let divergence = judged(&events(&last), &question).divergence.unwrap();
     assert_eq!((divergence.event, divergence.fault), (16, FaultClass::Perception));
-    // One door was not the one that was told; everything after it is of another place.
-    let mut made = told;
+    // The robot takes another door than the recorded one: all later percepts are of another place.
+    let mut made = doors;
     made[2] = Door(0);
     let elsewhere = walk(&made);
     let divergence = judged(&events(&elsewhere), &question).divergence.unwrap();
@@ -431,7 +431,7 @@ fn a_quirk_is_tolerated_and_counted() {
     let percept = log.places().len() - 1;
     assert_eq!(log.mutate(percept, Mutation::Marker, 0), Shows::At(percept));
     let question = question(&plan, Some(facing));
-    assert_eq!(told_at(&log, moves, &question), Some(percept));
+    assert_eq!(divergence_at(&log, moves, &question), Some(percept));
     let text = "[[quirk]]\nname = \"glare\"\ncause = \"percept\"\nreason = \"the window\"";
     let quirks = Quirks::read(text).unwrap();
     let judgement = judge(log.recorded(), &question, &quirks, &()).unwrap();
@@ -445,7 +445,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn a_mutation_of_a_run_in_a_random_plan_is_told(
+    fn a_mutation_of_a_run_in_a_random_plan_is_found(
         seed in 0_u64..1000,
         event in any::<prop::sample::Index>(),
         mutation in prop::sample::select(MUTATIONS.to_vec()),
@@ -455,7 +455,7 @@ proptest! {
         if let Some(&facing) = starts_of(&plan).first() {
             let good = log(&plan, facing, seed);
             let event = event.index(good.places().len());
-            mutation_is_told(&good, &plan, facing, event, (mutation, by));
+            assert_mutation_is_found(&good, &plan, facing, event, (mutation, by));
         }
     }
 

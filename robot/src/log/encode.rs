@@ -29,77 +29,78 @@ fn number(number: u32) -> i32 {
     i32::try_from(number).unwrap_or(i32::MAX)
 }
 
-/// How many, as messages count.
+/// A count as a message records it.
 fn count(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// What sensing told of a picture that was taken then.
+/// The message of a scene.
 #[must_use]
 pub fn scene(stamp: Stamp, scene: &scene::Scene) -> Scene {
-    let mut told = Scene { stamp, marker_door: NONE, ..Scene::default() };
+    let mut message = Scene { stamp, marker_door: NONE, ..Scene::default() };
     match &scene.place {
         Place::Hallway(hallway) => {
-            "hallway".clone_into(&mut told.place);
-            told.status = match hallway.status {
+            "hallway".clone_into(&mut message.place);
+            message.status = match hallway.status {
                 HallwayStatus::Clear => "clear".to_owned(),
                 HallwayStatus::Unclear(why) => why.to_string(),
             };
-            (told.heading, told.left, told.right) = (hallway.heading, hallway.left, hallway.right);
-            told.confidence = hallway.confidence;
+            (message.heading, message.left, message.right) =
+                (hallway.heading, hallway.left, hallway.right);
+            message.confidence = hallway.confidence;
         }
         Place::Junction(junction) => {
-            "junction".clone_into(&mut told.place);
-            told.doors = junction.doors.iter().map(|door| door.direction).collect();
-            told.turning_point = junction.turning_point;
-            told.confidence = junction.confidence;
+            "junction".clone_into(&mut message.place);
+            message.doors = junction.doors.iter().map(|door| door.direction).collect();
+            message.turning_point = junction.turning_point;
+            message.confidence = junction.confidence;
         }
         Place::Unknown(reason) => {
-            "unknown".clone_into(&mut told.place);
-            told.reason = reason.to_string();
+            "unknown".clone_into(&mut message.place);
+            message.reason = reason.to_string();
         }
     }
     if let Some(marker) = &scene.marker {
-        told.marker = true;
-        (told.marker_position, told.marker_axis) = (marker.position, marker.axis);
-        told.marker_door = marker.door.map_or(NONE, |door| number(door.0));
+        message.marker = true;
+        (message.marker_position, message.marker_axis) = (marker.position, marker.axis);
+        message.marker_door = marker.door.map_or(NONE, |door| number(door.0));
     }
-    told
+    message
 }
 
-/// The scene that a message tells; `None` where there is no such scene.
-pub(super) fn scene_of(told: &Scene) -> Option<scene::Scene> {
-    let place = match told.place.as_str() {
+/// The scene of a message; `None` if the message has an unknown word.
+pub(super) fn scene_of(message: &Scene) -> Option<scene::Scene> {
+    let place = match message.place.as_str() {
         "hallway" => Place::Hallway(HallwayView {
-            heading: told.heading,
-            left: told.left,
-            right: told.right,
-            status: match told.status.as_str() {
+            heading: message.heading,
+            left: message.left,
+            right: message.right,
+            status: match message.status.as_str() {
                 "clear" => HallwayStatus::Clear,
                 why => {
                     HallwayStatus::Unclear(UNCLEAR.into_iter().find(|one| one.to_string() == why)?)
                 }
             },
-            confidence: told.confidence,
+            confidence: message.confidence,
         }),
         "junction" => {
-            let through = told.turning_point;
+            let through = message.turning_point;
             let line = |&direction| CentreLine { through, direction };
             Place::Junction(JunctionView {
-                doors: told.doors.iter().map(line).collect(),
+                doors: message.doors.iter().map(line).collect(),
                 turning_point: through,
-                confidence: told.confidence,
+                confidence: message.confidence,
             })
         }
         "unknown" => {
-            Place::Unknown(REASONS.into_iter().find(|one| one.to_string() == told.reason)?)
+            Place::Unknown(REASONS.into_iter().find(|one| one.to_string() == message.reason)?)
         }
         _ => return None,
     };
-    let marker = told.marker.then(|| MarkerView {
-        position: told.marker_position,
-        axis: told.marker_axis,
-        door: u32::try_from(told.marker_door).ok().map(percept::Door),
+    let marker = message.marker.then(|| MarkerView {
+        position: message.marker_position,
+        axis: message.marker_axis,
+        door: u32::try_from(message.marker_door).ok().map(percept::Door),
     });
     Some(scene::Scene { place, marker })
 }
@@ -266,7 +267,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_that_was_told_is_the_same_scene() {
+    fn a_scene_is_read_as_it_was_written() {
         let line = |direction| CentreLine { through: [0.5, 0.1], direction };
         let hallway = |status| {
             Place::Hallway(HallwayView {

@@ -1,5 +1,5 @@
-//! The messages of the project, as `robot/msgs/toposlam_msgs` publishes them; each is told there, field
-//! by field. Their fields stand in the order of their definitions.
+//! The messages of the project. `robot/msgs/toposlam_msgs` defines each of them and documents its fields;
+//! the fields here have the same order.
 
 use serde::Serialize;
 

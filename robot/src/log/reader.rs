@@ -58,8 +58,8 @@ impl Log {
         let mut sections = scan.sections;
         for section in &mut sections {
             let known = section.counts.as_ref().is_some_and(|counts| {
-                let told = counts.keys().all(|id| topics.connections.contains_key(id));
-                told && (section.times.is_some() || counts.values().all(|count| *count == 0))
+                let declared = counts.keys().all(|id| topics.connections.contains_key(id));
+                declared && (section.times.is_some() || counts.values().all(|count| *count == 0))
             });
             if !known {
                 scan_section(section, format, &source, &mut topics)?;

@@ -273,7 +273,7 @@ mod tests {
     use crate::log::message::schema;
 
     #[test]
-    fn a_picture_tells_its_format_by_its_first_bytes() {
+    fn the_format_of_a_picture_is_that_of_its_first_bytes() {
         let format = |bytes| CompressedImage::new(Stamp::default(), bytes).format;
         assert_eq!(format(&[0xff, 0xd8, 0xff, 0xe0]), "jpeg");
         assert_eq!(format(b"\x89PNG\r\n"), "png");

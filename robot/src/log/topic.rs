@@ -126,7 +126,7 @@ impl Topics {
         }
     }
 
-    /// Several that publish the same on one topic are one.
+    /// Connections with the same topic, type and definition share one entry.
     fn add(
         &mut self,
         id: u32,
@@ -136,8 +136,8 @@ impl Topics {
         read: impl FnOnce(&str, &str) -> (Encoding, Result<Definition, Undecodable>),
     ) {
         let mut known = self.list.iter().zip(&self.texts);
-        let same = known.position(|(topic, told)| {
-            topic.name == name && topic.type_name == type_name && told == text
+        let same = known.position(|(topic, known_text)| {
+            topic.name == name && topic.type_name == type_name && known_text == text
         });
         let index = same.unwrap_or_else(|| {
             let (encoding, definition) = read(&type_name, &String::from_utf8_lossy(text));

@@ -189,11 +189,11 @@ mod tests {
         }
     }
 
-    /// By the Common Data Representation: each number is aligned to its size, counted from the end of
-    /// the four bytes of encapsulation; a word tells its length and ends in a zero; a field of fixed
-    /// length does not tell it.
+    /// Common Data Representation: each number is aligned to its size, counted from the end of the four
+    /// bytes of encapsulation. A string starts with its length and ends in a zero. An array of fixed
+    /// length has no length field.
     #[test]
-    fn a_message_is_told_in_cdr() {
+    fn a_message_is_written_in_cdr() {
         let stamp = Stamp { sec: 1, nanosec: 2 };
         let command = Command { stamp, state: "go".to_owned(), turn: 1.0, forward: -0.5 };
         let form = [true, false, true, false];
@@ -206,8 +206,8 @@ mod tests {
         let head = [0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
         let word = [3, 0, 0, 0, b'g', b'o', 0, 0];
         let padded = [&head[..], &word, &one, &minus_half].concat();
-        let told = [&head[..], &[3, 0, 0, 0, 2, 0, 0, 0, 255, 255, 255, 255, 1, 0, 1, 0]];
-        assert_eq!(bodies(&file), [padded, [told.concat(), one.to_vec()].concat()]);
+        let aligned = [&head[..], &[3, 0, 0, 0, 2, 0, 0, 0, 255, 255, 255, 255, 1, 0, 1, 0]];
+        assert_eq!(bodies(&file), [padded, [aligned.concat(), one.to_vec()].concat()]);
     }
 
     #[test]

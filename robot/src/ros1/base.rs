@@ -18,7 +18,7 @@ use crate::{
 /// messages take time, and wheels respond gradually.
 const LAG: f64 = 0.15;
 
-/// A base behind topics. After any error its wheels have been told to stop.
+/// A base behind topics. After any error the stop command has been sent to its wheels.
 pub(super) struct LiveBase {
     wheels: Wheels,
     odometry: Subscription<Reckoning>,

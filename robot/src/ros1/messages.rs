@@ -58,13 +58,13 @@ macro_rules! quaternion {
     };
 }
 
-/// What the wheels are told.
+/// The command to the wheels.
 pub(super) const TWIST: MessageKind = MessageKind {
     name: "geometry_msgs/Twist",
     definition: concat!("Vector3 linear\nVector3 angular\n", vector!("geometry_msgs/Vector3")),
 };
 
-/// Where the robot is by its wheels.
+/// The robot's pose by its wheels.
 pub(super) const ODOMETRY: MessageKind = MessageKind {
     name: "nav_msgs/Odometry",
     definition: concat!(
@@ -257,7 +257,7 @@ mod tests {
         Reckoning { stamp: 3 * SECOND + 7, at, wheels: WheelSpeeds::of(0.1, 0.2) }
     }
 
-    /// By these sums nodes tell whether they speak of the same types; they are ROS's own.
+    /// Nodes compare these checksums to check that their types agree. ROS computes the same values.
     #[test]
     fn the_types_are_those_of_ros() {
         let kinds = [

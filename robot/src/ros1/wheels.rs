@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{robot::RobotError, superscout::WheelSpeeds};
 
-/// The wheels of a robot. When they are dropped, they are told to stop until odometry reports that
-/// they stand, or for a second.
+/// The wheels of a robot. Dropping them repeats the stop command until odometry reports that they
+/// stand, or for a second.
 pub(super) struct Wheels {
     topic: Publisher,
     odometry: Subscription<Reckoning>,

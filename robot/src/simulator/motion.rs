@@ -101,7 +101,7 @@ impl SimulatedBase {
             odometry,
             chance,
             deaf: 0,
-            reading: Reading { time: 0.0, odometry: odometer.told() },
+            reading: Reading { time: 0.0, odometry: odometer.reading() },
             track: None,
         }
     }
@@ -221,7 +221,7 @@ impl SimulatedBase {
     }
 
     fn read(&mut self) {
-        self.reading = Reading { time: self.time, odometry: self.odometer.told() };
+        self.reading = Reading { time: self.time, odometry: self.odometer.reading() };
     }
 }
 

@@ -23,7 +23,7 @@ impl Odometer {
 
     /// The odometry that the robot reports, in whole units of length and angle.
     #[must_use]
-    pub fn told(&self) -> Odometry {
+    pub fn reading(&self) -> Odometry {
         let whole = |value: f64, unit: f64| (value / unit).round() * unit;
         Odometry {
             position: self.sum.position.map(|coordinate| whole(coordinate, LENGTH)),
@@ -57,19 +57,19 @@ mod tests {
         for _ in 0..steps {
             odometer.add(wheels, 5.0 * PI / f64::from(steps));
         }
-        let Odometry { position: [x, y], heading } = odometer.told();
+        let Odometry { position: [x, y], heading } = odometer.reading();
         assert!((x - 1.0).abs() < LENGTH && (y - 1.0).abs() < LENGTH, "{x} {y}");
         assert!((heading - FRAC_PI_2).abs() < ANGLE, "{heading}");
     }
 
     #[test]
-    fn it_tells_tenths_of_an_inch_and_of_a_degree() {
+    fn a_reading_is_in_tenths_of_an_inch_and_of_a_degree() {
         let mut odometer = Odometer::default();
         odometer.add(WheelSpeeds::of(0.1, 0.0), 1.0);
         // 0.1 m are 39.37 tenths of an inch.
-        assert!((odometer.told().position[0] - 39.0 * 0.00254).abs() < 1e-12);
+        assert!((odometer.reading().position[0] - 39.0 * 0.00254).abs() < 1e-12);
         odometer.add(WheelSpeeds::of(0.0, 0.1), 1.0);
         // 0.1 radians are 57.3 tenths of a degree.
-        assert!((odometer.told().heading.to_degrees() - 5.7).abs() < 1e-9);
+        assert!((odometer.reading().heading.to_degrees() - 5.7).abs() < 1e-9);
     }
 }

@@ -90,13 +90,13 @@ pub(crate) fn bag(chunks: &[&[Said]], compression: &str, closed: Closed) -> Vec<
     let magic = b"#ROSBAG V2.0\n";
     let mut bag = [&magic[..], &head(0, 0, 0)].concat();
     let mut infos = Vec::new();
-    let mut told = Vec::new();
+    let mut declared = Vec::new();
     for said in chunks {
         let mut whole = Vec::new();
         let mut index: BTreeMap<u32, Vec<u8>> = BTreeMap::new();
         for &(id, at, number) in *said {
-            if !told.contains(&id) {
-                told.push(id);
+            if !declared.contains(&id) {
+                declared.push(id);
                 whole.extend(connection(id));
             }
             index

@@ -1,4 +1,4 @@
-//! The world in which a log is known to have been made.
+//! The known world of a log.
 
 use std::path::Path;
 
@@ -24,16 +24,16 @@ use crate::cli::input;
 pub(super) struct Known {
     pub(super) world: NamedWorld,
     pub(super) marker: &'static dyn Marker,
-    /// Where the robot starts, where that is known.
+    /// The robot's start, if it is known.
     pub(super) start: Option<Dart>,
     states: Vec<State>,
-    /// How often each case is gone through from all starts.
+    /// The count of each case over all starts.
     pub(super) reachable: trace::AlgorithmCoverage,
-    /// The kinds of junctions from each of their entries, where the world is a floor plan.
+    /// The shapes of the junctions from each of their entries, if the world is a floor plan.
     pub(super) forms: Option<Vec<JunctionShape>>,
 }
 
-/// Says that the start is not known.
+/// The word for an unknown start.
 const ANY: &str = "any";
 
 impl Known {
@@ -52,7 +52,7 @@ impl Known {
         let start = match arguments.start.as_deref() {
             Some(ANY) => None,
             Some(_) => Some(input::start_of(&world, arguments.start.as_deref())?),
-            None => run.and_then(|run| told(&world, run)).or(world.start),
+            None => run.and_then(|run| recorded_start(&world, run)).or(world.start),
         };
         let states = match start {
             None => anywhere(&world.graph, &marker),
@@ -68,17 +68,13 @@ impl Known {
         KnownWorld { graph: &world.graph, marker: *marker, states: states.clone() }
     }
 
-    /// Says so where a log says that it was made in another world.
+    /// Prints a warning if the log was recorded in another world.
     pub(super) fn warn(&self, log: &Path, run: &Run) {
-        let told = &run.world_hash;
+        let recorded = &run.world_hash;
         let other =
-            self.world.graph.darts().all(|dart| world_hash(&self.world.graph, dart) != *told);
-        if !told.is_empty() && other {
-            eprintln!(
-                "{}: it says that it was made in another world, {}",
-                log.display(),
-                run.world
-            );
+            self.world.graph.darts().all(|dart| world_hash(&self.world.graph, dart) != *recorded);
+        if !recorded.is_empty() && other {
+            eprintln!("{}: the log was recorded in another world, {}", log.display(), run.world);
         }
     }
 
@@ -88,13 +84,13 @@ impl Known {
     }
 }
 
-/// The start that a log tells, where it was made in this world.
-fn told(world: &NamedWorld, run: &Run) -> Option<Dart> {
+/// The start that a log records, if it was recorded in this world.
+fn recorded_start(world: &NamedWorld, run: &Run) -> Option<Dart> {
     let start = world.start_from_text(&run.start).ok()?;
     (world_hash(&world.graph, start) == run.world_hash).then_some(start)
 }
 
-/// What the junctions of a floor plan look like, from each of their entries.
+/// The shapes of the junctions of a floor plan, from each of their entries.
 fn forms(world: &NamedWorld) -> Option<Vec<JunctionShape>> {
     let plan = world.plan.as_ref()?;
     let graph = plan.graph();

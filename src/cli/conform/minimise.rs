@@ -1,4 +1,4 @@
-//! A shorter log that diverges in the same way, and the command that judges it.
+//! A shorter log that diverges in the same way, and the command that checks it.
 
 use std::{f64::consts::PI, path::Path};
 
@@ -24,15 +24,15 @@ use crate::cli::output;
 /// A shorter log.
 pub(super) struct Minimised {
     pub(super) events: RunEvents,
-    /// The command that judges it, where it was written.
+    /// The command that checks it, if it was written.
     pub(super) command: Option<String>,
 }
 
-/// A robot that left a junction drove on so far, in metres.
-const ON: f64 = 2.0;
+/// The distance that a written log has between two junctions, in metres.
+const DISTANCE: f64 = 2.0;
 
 impl ConformArguments {
-    /// A shorter log, written where that is asked for.
+    /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, Failure> {
         let question = self.question(judged.known.as_ref());
         let Some(ShortenedRun { events, by_itself }) =
@@ -64,7 +64,7 @@ impl ConformArguments {
         Ok(Some(Minimised { events, command }))
     }
 
-    /// The command that judges a shorter log as this one was judged.
+    /// The command that checks a shorter log as this one was checked.
     fn command(&self, path: &Path, judged: &Judged, by_itself: bool) -> String {
         let mut words =
             vec!["toposlam".to_owned(), "conform".to_owned(), path.display().to_string()];
@@ -84,21 +84,21 @@ impl ConformArguments {
     }
 }
 
-/// RunEvents as a log tells them: percepts, doors, and odometry where a door was not the one that was
-/// taken, or the entry not where the robot came from.
+/// A log of the events: percepts and doors. It has odometry only where an event has an angle off its door
+/// or its entry.
 fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
-    let mut told = Told::default();
+    let mut last = LastJunction::default();
     for CheckedEvent { source, kind } in &events.events {
         let time = source.time.saturating_sub(begun);
         let stamp = Stamp::of(time);
         match kind {
             CheckedKind::Arrival { arrival, entry_off } => {
-                if let Some(way) = told.way(arrival, *entry_off) {
-                    // By where the robot is and where it came from odometry tells the entry door.
-                    for forward in [0.0, ON] {
+                if let Some(way) = last.way(arrival, *entry_off) {
+                    // Odometry before and after the drive gives the direction of the entry door.
+                    for forward in [0.0, DISTANCE] {
                         let there =
                             Odometry { position: at.position, heading: way }.moved(0.0, forward);
                         log.write(ODOM, time, &odometry(stamp, &there))?;
@@ -108,14 +108,14 @@ fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError
                     }
                 }
                 log.write(Percept::TOPIC, time, &arrival_message(stamp, arrival))?;
-                told = Told { arrival: Some(*arrival), left: None };
+                last = LastJunction { arrival: Some(*arrival), left: None };
             }
             CheckedKind::Door { door, number, off } => {
                 log.write(Door::TOPIC, time, &door_message(stamp, *number, *door))?;
                 let entered =
-                    told.arrival.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
+                    last.arrival.and_then(|arrival| Some((arrival.form?, arrival.entry?)));
                 let leads = entered.and_then(|(form, entry)| direction(form, entry, *door));
-                told.left = leads.zip(*off);
+                last.left = leads.zip(*off);
             }
             CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {}
         }
@@ -123,7 +123,7 @@ fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError
     log.finish()
 }
 
-/// What was seen, as a log tells it: scenes and odometry.
+/// A log of the scenes and odometry.
 fn write_seen(seen: &[SensedScene], run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
     let mut log = begin(run)?;
     let begun = seen.first().map_or(0, |seen| seen.source.time);
@@ -136,7 +136,7 @@ fn write_seen(seen: &[SensedScene], run: Option<&Run>) -> Result<Vec<u8>, LogWri
     log.finish()
 }
 
-/// A log with the head of another; what its pictures needed is no longer needed.
+/// A log with the head of another, without the calibration and colours: it has no pictures.
 fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
     let mut log = LogWriter::new(Vec::new())?;
     let run = run.cloned().unwrap_or_default();
@@ -144,15 +144,15 @@ fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
     Ok(log)
 }
 
-/// What was told of the last junction.
+/// The last junction in the log.
 #[derive(Default)]
-struct Told {
+struct LastJunction {
     arrival: Option<Arrival>,
-    /// The direction of the door that was taken, and by how much the robot drove aside of it.
+    /// The direction of the recorded door, and the angle by which the robot missed it.
     left: Option<(f64, f64)>,
 }
 
-impl Told {
+impl LastJunction {
     /// The direction in which the robot drove to an arrival; `None` if it does not matter.
     fn way(&self, now: &Arrival, entry_off: Option<f64>) -> Option<f64> {
         let by_door = self.left.map(|(leads, off)| leads + off);

@@ -53,7 +53,7 @@ impl Judged {
             remarks: self.remarks(verdict),
             facts: self.facts(),
             events: self.lines(),
-            divergence: divergence.map(|divergence| self.told(divergence)),
+            divergence: divergence.map(|divergence| self.divergence_report(divergence)),
             coverage: self.coverage(),
             tolerated: self.tolerated(quirks),
             shorter,
@@ -195,7 +195,7 @@ impl Judged {
         judgement.events.events.iter().enumerate().map(line).collect()
     }
 
-    fn told(&self, divergence: &Divergence) -> DivergenceReport {
+    fn divergence_report(&self, divergence: &Divergence) -> DivergenceReport {
         let events = &self.judgement.events.events;
         let begun = self.opened.log.start().unwrap_or(0);
         let event = events.get(divergence.event);
@@ -226,12 +226,12 @@ impl Judged {
                         }
                     }
                 };
-                let mut told: Vec<_> =
+                let mut allowed: Vec<_> =
                     misfit.candidates.iter().take(LISTED).map(candidate).collect();
                 if let Some(more) = misfit.candidates.len().checked_sub(LISTED + 1) {
-                    told.push(format!("and {} more", more + 1));
+                    allowed.push(format!("and {} more", more + 1));
                 }
-                told
+                allowed
             }
             DivergenceCause::Algorithm(departure) => {
                 departure.allowed.iter().map(ToString::to_string).collect()

@@ -61,25 +61,25 @@ pub(super) fn json(
     report: &LogReport,
     judgement: &Judgement,
 ) -> Result<(), Failure> {
-    let told = report.divergence.as_ref();
+    let divergence = report.divergence.as_ref();
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
     let line = Line {
         schema: 1,
         log: &report.log,
         verdict: report.verdict.name(),
-        event: told.map(|told| told.event),
-        class: told.map(|told| told.fault.name()),
+        event: divergence.map(|divergence| divergence.event),
+        class: divergence.map(|divergence| divergence.fault.name()),
         events: report.events.len(),
-        matched: told.map_or(report.events.len(), |told| told.event - 1),
+        matched: divergence.map_or(report.events.len(), |divergence| divergence.event - 1),
         candidates: judgement.candidates(),
         coverage: counts(&report.coverage),
         unreachable: unreachable.map(|covered| &*covered.case).collect(),
-        cause: told.map(|told| told.cause),
-        condition: told.map(|told| &*told.why),
-        allowed: told.map_or(&[], |told| &told.allowed),
-        time: told.map(|told| told.time),
-        message: told.and_then(|told| told.message).map(|(message, _)| message),
-        offset: told.and_then(|told| told.message).map(|(_, offset)| offset),
+        cause: divergence.map(|divergence| divergence.cause),
+        condition: divergence.map(|divergence| &*divergence.why),
+        allowed: divergence.map_or(&[], |divergence| &divergence.allowed),
+        time: divergence.map(|divergence| divergence.time),
+        message: divergence.and_then(|divergence| divergence.message).map(|(message, _)| message),
+        offset: divergence.and_then(|divergence| divergence.message).map(|(_, offset)| offset),
         facts: report.facts.iter().map(|(name, fact)| (*name, &**fact)).collect(),
         remarks: &report.remarks,
         tolerated: report
@@ -100,7 +100,7 @@ fn counts(coverage: &[CoveredCase]) -> BTreeMap<&str, u64> {
 pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), Failure> {
     match &report.divergence {
         None => writeln!(out, "{}: {}", report.log, in_words(report.verdict))?,
-        Some(told) => diverged(out, report, told)?,
+        Some(divergence) => diverged(out, report, divergence)?,
     }
     for remark in &report.remarks {
         print_hanging(out, "  ", remark)?;
@@ -135,9 +135,9 @@ fn in_words(verdict: ConformVerdict) -> &'static str {
 fn diverged(
     out: &mut dyn Write,
     report: &LogReport,
-    told: &DivergenceReport,
+    divergence: &DivergenceReport,
 ) -> Result<(), Failure> {
-    let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = told;
+    let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = divergence;
     writeln!(
         out,
         "{}: diverges at event {event} of {}, at {time:.1} s: {fault}",
@@ -186,7 +186,7 @@ fn covered(coverage: &[CoveredCase]) -> String {
     let possible = |covered: &&CoveredCase| covered.count > 0 || covered.reachable != Some(false);
     let all = coverage.iter().filter(possible).count();
     let seen: Vec<_> = coverage.iter().filter(|covered| covered.count > 0).collect();
-    let told: Vec<_> =
+    let listed: Vec<_> =
         seen.iter().map(|covered| format!("{} {}", covered.case, covered.count)).collect();
     let missed: Vec<_> = coverage
         .iter()
@@ -198,8 +198,8 @@ fn covered(coverage: &[CoveredCase]) -> String {
         0 => String::new(),
         _ => format!("; not covered: {}", missed.join(", ")),
     };
-    let told = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
-    format!("{} of {all} cases{told}{missed}", seen.len())
+    let listed = if listed.is_empty() { String::new() } else { format!(": {}", listed.join(", ")) };
+    format!("{} of {all} cases{listed}{missed}", seen.len())
 }
 
 /// The summary of several logs.

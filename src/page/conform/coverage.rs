@@ -16,7 +16,7 @@ pub(super) fn table(cases: &[CoveredCase]) -> String {
 
 fn row(case: &CoveredCase, most: u64) -> String {
     let name = escaped(&case.case);
-    let (class, told) = match (case.count, case.reachable) {
+    let (class, cells) = match (case.count, case.reachable) {
         (0, Some(false)) => ("beyond", "<td colspan=\"2\">not reachable</td>".to_owned()),
         (0, _) => ("missed", "<td colspan=\"2\">not reached</td>".to_owned()),
         (count, reachable) => {
@@ -33,10 +33,10 @@ fn row(case: &CoveredCase, most: u64) -> String {
             ("met", cells)
         }
     };
-    format!("<tr class=\"{class}\"><th scope=\"row\">{name}</th>{told}</tr>\n")
+    format!("<tr class=\"{class}\"><th scope=\"row\">{name}</th>{cells}</tr>\n")
 }
 
-/// How many of the cases that can be gone through were.
+/// The number of reachable cases that were reached.
 pub(super) fn summary(cases: &[CoveredCase]) -> String {
     let met = cases.iter().filter(|case| case.count > 0).count();
     let beyond = cases.iter().filter(|case| case.count == 0 && case.reachable == Some(false));
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_reached_is_not_asked_for() {
+    fn unreachable_cases_are_not_counted() {
         let sum = [case("a", 5, Some(true)), case("b", 0, None), case("c", 0, Some(false))];
         assert!(summary(&sum).contains("1 of 2 cases reached; 1 cannot be reached"));
     }

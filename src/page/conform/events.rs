@@ -18,18 +18,18 @@ const LEAF: usize = 100;
 
 /// The events before the divergence, and the diverging one.
 pub(super) fn before(report: &LogReport) -> Option<String> {
-    let told = report.divergence.as_ref()?;
-    let earlier = report.events.partition_point(|line| line.number < told.event);
+    let divergence = report.divergence.as_ref()?;
+    let earlier = report.events.partition_point(|line| line.number < divergence.event);
     let last = report.events.get(earlier.saturating_sub(BEFORE)..earlier)?;
-    let here = report.events.get(earlier).filter(|line| line.number == told.event);
+    let here = report.events.get(earlier).filter(|line| line.number == divergence.event);
     let rows = each(last, |line| row(line, "", ""));
-    let time = here.map_or(told.time, |line| line.time);
-    Some(table(&(rows + &diverging(told.event, time, &told.what, ""))))
+    let time = here.map_or(divergence.time, |line| line.time);
+    Some(table(&(rows + &diverging(divergence.event, time, &divergence.what, ""))))
 }
 
 /// All events, folded.
 pub(super) fn all(report: &LogReport, log: usize) -> String {
-    let off = report.divergence.as_ref().map(|told| told.event);
+    let off = report.divergence.as_ref().map(|divergence| divergence.event);
     let let_pass: BTreeSet<_> =
         report.tolerated.iter().flat_map(|(_, _, events)| events).copied().collect();
     let row = |line: &EventLine| {
@@ -46,8 +46,13 @@ pub(super) fn all(report: &LogReport, log: usize) -> String {
         |lines: &[EventLine]| format!("<div class=\"leaf\">{}</div>\n", table(&each(lines, row)));
     // An event that is missing at the end has no line.
     let missing = report.divergence.as_ref().filter(|_| !has_divergence(report));
-    let missing = missing.map_or_else(String::new, |told| {
-        table(&diverging(told.event, told.time, &told.what, &id(log, told.event)))
+    let missing = missing.map_or_else(String::new, |divergence| {
+        table(&diverging(
+            divergence.event,
+            divergence.time,
+            &divergence.what,
+            &id(log, divergence.event),
+        ))
     });
     let summary = match report.events.len() {
         0 => "No event".to_owned(),
@@ -70,7 +75,7 @@ fn id(log: usize, event: usize) -> String {
 }
 
 fn has_divergence(report: &LogReport) -> bool {
-    let off = report.divergence.as_ref().map(|told| told.event);
+    let off = report.divergence.as_ref().map(|divergence| divergence.event);
     report.events.iter().any(|line| off == Some(line.number))
 }
 

@@ -45,7 +45,7 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
         escaped(&report.log),
     ));
     let because = match &report.divergence {
-        Some(told) => because(told, report, log),
+        Some(divergence) => because(divergence, report, log),
         None => format!("<p>{}</p>\n", wording::fits(report)),
     };
     let remarks =
@@ -57,8 +57,8 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
 }
 
 /// The divergence: where, why, and the class of the fault.
-fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
-    let DivergenceReport { event, time, message, fault, cause, what, why, .. } = told;
+fn because(divergence: &DivergenceReport, report: &LogReport, log: usize) -> String {
+    let DivergenceReport { event, time, message, fault, cause, what, why, .. } = divergence;
     let of = report.events.len();
     let place = if *event > of {
         format!("After all {of} events")
@@ -82,7 +82,7 @@ fn because(told: &DivergenceReport, report: &LogReport, log: usize) -> String {
 }
 
 fn allowed(report: &LogReport, level: Level) -> String {
-    let allowed = report.divergence.as_ref().map(|told| &told.allowed);
+    let allowed = report.divergence.as_ref().map(|divergence| &divergence.allowed);
     let Some(allowed) = allowed.filter(|allowed| !allowed.is_empty()) else {
         return String::new();
     };
@@ -95,7 +95,7 @@ fn before(report: &LogReport, log: usize, level: Level) -> String {
         return String::new();
     };
     let all = match &report.divergence {
-        Some(told) => events::link(log, told.event, "among all events"),
+        Some(divergence) => events::link(log, divergence.event, "among all events"),
         None => String::new(),
     };
     let more = format!("<p class=\"faint\">{all}</p>\n");

@@ -90,7 +90,7 @@ fn every_place_of_the_template_is_filled() {
 }
 
 #[test]
-fn words_of_a_log_are_text_wherever_they_stand() {
+fn the_words_of_a_log_are_escaped_everywhere() {
     let nasty = || "</script><script>alert('1')</script><i a=\"&{{logs}}".to_owned();
     let mut report = diverged(3, 2);
     report.log = nasty();
@@ -102,8 +102,9 @@ fn words_of_a_log_are_text_wherever_they_stand() {
     report.shorter = vec![nasty()];
     report.command = Some(nasty());
     report.world = Some(nasty());
-    if let Some(told) = &mut report.divergence {
-        (told.what, told.why, told.allowed) = (nasty(), nasty(), vec![nasty(); 20]);
+    if let Some(divergence) = &mut report.divergence {
+        (divergence.what, divergence.why, divergence.allowed) =
+            (nasty(), nasty(), vec![nasty(); 20]);
     }
     let quiet = LogReport { log: nasty(), remarks: vec![nasty()], ..conforming(0) };
     for reports in [vec![report.clone()], vec![report, quiet]] {
@@ -111,7 +112,7 @@ fn words_of_a_log_are_text_wherever_they_stand() {
         assert_eq!(page.matches("<script").count(), 1, "the template's own");
         assert_eq!(page.matches("</script").count(), 1);
         assert!(!page.contains("<i "));
-        // What is put in is not searched for places.
+        // Inserted text is not searched for placeholders.
         assert!(page.contains("{{logs}}"));
         assert_eq!(page.matches("<main>").count(), 1);
     }
@@ -141,7 +142,7 @@ fn each_verdict_has_its_word_sign_and_colour() {
 }
 
 #[test]
-fn a_divergence_is_told_with_what_led_there_and_would_have_been_allowed() {
+fn a_divergence_is_shown_with_the_events_before_it_and_what_is_allowed() {
     let page = conform_page(&[diverged(9, 7)]);
     for part in [
         "<b>Perceives 4 doors.</b>",
@@ -237,10 +238,10 @@ fn no_log_does_not_conform() {
 #[test]
 fn a_long_list_is_folded() {
     let mut report = diverged(3, 2);
-    let told = |count: usize| (0..count).map(|at| format!("door {at}")).collect::<Vec<_>>();
+    let doors = |count: usize| (0..count).map(|at| format!("door {at}")).collect::<Vec<_>>();
     for (count, summary) in [(13, None), (40, Some("<summary>28 more</summary>"))] {
         if let Some(divergence) = &mut report.divergence {
-            divergence.allowed = told(count);
+            divergence.allowed = doors(count);
         }
         let page = conform_page(std::slice::from_ref(&report));
         assert_eq!(page.matches("<li>door ").count(), count);

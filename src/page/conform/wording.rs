@@ -33,9 +33,9 @@ pub(super) fn tally(reports: &[LogReport]) -> String {
         return "no log was checked".to_owned();
     }
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
-    let told = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
+    let counts = [ConformVerdict::Diverged, ConformVerdict::Incomplete, ConformVerdict::Conforms]
         .map(|verdict| (count(verdict), verdict));
-    let told: Vec<_> = told
+    let parts: Vec<_> = counts
         .iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, verdict)| match (verdict, count) {
@@ -43,7 +43,7 @@ pub(super) fn tally(reports: &[LogReport]) -> String {
             _ => format!("{count} {}", verdict.name()),
         })
         .collect();
-    format!("{}: {}", counted(reports.len(), "log"), told.join(", "))
+    format!("{}: {}", counted(reports.len(), "log"), parts.join(", "))
 }
 
 /// A number of things.

@@ -363,7 +363,7 @@ fn a_marker_seen_from_the_hallway_lies_at_the_next_junction() {
 }
 
 #[test]
-fn a_junction_without_a_door_behind_tells_nothing() {
+fn a_junction_without_a_door_behind_is_ignored() {
     let mut robot = Robot::in_hallway(&[Door(2)]);
     let crosswise = [FRAC_PI_2, -FRAC_PI_2];
     assert_eq!(robot.sees(&junction(&crosswise, 0.5, 0.0)), ahead(UNIT / 3.0));
@@ -390,7 +390,7 @@ fn out_of_a_junction_it_goes_along_the_centre_line_of_the_door() {
 }
 
 #[test]
-fn a_junction_just_left_tells_nothing_without_the_door_that_was_taken() {
+fn a_junction_just_left_is_ignored_without_the_door_that_was_taken() {
     let mut robot = Robot::leaving(&[Door(2)]);
     assert_eq!(robot.sees(&junction(T_STEM, -0.5, 0.0)), ahead(UNIT / 3.0));
     assert_eq!(robot.path.state(), PathState::Leaving);
@@ -497,7 +497,7 @@ fn a_junction_is_seen_anew_after_the_last_one_was_left() {
 }
 
 #[test]
-fn at_a_dead_end_it_turns_around_only_when_told_to() {
+fn at_a_dead_end_it_turns_around_only_on_command() {
     let here = junction(DEAD_END, 0.0, 0.0);
     assert_eq!(Robot::come_to(DEAD_END, &[Door(2)]).arrives(&here).percept.degree, 1);
 

@@ -169,8 +169,8 @@ fn one(
             }
         }
         MESSAGE_INDEX => {
-            let told = u16_at(bytes, 0).zip(u32_at(bytes, 2));
-            match (told, scan.sections.last_mut()) {
+            let entry = u16_at(bytes, 0).zip(u32_at(bytes, 2));
+            match (entry, scan.sections.last_mut()) {
                 (Some((channel, length)), Some(chunk)) => {
                     let counts = chunk.counts.get_or_insert_default();
                     *counts.entry(channel.into()).or_default() += u64::from(length) / 16;

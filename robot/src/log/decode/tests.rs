@@ -100,28 +100,28 @@ fn a_message_that_is_cut_is_short_wherever_that_is() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_byte() {
-    let told = |dialect, text, bytes: &[u8]| {
+fn an_error_has_its_byte() {
+    let message = |dialect, text, bytes: &[u8]| {
         decode(&definition(dialect, text), bytes).unwrap_err().to_string()
     };
     assert_eq!(
-        told(Dialect::Ros1, "uint8 a\nfloat64[] b", &[1, 0, 0, 0, 64, 9]),
+        message(Dialect::Ros1, "uint8 a\nfloat64[] b", &[1, 0, 0, 0, 64, 9]),
         "byte 5 of the message, `b`: 8589934592 more bytes are needed, and 1 are left"
     );
     assert_eq!(
-        told(Dialect::Ros1, "string s", &[255; 4]),
+        message(Dialect::Ros1, "string s", &[255; 4]),
         "byte 4 of the message, `s`: 4294967295 more bytes are needed, and 0 are left"
     );
     assert_eq!(
-        told(Dialect::Ros2, "uint8 a", &[0, 7, 0, 0, 1]),
+        message(Dialect::Ros2, "uint8 a", &[0, 7, 0, 0, 1]),
         "byte 0 of the message: the encapsulation 0x0007 is not known; known are 0x0000 and 0x0001, \
          plain CDR"
     );
     assert_eq!(
-        told(Dialect::Ros2, "uint8[<=2] a", &[0, 1, 0, 0, 3, 0, 0, 0, 1, 2, 3]),
+        message(Dialect::Ros2, "uint8[<=2] a", &[0, 1, 0, 0, 3, 0, 0, 0, 1, 2, 3]),
         "byte 4 of the message, `a`: a list of 3, which may have 2"
     );
-    assert!(told(Dialect::Ros2, "wstring a", &[0, 1, 0, 0, 0]).contains("wstring"));
+    assert!(message(Dialect::Ros2, "wstring a", &[0, 1, 0, 0, 0]).contains("wstring"));
 }
 
 proptest::proptest! {

@@ -91,19 +91,19 @@ fn sections<'t>(
                 let next = Section { name, line: number, lines: Vec::new() };
                 sections.push(std::mem::replace(&mut section, next));
             }
-            told => section.lines.push((number, told)),
+            parsed => section.lines.push((number, parsed)),
         }
     }
     sections.push(section);
     Ok(sections)
 }
 
-/// How much there is in a message.
+/// The size of a message type.
 #[derive(Clone, Copy, Default)]
 struct Size {
     /// Its fields, and those of the messages in it.
     fields: usize,
-    /// How deep messages stand in it, itself counted.
+    /// The depth of nested messages, including itself.
     depth: usize,
 }
 
@@ -115,7 +115,7 @@ struct Resolver<'t> {
 }
 
 impl Resolver<'_> {
-    /// Makes a message and those in it, unless that is done; the fields of each are counted.
+    /// Adds a message type and the types of its fields, and counts the fields of each.
     fn add(
         &self,
         index: usize,
@@ -137,8 +137,8 @@ impl Resolver<'_> {
         };
         let mut names = BTreeSet::new();
         let mut size = Size { fields: 0, depth: 1 };
-        for (number, told) in &section.lines {
-            let (type_name, count, name) = match *told {
+        for (number, parsed) in &section.lines {
+            let (type_name, count, name) = match *parsed {
                 DefinitionLine::Constant { type_name, name, value } => {
                     if self.primitive(type_name).is_none() {
                         return Err(

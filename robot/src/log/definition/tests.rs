@@ -59,7 +59,7 @@ fn a_message_of_ros_2_has_bounds_and_defaults() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line() {
+fn an_error_has_its_line() {
     let after = |section: &str, text: &str| format!("{section}\n{LINE}\nMSG: {text}");
     for (text, message) in [
         ("int32".to_owned(), "line 1 of the definition: `int32` is neither a field nor a constant"),

@@ -56,12 +56,12 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
     }
     let mut paths = carrier.paths.clone();
     if !own {
-        let heading_told = [MessagePart::Heading, MessagePart::Quaternion]
+        let heading_mapped = [MessagePart::Heading, MessagePart::Quaternion]
             .iter()
             .any(|part| paths.contains_key(part));
         for (part, path) in usual.unwrap_or_default() {
             let is_heading = matches!(part, MessagePart::Heading | MessagePart::Quaternion);
-            if !(is_heading && heading_told) {
+            if !(is_heading && heading_mapped) {
                 paths.entry(*part).or_insert_with(|| (*path).to_owned());
             }
         }

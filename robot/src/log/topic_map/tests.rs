@@ -34,7 +34,7 @@ fn a_mapping_is_written_as_it_was_read() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_column() {
+fn an_error_has_its_line_and_column() {
     for (text, message) in [
         ("", "the file is empty"),
         ("# nothing", "no topic is mapped"),
