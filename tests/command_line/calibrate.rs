@@ -232,7 +232,7 @@ fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
         (&[image, "--camera-height", "nan"], "--camera-height: NaN is out of range".to_owned()),
         (&[image, "--ahead", "1000"], "--ahead: ".to_owned()),
         (&[image, "--mask-out", &mask], "--mask-out: 1 images are too few to find what never changes; take at least 4, from different places".to_owned()),
-        (&[image, image, image, image, "--mask-out", &mask], "--mask-out: nearly nothing changes from image to image".to_owned()),
+        (&[image, image, image, image, "--mask-out", &mask], "--mask-out: almost nothing changes from image to image".to_owned()),
         (&[image, "--picture", "fit.bmp"], "fit.bmp: the name must end in .png or .jpg or .jpeg".to_owned()),
     ];
     for (arguments, message) in cases {

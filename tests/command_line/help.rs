@@ -105,6 +105,8 @@ fn no_line_is_wider_than_80_columns() {
     ];
     for arguments in runs {
         for line in stdout(&run(arguments)).lines() {
+            // The length of a path is not ours to limit.
+            let line = line.replace(&log, "run.mcap");
             assert!(line.chars().count() <= 80, "{arguments:?}: {line}");
         }
     }

@@ -92,7 +92,7 @@ fn invalid_input_is_refused_and_nothing_is_written() {
     rejected(&with(&["--calibration", "nowhere.toml"]), "nowhere.toml: cannot be read");
     rejected(
         &[&["worlds/figure-1a.toml"], &out[..]].concat(),
-        "figure-1a.toml: this world is no floor",
+        "figure-1a.toml: this world is not a floor plan",
     );
     rejected(&[PLAN, "--out", "view.gif"], "view.gif: the name must end in .png or .jpg or .jpeg");
     rejected(&with(&["--labels", "labels.jpg"]), "labels.jpg: the name must end in .png");

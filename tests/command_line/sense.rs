@@ -307,7 +307,7 @@ fn stages_of_images_with_the_same_name_are_refused() {
     let steps = folder("sense_alike");
     let output = run(sense(&[&one, &other], &["--stages", steps.to_str().unwrap()]));
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("its pictures would be called as those of"));
+    assert!(stderr(&output).contains("its pictures would have the same names as those of"));
     assert!(names_in(&steps).is_empty());
     stdout_of(sense(&[&one, &other], &[]));
 }

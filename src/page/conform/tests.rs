@@ -232,7 +232,7 @@ fn several_logs_are_summed_up_above() {
 fn no_log_does_not_conform() {
     let page = conform_page(&[]);
     assert!(page.contains("<div class=\"verdict incomplete\">"));
-    assert!(page.contains("<strong>No log was judged</strong>"));
+    assert!(page.contains("<strong>No log was checked</strong>"));
 }
 
 #[test]
