@@ -125,7 +125,11 @@ fn a_few_doors_are_taken_with_pictures() {
     let arguments = ["evaluate", "control", "--images", "--look", "tiles", "--traversals", "4"];
     let output = run([&arguments[..], &["--plan", SHAPE_8]].concat());
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
-    assert!(stdout(&output).contains("Driving by rendered images of 640x480"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("Driving by rendered images of 640x480"),
+        "{}",
+        stdout(&output)
+    );
 }
 
 // paper: exp.simulated

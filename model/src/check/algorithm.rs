@@ -44,7 +44,7 @@ pub trait Algorithm: Sync {
         observer: &mut impl Observer<GraphWorld<'g, Self::Marker>>,
     ) -> Result<(), MappingError<Refused>>;
 
-    /// Makes and judges the other runs of a start. There are some with [`AllChoices`] only.
+    /// Makes and judges the other runs of a start. There are some with [`AllChoices`](super::AllChoices) only.
     ///
     /// # Errors
     /// Returns the first [`Flaw`].

@@ -70,7 +70,7 @@ impl Node {
             Ok(Err(error)) => return Err(self.unreachable(error.to_string())),
             Err(_) => return Err(self.unreachable("it does not answer".to_owned())),
         };
-        Ok(Publisher { publisher, runner: self.runner.clone(), topic: topic.to_owned() })
+        Ok(Publisher { sender: publisher, runner: self.runner.clone(), topic: topic.to_owned() })
     }
 
     /// Subscribes to a topic. Messages that cannot be read are counted and skipped.
@@ -130,7 +130,7 @@ impl Drop for Node {
 
 /// A topic to which a node publishes.
 pub(super) struct Publisher {
-    publisher: PublisherAny,
+    sender: PublisherAny,
     runner: tokio::runtime::Handle,
     topic: String,
 }
@@ -140,7 +140,7 @@ impl Publisher {
     pub(super) fn publish(&self, body: &[u8]) -> Result<(), RobotError> {
         let length = (body.len() as u32).to_le_bytes();
         let message = [&length[..], body].concat();
-        let published = self.runner.block_on(self.publisher.publish(message));
+        let published = self.runner.block_on(self.sender.publish(message));
         published.map_err(|_| RobotError::Closed { topic: self.topic.clone() })
     }
 }
