@@ -125,7 +125,7 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
         (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
         (&["check", "--shard", "3/2"], "`3/2` is not a shard; write i/n with i from 1 to n"),
         (&["check", "--shard", "0/2"], "`0/2` is not a shard; write i/n with i from 1 to n"),
-        (&["check", "--class", "tree"], "there are multigraph, simple, corridor and planar"),
+        (&["check", "--class", "tree"], "the classes are multigraph, simple, corridor and planar"),
         (
             &["check", "--marker", "chalk"],
             "no algorithm maps with `chalk`; choose directional or movable",

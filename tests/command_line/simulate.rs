@@ -31,7 +31,7 @@ fn a_robot_that_sees_only_its_pictures_maps_shape_6() {
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{text}{}", stderr(&output));
     for part in [
-        "shape-6, from corner with its back to the door tee.",
+        "World shape-6. The robot starts at corner, with its back to the door to tee.",
         "It puts its marker down here, at vertex v0 of the map. It senses 2 doors, marker\nalong door 0.",
         "So v4.1 and v1.2 are the two ends of one edge.",
         "The map is right, after 7 moves, all as specified.",
@@ -185,7 +185,7 @@ fn bad_arguments_are_reported_before_the_run() {
         (&[SHAPE_6, "--calibration", &camera], "error: "),
         (
             &[SHAPE_6, "--noise", "9"],
-            "with more than 5 times the default a robot cannot find its way",
+            "with more than 5 times the default noise a robot cannot navigate",
         ),
         (&[SHAPE_6, "--fault", "fog@3"], "the faults are dropped, late, frozen"),
     ];
