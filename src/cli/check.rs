@@ -11,15 +11,15 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, MovableMarker, Shard, Sweep, Tally, WorstStart, check_worlds},
+    check::{MappingAlgorithm, Shard, Sweep, Tally, WorstStart},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome, RunChoices, input,
-    mapping_marker::{MappingAlgorithm, MappingMarker, movable_not_sufficient},
+    ChoicesOption, Failure, Outcome, input,
+    mapping_marker::{MappingMarker, movable_not_sufficient},
     output,
     progress::Progress,
     use_threads,
@@ -101,19 +101,7 @@ impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
-        match self.marker.algorithm(choice)? {
-            MappingAlgorithm::Algorithm1 => self.check(&Algorithm1, choice, out),
-            MappingAlgorithm::AllChoices(algorithm) => self.check(&algorithm, choice, out),
-            MappingAlgorithm::MovableMarker => self.check(&MovableMarker, choice, out),
-        }
-    }
-
-    fn check(
-        self,
-        algorithm: &impl Algorithm,
-        choice: RunChoices,
-        out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+        let algorithm = self.marker.algorithm(choice)?;
         let work = match &self.from {
             Some(path) => self.worlds_by_size(path)?,
             None => self.sweeps()?,
@@ -122,10 +110,10 @@ impl CheckArguments {
             output::check_world_place(worst, work.values().all(Work::is_simple))?;
         }
         let start = Instant::now();
-        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(algorithm), choice);
+        let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         for (edges, work) in work {
-            let tally = work.check(edges, algorithm)?;
+            let tally = work.check(edges, &algorithm)?;
             let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
             report.size(&SizeResult { edges, class, from, shard, tally: &tally })?;
             keep_worse(&mut worst, tally.worst);
@@ -173,11 +161,11 @@ impl CheckArguments {
 }
 
 impl Work {
-    fn check(&self, edges: usize, algorithm: &impl Algorithm) -> Result<Tally, Failure> {
+    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, Failure> {
         let progress = Progress::new(&format!("{edges} edges"), "starts")?;
         let tally = match self {
-            Self::Sweep(sweep) => sweep.run(algorithm, &progress),
-            Self::Worlds(graphs) => check_worlds(graphs, algorithm, &progress),
+            Self::Sweep(sweep) => algorithm.sweep(sweep, &progress),
+            Self::Worlds(graphs) => algorithm.check_worlds(graphs, &progress),
         };
         progress.finish();
         Ok(tally)

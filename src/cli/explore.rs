@@ -12,7 +12,7 @@ use std::{
 
 use toposlam::picture::{self, WorldPicture};
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, Flaw, MovableMarker, RunState, judge},
+    check::{Algorithm, Algorithm1, Flaw, MappingAlgorithm, MovableMarker, RunState, judge},
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     isomorphism::Candidate,
@@ -20,11 +20,7 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use super::{
-    ChoicesOption, Failure, Outcome, input,
-    mapping_marker::{MappingAlgorithm, MappingMarker},
-    output,
-};
+use super::{ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output};
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
 use story::{Story, StoryDetail};
@@ -108,18 +104,17 @@ impl ExploreArguments {
             output::check_place(svg, &["svg"])?;
         }
         let choice = self.choices.with_budget(self.max_states)?;
-        match self.marker.algorithm(choice)? {
-            MappingAlgorithm::Algorithm1 => self.explore(&Algorithm1, &world, facing, out),
-            MappingAlgorithm::AllChoices(algorithm) => {
-                self.explore(&algorithm, &world, facing, out)
-            }
-            MappingAlgorithm::MovableMarker => self.explore(&MovableMarker, &world, facing, out),
+        let chosen = self.marker.algorithm(choice)?;
+        match self.marker {
+            MappingMarker::Directional => self.explore(&Algorithm1, chosen, &world, facing, out),
+            MappingMarker::Movable => self.explore(&MovableMarker, chosen, &world, facing, out),
         }
     }
 
     fn explore<A: Algorithm>(
         &self,
         algorithm: &A,
+        chosen: MappingAlgorithm,
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
@@ -151,7 +146,7 @@ impl ExploreArguments {
             move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
             carries: robot.carries(),
             result,
-            ways: algorithm.other_runs(&world.graph, facing, &()).transpose(),
+            ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
         };
         if self.json {
             result.print_json(&mut out)?;

@@ -4,7 +4,7 @@ use std::{fmt::Display, path::Path, str::FromStr};
 
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, PlacedWorld},
-    check::{Algorithm1, AllChoices},
+    check::{Algorithm1, AllChoices, MappingAlgorithm},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -30,13 +30,6 @@ impl FromStr for MappingMarker {
             _ => Err(format!("no algorithm maps with `{name}`; choose directional or movable")),
         }
     }
-}
-
-/// An algorithm, and whether it runs with all choices.
-pub(super) enum MappingAlgorithm {
-    Algorithm1,
-    AllChoices(AllChoices<Algorithm1>),
-    MovableMarker,
 }
 
 impl MappingMarker {

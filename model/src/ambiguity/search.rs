@@ -55,7 +55,7 @@ impl AmbiguitySearch {
     ///
     /// # Errors
     /// Returns an error if the watch interrupts the search, or a pair is not confirmed.
-    pub fn run(&self, watch: &impl Watch) -> Result<Findings, Unfinished> {
+    pub fn run(&self, watch: &dyn Watch) -> Result<Findings, Unfinished> {
         let mut sizes = Vec::new();
         let mut candidates = Vec::new();
         for (worlds, edges) in self.sizes.iter().zip(1..) {
@@ -73,7 +73,7 @@ impl AmbiguitySearch {
         Ok(Findings { sizes, groups })
     }
 
-    fn look_at(&self, worlds: &Enumeration, watch: &impl Watch) -> Seen {
+    fn look_at(&self, worlds: &Enumeration, watch: &dyn Watch) -> Seen {
         let look = |part: &EnumerationPart| {
             let mut seen = Seen::default();
             let end = part.for_each(&mut |found| {
@@ -151,7 +151,7 @@ impl AmbiguitySearch {
     fn grouped(
         &self,
         mut candidates: Vec<(QuotientCode, PlacedWorld)>,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Vec<AmbiguousGroup>, Unfinished> {
         candidates.sort_by(|(code, world), (other_code, other)| {
             code.cmp(other_code).then_with(|| world.rank().cmp(&other.rank()))

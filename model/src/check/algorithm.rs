@@ -52,7 +52,7 @@ pub trait Algorithm: Sync {
         &self,
         _graph: &EmbeddedGraph,
         _facing: Dart,
-        _watch: &impl Watch,
+        _watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
         Ok(None)
     }

@@ -58,7 +58,7 @@ impl<A: OpenChoices> Algorithm for AllChoices<A> {
         &self,
         graph: &EmbeddedGraph,
         facing: Dart,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
         every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
     }
@@ -75,7 +75,7 @@ pub fn every_way(
     graph: &EmbeddedGraph,
     facing: Dart,
     budget: u64,
-    watch: &impl Watch,
+    watch: &dyn Watch,
 ) -> Result<EveryWay, Flaw> {
     let mut world = GraphWorld::new(graph, facing);
     let mut exploration = Exploration::new(graph.dart_count());
@@ -123,11 +123,11 @@ impl Futures {
     }
 }
 
-struct Search<'w, A, W> {
+struct Search<'w, A> {
     algorithm: &'w A,
     facing: Dart,
     budget: u64,
-    watch: &'w W,
+    watch: &'w dyn Watch,
     /// States begun, at line 4 and at line 8.
     begun: u64,
     complete: bool,
@@ -136,7 +136,7 @@ struct Search<'w, A, W> {
     candidate: Candidate,
 }
 
-impl<A: OpenChoices, W: Watch> Search<'_, A, W> {
+impl<A: OpenChoices> Search<'_, A> {
     /// Whether one more state may be begun.
     fn begin(&mut self) -> bool {
         let may = self.begun < self.budget && !self.watch.stop();

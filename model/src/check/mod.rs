@@ -6,6 +6,7 @@ mod every_way;
 mod explorer;
 mod flaw;
 mod judge;
+mod mapping_algorithm;
 mod sweep;
 mod tally;
 
@@ -15,6 +16,7 @@ pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
+pub use mapping_algorithm::MappingAlgorithm;
 pub use sweep::{Shard, ShardError, Sweep, check_worlds};
 pub use tally::{FailedStart, Tally, WorstStart};
 

@@ -85,7 +85,7 @@ impl Sweep {
 
     /// Checks an algorithm. The result does not depend on the number of threads (that of rayon's
     /// pool, or 1 without the feature `rayon`).
-    pub fn run(&self, algorithm: &impl Algorithm, watch: &impl Watch) -> Tally {
+    pub fn run(&self, algorithm: &impl Algorithm, watch: &dyn Watch) -> Tally {
         self.tally(watch, || AlgorithmChecker::new(algorithm, watch))
     }
 
@@ -94,12 +94,12 @@ impl Sweep {
     pub fn run_explorers<E: Explorer>(
         &self,
         new: impl Fn() -> E + Sync,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Tally {
         self.tally(watch, || ExplorerChecker { explorer: new(), candidate: Candidate::default() })
     }
 
-    fn tally<C: StartChecker>(&self, watch: &impl Watch, new: impl Fn() -> C + Sync) -> Tally {
+    fn tally<C: StartChecker>(&self, watch: &dyn Watch, new: impl Fn() -> C + Sync) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
         tally_parts(&parts, watch, |part, tally| {
             let mut checker = new();
@@ -116,7 +116,7 @@ impl Sweep {
 pub fn check_worlds(
     graphs: &[EmbeddedGraph],
     algorithm: &impl Algorithm,
-    watch: &impl Watch,
+    watch: &dyn Watch,
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
@@ -127,14 +127,14 @@ pub fn check_worlds(
     })
 }
 
-fn go_on(watch: &impl Watch) -> ControlFlow<()> {
+fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
     if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// Checks the parts of a whole, and adds up the tallies.
 fn tally_parts<P: Sync>(
     parts: &[P],
-    watch: &impl Watch,
+    watch: &dyn Watch,
     check: impl Fn(&P, &mut Tally) -> ControlFlow<()> + Sync + Send,
 ) -> Tally {
     let check = |part: &P| {
@@ -159,7 +159,7 @@ fn check_starts(
     checker: &mut impl StartChecker,
     graph: &EmbeddedGraph,
     automorphisms: usize,
-    watch: &impl Watch,
+    watch: &dyn Watch,
     tally: &mut Tally,
 ) -> ControlFlow<()> {
     tally.worlds += 1;
@@ -203,15 +203,15 @@ impl<E: Explorer> StartChecker for ExplorerChecker<E> {
     }
 }
 
-struct AlgorithmChecker<'a, A: Algorithm, W> {
+struct AlgorithmChecker<'a, A: Algorithm> {
     algorithm: &'a A,
-    watch: &'a W,
+    watch: &'a dyn Watch,
     explorer: AlgorithmExplorer<'a, A>,
     candidate: Candidate,
 }
 
-impl<'a, A: Algorithm, W: Watch> AlgorithmChecker<'a, A, W> {
-    fn new(algorithm: &'a A, watch: &'a W) -> Self {
+impl<'a, A: Algorithm> AlgorithmChecker<'a, A> {
+    fn new(algorithm: &'a A, watch: &'a dyn Watch) -> Self {
         let explorer = AlgorithmExplorer::new(algorithm);
         Self { algorithm, watch, explorer, candidate: Candidate::default() }
     }
@@ -225,7 +225,7 @@ impl<'a, A: Algorithm, W: Watch> AlgorithmChecker<'a, A, W> {
     }
 }
 
-impl<A: Algorithm, W: Watch> StartChecker for AlgorithmChecker<'_, A, W> {
+impl<A: Algorithm> StartChecker for AlgorithmChecker<'_, A> {
     fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
         match judge_start(&mut self.explorer, graph, facing, &mut self.candidate) {
             (moves, Ok(())) => tally.count_run(graph, facing, moves),

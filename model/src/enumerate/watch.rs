@@ -20,7 +20,7 @@ impl Watch for () {}
 /// Works on the parts and merges the results in the order of the parts. The number of threads is that of rayon's pool, or 1 without the feature `rayon`.
 pub(crate) fn in_parts<P: Sync, R: Send>(
     parts: &[P],
-    watch: &impl Watch,
+    watch: &dyn Watch,
     nothing: impl Fn() -> R + Sync + Send,
     work: impl Fn(&P) -> R + Sync + Send,
     cases: impl Fn(&R) -> u64 + Sync,

@@ -59,7 +59,7 @@ pub fn smallest(
     trace: &Trace,
     known: Option<&PartialMap>,
     search: WorldSearch,
-    watch: &impl Watch,
+    watch: &dyn Watch,
 ) -> SmallestWorld {
     let mut growing = Growing::new(trace, search.class, watch);
     growing.steps = search.steps;
@@ -94,10 +94,10 @@ pub fn smallest(
 const MOST_EDGES: usize = 1000;
 
 /// A world that grows, and the state of the search.
-struct Growing<'t, W> {
+struct Growing<'t> {
     trace: &'t Trace,
     class: Class,
-    watch: &'t W,
+    watch: &'t dyn Watch,
     edges: usize,
     steps: u64,
     stopped: bool,
@@ -224,8 +224,8 @@ impl Draft {
     }
 }
 
-impl<'t, W: Watch> Growing<'t, W> {
-    fn new(trace: &'t Trace, class: Class, watch: &'t W) -> Self {
+impl<'t> Growing<'t> {
+    fn new(trace: &'t Trace, class: Class, watch: &'t dyn Watch) -> Self {
         let world = Draft::default();
         Self { trace, class, watch, edges: 0, steps: 0, stopped: false, farthest: 0, world }
     }

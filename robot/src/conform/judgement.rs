@@ -127,7 +127,7 @@ pub fn judge(
     mut events: RunEvents,
     question: &ConformConfig,
     quirks: &Quirks,
-    watch: &impl Watch,
+    watch: &dyn Watch,
 ) -> Result<Judgement, JudgeError> {
     events.check_order()?;
     let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
@@ -191,7 +191,7 @@ impl Judgement {
         events: &RunEvents,
         question: &ConformConfig,
         tolerated: &[(Divergence, usize)],
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Self, JudgeError> {
         let mut found = Found { tolerated, first: None };
         let trace = match events.trace() {

@@ -34,7 +34,7 @@ pub struct ShortenedRun {
 pub fn shorten_run(
     judgement: &Judgement,
     question: &ConformConfig,
-    watch: &impl Watch,
+    watch: &dyn Watch,
 ) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
     let anyone = ConformConfig { world: None, driver: RunDriver::Anyone, ..question.clone() };

@@ -82,7 +82,7 @@ impl Judge {
         camera: &Camera,
         views: &ViewSampler,
         calibrations: &[Calibration],
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Self, JudgingError> {
         watch.parts(views.sizes.len() * views.looks.len());
         let station = |&size: &[u32; 2]| {
@@ -114,7 +114,7 @@ impl Judge {
         views: &ViewSampler,
         numbers: std::ops::Range<u64>,
         calibration: Calibration,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Vec<JudgedView>, JudgingError> {
         in_turn(numbers, watch, |number| self.view(views.view(number)?, calibration))
     }
@@ -128,7 +128,7 @@ impl Judge {
         views: &ViewSampler,
         numbers: std::ops::Range<u64>,
         calibration: Calibration,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Vec<JudgedVisit>, JudgingError> {
         let visits =
             in_turn(numbers, watch, |number| self.visit(views.visit(number)?, calibration))?;

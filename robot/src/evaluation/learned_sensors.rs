@@ -31,7 +31,7 @@ impl LearnedSensors {
     pub fn new(
         camera: &Camera,
         looks: &[&'static BuildingLook],
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Result<Self, LearningError> {
         let rig = Rig::new(camera);
         let views = ViewSampler::of(looks.iter().copied(), camera.image, LEARNING)

@@ -8,7 +8,7 @@ use toposlam_model::enumerate::Watch;
 /// Works on numbers on all threads. The results are in the order of the numbers.
 pub(super) fn in_turn<R: Send, E: Send>(
     numbers: std::ops::Range<u64>,
-    watch: &impl Watch,
+    watch: &dyn Watch,
     work: impl Fn(u64) -> Result<R, E> + Sync,
 ) -> Result<Vec<R>, E> {
     watch.parts((numbers.end.saturating_sub(numbers.start)) as usize);
@@ -28,7 +28,7 @@ pub(super) fn in_turn<R: Send, E: Send>(
 /// Makes the cases of these numbers, as far as they exist, on all threads.
 pub(super) fn made_in_turn<C, R: Send>(
     numbers: std::ops::Range<u64>,
-    watch: &impl Watch,
+    watch: &dyn Watch,
     case: impl Fn(u64) -> Option<C> + Sync,
     make: impl Fn(C) -> R + Sync,
 ) -> Vec<R> {

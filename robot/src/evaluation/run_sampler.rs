@@ -136,7 +136,7 @@ impl RunSampler {
         &self,
         numbers: std::ops::Range<u64>,
         eyes: Option<&LearnedSensors>,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Vec<JudgedRun> {
         made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes))
     }

@@ -140,7 +140,7 @@ impl TraversalSampler {
         &self,
         numbers: std::ops::Range<u64>,
         eyes: Option<&LearnedSensors>,
-        watch: &impl Watch,
+        watch: &dyn Watch,
     ) -> Vec<JudgedTraversal> {
         made_in_turn(numbers, watch, |number| self.traversal(number), |case| judged(case, eyes))
     }

@@ -9,10 +9,9 @@ use std::{
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{Algorithm, CostOrder, FailedStart, Shard, Tally},
+    check::{CostOrder, FailedStart, MappingAlgorithm, Shard, Tally},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
-    marker::Marker,
 };
 
 use crate::cli::{
@@ -30,9 +29,12 @@ pub(super) struct AlgorithmInfo {
 }
 
 impl AlgorithmInfo {
-    pub(super) fn of<A: Algorithm>(algorithm: &A) -> Self {
-        let marker = A::Marker::default().name();
-        Self { algorithm: algorithm.name(), marker, order: algorithm.order() }
+    pub(super) fn of(algorithm: &MappingAlgorithm) -> Self {
+        Self {
+            algorithm: algorithm.name(),
+            marker: algorithm.marker().name(),
+            order: algorithm.order(),
+        }
     }
 }
 
@@ -278,7 +280,6 @@ fn step(failure: &FailedStart) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::check::Algorithm1;
 
     use super::*;
 
@@ -287,7 +288,7 @@ mod tests {
         let tally = Tally { runs: u128::MAX, extremes: Some((1, 2)), ..Tally::default() };
         let (class, shard) = (Class::Simple, Shard::WHOLE);
         let size = SizeResult { edges: 1, class, from: None, shard, tally: &tally };
-        let subject = AlgorithmInfo::of(&Algorithm1);
+        let subject = AlgorithmInfo::of(&MappingAlgorithm::Algorithm1);
         let line = Line::new(&size, subject, RunChoices::All { budget: 9 });
         let line = serde_json::to_string(&line).unwrap();
         assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");

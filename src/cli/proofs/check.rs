@@ -54,7 +54,7 @@ enum Message {
 ///
 /// # Errors
 /// Returns an error if the thread cannot be started or panics.
-pub(super) fn check_lemma(lemma: &Lemma, watch: &impl Watch) -> Result<LemmaCheck, Failure> {
+pub(super) fn check_lemma(lemma: &Lemma, watch: &dyn Watch) -> Result<LemmaCheck, Failure> {
     let start = Instant::now();
     let (sender, receiver) = mpsc::channel();
     let lemma_copy = *lemma;
