@@ -44,6 +44,8 @@ pub struct FoldedTrail {
     open: usize,
     /// What to undo.
     changes: Vec<Change>,
+    /// Scratch: darts that have to be identified next.
+    pairs: Vec<(u32, u32)>,
 }
 
 /// A folded trail as a world.
@@ -69,13 +71,30 @@ enum Change {
 }
 
 impl FoldedTrail {
+    /// Begins another walk. Memory is kept.
+    ///
+    /// # Errors
+    /// Returns an error if no vertex has the percept, or if it has too many darts.
+    pub fn restart(&mut self, percept: Percept) -> Result<(), TrailError> {
+        let Self { first, visit, percept: percepts, parent, turn, size, owner, .. } = self;
+        for numbers in [first, parent, turn, size, owner] {
+            numbers.clear();
+        }
+        visit.clear();
+        percepts.clear();
+        self.opposite.clear();
+        self.changes.clear();
+        (self.marker, self.pose, self.moves, self.classes, self.open) = (None, 0, 0, 0, 0);
+        self.add_vertex(percept).map(|_| ())
+    }
+
     /// The trail of a walk that begins with a percept.
     ///
     /// # Errors
     /// Returns an error if no vertex has the percept, or if it has too many darts.
     pub fn new(percept: Percept) -> Result<Self, TrailError> {
         let mut trail = Self::default();
-        trail.add_vertex(percept)?;
+        trail.restart(percept)?;
         Ok(trail)
     }
 
@@ -121,7 +140,7 @@ impl FoldedTrail {
     pub fn unite(&mut self, one: Dart, other: Dart) -> Result<(), ContradictionReason> {
         let before = self.changes.len();
         self.changes.push(Change::Open { before: self.open });
-        let united = self.close([(one.0, other.0)].into());
+        let united = self.close(one.0, other.0);
         if united.is_err() {
             self.undo_to(before);
         }
@@ -322,9 +341,7 @@ impl FoldedTrail {
     fn identify_marker(&mut self, vertex: u32) -> Result<(), ContradictionReason> {
         let here = self.first[vertex as usize];
         match (self.percept[vertex as usize].sighting, self.marker) {
-            (Sighting::Pointing(Door(door)), Some(marker)) => {
-                self.close([(marker.0, here + door)].into())
-            }
+            (Sighting::Pointing(Door(door)), Some(marker)) => self.close(marker.0, here + door),
             _ => Ok(()),
         }
     }
@@ -342,24 +359,21 @@ impl FoldedTrail {
         compare_sightings(before.seen_from(Door(index)), percept, visits)
     }
 
-    /// Identifies pairs of darts, and all that follows.
-    fn close(&mut self, mut pairs: Vec<(u32, u32)>) -> Result<(), ContradictionReason> {
-        while let Some((one, other)) = pairs.pop() {
+    /// Identifies two darts, and all that follows.
+    fn close(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
+        self.pairs.clear();
+        self.pairs.push((one, other));
+        while let Some((one, other)) = self.pairs.pop() {
             let (one, other) = (self.find(one), self.find(other));
             if one != other {
-                self.merge(one, other, &mut pairs)?;
+                self.merge(one, other)?;
             }
         }
         Ok(())
     }
 
-    /// Makes one class of two. The pairs are darts that have to be identified next.
-    fn merge(
-        &mut self,
-        one: u32,
-        other: u32,
-        pairs: &mut Vec<(u32, u32)>,
-    ) -> Result<(), ContradictionReason> {
+    /// Makes one class of two.
+    fn merge(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
         let (mut root, mut child) = (self.owner[one as usize], self.owner[other as usize]);
         let (mut at_root, mut at_child) = (one, other);
         if root == child {
@@ -397,7 +411,7 @@ impl FoldedTrail {
                     self.open -= 1;
                     self.changes.push(Change::Opposite { dart: to });
                 }
-                [far, near] => pairs.push((far, near)),
+                [far, near] => self.pairs.push((far, near)),
             }
             let opposite = self.opposite[to as usize];
             if opposite != OPEN && self.find(opposite) == to {

@@ -6,7 +6,7 @@
 //! darts. A *hypothesis* is that a pending place is entered by a certain core dart. It is alive as long
 //! as the trail with the two poses united does not contradict itself.
 
-use std::collections::{HashSet, VecDeque};
+use std::{collections::VecDeque, mem};
 
 use super::{Contradiction, MappingError};
 use crate::{
@@ -16,14 +16,19 @@ use crate::{
     world::World,
 };
 
-/// How many times nearer an open core dart must be than the cheapest test, to be taken first.
+/// How many times nearer an open core dart must be than the marker is by the cheapest test, to be taken
+/// first.
 const EXPLORE_FACTOR: usize = 4;
 
-/// A dart of the core: a core place, and the index clockwise from the dart by which it was entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-struct CoreDart {
-    place: usize,
-    index: u32,
+/// The number of a dart of the core: those of one core place after those of the earlier ones, clockwise
+/// from the dart by which the place was first entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct CoreDart(u32);
+
+impl CoreDart {
+    fn at(self) -> usize {
+        self.0 as usize
+    }
 }
 
 /// A pending place: the far end of an edge of the core that is not a core place.
@@ -31,7 +36,7 @@ struct CoreDart {
 struct Pending {
     /// The core dart that leads there.
     edge: CoreDart,
-    /// The pose behind it, as a dart of a root.
+    /// The pose behind it.
     far: Dart,
 }
 
@@ -64,22 +69,68 @@ struct Way {
     entry: Dart,
 }
 
-/// The state of a run of the folding explorer.
+/// The core: places that are pairwise distinct, as far as the folding proves by what is not possible.
+#[derive(Clone, Debug, Default)]
+struct Core {
+    /// The first dart of each place.
+    first: Vec<CoreDart>,
+    /// The place of each dart.
+    place: Vec<usize>,
+    /// Each dart, as a dart of the trail.
+    darts: Vec<Dart>,
+    /// The place of each trail vertex that is a root.
+    place_of: Vec<Option<usize>>,
+    /// For each place, the moves of a shortest way to the marker through the core, and the dart by which
+    /// it leaves.
+    to_marker: Vec<Option<(usize, CoreDart)>>,
+    queue: VecDeque<usize>,
+}
+
+/// The state of a run of the folding explorer. Memory is reused from run to run.
 #[derive(Clone, Debug, Default)]
 pub struct FoldingExploration {
     trail: FoldedTrail,
-    /// The pose by which each core place was first entered.
-    core: Vec<Dart>,
-    /// Hypotheses that are refuted: pending edges and core darts.
-    refuted: HashSet<(CoreDart, CoreDart)>,
-    /// The core place of each trail vertex that is a root.
-    core_of: Vec<Option<usize>>,
+    core: Core,
+    /// The core darts that do not lead to a core place.
+    unresolved: Vec<CoreDart>,
+    pending: Vec<Pending>,
+    refuted: RefutedHypotheses,
+    /// For each core dart, a hypothesis about its far end that was alive.
+    witness: Vec<Option<CoreDart>>,
     /// A shortest way from the robot to each trail vertex that is a root.
     from_robot: Vec<Option<Way>>,
     queue: VecDeque<Dart>,
-    /// For each core place, the moves of a shortest way to the marker through the core, and the index
-    /// of the dart by which it leaves.
-    to_marker: Vec<Option<(usize, u32)>>,
+    /// The open darts, with the moves from the robot to each.
+    open: Vec<(usize, Dart)>,
+    tests: Vec<Test>,
+    leaving: Vec<Dart>,
+}
+
+/// The hypotheses that are refuted. They stay so, because a trail only grows.
+#[derive(Clone, Debug, Default)]
+struct RefutedHypotheses {
+    bits: Vec<u64>,
+}
+
+impl RefutedHypotheses {
+    /// A number for each pair, so that those of the first `n` numbers are the first `n^2`.
+    fn index(edge: CoreDart, dart: CoreDart) -> usize {
+        let (edge, dart) = (edge.at(), dart.at());
+        if edge < dart { dart * dart + edge } else { edge * edge + edge + dart }
+    }
+
+    fn contains(&self, edge: CoreDart, dart: CoreDart) -> bool {
+        let index = Self::index(edge, dart);
+        self.bits.get(index / 64).is_some_and(|bits| bits >> (index % 64) & 1 == 1)
+    }
+
+    fn insert(&mut self, edge: CoreDart, dart: CoreDart) {
+        let index = Self::index(edge, dart);
+        if self.bits.len() <= index / 64 {
+            self.bits.resize(index / 64 + 1, 0);
+        }
+        self.bits[index / 64] |= 1 << (index % 64);
+    }
 }
 
 /// Maps a world with the folding explorer. At its start the robot stands at the marked vertex, with its
@@ -102,6 +153,86 @@ pub fn map_by_folding<W: World>(
     Ok(())
 }
 
+impl Core {
+    fn clear(&mut self) {
+        self.first.clear();
+        self.place.clear();
+        self.darts.clear();
+    }
+
+    /// Adds the place of a pose.
+    fn add(&mut self, trail: &FoldedTrail, pose: Dart) {
+        let place = self.first.len();
+        self.first.push(CoreDart(self.darts.len() as u32));
+        for door in 0..trail.degree(pose) {
+            self.place.push(place);
+            self.darts.push(trail.behind(pose, Door(door)));
+        }
+    }
+
+    fn dart(&self, dart: CoreDart) -> Dart {
+        self.darts[dart.at()]
+    }
+
+    fn place(&self, dart: CoreDart) -> usize {
+        self.place[dart.at()]
+    }
+
+    /// The pose by which a place was first entered.
+    fn pose(&self, place: usize) -> Dart {
+        self.dart(self.first[place])
+    }
+
+    fn all(&self) -> impl Iterator<Item = CoreDart> + use<> {
+        (0..self.darts.len() as u32).map(CoreDart)
+    }
+
+    /// Marks the classes of the trail that are core places.
+    fn mark(&mut self, trail: &FoldedTrail) {
+        let mut place_of = mem::take(&mut self.place_of);
+        place_of.clear();
+        place_of.resize(trail.trail_vertex_count(), None);
+        for place in 0..self.first.len() {
+            place_of[trail.vertex(self.pose(place))] = Some(place);
+        }
+        self.place_of = place_of;
+    }
+
+    /// The core dart that a dart of a trail is, if its class is [marked](Self::mark).
+    fn number(&self, trail: &FoldedTrail, dart: Dart) -> Option<CoreDart> {
+        let place = self.place_of[trail.vertex(dart)]?;
+        Some(CoreDart(self.first[place].0 + trail.door(self.pose(place), dart).0))
+    }
+
+    /// The core dart at the other end of a dart's edge.
+    fn opposite(&self, trail: &FoldedTrail, dart: CoreDart) -> Option<CoreDart> {
+        self.number(trail, trail.opposite(self.dart(dart))?)
+    }
+
+    /// A breadth-first search through the core, from the marker, which lies at the first place.
+    fn find_ways_to_marker(&mut self, trail: &FoldedTrail) {
+        self.to_marker.clear();
+        self.to_marker.resize(self.first.len(), None);
+        self.to_marker[0] = Some((0, CoreDart(0)));
+        let mut queue = mem::take(&mut self.queue);
+        queue.clear();
+        queue.push_back(0);
+        while let Some(place) = queue.pop_front() {
+            let moves = self.to_marker[place].map_or(0, |(moves, _)| moves) + 1;
+            let first = self.first[place].0;
+            for dart in first..first + trail.degree(self.pose(place)) {
+                let Some(entry) = self.opposite(trail, CoreDart(dart)) else { continue };
+                let way = &mut self.to_marker[self.place[entry.at()]];
+                if way.is_none() {
+                    *way = Some((moves, entry));
+                    queue.push_back(self.place(entry));
+                }
+            }
+        }
+        self.queue = queue;
+    }
+}
+
 impl FoldingExploration {
     /// The folded trail.
     #[must_use]
@@ -115,30 +246,33 @@ impl FoldingExploration {
         if percept.sighting != Sighting::Pointing(Door::BACK) {
             return Err(Contradiction::Start { perceived: percept }.into());
         }
-        self.trail = FoldedTrail::new(percept)?;
-        self.core = vec![self.trail.pose()];
-        self.refuted.clear();
+        self.trail.restart(percept)?;
+        self.refuted.bits.clear();
+        self.witness.clear();
+        self.core.clear();
+        self.core.add(&self.trail, self.trail.pose());
         Ok(())
     }
 
     /// What to do next; `None` if no dart is open.
     fn plan(&mut self) -> Option<Plan> {
-        let pending = self.promote();
+        self.promote();
         if self.trail.open_count() == 0 {
             return None;
         }
         self.find_ways_from_robot();
         let moves_to = |dart: Dart| self.way_to(dart).map(|way| way.moves);
-        let core_darts = self.core_darts();
-        let open = core_darts
+        let open = self
+            .core
+            .darts
             .iter()
-            .map(|&dart| self.dart(dart))
-            .filter(|&dart| self.trail.opposite(dart).is_none())
-            .filter_map(|dart| Some((moves_to(dart)?, dart)))
+            .filter(|&&dart| self.trail.opposite(dart).is_none())
+            .filter_map(|&dart| Some((moves_to(dart)?, dart)))
             .min_by_key(|&(moves, _)| moves);
-        let nearest = pending
-            .into_iter()
-            .filter_map(|pending| Some((moves_to(pending.far)?, pending)))
+        let nearest = self
+            .pending
+            .iter()
+            .filter_map(|&pending| Some((moves_to(pending.far)?, pending)))
             .min_by_key(|&(moves, _)| moves);
         let test = nearest.and_then(|(_, pending)| self.cheapest_test(pending));
         match (open, test) {
@@ -151,119 +285,100 @@ impl FoldingExploration {
         }
     }
 
-    /// Adds the pending places without a living hypothesis to the core, and returns the others.
-    fn promote(&mut self) -> Vec<Pending> {
-        'core: loop {
-            self.mark_core();
-            let mut all = Vec::new();
-            for edge in self.core_darts() {
-                let Some(far) = self.trail.opposite(self.dart(edge)) else { continue };
-                if self.core_place(far).is_some() {
+    /// Finds the pending places. Those without a living hypothesis join the core.
+    fn promote(&mut self) {
+        loop {
+            self.core.mark(&self.trail);
+            self.unresolved.clear();
+            self.pending.clear();
+            for edge in self.core.all() {
+                let far = self.trail.opposite(self.core.dart(edge));
+                if far.is_some_and(|far| self.core.place_of[self.trail.vertex(far)].is_some()) {
                     continue;
                 }
-                let pending = Pending { edge, far };
-                if !self.has_hypothesis(pending) {
-                    self.core.push(far);
-                    continue 'core;
+                self.unresolved.push(edge);
+                if let Some(far) = far {
+                    self.pending.push(Pending { edge, far });
                 }
-                all.push(pending);
             }
-            return all;
+            let pending = mem::take(&mut self.pending);
+            let new = pending.iter().find(|&&pending| !self.has_hypothesis(pending)).copied();
+            self.pending = pending;
+            let Some(new) = new else { return };
+            self.core.add(&self.trail, new.far);
         }
-    }
-
-    fn mark_core(&mut self) {
-        self.core_of.clear();
-        self.core_of.resize(self.trail.trail_vertex_count(), None);
-        for (place, &pose) in self.core.iter().enumerate() {
-            self.core_of[self.trail.vertex(pose)] = Some(place);
-        }
-    }
-
-    fn core_place(&self, dart: Dart) -> Option<usize> {
-        self.core_of[self.trail.vertex(dart)]
-    }
-
-    fn core_darts(&self) -> Vec<CoreDart> {
-        let mut all = Vec::new();
-        for (place, &pose) in self.core.iter().enumerate() {
-            all.extend((0..self.trail.degree(pose)).map(|index| CoreDart { place, index }));
-        }
-        all
-    }
-
-    fn dart(&self, CoreDart { place, index }: CoreDart) -> Dart {
-        self.trail.behind(self.core[place], Door(index))
-    }
-
-    /// Core darts that do not lead to a core place.
-    fn unresolved(&self) -> impl Iterator<Item = CoreDart> {
-        let leads_on = |&dart: &CoreDart| {
-            self.trail.opposite(self.dart(dart)).is_none_or(|far| self.core_place(far).is_none())
-        };
-        self.core_darts().into_iter().filter(leads_on)
     }
 
     fn has_hypothesis(&mut self, pending: Pending) -> bool {
-        let all: Vec<CoreDart> = self.unresolved().collect();
-        all.into_iter().any(|dart| self.is_alive(pending, dart))
+        self.witness.resize(self.core.darts.len(), None);
+        if let Some(witness) = self.witness[pending.edge.at()]
+            && self.is_alive(pending, witness)
+        {
+            return true;
+        }
+        let all = mem::take(&mut self.unresolved);
+        let alive = all.iter().find(|&&dart| self.is_alive(pending, dart)).copied();
+        self.unresolved = all;
+        self.witness[pending.edge.at()] = alive;
+        alive.is_some()
     }
 
     /// Whether a pending place may be entered by a core dart.
     fn is_alive(&mut self, pending: Pending, dart: CoreDart) -> bool {
-        if self.refuted.contains(&(pending.edge, dart)) {
+        if self.refuted.contains(pending.edge, dart) {
             return false;
         }
-        let one = self.dart(dart);
+        let one = self.core.dart(dart);
         let alive = self.trail.with_united(pending.far, one, |_| ()).is_ok();
         if !alive {
-            self.refuted.insert((pending.edge, dart));
+            self.refuted.insert(pending.edge, dart);
         }
         alive
     }
 
-    /// The cheapest walk that confirms a hypothesis about a place if it ends at the marker.
+    /// The cheapest walk that confirms a hypothesis about a place if it ends at the marker. Of walks of
+    /// one cost it is that with the first hypothesis, and the first open dart of the trail.
     fn cheapest_test(&mut self, pending: Pending) -> Option<Test> {
-        self.find_ways_to_marker();
-        let open: Vec<(usize, Dart)> = self
-            .trail
-            .vertices()
-            .flat_map(|first| self.trail.darts_around(first))
-            .filter(|&dart| self.trail.opposite(dart).is_none())
-            .filter_map(|dart| Some((self.way_to(dart)?.moves, dart)))
-            .collect();
-        let mut tests: Vec<Test> = Vec::new();
-        for hypothesis in self.unresolved().collect::<Vec<_>>() {
-            if !self.is_alive(pending, hypothesis) {
+        self.core.find_ways_to_marker(&self.trail);
+        let mut open = mem::take(&mut self.open);
+        open.clear();
+        let all = self.trail.vertices().flat_map(|first| self.trail.darts_around(first));
+        open.extend(
+            all.filter(|&dart| self.trail.opposite(dart).is_none())
+                .filter_map(|dart| Some((self.way_to(dart)?.moves, dart))),
+        );
+        let (mut tests, all) = (mem::take(&mut self.tests), mem::take(&mut self.unresolved));
+        tests.clear();
+        for &hypothesis in &all {
+            if self.refuted.contains(pending.edge, hypothesis) {
                 continue;
             }
-            let target = self.dart(hypothesis);
-            let (core, to_marker) = (&self.core, &self.to_marker);
-            let found = self.trail.with_united(pending.far, target, |united| {
-                let mut core_of = vec![None; united.trail_vertex_count()];
-                for (place, &pose) in core.iter().enumerate() {
-                    core_of[united.vertex(pose)] = Some(place);
-                }
+            let target = self.core.dart(hypothesis);
+            let core = &mut self.core;
+            let united = self.trail.with_united(pending.far, target, |united| {
+                core.mark(united);
                 for &(moves, open) in &open {
-                    let Some(far) = united.opposite(open) else { continue };
-                    let Some(place) = core_of[united.vertex(far)] else { continue };
-                    let Some((rest, _)) = to_marker[place] else { continue };
-                    let entry = CoreDart { place, index: united.door(core[place], far).0 };
+                    let entry = united.opposite(open).and_then(|far| core.number(united, far));
+                    let Some(entry) = entry else { continue };
+                    let Some((rest, _)) = core.to_marker[core.place(entry)] else { continue };
                     let cost = moves + 1 + rest;
                     tests.push(Test { pending, hypothesis, open, entry, cost });
                 }
             });
-            debug_assert!(found.is_ok(), "the hypothesis is alive");
+            if united.is_err() {
+                self.refuted.insert(pending.edge, hypothesis);
+            }
         }
         tests.sort_by_key(|test| test.cost);
-        tests.into_iter().find(|test| self.confirms(test))
+        let found = tests.iter().find(|test| self.confirms(test)).copied();
+        (self.open, self.tests, self.unresolved) = (open, tests, all);
+        found
     }
 
     /// Whether the success of a test forces its hypothesis.
     fn confirms(&mut self, test: &Test) -> bool {
-        let entry = self.dart(test.entry);
-        let Some(leaving) = self.trail.opposite(entry) else { return false };
-        let (far, target) = (test.pending.far, self.dart(test.hypothesis));
+        let Some(leaving) = self.trail.opposite(self.core.dart(test.entry)) else { return false };
+        let (far, target) = (test.pending.far, self.core.dart(test.hypothesis));
         let forced = self.trail.with_united(test.open, leaving, |united| {
             united.root_of(far) == united.root_of(target)
         });
@@ -296,45 +411,25 @@ impl FoldingExploration {
         self.from_robot[self.trail.vertex(dart)]
     }
 
-    /// A breadth-first search through the core, from the marker, which lies at the first core place.
-    fn find_ways_to_marker(&mut self) {
-        self.to_marker.clear();
-        self.to_marker.resize(self.core.len(), None);
-        self.to_marker[0] = Some((0, 0));
-        let mut queue = VecDeque::from([0]);
-        while let Some(place) = queue.pop_front() {
-            let moves = self.to_marker[place].map_or(0, |(moves, _)| moves) + 1;
-            for index in 0..self.trail.degree(self.core[place]) {
-                let dart = self.dart(CoreDart { place, index });
-                let Some(far) = self.trail.opposite(dart) else { continue };
-                let Some(next) = self.core_place(far) else { continue };
-                if self.to_marker[next].is_none() {
-                    let leaving = self.trail.door(self.core[next], far).0;
-                    self.to_marker[next] = Some((moves, leaving));
-                    queue.push_back(next);
-                }
-            }
-        }
-    }
-
     /// Walks through the trail to a vertex.
     fn walk_to<W: World>(
         &mut self,
         dart: Dart,
         world: &mut W,
     ) -> Result<(), MappingError<W::Error>> {
-        let mut leaving = Vec::new();
+        let mut leaving = mem::take(&mut self.leaving);
+        leaving.clear();
         let mut at = dart;
-        while let Some(way) = self.way_to(at)
-            && way.moves > 0
-            && let Some(before) = self.trail.opposite(way.entry)
+        while let Some(Way { moves: 1.., entry }) = self.way_to(at)
+            && let Some(before) = self.trail.opposite(entry)
         {
             leaving.push(before);
             at = before;
         }
-        for dart in leaving.into_iter().rev() {
+        for &dart in leaving.iter().rev() {
             self.take(dart, world)?;
         }
+        self.leaving = leaving;
         Ok(())
     }
 
@@ -366,24 +461,23 @@ impl FoldingExploration {
         self.walk_to(test.open, world)?;
         let mut percept = self.take(test.open, world)?;
         let mut believed = test.entry;
-        while percept.sighting == Sighting::Nothing && self.is_open(&test) {
-            let Some((1.., leaving)) = self.to_marker[believed.place] else { break };
-            let dart = CoreDart { place: believed.place, index: leaving };
-            let door = self.trail.door(self.dart(believed), self.dart(dart));
-            let leaving = self.trail.behind(self.trail.pose(), door);
-            let Some(next) = self.trail.opposite(self.dart(dart)) else { break };
-            self.mark_core();
-            let Some(place) = self.core_place(next) else { break };
-            percept = self.take(leaving, world)?;
-            let index = self.trail.door(self.core[place], next).0;
-            believed = CoreDart { place, index };
+        while percept.sighting == Sighting::Nothing && self.is_undecided(&test) {
+            let place = self.core.place(believed);
+            let Some((1.., leaving)) = self.core.to_marker[place] else { break };
+            let leaving = self.core.dart(leaving);
+            let Some(next) = self.trail.opposite(leaving) else { break };
+            let door = self.trail.door(self.core.dart(believed), leaving);
+            self.core.mark(&self.trail);
+            let Some(entry) = self.core.number(&self.trail, next) else { break };
+            believed = entry;
+            percept = self.take(self.trail.behind(self.trail.pose(), door), world)?;
         }
         Ok(())
     }
 
     /// Whether a hypothesis is neither confirmed nor refuted.
-    fn is_open(&mut self, test: &Test) -> bool {
-        let target = self.dart(test.hypothesis);
+    fn is_undecided(&mut self, test: &Test) -> bool {
+        let target = self.core.dart(test.hypothesis);
         self.trail.root_of(test.pending.far) != self.trail.root_of(target)
             && self.is_alive(test.pending, test.hypothesis)
     }
