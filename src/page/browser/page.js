@@ -10,3 +10,18 @@ function drawn(name, attributes = {}, ...children) {
   return element;
 }
 
+
+/** The smallest font size that is readable, in pixels. */
+const READABLE = 11;
+
+/** Gives a drawing the width `--readable`, at which names of a font size, in its units, are readable. */
+function keepReadable(svg, size) {
+  svg.style.setProperty("--readable", `${(svg.viewBox.baseVal.width * READABLE) / size}px`);
+}
+
+/** Scrolls a box, and nothing else, so that an element is in the middle of it. */
+function reveal(box, element) {
+  const [outer, inner] = [box, element].map((part) => part.getBoundingClientRect());
+  box.scrollLeft += inner.x + inner.width / 2 - outer.x - outer.width / 2;
+  box.scrollTop += inner.y + inner.height / 2 - outer.y - outer.height / 2;
+}
