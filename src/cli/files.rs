@@ -16,10 +16,10 @@ use thiserror::Error;
 use super::Failure;
 
 /// The files of this process.
-static FILES: Mutex<Files> = Mutex::new(Files::new());
+static FILES: Mutex<CallFiles> = Mutex::new(CallFiles::new());
 
 /// The files of this process, one thread at a time.
-pub(super) fn files() -> MutexGuard<'static, Files> {
+pub(super) fn files() -> MutexGuard<'static, CallFiles> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -59,7 +59,7 @@ enum FileUse {
 
 /// The files of a call with their uses. Devices and pipes are not in it: they are not replaced.
 #[derive(Debug)]
-pub(super) struct Files {
+pub(super) struct CallFiles {
     /// Each file by the path that was given.
     entries: Vec<(PathBuf, FileUse)>,
     /// The entry of each absolute path without symbolic links.
@@ -70,7 +70,7 @@ pub(super) struct Files {
     fills_folder: bool,
 }
 
-impl Files {
+impl CallFiles {
     const fn new() -> Self {
         Self {
             entries: Vec::new(),
@@ -219,20 +219,21 @@ mod tests {
         folder
     }
 
+    type Step = fn(&mut CallFiles, &Path) -> Result<(), FileConflict>;
+
     #[test]
     fn an_input_is_not_an_output_whichever_is_registered_first() {
         let folder = folder("either_order");
         let file = folder.join("file");
         fs::write(&file, "x").unwrap();
         let dotted = folder.join(".").join("file");
-        type Step = fn(&mut Files, &Path) -> Result<(), FileConflict>;
-        for output in [Files::plan as Step, Files::write, Files::grow] {
-            let mut files = Files::new();
+        for output in [CallFiles::plan as Step, CallFiles::write, CallFiles::grow] {
+            let mut files = CallFiles::new();
             files.read(&file).unwrap();
             files.read(&dotted).unwrap();
             let conflict = FileConflict::Input { output: dotted.clone(), input: file.clone() };
             assert_eq!(output(&mut files, &dotted), Err(conflict));
-            let mut files = Files::new();
+            let mut files = CallFiles::new();
             output(&mut files, &dotted).unwrap();
             let conflict = FileConflict::Input { output: dotted.clone(), input: file.clone() };
             assert_eq!(files.read(&file), Err(conflict.clone()));
@@ -247,7 +248,7 @@ mod tests {
     fn a_planned_output_is_written_once() {
         let folder = folder("once");
         let (file, other) = (folder.join("new"), folder.join("other"));
-        let mut files = Files::new();
+        let mut files = CallFiles::new();
         files.plan(&file).unwrap();
         assert!(files.has_open_outputs());
         let same = FileConflict::Output { output: file.clone(), other: file.clone() };
@@ -272,7 +273,7 @@ mod tests {
         std::os::unix::fs::symlink("file", &soft).unwrap();
         fs::hard_link(&file, &hard).unwrap();
         for link in [soft, hard] {
-            let mut files = Files::new();
+            let mut files = CallFiles::new();
             files.read(&file).unwrap();
             assert!(matches!(files.plan(&link), Err(FileConflict::Input { .. })));
         }
@@ -283,7 +284,7 @@ mod tests {
     #[test]
     fn a_device_may_be_several_inputs_and_outputs() {
         let device = Path::new("/dev/null");
-        let mut files = Files::new();
+        let mut files = CallFiles::new();
         files.read(device).unwrap();
         for _ in 0..2 {
             files.plan(device).unwrap();

@@ -36,7 +36,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     }
     let mut partial_name = OsString::from(".");
     partial_name.push(name);
-    partial_name.push(format!(".{}.partial", std::process::id()));
+    partial_name.push(format!(".{}.partial", process::id()));
     let partial = path.with_file_name(partial_name);
     fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
         // If this fails too, the first error is the one to report.

@@ -90,13 +90,13 @@ mod tests {
     #[test]
     fn a_report_without_a_reader_is_dropped_and_other_errors_are_not() {
         static PIPE: AtomicBool = AtomicBool::new(false);
+        static DISK: AtomicBool = AtomicBool::new(false);
         let mut report = ReportOutput { out: Pipe(2), closed: &PIPE };
         for closed in [false, false, true, true] {
             report.write_all(b"line\n").unwrap();
             assert_eq!(PIPE.load(Ordering::Relaxed), closed);
         }
         report.flush().unwrap();
-        static DISK: AtomicBool = AtomicBool::new(false);
         let mut report = ReportOutput { out: Full, closed: &DISK };
         assert!(report.write_all(b"line\n").is_err() && report.flush().is_err());
         assert!(!DISK.load(Ordering::Relaxed));

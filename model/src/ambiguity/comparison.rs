@@ -407,12 +407,13 @@ mod tests {
         }
     }
 
+    type Search = fn(&Comparison, &dyn Watch) -> bool;
+
     #[test]
     fn each_search_ends_at_the_question_at_which_it_is_stopped() {
         let none = named("none").unwrap();
         let (one, other) = (cycle(40), cycle(41));
         let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
-        type Search = fn(&Comparison, &dyn Watch) -> bool;
         let searches: [Search; 3] = [
             |comparison, watch| comparison.partition(watch) == Err(Interrupted),
             |comparison, watch| comparison.walk_watched([Dart(0); 2], watch) == Err(Interrupted),

@@ -222,13 +222,14 @@ mod tests {
         run_sampler::{Faults, RunSampler},
     };
 
+    type Count<'a> = &'a dyn Fn(&Impatient) -> usize;
+
     /// The watch is asked before a case, and then before each image.
     #[test]
     fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged() {
         let plans = plans().unwrap();
         let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
         let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0);
-        type Count<'a> = &'a dyn Fn(&Impatient) -> usize;
         let counts: [Count<'_>; 2] =
             [&|watch| traversals.judged(0..1, None, watch).len(), &|watch| {
                 runs.judged(0..1, None, watch).len()
