@@ -13,8 +13,6 @@ use std::{
 
 use thiserror::Error;
 
-use super::Failure;
-
 /// The files of this process.
 static FILES: Mutex<CallFiles> = Mutex::new(CallFiles::new());
 
@@ -38,12 +36,6 @@ pub(super) enum FileConflict {
         output.display(), other.display()
     )]
     Output { output: PathBuf, other: PathBuf },
-}
-
-impl From<FileConflict> for Failure {
-    fn from(conflict: FileConflict) -> Self {
-        Self::Input(conflict.to_string())
-    }
 }
 
 /// The use of a file.

@@ -4,7 +4,7 @@ use std::{fmt::Display, io, path::Path, process::ExitCode};
 
 use toposlam_model::enumerate::Interrupted;
 
-use super::report_output;
+use super::{files::FileConflict, report_output};
 
 /// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,6 +115,12 @@ impl SeveralInputs {
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::at("standard output", error)
+    }
+}
+
+impl From<FileConflict> for Failure {
+    fn from(conflict: FileConflict) -> Self {
+        Self::Input(conflict.to_string())
     }
 }
 

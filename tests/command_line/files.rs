@@ -304,6 +304,8 @@ fn the_verbs_read_and_write_files_only_where_they_are_registered() {
             } else if !REGISTERED.contains(&&*name) {
                 let source = fs::read_to_string(&path).unwrap();
                 let (program, _) = source.split_once("#[cfg(test)]").unwrap_or((&source, ""));
+                // This one opens bytes.
+                let program = program.replace("ImageFile::open(", "");
                 let found = PAST_THE_CHECK.iter().find(|call| program.contains(*call));
                 assert_eq!(found, None, "{}", path.display());
                 read += 1;

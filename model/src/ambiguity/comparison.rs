@@ -4,7 +4,7 @@ use std::{cell::OnceCell, collections::HashSet};
 
 use super::{
     partition::coarsest_watched,
-    space::{Space, States},
+    space::{PlacedRobot, Space, States},
     state_classes::StateClasses,
     witness::{Relation, Walk},
 };
@@ -14,9 +14,6 @@ use crate::{
     marker::Marker,
     world::{Action, GraphWorld, State},
 };
-
-/// A robot in a placed world.
-pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
 
 /// Two placed worlds, held against each other. Their states, as [`state_count`](super::state_count)
 /// counts them, are numbered together in a `u32`, and take memory accordingly.

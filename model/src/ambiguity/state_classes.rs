@@ -1,10 +1,7 @@
 //! Classes of states that no walk distinguishes: a witness that is linear in the number of states, where
 //! the pairs of a [`Relation`](super::Relation) are quadratic.
 
-use super::{
-    comparison::PlacedRobot,
-    space::{Space, StateLabel, States},
-};
+use super::space::{PlacedRobot, Space, StateLabel, States};
 use crate::{embedded_graph::Dart, world::State};
 
 /// A partition of the states of two worlds: states of one class are indistinguishable.
