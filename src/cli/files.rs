@@ -6,7 +6,7 @@
 
 use std::{
     collections::BTreeMap,
-    fs::{self, Metadata},
+    fs,
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
 };
@@ -182,19 +182,16 @@ fn real_path(path: &Path) -> PathBuf {
 }
 
 /// The device and the number of an existing file.
-fn number(path: &Path) -> Option<[u64; 2]> {
-    number_in(&fs::metadata(path).ok()?)
-}
-
 #[cfg(unix)]
-fn number_in(metadata: &Metadata) -> Option<[u64; 2]> {
+fn number(path: &Path) -> Option<[u64; 2]> {
     use std::os::unix::fs::MetadataExt;
+    let metadata = fs::metadata(path).ok()?;
     Some([metadata.dev(), metadata.ino()])
 }
 
 /// Other systems have no such number; hard links are not recognised there.
 #[cfg(not(unix))]
-fn number_in(_: &Metadata) -> Option<[u64; 2]> {
+fn number(_: &Path) -> Option<[u64; 2]> {
     None
 }
 
