@@ -211,12 +211,12 @@ fn a_walk_goes_as_far_as_both_robots_can() {
 /// A world file of a cycle.
 fn cycle(folder: &Path, edges: usize) -> String {
     let file = folder.join(format!("cycle-{edges}.toml"));
-    let mut text = "[clockwise]\n".to_owned();
-    for vertex in 0..edges {
+    let line = |vertex: usize| {
         let (last, next) = ((vertex + edges - 1) % edges, (vertex + 1) % edges);
-        text += &format!("v{vertex} = [\"v{last}\", \"v{next}\"]\n");
-    }
-    fs::write(&file, text).unwrap();
+        format!("v{vertex} = [\"v{last}\", \"v{next}\"]\n")
+    };
+    let lines: String = (0..edges).map(line).collect();
+    fs::write(&file, format!("[clockwise]\n{lines}")).unwrap();
     file.to_str().unwrap().to_owned()
 }
 
