@@ -77,7 +77,7 @@ fn shape_6_off_line(bencher: Bencher) {
     right(&run(&plan, facing, robot, eyes.sensor(look), &mut recording, DARTS));
     bencher
         .with_inputs(|| eyes.sensor(look))
-        .bench_local_values(|sensor| offline(&recording, sensor, DARTS).unwrap());
+        .bench_local_values(|sensor| offline(&recording, sensor, (), DARTS).unwrap());
 }
 
 fn eyes() -> (LearnedSensors, &'static BuildingLook) {

@@ -50,7 +50,7 @@ fn case(width: u32) -> Case {
     let rig = Rig::new(&camera);
     let look = BuildingLook::named("laboratory").unwrap();
     let views = ViewSampler::of([look], camera.image, 7).unwrap();
-    let colours = learned(&views, look, &camera, &rig).unwrap();
+    let colours = learned(&views, look, &camera, &rig, &()).unwrap();
     let effects = Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(7));
     let building = Building::new(views.plan("shape-8").unwrap(), look, None, &effects, 7);
     let pictures = PLACES.map(|(_, pose)| render(&rig, &building, pose, &effects, 7));

@@ -143,14 +143,16 @@ pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
 /// The off-line version: Algorithm 1 on a recording, without a robot that moves.
 ///
 /// # Errors
-/// Returns an error if the recorded run ended early, or if a command is not the recorded one.
+/// Returns an error if the recorded run ended early, if a command is not the recorded one, or if the
+/// observer stops.
 // paper: exp.off-line
 pub fn offline(
     recording: &Recording,
     sensor: impl FrameSensor,
+    observer: impl RunObserver,
     dart_bound: usize,
 ) -> Result<Exploration, MappingError<ExplorerError>> {
-    let mut explorer = RobotExplorer::new(recording.robot(), sensor, ());
+    let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
     let mut exploration = Exploration::new(dart_bound);
     explorer.map(&mut exploration)?;
     Ok(exploration)
@@ -195,7 +197,7 @@ mod tests {
         let mut recording = Recording::default();
         let run = run(&plan, facing, robot, NoSensor, &mut recording, DARTS);
         assert_eq!(recording.len() as u64, run.pictures);
-        let again = offline(&recording, NoSensor, DARTS).unwrap();
+        let again = offline(&recording, NoSensor, (), DARTS).unwrap();
         assert_eq!(again.map(), run.exploration.map());
         assert_eq!(again.moves(), run.exploration.moves());
     }

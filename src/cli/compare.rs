@@ -16,6 +16,7 @@ use toposlam_model::{
 
 use super::{
     Failure, Outcome, input, marker_kinds,
+    progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
 };
@@ -38,7 +39,7 @@ Examples:
   toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none
 
 If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
-be in. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
+be in. If there are more than 100,000 pairs, the proof is the classes of indistinguishable states. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
 in the file, and the robot in B is at w. With a movable marker, v:2@u has the marker at u, and in \
 v:2+marker the robot carries it.")]
 pub(super) struct CompareArguments {
@@ -151,7 +152,10 @@ impl CompareArguments {
             (Some(marker), _) => marker,
         };
         let one_pose = self.start.len() == 2;
-        RobotComparison::new(worlds, marker, one_pose).map(Some)
+        let progress = Progress::new("comparing", "starts")?;
+        let robots = RobotComparison::new(worlds, marker, one_pose, &progress);
+        progress.finish();
+        robots.map(Some)
     }
 }
 

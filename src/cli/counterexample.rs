@@ -127,7 +127,7 @@ impl CounterexampleArguments {
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(pairs::report_unfinished(&unfinished)),
+                Err(unfinished) => return pairs::report_unfinished(&unfinished),
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;

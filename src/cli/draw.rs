@@ -10,7 +10,10 @@ use clap::ValueEnum;
 
 use toposlam::picture::{WorldPicture, png, svg};
 
-use toposlam_model::{format::dot, marker::Marker};
+use toposlam_model::{
+    format::dot,
+    marker::{Directional, Marker},
+};
 
 use super::{Failure, Outcome, input, marker_kinds, output};
 
@@ -25,9 +28,9 @@ pub(super) struct DrawArguments {
     /// Where the robot and its marker start [default: the start in the file]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// Kind of marker
-    #[arg(long, value_name = "KIND", default_value = "directional", value_parser = marker_kinds())]
-    marker: &'static dyn Marker,
+    /// Kind of marker, in a picture [default: directional]
+    #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
+    marker: Option<&'static dyn Marker>,
     /// The file to write: .svg, .png or .dot [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -51,11 +54,15 @@ impl DrawArguments {
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;
         }
+        if let (Format::Dot, Some(_)) = (self.format(), self.marker) {
+            return Err(Failure::at("--marker", "a DOT file does not show the marker"));
+        }
+        let marker = self.marker.unwrap_or(&Directional);
         let mut world = input::read_world(&self.world)?;
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = || svg(&WorldPicture { marker: self.marker, ..WorldPicture::from(&world) });
+        let drawn = || svg(&WorldPicture { marker, ..WorldPicture::from(&world) });
         let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
             Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,

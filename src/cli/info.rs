@@ -14,7 +14,13 @@ use toposlam_robot::log::{
     topic_map::{RoleGuess, TopicMap, guess},
 };
 
-use super::{Failure, Outcome, input, json::print_object, output, text::grouped, text::print_rows};
+use super::{
+    Failure, Outcome, input,
+    json::print_object,
+    outcome::SeveralInputs,
+    output,
+    text::{grouped, print_rows},
+};
 
 /// Show the contents of logs: times, completeness and topics
 ///
@@ -26,7 +32,8 @@ use super::{Failure, Outcome, input, json::print_object, output, text::grouped, 
 Example:
   toposlam info run.mcap --write-mapping mapping.toml
 
-Exit code 3 if a log is truncated; its contents up to there are shown.")]
+A log that cannot be read is reported, and the others are shown. Exit code 2 if there is one; 3 if a log \
+is truncated: its contents up to there are shown.")]
 pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
@@ -93,14 +100,9 @@ impl InfoArguments {
                 Some((path, read.map_err(|error| Failure::in_file(path, error))?))
             }
         };
-        let mut outcome = Outcome::Holds;
+        let mut inputs = SeveralInputs::new();
         for path in &self.logs {
-            let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
-            if let Some((mapping_path, mapping)) = &mapping {
-                mapping.bind(&log).map_err(|error| {
-                    Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
-                })?;
-            }
+            let Some(log) = inputs.add(opened(path, mapping.as_ref())) else { continue };
             let carriers = carriers(&log, mapping.as_ref().map(|(_, mapping)| mapping));
             if let Some(target) = &self.write_mapping {
                 write_mapping(target, &log, &carriers)?;
@@ -110,12 +112,21 @@ impl InfoArguments {
             } else {
                 print(out, path, &log, &carriers)?;
             }
-            if log.truncation().is_some() {
-                outcome = Outcome::Incomplete;
-            }
         }
-        Ok(outcome)
+        inputs.worst()
     }
+}
+
+/// Opens a log, which is incomplete if it is truncated. The mapping must fit it.
+fn opened(path: &Path, mapping: Option<&(&PathBuf, TopicMap)>) -> Result<(Log, Outcome), Failure> {
+    let log = input::open_log(path)?;
+    if let Some((mapping_path, mapping)) = mapping {
+        mapping.bind(&log).map_err(|error| {
+            Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
+        })?;
+    }
+    let whole = log.truncation().is_none();
+    Ok((log, if whole { Outcome::Holds } else { Outcome::Incomplete }))
 }
 
 /// For each role, the names of the topics that carry it or could carry it.

@@ -1,9 +1,10 @@
-//! Input files: worlds in any format, calibrations, colours.
+//! Input files: worlds in any format, calibrations, colours, logs. All are registered: no output replaces
+//! them.
 
 use std::{
     fs,
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use toposlam_model::{
@@ -11,12 +12,13 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
+use toposlam_robot::log::reader::Log;
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,
 };
 
-use super::Failure;
+use super::{Failure, files::files};
 
 /// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
 /// no name, the world gets the name of the file.
@@ -54,8 +56,12 @@ pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w F
 /// Reads the camera of a calibration file. Paths in the file are relative to its folder.
 pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    calibration::read(&read(path)?, &mut |name| fs::read(folder.join(name)))
-        .map_err(|error| Failure::in_file(path, error))
+    let beside = &mut |name: &str| {
+        let path = folder.join(name);
+        files().read(&path).map_err(io::Error::other)?;
+        fs::read(path)
+    };
+    calibration::read(&read(path)?, beside).map_err(|error| Failure::in_file(path, error))
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.
@@ -106,12 +112,24 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
     }
 }
 
+/// Registers files that are read later, so that an output among them is refused before the work.
+pub(crate) fn register(paths: &[PathBuf]) -> Result<(), Failure> {
+    Ok(paths.iter().try_for_each(|path| files().read(path))?)
+}
+
+/// Opens a log.
+pub(crate) fn open_log(path: &Path) -> Result<Log, Failure> {
+    files().read(path)?;
+    Log::open(path).map_err(|error| Failure::in_file(path, error))
+}
+
 /// Reads a file. `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
     } else {
+        files().read(path)?;
         fs::read(path)
     };
     bytes.map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))

@@ -11,6 +11,7 @@ mod draw;
 mod drive;
 mod evaluate;
 mod explore;
+mod files;
 mod info;
 mod input;
 mod json;
@@ -24,6 +25,7 @@ mod progress;
 mod proofs;
 mod render;
 mod replay;
+mod report_output;
 mod scene;
 mod sense;
 mod simulate;
@@ -46,6 +48,7 @@ use toposlam_model::marker::{self, MARKERS, Marker};
 use toposlam_robot::simulator::MotionNoise;
 
 use outcome::{Failure, Outcome};
+use report_output::ReportOutput;
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
 /// algorithm, and a checker that runs it on every small world
@@ -158,7 +161,7 @@ fn without_ros() -> Failure {
 /// Runs the verb on the command line.
 pub(crate) fn run() -> ExitCode {
     let arguments = CommandLine::parse();
-    let mut out = io::stdout().lock();
+    let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),
         Some(Verb::Explore(verb)) => verb.run(&mut out),

@@ -50,7 +50,7 @@ const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
 
 impl OpenLog {
     pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, Failure> {
-        let log = Log::open(path).map_err(|error| Failure::in_file(path, error))?;
+        let log = input::open_log(path)?;
         let mapping = match &sources.mapping {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
@@ -61,9 +61,25 @@ impl OpenLog {
         let bound = opened.mapping.bind(&opened.log);
         bound.map_err(|error| opened.wrong_mapping(path, &error))?;
         opened.run = head(path, &opened.log, &opened.mapping)?;
+        opened.check_used(path, sources)?;
         opened.sensing =
             opened.sensing(path, sources.calibration.as_deref(), sources.colours.as_deref())?;
         Ok(opened)
+    }
+
+    /// Returns an error for a calibration or colours without effect.
+    fn check_used(&self, path: &Path, sources: &LogOptions) -> Result<(), Failure> {
+        let given = [("--calibration", &sources.calibration), ("--colours", &sources.colours)];
+        let Some((option, _)) = given.into_iter().find(|(_, file)| file.is_some()) else {
+            return Ok(());
+        };
+        // Of several topics one may carry images; then another error names them.
+        let ambiguous = self.mapping_path.is_none() && TopicMap::from_log(&self.log).is_err();
+        if self.mapping.carrier(Role::Image).is_none() && !ambiguous {
+            let cause = format!("this is for images, and {} has none", path.display());
+            return Err(Failure::at(option, cause));
+        }
+        Ok(())
     }
 
     /// The evidence from which events are inferred.

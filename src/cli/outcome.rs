@@ -2,6 +2,10 @@
 
 use std::{fmt::Display, io, path::Path, process::ExitCode};
 
+use toposlam_model::enumerate::Interrupted;
+
+use super::{files::FileConflict, report_output};
+
 /// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -28,9 +32,10 @@ impl From<Outcome> for ExitCode {
 pub(crate) enum Failure {
     /// Bad usage or bad input, exit code 2. The message names the place and the cause.
     Input(String),
-    /// The reader closed standard output: no message, exit code 3. A check whose report was not read to
-    /// the end does not hold.
-    ReaderGone,
+    /// Bad input that was reported when it was found, exit code 2.
+    Reported,
+    /// The work was stopped before it had a result, exit code 3.
+    Interrupted,
 }
 
 impl Failure {
@@ -51,16 +56,121 @@ impl Failure {
                 eprintln!("error: {message}");
                 ExitCode::from(2)
             }
-            Self::ReaderGone => Outcome::Incomplete.into(),
+            Self::Reported => ExitCode::from(2),
+            Self::Interrupted => {
+                if !report_output::is_useless() {
+                    eprintln!("{Interrupted}");
+                }
+                Outcome::Incomplete.into()
+            }
         }
+    }
+}
+
+/// The worse of two results. Bad input is worse than a violation, that is worse than work that is not
+/// finished, and that is worse than a result that holds: exit codes 2, 1, 3, 0.
+pub(crate) fn worse(
+    one: Result<Outcome, Failure>,
+    other: Result<Outcome, Failure>,
+) -> Result<Outcome, Failure> {
+    let rank = |result: &Result<Outcome, Failure>| match result {
+        Err(Failure::Input(_) | Failure::Reported) => 3,
+        Ok(Outcome::Violated) => 2,
+        Ok(Outcome::Incomplete) | Err(Failure::Interrupted) => 1,
+        Ok(Outcome::Holds) => 0,
+    };
+    if rank(&other) > rank(&one) { other } else { one }
+}
+
+/// The result of a verb that handles each of its inputs, also if another one is bad.
+pub(crate) struct SeveralInputs(Result<Outcome, Failure>);
+
+impl SeveralInputs {
+    /// The result without any input.
+    pub(crate) fn new() -> Self {
+        Self(Ok(Outcome::Holds))
+    }
+
+    /// Adds the result of one input, and prints its failure. Returns the value, if there is one.
+    pub(crate) fn add<T>(&mut self, result: Result<(T, Outcome), Failure>) -> Option<T> {
+        let (value, result) = match result {
+            Ok((value, outcome)) => (Some(value), Ok(outcome)),
+            Err(failure @ Failure::Input(_)) => {
+                failure.report();
+                (None, Err(Failure::Reported))
+            }
+            Err(failure) => (None, Err(failure)),
+        };
+        let so_far = std::mem::replace(&mut self.0, Ok(Outcome::Holds));
+        self.0 = worse(so_far, result);
+        value
+    }
+
+    /// The worst result of all inputs.
+    pub(crate) fn worst(self) -> Result<Outcome, Failure> {
+        self.0
     }
 }
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => Self::ReaderGone,
-            _ => Self::at("standard output", error),
+        Self::at("standard output", error)
+    }
+}
+
+impl From<FileConflict> for Failure {
+    fn from(conflict: FileConflict) -> Self {
+        Self::Input(conflict.to_string())
+    }
+}
+
+impl From<Interrupted> for Failure {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> [Result<Outcome, Failure>; 6] {
+        [
+            Ok(Outcome::Holds),
+            Err(Failure::Interrupted),
+            Ok(Outcome::Incomplete),
+            Ok(Outcome::Violated),
+            Err(Failure::Reported),
+            Err(Failure::Input("x".to_owned())),
+        ]
+    }
+
+    fn code(result: Result<Outcome, Failure>) -> ExitCode {
+        result.map_or_else(|failure| failure.report(), ExitCode::from)
+    }
+
+    /// The exit codes from the best to the worst.
+    const ORDER: [u8; 6] = [0, 3, 3, 1, 2, 2];
+
+    #[test]
+    fn of_two_exit_codes_2_comes_before_1_before_3_before_0() {
+        for one in 0..6 {
+            for other in 0..6 {
+                let worse = worse(
+                    all().into_iter().nth(one).unwrap(),
+                    all().into_iter().nth(other).unwrap(),
+                );
+                assert_eq!(code(worse), ExitCode::from(ORDER[one.max(other)]), "{one} {other}");
+            }
         }
+    }
+
+    #[test]
+    fn a_bad_input_does_not_hide_the_others() {
+        let mut inputs = SeveralInputs::new();
+        assert_eq!(inputs.add(Ok((1, Outcome::Violated))), Some(1));
+        assert_eq!(inputs.add::<u8>(Err(Failure::Input("x".to_owned()))), None);
+        assert_eq!(inputs.add(Ok((3, Outcome::Holds))), Some(3));
+        assert!(matches!(inputs.worst(), Err(Failure::Reported)));
     }
 }

@@ -1,14 +1,26 @@
-//! Output files. They are written completely or not at all, except logs, which grow.
+//! Output files. They are written completely or not at all, except logs, which grow. No output replaces
+//! an input or another output.
 
 use std::{
     ffi::{OsStr, OsString},
     fs, io,
     path::Path,
+    process,
+    sync::{Mutex, PoisonError},
 };
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
-use super::Failure;
+use super::{Failure, files::files};
+
+/// Locked while a file is written.
+static WRITING: Mutex<()> = Mutex::new(());
+
+/// Ends the program when no file is being written.
+pub(crate) fn exit_between_files(code: i32) -> ! {
+    let _not_writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    process::exit(code)
+}
 
 /// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
 /// renamed.
@@ -16,13 +28,15 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let Some(name) = path.file_name() else {
         return Err(Failure::in_file(path, "this is not a file name"));
     };
+    files().write(path)?;
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     // A device or a pipe is not replaced.
     if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         return fs::write(path, bytes).map_err(|error| not_writable(path, &error));
     }
     let mut partial_name = OsString::from(".");
     partial_name.push(name);
-    partial_name.push(format!(".{}.partial", std::process::id()));
+    partial_name.push(format!(".{}.partial", process::id()));
     let partial = path.with_file_name(partial_name);
     fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
         // If this fails too, the first error is the one to report.
@@ -34,11 +48,13 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
 /// killed.
 pub(crate) fn create_growing(path: &Path) -> Result<fs::File, Failure> {
+    files().grow(path)?;
     fs::File::create(path).map_err(|error| not_writable(path, &error))
 }
 
 /// Creates the folder if it does not exist.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    files().fill_folder();
     fs::create_dir_all(folder)
         .map_err(|error| Failure::in_file(folder, format!("the folder cannot be created: {error}")))
 }
@@ -46,8 +62,8 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 /// Checks that a file can be written to a path, before long work begins.
 ///
 /// # Errors
-/// Returns an error if the path is a folder, if its folder does not exist, or if its extension is not in
-/// the list.
+/// Returns an error if the path is a folder, an input or another output, if its folder does not exist, or
+/// if its extension is not in the list.
 pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::in_file(path, "this is a folder, not a file"));
@@ -62,12 +78,12 @@ pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failur
             .extension()
             .and_then(OsStr::to_str)
             .is_some_and(|found| extensions.contains(&found));
-    if fits {
-        Ok(())
-    } else {
+    if !fits {
         let extensions: Vec<_> = extensions.iter().map(|name| format!(".{name}")).collect();
-        Err(Failure::in_file(path, format!("the name must end in {}", extensions.join(" or "))))
+        let cause = format!("the name must end in {}", extensions.join(" or "));
+        return Err(Failure::in_file(path, cause));
     }
+    Ok(files().plan(path)?)
 }
 
 /// The extensions of plantri's `planar_code`, which is for simple graphs only.

@@ -1,23 +1,52 @@
 //! The progress bar of long work, and Ctrl-C.
+//!
+//! Long work asks its [`Watch`] whether to stop, so that it can report what it has. Work that does not ask
+//! soon is ended.
 
 use std::{
-    process,
     sync::{
         Once,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
+    thread,
+    time::Duration,
 };
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
-use super::Failure;
+use super::{Failure, output, report_output};
 
 /// Set by the first Ctrl-C: the work stops soon.
 static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Whether a second Ctrl-C also waits for the work to stop.
 static ALWAYS_GRACEFUL: AtomicBool = AtomicBool::new(false);
+
+/// Set when work has asked after Ctrl-C: it reports what it has.
+static ANSWERED: AtomicBool = AtomicBool::new(false);
+
+/// The time for work to ask whether to stop, and the time for it to report what it has.
+const TO_ASK: Duration = Duration::from_millis(900);
+const TO_REPORT: Duration = Duration::from_secs(10);
+
+/// Whether work is to stop: after Ctrl-C, or if nobody reads its result.
+pub(crate) fn must_stop() -> bool {
+    let interrupted = STOP.load(Ordering::Relaxed);
+    if interrupted {
+        ANSWERED.store(true, Ordering::Relaxed);
+    }
+    interrupted || report_output::is_useless()
+}
+
+/// Stops work when [`must_stop`], without a bar.
+pub(crate) struct StopSignal;
+
+impl Watch for StopSignal {
+    fn stop(&self) -> bool {
+        must_stop()
+    }
+}
 
 /// A bar on standard error. It is hidden if that is not a terminal.
 pub(crate) struct Progress {
@@ -90,19 +119,32 @@ impl Watch for Progress {
     }
 
     fn stop(&self) -> bool {
-        STOP.load(Ordering::Relaxed)
+        must_stop()
     }
 }
 
-/// The first Ctrl-C stops the work soon, the second one at once.
+/// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed.
 fn watch_for_interrupt() -> Result<(), Failure> {
     static SET: Once = Once::new();
     let mut result = Ok(());
     SET.call_once(|| {
         result = ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) && !ALWAYS_GRACEFUL.load(Ordering::Relaxed) {
-                process::exit(3);
+            let again = STOP.swap(true, Ordering::Relaxed);
+            if ALWAYS_GRACEFUL.load(Ordering::Relaxed) {
+                return;
             }
+            if again {
+                output::exit_between_files(3);
+            }
+            // Without a thread, the work still ends at its next question.
+            let _ = thread::Builder::new().spawn(|| {
+                thread::sleep(TO_ASK);
+                if ANSWERED.load(Ordering::Relaxed) {
+                    thread::sleep(TO_REPORT);
+                }
+                eprintln!("interrupted");
+                output::exit_between_files(3);
+            });
         });
     });
     result.map_err(|error| Failure::at("Ctrl-C", error))

@@ -8,11 +8,13 @@ use std::{
 };
 
 use serde::Serialize;
+use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
     Failure, Outcome, input,
     json::print_object,
+    outcome::SeveralInputs,
     output, picture_file,
     scene::{SceneLine, rows},
     text::print_hanging,
@@ -28,6 +30,8 @@ use super::{
 Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml \\
     --stages steps
+
+An image that cannot be used is reported, and the others are sensed.
 
 Angles are relative to the robot's heading, counter-clockwise. Doors are listed
 clockwise from the entry door.")]
@@ -66,6 +70,7 @@ impl SenseArguments {
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;
         }
+        input::register(&self.images)?;
         let camera = input::read_camera(&self.calibration)?;
         let colours = input::read_colours(&self.colours)?;
         let names = stage_names(&self.images, self.stages.is_some())?;
@@ -74,38 +79,32 @@ impl SenseArguments {
         }
         let mut sensor = Sensor::new(&camera, &colours);
         match &self.out {
-            None => self.sense(&camera, &mut sensor, &names, out)?,
+            None => self.sense_all(&camera, &mut sensor, &names, out)?.worst(),
             Some(path) => {
                 let mut text = Vec::new();
-                self.sense(&camera, &mut sensor, &names, &mut text)?;
-                output::write_whole(path, &text)?;
+                let inputs = self.sense_all(&camera, &mut sensor, &names, &mut text)?;
+                // Without any scene there is nothing to write.
+                if !text.is_empty() {
+                    output::write_whole(path, &text)?;
+                }
+                inputs.worst()
             }
         }
-        Ok(Outcome::Holds)
     }
 
-    fn sense(
+    /// Senses all images and prints their scenes. An image that cannot be used is reported.
+    fn sense_all(
         &self,
         camera: &Camera,
         sensor: &mut Sensor,
         names: &[OsString],
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<SeveralInputs, Failure> {
+        let mut inputs = SeveralInputs::new();
         for (path, name) in self.images.iter().zip(names) {
-            let image = picture_file::read(path, camera.image)?;
-            let wrong = |error| Failure::in_file(path, error);
-            let scene = match &self.stages {
-                None => sensor.sense(&image).map_err(wrong)?,
-                Some(folder) => {
-                    let (scene, stages) = annotate::stages(sensor, &image).map_err(wrong)?;
-                    for (stage, picture) in &stages {
-                        let mut name = name.clone();
-                        name.push(format!("-{stage}.png"));
-                        picture_file::write(&folder.join(name), picture)?;
-                    }
-                    scene
-                }
-            };
+            let sensed = self.sense(camera, sensor, path, name);
+            let sensed = sensed.map(|scene| (scene, Outcome::Holds));
+            let Some(scene) = inputs.add(sensed) else { continue };
             if self.json {
                 let image = path.display().to_string();
                 print_object(out, &Line { schema: 1, image, scene: SceneLine::from(&scene) })?;
@@ -117,7 +116,27 @@ impl SenseArguments {
             }
             out.flush()?;
         }
-        Ok(())
+        Ok(inputs)
+    }
+
+    /// The scene of an image. Writes the pictures of the stages.
+    fn sense(
+        &self,
+        camera: &Camera,
+        sensor: &mut Sensor,
+        path: &Path,
+        name: &OsString,
+    ) -> Result<Scene, Failure> {
+        let image = picture_file::read(path, camera.image)?;
+        let wrong = |error| Failure::in_file(path, error);
+        let Some(folder) = &self.stages else { return sensor.sense(&image).map_err(wrong) };
+        let (scene, stages) = annotate::stages(sensor, &image).map_err(wrong)?;
+        for (stage, picture) in &stages {
+            let mut name = name.clone();
+            name.push(format!("-{stage}.png"));
+            picture_file::write(&folder.join(name), picture)?;
+        }
+        Ok(scene)
     }
 }
 

@@ -20,8 +20,9 @@ use toposlam_model::{
     embedded_graph::Dart, floor_plan::FloorPlan, format::named_world::NamedWorld,
 };
 use toposlam_robot::{
-    evaluation::LearnedSensors,
+    evaluation::{LearnedSensors, LearningError},
     log::recorder::Recorder,
+    record::StoppedBy,
     recording::Recording,
     run::{offline, run},
     simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
@@ -33,7 +34,7 @@ use super::{
     appearance::{Appearance, ImageSize},
     explore::story::{Story, StoryDetail},
     input, noise, output,
-    progress::Progress,
+    progress::{Progress, StopSignal},
     story_lines::StoryLines,
     text::capital,
 };
@@ -71,7 +72,7 @@ pub(super) struct SimulateArguments {
     #[command(flatten)]
     appearance: Appearance,
     /// Render no images: simulate scenes with the measured accuracy of sensing
-    #[arg(long, conflicts_with_all = ["calibration", "size", "colours", "frames"])]
+    #[arg(long, conflicts_with_all = OF_IMAGES)]
     by_scene: bool,
     /// Noise of wheels and odometry, as a multiple of the default
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
@@ -111,8 +112,13 @@ pub(super) struct SimulateArguments {
     json: bool,
 }
 
+/// Options of rendered images, which --by-scene does not make.
+const OF_IMAGES: [&str; 7] =
+    ["calibration", "size", "colours", "frames", "look", "effects", "effect"];
+
 /// Options that need a run; --ros serves the robot instead.
-const NOT_DRIVEN: [&str; 7] = ["by_scene", "log", "svg", "html", "frames", "map", "json"];
+const NOT_DRIVEN: [&str; 8] =
+    ["by_scene", "log", "svg", "html", "frames", "map", "json", "max_darts"];
 
 /// A simulation that is ready to run.
 struct Simulation {
@@ -203,7 +209,10 @@ impl SimulateArguments {
         let progress = Progress::new("learning colours", "looks")?;
         let eyes = LearnedSensors::new(camera, &[look], &progress);
         progress.finish();
-        eyes.map_err(|error| Failure::at("--look", error))
+        eyes.map_err(|error| match error {
+            LearningError::Interrupted(stopped) => stopped.into(),
+            error => Failure::at("--look", error),
+        })
     }
 
     /// Runs the simulation, prints its result and writes its files.
@@ -232,13 +241,14 @@ impl SimulateArguments {
         let mut journal = capture.finish(&world.name, plan, *facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
-        let replayed = offline(&recording, sensor, self.max_darts);
+        let replayed = offline(&recording, sensor, StoppedBy(&StopSignal), self.max_darts);
         let compute_seconds = computed.elapsed().as_secs_f64();
         let result = SimulationResult {
             world,
             facing: *facing,
             seed: self.seed,
             run: &run,
+            missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),
             replayed: replayed.ok(),
             compute_seconds,
             wall_seconds: simulation.begun.elapsed().as_secs_f64(),
@@ -314,5 +324,5 @@ Examples:
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 
 Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input, 3 ended by \
-Ctrl-C or at --max-darts."
+Ctrl-C or at --max-darts, or a fault did not happen."
 }

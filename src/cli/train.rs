@@ -108,8 +108,7 @@ impl TrainArguments {
         for pair in pairs {
             if progress.stop() {
                 progress.finish();
-                eprintln!("interrupted: nothing was written");
-                return Ok(Outcome::Incomplete);
+                return Err(Failure::Interrupted);
             }
             if let Some(cause) = learn(&mut training, &camera, &pair)? {
                 left_out.push(LeftOut { image: pair.image, cause });
@@ -122,7 +121,10 @@ impl TrainArguments {
         }
         self.check_classes(&training)?;
         let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
-        let validation = self.validation(&training)?;
+        let progress = Progress::new("cross-validating", "parts")?;
+        let validation = self.validation(&training, &progress);
+        progress.finish();
+        let validation = validation?;
         output::write_whole(&self.out, model.to_toml().as_bytes())?;
         let report = TrainingReport { training: &training, left_out, stripe, validation };
         if self.json {
@@ -208,11 +210,12 @@ impl TrainArguments {
     }
 
     /// Cross-validates. If the number of parts was not given and is impossible, returns the reason.
-    fn validation(&self, training: &Training) -> Result<Validation, Failure> {
+    fn validation(&self, training: &Training, watch: &dyn Watch) -> Result<Validation, Failure> {
         let images = training.images();
         let folds = self.folds.unwrap_or(FOLDS.min(images));
-        match training.cross_validate(folds) {
+        match training.cross_validate(folds, watch) {
             Ok(confusion) => Ok(Validation::Folds(folds, confusion)),
+            Err(TrainingError::Interrupted(stopped)) => Err(stopped.into()),
             Err(TrainingError::Folds { .. }) if self.folds.is_none() => {
                 Ok(Validation::None { why: "there is only one image to learn from".to_owned() })
             }

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 pub use conform::conform_page;
 pub use run::run_page;
-pub use walk::{WalkPage, page};
+pub use walk::{MOST_PAIRS, WalkPage, page};
 
 /// The stylesheet of all pages.
 const PAGE_STYLE: &str = include_str!("browser/page.css");

@@ -214,6 +214,32 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
 }
 
 #[test]
+fn an_option_without_effect_is_an_error() {
+    const LOG: &str = "fuzz/corpus/bag/bz2";
+    let cases: [(&[&str], &str); 15] = [
+        (&["simulate", WORLD, "--by-scene", "--look", "vinyl"], "cannot be used with"),
+        (&["simulate", WORLD, "--by-scene", "--effects", "none"], "cannot be used with"),
+        (&["simulate", WORLD, "--by-scene", "--effect", "blur=1"], "cannot be used with"),
+        (&["simulate", WORLD, "--by-scene", "--size", "640x480"], "cannot be used with"),
+        (&["simulate", WORLD, "--speed", "2"], "--ros <URI>"),
+        (&["simulate", WORLD, "--ros", "http://x", "--max-darts", "9"], "cannot be used with"),
+        (&["evaluate", "control", "--look", "vinyl"], "--images"),
+        (&["evaluate", "control", "--size", "640x480"], "--images"),
+        (&["evaluate", "control", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
+        (&["evaluate", "runs", "--look", "vinyl"], "--images"),
+        (&["evaluate", "runs", "--plan", WORLD, "--plans", "3"], "cannot be used with"),
+        (&["draw", WORLD, "--format", "dot", "--marker", "none"], "--marker: a DOT file does not"),
+        (&["draw", WORLD, "--out", "x.dot", "--marker", "none"], "--marker: a DOT file does not"),
+        (&["replay", LOG, "--calibration", "x.toml"], "--calibration: this is for images, and "),
+        (&["replay", LOG, "--colours", "x.toml"], "--colours: this is for images, and "),
+    ];
+    for (arguments, cause) in cases {
+        let error = error_of(arguments);
+        assert!(error.contains(cause), "{arguments:?}: {error}");
+    }
+}
+
+#[test]
 fn with_a_movable_marker_explore_and_check_reject_the_same_worlds() {
     const TORUS: &str = "worlds/theta-torus.toml";
     let rejected = |verb: &[&str]| error_of(&[verb, &["--marker", "movable"]].concat());

@@ -207,3 +207,40 @@ fn a_walk_goes_as_far_as_both_robots_can() {
                stopped: door 2 was taken at a vertex with 2 doors, in B\n";
     assert!(text.ends_with(end), "{text}");
 }
+
+/// A world file of a cycle.
+fn cycle(folder: &Path, edges: usize) -> String {
+    let file = folder.join(format!("cycle-{edges}.toml"));
+    let line = |vertex: usize| {
+        let (last, next) = ((vertex + edges - 1) % edges, (vertex + 1) % edges);
+        format!("v{vertex} = [\"v{last}\", \"v{next}\"]\n")
+    };
+    let lines: String = (0..edges).map(line).collect();
+    fs::write(&file, format!("[clockwise]\n{lines}")).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+/// Without a marker, two robots in cycles of coprime lengths `n` and `m` reach `2 n m` pairs of poses.
+#[test]
+fn for_many_pairs_of_states_the_proof_is_the_classes_of_states() {
+    let folder = folder("compare_cycles");
+    let files = [300, 301].map(|edges| cycle(&folder, edges));
+    let page = folder.join("page.html").to_str().unwrap().to_owned();
+    let more = ["--marker", "none", "--html", &page];
+    let line = compared([&files[0], &files[1]], &more);
+    assert_eq!((&line["distinguishable"], &line["relation"]), (&false.into(), &Value::Null));
+    let classes = line["classes"].as_array().unwrap();
+    let [class] = &classes[..] else { panic!("{line}") };
+    let sizes = [0, 1].map(|side| class[side].as_array().unwrap().len());
+    assert_eq!(sizes, [2 * 300, 2 * 301]);
+    assert_eq!(line["starts"].as_array().unwrap().len(), 2 * 301);
+    let text = stdout_of(["compare", &files[0], &files[1], "--marker", "none"]);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let verdict = "The robots can be in more than 100,000 pairs of states. Two states of one class are \
+                   indistinguishable, and each action leads from them to states of one class. There is 1 \
+                   class: 1 600 states of A (v0:0, ...) and 602 states of B (v0:0, ...)";
+    assert!(text.contains(verdict), "{text}");
+    assert!(fs::read_to_string(page).unwrap().contains("\"relation\":null"));
+    // Few pairs are listed.
+    assert_eq!(compared(CYCLES, &["--marker", "none"])["classes"], Value::Null);
+}

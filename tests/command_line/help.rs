@@ -162,10 +162,58 @@ fn a_reader_that_stops_early_causes_no_panic() {
     }
 }
 
-#[test]
-fn a_check_without_a_reader_does_not_hold() {
+/// The exit code and the messages of a command whose standard output is closed.
+fn without_a_reader(command: &[&str]) -> (Option<i32>, String) {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
-    let status = toposlam().args(["check", "--json", "--edges", "1"]).stdout(writer).status();
-    assert_eq!(status.unwrap().code(), Some(3));
+    let output = toposlam().args(command).stdout(writer).output().unwrap();
+    (output.status.code(), stderr(&output))
+}
+
+#[test]
+fn a_list_or_a_report_of_finished_work_without_a_reader_is_no_error() {
+    let commands: [&[&str]; 8] = [
+        &[],
+        &["paper"],
+        &["proofs", "--json"],
+        &["completions", "bash"],
+        &["draw", "worlds/building-25.toml"],
+        &["explore", "worlds/building-25.toml", "--full"],
+        &["compare", "worlds/cycle-3.toml", "worlds/cycle-4.toml", "--marker", "none"],
+        &["info", "fuzz/corpus/mcap/of-a-run"],
+    ];
+    for command in commands {
+        assert_eq!(without_a_reader(command), (Some(0), String::new()), "{command:?}");
+    }
+    // A failure stays one.
+    let wrong = ["explore", "worlds/shape-6.toml", "--max-darts", "3"];
+    assert_eq!(without_a_reader(&wrong), (Some(3), String::new()));
+}
+
+#[test]
+fn without_a_reader_a_check_stops_and_does_not_hold_unless_a_file_is_to_be_written() {
+    let check = ["check", "--json", "--edges", "1..=5"];
+    assert_eq!(without_a_reader(&check), (Some(3), String::new()));
+    let folder = folder("without_a_reader");
+    let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let [worst, page, map, log, run] =
+        ["worst.toml", "page.html", "map.toml", "run.mcap", "run.html"].map(file);
+    let worlds = ["worlds/cycle-3.toml", "worlds/cycle-4.toml"];
+    let commands: [(Vec<&str>, &[&String]); 4] = [
+        ([&check[..], &["--worst", &worst]].concat(), &[&worst]),
+        ([&["compare"], &worlds[..], &["--marker", "none", "--html", &page]].concat(), &[&page]),
+        (vec!["explore", "worlds/shape-8.toml", "--map", &map], &[&map]),
+        (
+            vec!["simulate", "worlds/shape-6.toml", "--by-scene", "--log", &log, "--html", &run],
+            &[&log, &run],
+        ),
+    ];
+    for (command, files) in commands {
+        let (code, _) = without_a_reader(&command);
+        assert_eq!(code, Some(0), "{command:?}");
+        for file in files {
+            assert!(std::fs::metadata(file).unwrap().len() > 100, "{file}");
+        }
+    }
+    stdout_of(["conform", &log, "--world", "worlds/shape-6.toml"]);
 }

@@ -111,3 +111,20 @@ fn a_topic_map_is_written_and_checked_against_its_log() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no role has exactly one possible topic"));
 }
+
+#[test]
+fn an_unreadable_log_does_not_stop_the_others_and_the_worst_exit_code_counts() {
+    const TRUNCATED: &str = "fuzz/corpus/bag/not-closed";
+    let output = run(["info", "--json", RUN, TRUNCATED, RUN]);
+    assert_eq!((output.status.code(), objects(&stdout(&output)).len()), (Some(3), 3));
+    let output = run(["info", "--json", TRUNCATED, "no-such-log", "Cargo.toml", RUN]);
+    assert_eq!(output.status.code(), Some(2), "bad input is worse than a truncated log");
+    let logs = objects(&stdout(&output));
+    let logs: Vec<_> = logs.iter().map(|line| line["log"].clone()).collect();
+    assert_eq!(logs, [TRUNCATED, RUN]);
+    let message = stderr(&output);
+    let lines: Vec<_> = message.lines().collect();
+    assert_eq!(lines.len(), 2, "{message}");
+    assert!(lines[0].starts_with("error: no-such-log: "), "{message}");
+    assert!(lines[1].starts_with("error: Cargo.toml: "), "{message}");
+}

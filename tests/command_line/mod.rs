@@ -11,6 +11,7 @@ mod counterexample;
 mod draw;
 mod evaluate;
 mod explore;
+mod files;
 mod help;
 mod info;
 mod log;

@@ -30,7 +30,7 @@ static FILES: LazyLock<Files> = LazyLock::new(|| {
     let look = BuildingLook::named("laboratory").unwrap();
     let mut views = ViewSampler::of([look], SIZE, 3).unwrap();
     views.plans.retain(|(name, _)| name == "shape-6");
-    let colours = learned(&views, look, &camera, &Rig::new(&camera)).unwrap();
+    let colours = learned(&views, look, &camera, &Rig::new(&camera), &()).unwrap();
     let file = |name: &str, text: String| {
         fs::write(folder.join(name), text).unwrap();
         folder.join(name).to_str().unwrap().to_owned()
@@ -310,4 +310,24 @@ fn stages_of_images_with_the_same_name_are_refused() {
     assert!(stderr(&output).contains("its pictures would have the same names as those of"));
     assert!(names_in(&steps).is_empty());
     stdout_of(sense(&[&one, &other], &[]));
+}
+
+#[test]
+fn an_unreadable_image_does_not_stop_the_others() {
+    let (one, other) = (rendered("one.png", "2,4,0"), rendered("other.png", "2,4,10"));
+    let bad = written("between.png", b"a picture");
+    let (missing, file) = (FILES.folder.join("missing.png"), FILES.folder.join("scenes.jsonl"));
+    let (missing, file) = (missing.to_str().unwrap(), file.to_str().unwrap());
+    let alone = stdout_of(sense(&[&one, &other], &["--json"]));
+    let images = [&*one, &bad, missing, &other];
+    let output = run(sense(&images, &["--json"]));
+    assert_eq!((output.status.code(), stdout(&output)), (Some(2), alone.clone()));
+    let message = stderr(&output);
+    let lines: Vec<_> = message.lines().collect();
+    assert_eq!(lines.len(), 2, "{message}");
+    assert!(lines[0].starts_with(&format!("error: {bad}: ")), "{message}");
+    assert!(lines[1].starts_with(&format!("error: {missing}: ")), "{message}");
+    let output = run(sense(&images, &["--json", "--out", file]));
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(fs::read_to_string(file).unwrap(), alone);
 }

@@ -99,6 +99,24 @@ fn a_robot_that_gives_up_reports_where_and_why() {
 }
 
 #[test]
+fn a_fault_that_does_not_happen_is_not_survived() {
+    let run_with = |more: &[&str]| {
+        run([&["simulate", SHAPE_6, "--by-scene", "--fault", "carried@99999"], more].concat())
+    };
+    let output = run_with(&[]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(3), "{text}");
+    let expected = "The fault carried@99999:1 did not happen: the run ended after ";
+    assert!(text.contains(expected) && text.contains("The map is right"), "{text}");
+    let output = run_with(&["--json", "--fault", "late@20"]);
+    assert_eq!(output.status.code(), Some(3));
+    let line = objects(&stdout(&output)).remove(0);
+    assert_eq!(line["faults_missed"], serde_json::json!(["carried@99999:1"]));
+    // A violation is worse.
+    assert_eq!(run_with(&["--fault", "lights-out@20"]).status.code(), Some(1));
+}
+
+#[test]
 fn a_robot_with_too_few_darts_is_incomplete() {
     let output = run(["simulate", SHAPE_8, "--by-scene", "--max-darts", "6"]);
     assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));

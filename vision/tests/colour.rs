@@ -3,10 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 #![allow(clippy::cast_sign_loss, reason = "levels are never negative")]
 
-use std::sync::LazyLock;
+use std::sync::{
+    LazyLock,
+    atomic::{AtomicU64, Ordering},
+};
 
 use image::{Rgb, RgbImage};
 use proptest::prelude::*;
+use toposlam_model::enumerate::{Interrupted, Watch};
 use toposlam_vision::{
     camera::Camera,
     colour::{
@@ -190,7 +194,7 @@ fn cross_validation_counts_every_labelled_pixel_once() {
     let training = trained_without(9);
     let model = training.model().unwrap();
     for folds in [2, 3, 4] {
-        let confusion = training.cross_validate(folds).unwrap();
+        let confusion = training.cross_validate(folds, &()).unwrap();
         let all: u64 = PixelClass::LEARNED.map(|class| confusion.of(class)).iter().sum();
         let shown = |ground: &&Option<[f64; 2]>| {
             ground.is_some_and(|[x, y]| (0.32..=3.0).contains(&x.hypot(y)))
@@ -203,6 +207,32 @@ fn cross_validation_counts_every_labelled_pixel_once() {
     }
     assert_eq!(training.images(), 4);
     assert_eq!(model.stripe, TAPE);
+}
+
+/// Stops at the question of this number, from 1.
+struct Impatient {
+    at: u64,
+    asked: AtomicU64,
+}
+
+impl Watch for Impatient {
+    fn stop(&self) -> bool {
+        self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
+    }
+}
+
+/// The watch is asked before each part and before each image.
+#[test]
+fn cross_validation_ends_at_the_question_at_which_it_is_stopped() {
+    let training = trained_without(9);
+    for at in 1..=2 + 4 {
+        let watch = Impatient { at, asked: AtomicU64::new(0) };
+        let stopped = training.cross_validate(2, &watch).unwrap_err();
+        assert_eq!(stopped, TrainingError::Interrupted(Interrupted));
+        assert_eq!(watch.asked.into_inner(), at);
+    }
+    let watch = Impatient { at: 7, asked: AtomicU64::new(0) };
+    training.cross_validate(2, &watch).unwrap();
 }
 
 #[test]
@@ -232,7 +262,7 @@ fn images_and_labels_that_do_not_fit_are_rejected() {
     assert_eq!(training.model().unwrap_err(), TrainingError::NoImage);
     training.add(&CAMERA, &image, &labels).unwrap();
     training.model().unwrap();
-    let refused = training.cross_validate(2).unwrap_err();
+    let refused = training.cross_validate(2, &()).unwrap_err();
     assert_eq!(refused, TrainingError::Folds { folds: 2, images: 1 });
 }
 
@@ -264,7 +294,7 @@ fn floor_and_stripe_are_needed_and_the_marker_is_not() {
     }
     training.add(&CAMERA, &image, &no_stripe).unwrap();
     assert_eq!(
-        training.cross_validate(2).unwrap_err().to_string(),
+        training.cross_validate(2, &()).unwrap_err().to_string(),
         "without part 1 of the images no pixel within 3 m is labelled as stripe"
     );
 }

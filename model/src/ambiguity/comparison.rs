@@ -3,18 +3,17 @@
 use std::{cell::OnceCell, collections::HashSet};
 
 use super::{
-    partition::coarsest,
-    space::{Space, States},
+    partition::coarsest_watched,
+    space::{PlacedRobot, Space, States},
+    state_classes::StateClasses,
     witness::{Relation, Walk},
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Interrupted, Watch},
     marker::Marker,
     world::{Action, GraphWorld, State},
 };
-
-/// A robot in a placed world.
-pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
 
 /// Two placed worlds, held against each other. Their states, as [`state_count`](super::state_count)
 /// counts them, are numbered together in a `u32`, and take memory accordingly.
@@ -42,20 +41,39 @@ impl<'a> Comparison<'a> {
         Self { marker, worlds, states, class: OnceCell::new() }
     }
 
+    /// Computes the coarsest partition of the states of both worlds, once. Then each question about
+    /// indistinguishable starts is answered at once.
+    ///
+    /// # Errors
+    /// Returns an error if the watch stops.
+    pub fn partition(&self, watch: &dyn Watch) -> Result<(), Interrupted> {
+        self.class(watch).map(|_| ())
+    }
+
     /// The coarsest partition of the states of both worlds.
-    fn class(&self) -> &[u32] {
-        self.class.get_or_init(|| {
-            let space =
-                |at: usize| Space::of(self.worlds[at].graph(), self.marker, &self.states[at]);
-            let [one, other] = [space(0), space(1)];
-            let beyond = one.labels.len() as u32;
-            let both = |(one, other): (Vec<u32>, Vec<u32>)| -> Vec<u32> {
-                one.into_iter().chain(other.into_iter().map(|to| to + beyond)).collect()
-            };
-            let labels = [one.labels, other.labels].concat();
-            let maps: Vec<_> = one.maps.into_iter().zip(other.maps).map(both).collect();
-            coarsest(&labels, &maps)
-        })
+    fn class(&self, watch: &dyn Watch) -> Result<&[u32], Interrupted> {
+        if let Some(class) = self.class.get() {
+            return Ok(class);
+        }
+        let space = |at: usize| Space::of(self.worlds[at].graph(), self.marker, &self.states[at]);
+        let [one, other] = [space(0), space(1)];
+        let beyond = one.labels.len() as u32;
+        let both = |(one, other): (Vec<u32>, Vec<u32>)| -> Vec<u32> {
+            one.into_iter().chain(other.into_iter().map(|to| to + beyond)).collect()
+        };
+        let labels = [one.labels, other.labels].concat();
+        let maps: Vec<_> = one.maps.into_iter().zip(other.maps).map(both).collect();
+        let class = coarsest_watched(&labels, &maps, watch)?;
+        Ok(self.class.get_or_init(|| class))
+    }
+
+    /// Whether the starts are in one class.
+    fn in_one_class(&self, poses: [Dart; 2], watch: &dyn Watch) -> Result<bool, Interrupted> {
+        let [one, other] = self.starts(poses);
+        let here = self.states[0].number(one.state()) as usize;
+        let there = self.states[0].len() + self.states[1].number(other.state()) as usize;
+        let class = self.class(watch)?;
+        Ok(class[here] == class[there])
     }
 
     /// The two worlds with their markers where they were placed, and in each a robot that has come in
@@ -72,10 +90,8 @@ impl<'a> Comparison<'a> {
     // paper: marker.undirected-insufficient, marker.none-cycles
     #[must_use]
     pub fn indistinguishable(&self, poses: [Dart; 2]) -> bool {
-        let [one, other] = self.starts(poses);
-        let here = self.states[0].number(one.state()) as usize;
-        let there = self.states[0].len() + self.states[1].number(other.state()) as usize;
-        self.class()[here] == self.class()[there]
+        // Nothing stops it.
+        self.in_one_class(poses, &()).unwrap_or_default()
     }
 
     /// The first start in the second world that is indistinguishable from this pose in the first. The
@@ -92,41 +108,95 @@ impl<'a> Comparison<'a> {
     /// can. There are at most as many pairs as states of the one times states of the other.
     #[must_use]
     pub fn relation(&self, poses: [Dart; 2]) -> Option<Relation> {
-        if self.class.get().is_some() && !self.indistinguishable(poses) {
-            return None;
+        match self.bisimulation(poses, usize::MAX, &()) {
+            Ok(Some(Bisimulation::Relation(relation))) => Some(relation),
+            _ => None,
+        }
+    }
+
+    /// Why they cannot: the [`relation`](Self::relation) if it has at most so many pairs, otherwise the
+    /// classes of states; `None` if they can.
+    ///
+    /// # Errors
+    /// Returns an error if the watch stops.
+    pub fn bisimulation(
+        &self,
+        poses: [Dart; 2],
+        most_pairs: usize,
+        watch: &dyn Watch,
+    ) -> Result<Option<Bisimulation>, Interrupted> {
+        if self.class.get().is_some() && !self.in_one_class(poses, watch)? {
+            return Ok(None);
         }
         let mut pairs = Pairs::new(self, poses);
-        match pairs.reach(self.few_pairs()) {
-            Look::Difference(_) => return None,
-            Look::NoMore => {}
-            Look::Enough if !self.indistinguishable(poses) => return None,
-            Look::Enough => {
-                pairs.reach(usize::MAX);
+        let mut look = pairs.reach(self.few_pairs().min(most_pairs), watch)?;
+        if matches!(look, Look::Enough) && self.in_one_class(poses, watch)? {
+            look = pairs.reach(most_pairs, watch)?;
+            if matches!(look, Look::Enough) {
+                let class = self.class(watch)?.to_vec();
+                let classes = StateClasses::new(self.states.clone(), class);
+                return Ok(Some(Bisimulation::Classes(classes)));
             }
         }
-        Some(Relation(pairs.found.into_iter().map(|found| found.pair).collect()))
+        Ok(match look {
+            Look::Difference(_) | Look::Enough => None,
+            Look::NoMore => Some(Bisimulation::Relation(pairs.into_relation())),
+        })
     }
 
     /// How they can: the shortest walk, and of these the least; `None` where they cannot.
     #[must_use]
     pub fn walk(&self, poses: [Dart; 2]) -> Option<Walk> {
-        if self.class.get().is_some() && self.indistinguishable(poses) {
-            return None;
+        // Nothing stops it.
+        self.walk_watched(poses, &()).unwrap_or_default()
+    }
+
+    /// Does the same as [`walk`](Self::walk).
+    ///
+    /// # Errors
+    /// Returns an error if the watch stops.
+    pub fn walk_watched(
+        &self,
+        poses: [Dart; 2],
+        watch: &dyn Watch,
+    ) -> Result<Option<Walk>, Interrupted> {
+        if self.class.get().is_some() && self.in_one_class(poses, watch)? {
+            return Ok(None);
         }
         let mut pairs = Pairs::new(self, poses);
-        let look = match pairs.reach(self.few_pairs()) {
-            Look::Enough if !self.indistinguishable(poses) => pairs.reach(usize::MAX),
-            look => look,
-        };
-        match look {
+        let mut look = pairs.reach(self.few_pairs(), watch)?;
+        if matches!(look, Look::Enough) && !self.in_one_class(poses, watch)? {
+            look = pairs.reach(usize::MAX, watch)?;
+        }
+        Ok(match look {
             Look::Difference(walk) => Some(walk),
             Look::NoMore | Look::Enough => None,
-        }
+        })
     }
 
     /// So many pairs are looked at before the partition is made, which costs no less.
     fn few_pairs(&self) -> usize {
         4 * (self.states[0].len() + self.states[1].len())
+    }
+}
+
+/// Why no walk distinguishes two worlds.
+#[derive(Clone, Debug)]
+pub enum Bisimulation {
+    /// All pairs of states that the robots can be in.
+    Relation(Relation),
+    /// The classes of the states of both worlds.
+    Classes(StateClasses),
+}
+
+impl Bisimulation {
+    /// Whether this proves that the robots in the two worlds never perceive a difference.
+    #[must_use]
+    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
+        match self {
+            Self::Relation(relation) => relation.verify(one, other),
+            Self::Classes(classes) => classes.verify(one, other),
+        }
     }
 }
 
@@ -139,6 +209,9 @@ enum Look {
     /// As many pairs as were wanted have been found.
     Enough,
 }
+
+/// After so many pairs the watch is asked whether to stop.
+const BETWEEN_QUESTIONS: usize = 256;
 
 /// Pairs of states that robots that do the same can reach, breadth-first; those of a length in the
 /// order of the least walks that lead to them.
@@ -178,15 +251,22 @@ impl<'c, 'a> Pairs<'c, 'a> {
         new
     }
 
+    fn into_relation(self) -> Relation {
+        Relation(self.found.into_iter().map(|found| found.pair).collect())
+    }
+
     /// Finds pairs until one of them shows a difference, or there are no more, or as many as these.
-    fn reach(&mut self, most: usize) -> Look {
+    fn reach(&mut self, most: usize, watch: &dyn Watch) -> Result<Look, Interrupted> {
         while let Some(&Found { pair, .. }) = self.found.get(self.next) {
+            if self.next.is_multiple_of(BETWEEN_QUESTIONS) {
+                watch.go_on()?;
+            }
             let [one, other] = self.at(pair);
             if self.next == 0 && one.sensed() != other.sensed() {
-                return self.difference_at(0);
+                return Ok(self.difference_at(0));
             }
             if self.found.len() > most {
-                return Look::Enough;
+                return Ok(Look::Enough);
             }
             for action in one.actions() {
                 let (mut one, mut other) = (one.clone(), other.clone());
@@ -195,12 +275,12 @@ impl<'c, 'a> Pairs<'c, 'a> {
                 let from = Some((self.next, action));
                 let is_new = acted.is_ok() && self.find((one.state(), other.state()), from);
                 if is_new && one.sensed() != other.sensed() {
-                    return self.difference_at(self.found.len() - 1);
+                    return Ok(self.difference_at(self.found.len() - 1));
                 }
             }
             self.next += 1;
         }
-        Look::NoMore
+        Ok(Look::NoMore)
     }
 
     fn at(&self, (here, there): (State, State)) -> [PlacedRobot<'a>; 2] {
@@ -224,6 +304,8 @@ impl<'c, 'a> Pairs<'c, 'a> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
     use super::*;
     use crate::marker::named;
 
@@ -270,6 +352,79 @@ mod tests {
             let asked = comparison();
             assert_eq!(asked.walk([Dart(0); 2]), None);
             assert_eq!(asked.class.get().is_some(), is_made);
+        }
+    }
+
+    /// Two robots in cycles of coprime lengths reach all pairs of poses that agree on the sense; all poses
+    /// look alike.
+    #[test]
+    fn many_pairs_are_replaced_by_the_classes() {
+        let none = named("none").unwrap();
+        let (one, other) = (cycle(200), cycle(201));
+        let comparison = Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+        let starts = comparison.starts([Dart(0); 2]);
+        let found = |most| comparison.bisimulation([Dart(0); 2], most, &()).unwrap().unwrap();
+        let pairs = 2 * 200 * 201;
+        match found(pairs) {
+            Bisimulation::Relation(relation) => {
+                assert_eq!(relation.0.len(), pairs);
+                assert!(relation.verify(&starts[0], &starts[1]));
+            }
+            Bisimulation::Classes(_) => panic!("there are not more pairs"),
+        }
+        match found(pairs - 1) {
+            Bisimulation::Relation(_) => panic!("there are more pairs"),
+            Bisimulation::Classes(classes) => {
+                assert_eq!(classes.count(), 1);
+                assert_eq!(classes.classes()[0].each_ref().map(Vec::len), [400, 402]);
+                assert!(classes.verify(&starts[0], &starts[1]));
+            }
+        }
+    }
+
+    /// Stops at a question of this number, from 1.
+    struct Impatient {
+        at: u64,
+        asked: AtomicU64,
+    }
+
+    impl Impatient {
+        fn new(at: u64) -> Self {
+            Self { at, asked: AtomicU64::new(0) }
+        }
+
+        fn asked(&self) -> u64 {
+            self.asked.load(Ordering::Relaxed)
+        }
+    }
+
+    impl Watch for Impatient {
+        fn stop(&self) -> bool {
+            self.asked.fetch_add(1, Ordering::Relaxed) + 1 >= self.at
+        }
+    }
+
+    type Search = fn(&Comparison, &dyn Watch) -> bool;
+
+    #[test]
+    fn each_search_ends_at_the_question_at_which_it_is_stopped() {
+        let none = named("none").unwrap();
+        let (one, other) = (cycle(40), cycle(41));
+        let comparison = || Comparison::new(none, (&one, Dart(0)), (&other, Dart(0)));
+        let searches: [Search; 3] = [
+            |comparison, watch| comparison.partition(watch) == Err(Interrupted),
+            |comparison, watch| comparison.walk_watched([Dart(0); 2], watch) == Err(Interrupted),
+            |comparison, watch| comparison.bisimulation([Dart(0); 2], usize::MAX, watch).is_err(),
+        ];
+        for is_stopped in searches {
+            let patient = Impatient::new(u64::MAX);
+            assert!(!is_stopped(&comparison(), &patient));
+            assert!(patient.asked() > 0);
+            for at in 1..=patient.asked() {
+                let impatient = Impatient::new(at);
+                assert!(is_stopped(&comparison(), &impatient));
+                assert_eq!(impatient.asked(), at);
+            }
         }
     }
 

@@ -11,10 +11,12 @@ mod partition;
 mod quotient;
 mod search;
 mod space;
+mod state_classes;
 mod witness;
 
-pub use comparison::{Comparison, PlacedRobot};
+pub use comparison::{Bisimulation, Comparison};
 pub use findings::{AmbiguousGroup, Findings, PlacedWorld, SizeFindings, Unfinished};
 pub use search::AmbiguitySearch;
-pub use space::state_count;
+pub use space::{PlacedRobot, state_count};
+pub use state_classes::StateClasses;
 pub use witness::{Relation, Walk, replay};

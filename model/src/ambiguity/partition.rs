@@ -3,15 +3,31 @@
 //! J. Hopcroft, "An n log n algorithm for minimizing states in a finite automaton" (1971), with the
 //! refinable partitions of A. Valmari and P. Lehtinen (2008).
 
+use crate::enumerate::{Interrupted, Watch};
+
 /// The class of each state in the coarsest partition in which states of one class have the same
 /// label, and each of the maps takes them to states of one class. Classes are numbered from 0.
 pub(super) fn coarsest<L: Ord>(labels: &[L], maps: &[Vec<u32>]) -> Vec<u32> {
+    // Nothing stops it.
+    coarsest_watched(labels, maps, &()).unwrap_or_default()
+}
+
+/// Does the same as [`coarsest`].
+///
+/// # Errors
+/// Returns an error if the watch stops.
+pub(super) fn coarsest_watched<L: Ord>(
+    labels: &[L],
+    maps: &[Vec<u32>],
+    watch: &dyn Watch,
+) -> Result<Vec<u32>, Interrupted> {
     let mut partition = Partition::by_label(labels);
     let preimages: Vec<_> = maps.iter().map(|map| Preimages::of(map)).collect();
     let mut splitters: Vec<u32> = (0..partition.first.len() as u32).collect();
     let mut queued = vec![true; splitters.len()];
     let mut splitter = Vec::new();
     while let Some(class) = splitters.pop() {
+        watch.go_on()?;
         queued[class as usize] = false;
         splitter.clear();
         splitter.extend_from_slice(partition.states_of(class));
@@ -31,7 +47,7 @@ pub(super) fn coarsest<L: Ord>(labels: &[L], maps: &[Vec<u32>]) -> Vec<u32> {
             }
         }
     }
-    partition.class
+    Ok(partition.class)
 }
 
 /// The states that a map takes to each state, side by side.

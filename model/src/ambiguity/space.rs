@@ -7,6 +7,9 @@ use crate::{
     world::{Action, GraphWorld, State},
 };
 
+/// A robot in a placed world.
+pub type PlacedRobot<'a> = GraphWorld<'a, &'a dyn Marker>;
+
 /// What a robot knows in a state without moving: its percept, and whether it carries the marker.
 pub(super) type StateLabel = (Percept, bool);
 

@@ -15,8 +15,8 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 pub use class::{Class, UnknownClass};
-pub use watch::Watch;
 pub(crate) use watch::in_parts;
+pub use watch::{Interrupted, Watch};
 
 use crate::embedded_graph::EmbeddedGraph;
 use growth::{BEGINNING, Beginning, Growth, MAX_EDGES};

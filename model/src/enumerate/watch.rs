@@ -1,5 +1,12 @@
 //! Long work on many worlds: done in parts, in parallel if there are threads, with progress.
 
+use thiserror::Error;
+
+/// The error of work that its [`Watch`] stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
 /// Watches long work, from several threads at once, and may stop it.
 pub trait Watch: Sync {
     /// The number of parts of the work.
@@ -11,6 +18,14 @@ pub trait Watch: Sync {
     /// Whether to stop.
     fn stop(&self) -> bool {
         false
+    }
+
+    /// Does the same as [`stop`](Self::stop), as an error.
+    ///
+    /// # Errors
+    /// Returns an error if the work is to stop.
+    fn go_on(&self) -> Result<(), Interrupted> {
+        if self.stop() { Err(Interrupted) } else { Ok(()) }
     }
 }
 

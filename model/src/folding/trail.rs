@@ -44,6 +44,8 @@ pub struct FoldedTrail {
     open: usize,
     /// What to undo.
     changes: Vec<Change>,
+    /// The number of changes before the latest union.
+    before_union: usize,
     /// Scratch: darts that have to be identified next.
     pairs: Vec<(u32, u32)>,
 }
@@ -84,6 +86,7 @@ impl FoldedTrail {
         percepts.clear();
         self.opposite.clear();
         self.changes.clear();
+        self.before_union = 0;
         (self.marker, self.pose, self.moves, self.classes, self.open) = (None, 0, 0, 0, 0);
         self.add_vertex(percept).map(|_| ())
     }
@@ -114,7 +117,6 @@ impl FoldedTrail {
     /// Returns an error if no world of any size explains the walk, or if it has too many darts. The
     /// trail is then of no more use.
     pub fn step(&mut self, door: Door, percept: Percept) -> Result<(), TrailError> {
-        self.changes.clear();
         self.check_door(door)?;
         self.moves += 1;
         let leaving = self.find(self.turned(self.pose, door.0));
@@ -130,7 +132,23 @@ impl FoldedTrail {
             self.pose = self.find(self.opposite[leaving as usize]);
             self.compare(self.pose, percept)?;
         }
+        self.flatten();
         Ok(())
+    }
+
+    /// Makes each trail vertex a root or the child of one. The unions so far cannot be undone any more.
+    fn flatten(&mut self) {
+        self.before_union = 0;
+        if self.changes.is_empty() {
+            return;
+        }
+        self.changes.clear();
+        for vertex in 0..self.parent.len() {
+            let first = self.find(self.first[vertex]);
+            let root = self.owner[first as usize];
+            self.parent[vertex] = root;
+            self.turn[vertex] = first - self.first[root as usize];
+        }
     }
 
     /// Identifies two darts, and all that follows.
@@ -138,11 +156,11 @@ impl FoldedTrail {
     /// # Errors
     /// Returns an error if no world of any size has them as one dart. Nothing is then changed.
     pub fn unite(&mut self, one: Dart, other: Dart) -> Result<(), ContradictionReason> {
-        let before = self.changes.len();
+        self.before_union = self.changes.len();
         self.changes.push(Change::Open { before: self.open });
         let united = self.close(one.0, other.0);
         if united.is_err() {
-            self.undo_to(before);
+            self.undo_to(self.before_union);
         }
         united
     }
@@ -157,11 +175,23 @@ impl FoldedTrail {
         other: Dart,
         compute: impl FnOnce(&Self) -> T,
     ) -> Result<T, ContradictionReason> {
-        let before = self.changes.len();
         self.unite(one, other)?;
         let computed = compute(&*self);
-        self.undo_to(before);
+        self.undo_to(self.before_union);
         Ok(computed)
+    }
+
+    /// The darts of all vertices that the latest [union](Self::unite) merged, as they were numbered before
+    /// it. Some occur more than once.
+    pub fn merged_darts(&self) -> impl Iterator<Item = Dart> + '_ {
+        let merged = self.changes[self.before_union..].iter().filter_map(|change| match change {
+            Change::Child { child, root } => Some([*child, *root]),
+            _ => None,
+        });
+        merged.flatten().flat_map(|vertex| {
+            let first = self.first[vertex as usize];
+            (first..first + self.percept[vertex as usize].degree).map(Dart)
+        })
     }
 
     /// The number of moves.
@@ -438,12 +468,14 @@ impl FoldedTrail {
     }
 
     /// The dart of a root that stands for a dart.
+    #[inline]
     fn find(&self, dart: u32) -> u32 {
         let mut vertex = self.owner[dart as usize] as usize;
         let mut index = dart - self.first[vertex];
         let degree = self.percept[vertex].degree;
         while self.parent[vertex] as usize != vertex {
-            index = (index + self.turn[vertex]) % degree;
+            index += self.turn[vertex];
+            index -= if index >= degree { degree } else { 0 };
             vertex = self.parent[vertex] as usize;
         }
         self.first[vertex] + index

@@ -100,8 +100,8 @@ pub struct FoldingExploration {
     /// A shortest way from the robot to each trail vertex that is a root.
     from_robot: Vec<Option<Way>>,
     queue: VecDeque<Dart>,
-    /// The open darts, with the moves from the robot to each.
-    open: Vec<(usize, Dart)>,
+    /// For each dart that is an open dart of a root, the moves from the robot to it.
+    open: Vec<Option<usize>>,
     tests: Vec<Test>,
     leaving: Vec<Dart>,
 }
@@ -342,11 +342,13 @@ impl FoldingExploration {
         self.core.find_ways_to_marker(&self.trail);
         let mut open = mem::take(&mut self.open);
         open.clear();
-        let all = self.trail.vertices().flat_map(|first| self.trail.darts_around(first));
-        open.extend(
-            all.filter(|&dart| self.trail.opposite(dart).is_none())
-                .filter_map(|dart| Some((self.way_to(dart)?.moves, dart))),
-        );
+        open.resize(self.trail.dart_count(), None);
+        for first in self.trail.vertices() {
+            let Some(Way { moves, .. }) = self.way_to(first) else { continue };
+            for dart in self.trail.darts_around(first) {
+                open[dart.at()] = self.trail.opposite(dart).is_none().then_some(moves);
+            }
+        }
         let (mut tests, all) = (mem::take(&mut self.tests), mem::take(&mut self.unresolved));
         tests.clear();
         for &hypothesis in &all {
@@ -357,19 +359,20 @@ impl FoldingExploration {
             let core = &mut self.core;
             let united = self.trail.with_united(pending.far, target, |united| {
                 core.mark(united);
-                for &(moves, open) in &open {
-                    let entry = united.opposite(open).and_then(|far| core.number(united, far));
+                for dart in united.merged_darts() {
+                    let Some(moves) = open[dart.at()] else { continue };
+                    let entry = united.opposite(dart).and_then(|far| core.number(united, far));
                     let Some(entry) = entry else { continue };
                     let Some((rest, _)) = core.to_marker[core.place(entry)] else { continue };
                     let cost = moves + 1 + rest;
-                    tests.push(Test { pending, hypothesis, open, entry, cost });
+                    tests.push(Test { pending, hypothesis, open: dart, entry, cost });
                 }
             });
             if united.is_err() {
                 self.refuted.insert(pending.edge, hypothesis);
             }
         }
-        tests.sort_by_key(|test| test.cost);
+        tests.sort_by_key(|test| (test.cost, test.hypothesis, test.open));
         let found = tests.iter().find(|test| self.confirms(test)).copied();
         (self.open, self.tests, self.unresolved) = (open, tests, all);
         found

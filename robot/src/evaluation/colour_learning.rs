@@ -1,6 +1,7 @@
 //! Colours of every look, learned from rendered images that are not used for judging.
 
 use thiserror::Error;
+use toposlam_model::enumerate::{Interrupted, Watch};
 use toposlam_vision::{
     camera::Camera,
     colour::{ColourModel, ExampleError, Training, TrainingError},
@@ -34,24 +35,30 @@ pub enum LearningError {
         /// The cause.
         cause: ExampleError,
     },
+    /// The work was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
 }
 
 /// Learns the colours of a look with a camera and its rig.
 ///
 /// # Errors
-/// Returns an error if too little is seen.
+/// Returns an error if too little is seen, or if the watch stops.
 pub fn learned(
     views: &ViewSampler,
     look: &'static BuildingLook,
     camera: &Camera,
     rig: &Rig,
+    watch: &dyn Watch,
 ) -> Result<ColourModel, LearningError> {
     let mut training = Training::new(look.stripe);
     for number in 0..IMAGES {
+        watch.go_on()?;
         let view = views.to_learn_from(look, camera.image, number)?;
         let building = view.building();
         let classes = labels(rig, &building, view.pose, &view.effects);
         let mask = label_mask(rig, &classes);
+        watch.go_on()?;
         match training.add(camera, &view.picture(rig, &building), &mask) {
             // Skip images that are too dark to measure their light.
             Ok(()) | Err(ExampleError::Light(_)) => {}
@@ -59,4 +66,25 @@ pub fn learned(
         }
     }
     training.model().map_err(|cause| LearningError::Training { look: look.name, cause })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        evaluation::{LearnedSensors, impatient::Impatient},
+        simulator::LOOKS,
+    };
+
+    /// The watch is asked twice for each image.
+    #[test]
+    fn learning_ends_at_the_question_at_which_it_is_stopped() {
+        let camera = Camera::superscout().sized([640, 480]);
+        for at in [1, 2, 5] {
+            let watch = Impatient::at(at);
+            let stopped = LearnedSensors::new(&camera, &[&LOOKS[0]], &watch);
+            assert!(matches!(stopped, Err(LearningError::Interrupted(Interrupted))));
+            assert_eq!(watch.asked(), at);
+        }
+    }
 }

@@ -77,7 +77,7 @@ impl Judge {
     /// Learns the colours of all looks of the views, for all image sizes, with a calibrated camera.
     ///
     /// # Errors
-    /// Returns an error if the colours cannot be learned.
+    /// Returns an error if the colours cannot be learned, or if the watch stops.
     pub fn new(
         camera: &Camera,
         views: &ViewSampler,
@@ -89,7 +89,7 @@ impl Judge {
             let camera = camera.sized(size);
             let right = Rig::new(&camera);
             let sensors = views.looks.par_iter().map(|look| {
-                let sensors = Sensors::new(views, look, &camera, &right);
+                let sensors = Sensors::new(views, look, &camera, &right, watch);
                 watch.part_done(1);
                 sensors
             });
@@ -131,7 +131,7 @@ impl Judge {
         watch: &dyn Watch,
     ) -> Result<Vec<JudgedVisit>, JudgingError> {
         let visits =
-            in_turn(numbers, watch, |number| self.visit(views.visit(number)?, calibration))?;
+            in_turn(numbers, watch, |number| self.visit(views.visit(number)?, calibration, watch))?;
         Ok(visits.into_iter().flatten().collect())
     }
 
@@ -148,7 +148,7 @@ impl Judge {
         self.judged(view, &image)
     }
 
-    /// Judges one visit. Returns `None` if it has no images.
+    /// Judges one visit. Returns `None` if it has no images, or if the watch stops.
     ///
     /// # Errors
     /// Returns an error if a view is not on the floor.
@@ -156,6 +156,7 @@ impl Judge {
         &self,
         pictures: Vec<RenderedView>,
         calibration: Calibration,
+        watch: &dyn Watch,
     ) -> Result<Option<JudgedVisit>, JudgingError> {
         let Some(last) = pictures.last() else { return Ok(None) };
         let Some(Truth::Junction(JunctionTruth { vertex, form: Some(form), .. })) = last.truth()
@@ -168,11 +169,15 @@ impl Judge {
         let percept = Percept { degree: form.degree(), sighting };
         let building = last.building();
         let rig = self.rig(last, calibration);
-        let judged = pictures.into_iter().map(|view| {
+        let mut judged = Vec::with_capacity(pictures.len());
+        for view in pictures {
+            if watch.stop() {
+                return Ok(None);
+            }
             let image = view.picture(rig, &building);
-            self.judged(view, &image)
-        });
-        let pictures = judged.collect::<Result<Vec<_>, _>>()?;
+            judged.push(self.judged(view, &image)?);
+        }
+        let pictures = judged;
         let mut visit = JunctionEstimate::default();
         for picture in &pictures {
             visit.see(&picture.scene);
@@ -230,8 +235,9 @@ impl Sensors {
         look: &'static BuildingLook,
         camera: &Camera,
         rig: &Rig,
+        watch: &dyn Watch,
     ) -> Result<Self, LearningError> {
-        let colours = learned(views, look, camera, rig)?;
+        let colours = learned(views, look, camera, rig, watch)?;
         let model = Sensor::new(camera, &colours);
         Ok(Self { look: look.name, model, idle: Mutex::default() })
     }

@@ -27,7 +27,7 @@ impl LearnedSensors {
     /// Learns the colours of looks with a calibrated camera, as `toposlam evaluate vision` does.
     ///
     /// # Errors
-    /// Returns an error if the colours cannot be learned.
+    /// Returns an error if the colours cannot be learned, or if the watch stops.
     pub fn new(
         camera: &Camera,
         looks: &[&'static BuildingLook],
@@ -39,7 +39,7 @@ impl LearnedSensors {
         let views = ViewSampler { random_plans: true, ..views };
         watch.parts(looks.len());
         let learn = |&look: &&'static BuildingLook| {
-            let colours = learned(&views, look, camera, &rig)?;
+            let colours = learned(&views, look, camera, &rig, watch)?;
             watch.part_done(1);
             Ok((look, colours))
         };

@@ -4,6 +4,8 @@ pub mod bound;
 pub mod calibration;
 mod colour_learning;
 pub mod failure_groups;
+#[cfg(test)]
+mod impatient;
 pub mod judge;
 pub mod judged_view;
 mod learned_sensors;

@@ -25,13 +25,14 @@ pub(super) fn in_turn<R: Send, E: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Makes the cases of these numbers, as far as they exist, on all threads.
+/// Makes the cases of these numbers, as far as they exist, on all threads. `make` returns `None` if the
+/// watch stopped it.
 pub(super) fn made_in_turn<C, R: Send>(
     numbers: std::ops::Range<u64>,
     watch: &dyn Watch,
     case: impl Fn(u64) -> Option<C> + Sync,
-    make: impl Fn(C) -> R + Sync,
+    make: impl Fn(C) -> Option<R> + Sync,
 ) -> Vec<R> {
-    let made = in_turn(numbers, watch, |number| Ok::<_, Infallible>(case(number).map(&make)));
+    let made = in_turn(numbers, watch, |number| Ok::<_, Infallible>(case(number).and_then(&make)));
     made.into_iter().flatten().flatten().collect()
 }

@@ -8,11 +8,13 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::{FloorPlan, JunctionKind},
-    mapping::DEFAULT_DART_BOUND,
+    mapping::{DEFAULT_DART_BOUND, MappingError},
 };
 
 use super::{LearnedSensors, parallel::made_in_turn};
 use crate::{
+    explorer::ExplorerError,
+    record::StoppedBy,
     run::{RunOutcome, explored, run},
     simulator::{Effects, FAULTS, FaultKind, RobotFault, SimulationConfig},
 };
@@ -138,12 +140,12 @@ impl RunSampler {
         eyes: Option<&LearnedSensors>,
         watch: &dyn Watch,
     ) -> Vec<JudgedRun> {
-        made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes))
+        made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes, watch))
     }
 }
 
-/// Makes a run.
-fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
+/// Makes a run. Returns `None` if the watch stops.
+fn judged(case: RunCase, eyes: Option<&LearnedSensors>, watch: &dyn Watch) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
     // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
@@ -156,14 +158,17 @@ fn judged(case: RunCase, eyes: Option<&LearnedSensors>) -> JudgedRun {
             (robot, Some(eyes.sensor(look)))
         }
     };
-    let run = run(&plan, marker, robot, sensor, (), bound);
-    JudgedRun {
+    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), bound);
+    if matches!(run.error, Some(MappingError::World(ExplorerError::Stopped { .. }))) {
+        return None;
+    }
+    Some(JudgedRun {
         case,
         ending: run.outcome(),
         moves: [run.exploration.moves(), run.explore_moves],
         seconds: run.seconds,
         pictures: run.pictures,
-    }
+    })
 }
 
 /// The possible starts in a plan: the darts of its Ls.

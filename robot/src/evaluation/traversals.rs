@@ -18,6 +18,7 @@ use crate::{
     explorer::{ExplorerError, RobotExplorer},
     ground_truth_monitor::{GroundTruthMonitor, TruthDivergence},
     pose::Pose,
+    record::StoppedBy,
     robot::Robot,
     simulator::{Effects, SimulationConfig, start_pose},
 };
@@ -142,12 +143,21 @@ impl TraversalSampler {
         eyes: Option<&LearnedSensors>,
         watch: &dyn Watch,
     ) -> Vec<JudgedTraversal> {
-        made_in_turn(numbers, watch, |number| self.traversal(number), |case| judged(case, eyes))
+        made_in_turn(
+            numbers,
+            watch,
+            |number| self.traversal(number),
+            |case| judged(case, eyes, watch),
+        )
     }
 }
 
-/// Makes a traversal.
-fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
+/// Makes a traversal. Returns `None` if the watch stops.
+fn judged(
+    case: Traversal,
+    eyes: Option<&LearnedSensors>,
+    watch: &dyn Watch,
+) -> Option<JudgedTraversal> {
     let (robot, sensor) = match eyes {
         None => (case.config.by_scene(), None),
         Some(eyes) => {
@@ -161,23 +171,24 @@ fn judged(case: Traversal, eyes: Option<&LearnedSensors>) -> JudgedTraversal {
     let plan = case.config.plan.clone();
     let monitor = GroundTruthMonitor::at(&plan, case.config.marker, case.entry);
     let standing = monitor.standing(case.config.pose);
-    let mut explorer = RobotExplorer::new(robot, sensor, monitor);
+    let mut explorer = RobotExplorer::new(robot, sensor, (monitor, StoppedBy(watch)));
     if let Some(standing) = standing {
         explorer = explorer.standing_at(standing);
     }
     let error = explorer.traverse(case.door).err();
-    let (robot, monitor) = explorer.into_parts();
+    let (robot, (monitor, _)) = explorer.into_parts();
     let outcome = match (error, monitor.divergence()) {
+        (Some(ExplorerError::Stopped { .. }), _) => return None,
         (Some(error), _) => TraversalOutcome::GaveUp(error),
         (None, Some(divergence)) => TraversalOutcome::Wrong(divergence),
         (None, None) => TraversalOutcome::Right,
     };
-    JudgedTraversal {
+    Some(JudgedTraversal {
         traversal: case,
         outcome,
         seconds: robot.odometry().time,
         pictures: robot.pictures(),
-    }
+    })
 }
 
 /// The marker's dart: at every other traversal to an L it lies there, else at any L.
@@ -200,4 +211,39 @@ fn about(pose: Pose, chance: &mut impl Rng) -> Pose {
         pose.position[1] + along * ahead.0 + aside * left.0,
     ];
     Pose { position, heading: pose.heading + turned }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::{
+        impatient::Impatient,
+        plans,
+        run_sampler::{Faults, RunSampler},
+    };
+
+    type Count<'a> = &'a dyn Fn(&Impatient) -> usize;
+
+    /// The watch is asked before a case, and then before each image.
+    #[test]
+    fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged() {
+        let plans = plans().unwrap();
+        let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
+        let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0);
+        let counts: [Count<'_>; 2] =
+            [&|watch| traversals.judged(0..1, None, watch).len(), &|watch| {
+                runs.judged(0..1, None, watch).len()
+            }];
+        for count in counts {
+            let patient = Impatient::never();
+            assert_eq!(count(&patient), 1);
+            let asked = patient.asked();
+            assert!(asked > 4, "{asked}");
+            for at in [1, 2, 3, asked] {
+                let impatient = Impatient::at(at);
+                assert_eq!(count(&impatient), 0);
+                assert_eq!(impatient.asked(), at);
+            }
+        }
+    }
 }

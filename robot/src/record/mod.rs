@@ -12,5 +12,5 @@ pub use event::{Arrival, Event, EventId, EventKind, RunEnd, RunEnding, nanosecon
 pub(crate) use frame::DECODED;
 pub use frame::{CameraImage, Frame};
 pub use map::MapRecord;
-pub use observer::RunObserver;
+pub use observer::{RunObserver, StoppedBy};
 pub use sensor::{FrameSensor, NoSensor, SensingError};

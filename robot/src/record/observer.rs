@@ -1,6 +1,9 @@
 //! Observers of runs.
 
-use toposlam_model::mapping::{Journey, MappingEvent};
+use toposlam_model::{
+    enumerate::Watch,
+    mapping::{Journey, MappingEvent},
+};
 
 use super::Event;
 
@@ -50,6 +53,16 @@ impl<O: RunObserver + ?Sized> RunObserver for &mut O {
 
     fn stop(&self) -> bool {
         (**self).stop()
+    }
+}
+
+/// Stops a run when a watch stops.
+#[derive(Clone, Copy)]
+pub struct StoppedBy<'w>(pub &'w dyn Watch);
+
+impl RunObserver for StoppedBy<'_> {
+    fn stop(&self) -> bool {
+        self.0.stop()
     }
 }
 

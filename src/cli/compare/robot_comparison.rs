@@ -6,9 +6,11 @@ use std::{
 };
 
 use serde_json::{Map, Value, json};
+use toposlam::page::MOST_PAIRS;
 use toposlam_model::{
-    ambiguity::{Comparison, PlacedRobot, Relation, Walk, state_count},
+    ambiguity::{Bisimulation, Comparison, PlacedRobot, Relation, StateClasses, Walk, state_count},
     embedded_graph::Dart,
+    enumerate::{Interrupted, Watch},
     format::named_world::NamedWorld,
     marker::Marker,
     world::{Action, State},
@@ -20,9 +22,10 @@ use crate::cli::{
     text::{counted, grouped, print_columns, print_hanging, print_paragraph},
 };
 
-/// How many starts in B, and how many pairs of states, are printed.
+/// How many starts in B, pairs of states, and classes of states are printed.
 const PRINTED_STARTS: usize = 8;
 const PRINTED_PAIRS: usize = 400;
+const PRINTED_CLASSES: usize = 40;
 
 /// Robots in two worlds: one start in A, one or more in B.
 pub(super) struct RobotComparison<'w> {
@@ -33,7 +36,7 @@ pub(super) struct RobotComparison<'w> {
     /// Each start in B, with the walk that distinguishes it from the start in A, if there is one.
     others: Vec<(Dart, Option<Walk>)>,
     /// The bisimulation from the first start in B that no walk distinguishes.
-    relation: Option<Relation>,
+    bisimulation: Option<Bisimulation>,
 }
 
 /// The most states of the robot and the marker in a world. Each state takes more than 100 bytes.
@@ -44,11 +47,12 @@ impl<'w> RobotComparison<'w> {
     /// pose that the marker cannot distinguish from it.
     ///
     /// # Errors
-    /// Returns an error if a world has too many states.
+    /// Returns an error if a world has too many states, or if the watch stops.
     pub(super) fn new(
         worlds: [&'w NamedWorld; 2],
         marker: &'static dyn Marker,
         one_pose: bool,
+        watch: &dyn Watch,
     ) -> Result<Self, Failure> {
         let [a, b] = worlds;
         if let Some(world) =
@@ -69,10 +73,21 @@ impl<'w> RobotComparison<'w> {
             let starts = marker.starts(&b.graph, other);
             poses.extend(starts.into_iter().filter(|&pose| pose != other));
         }
-        let with_walk = |pose| (pose, comparison.walk([start, pose]));
-        let others: Vec<_> = poses.into_iter().map(with_walk).collect();
-        let mut robots = Self { worlds, marker, comparison, start, others, relation: None };
-        robots.relation = robots.comparison.relation(robots.poses());
+        watch.parts(poses.len());
+        if poses.len() > 1 {
+            // It answers for all starts at once.
+            comparison.partition(watch)?;
+        }
+        let with_walk = |pose| {
+            watch.go_on()?;
+            let walk = comparison.walk_watched([start, pose], watch)?;
+            watch.part_done(1);
+            Ok((pose, walk))
+        };
+        let others = poses.into_iter().map(with_walk).collect::<Result<Vec<_>, Interrupted>>()?;
+        let mut robots = Self { worlds, marker, comparison, start, others, bisimulation: None };
+        let poses = robots.poses();
+        robots.bisimulation = robots.comparison.bisimulation(poses, MOST_PAIRS, watch)?;
         robots.verify()?;
         Ok(robots)
     }
@@ -84,9 +99,9 @@ impl<'w> RobotComparison<'w> {
             walk.as_ref().is_none_or(|walk| walk.verify(&one, &other))
         });
         let [one, other] = self.placed_robots();
-        let relation_holds =
-            self.relation.as_ref().is_none_or(|relation| relation.verify(&one, &other));
-        if walks_hold && relation_holds {
+        let bisimulation = self.bisimulation.as_ref();
+        let bisimulation_holds = bisimulation.is_none_or(|it| it.verify(&one, &other));
+        if walks_hold && bisimulation_holds {
             Ok(())
         } else {
             Err(Failure::at(
@@ -130,20 +145,36 @@ impl<'w> RobotComparison<'w> {
         [a.state_text(&self.marker, one), b.state_text(&self.marker, other)]
     }
 
+    /// The states of each class in words: those in A, and those in B.
+    fn classes_text(&self, classes: &StateClasses) -> Vec<[Vec<String>; 2]> {
+        let text = |side: usize, states: &[State]| {
+            let world = self.worlds[side];
+            states.iter().map(|&state| world.state_text(&self.marker, state)).collect()
+        };
+        let classes = classes.classes();
+        classes.iter().map(|[one, other]| [text(0, one), text(1, other)]).collect()
+    }
+
     pub(super) fn json(&self) -> Map<String, Value> {
         let [a, b] = self.worlds;
-        let relation = self.relation.as_ref();
-        let pairs = relation
-            .as_ref()
-            .map(|relation| relation.0.iter().map(|pair| self.pair_text(pair)).collect::<Vec<_>>());
+        let bisimulation = self.bisimulation.as_ref();
+        let (pairs, classes) = match bisimulation {
+            None => (None, None),
+            Some(Bisimulation::Relation(relation)) => {
+                let pairs = relation.0.iter().map(|pair| self.pair_text(pair));
+                (Some(pairs.collect::<Vec<_>>()), None)
+            }
+            Some(Bisimulation::Classes(classes)) => (None, Some(self.classes_text(classes))),
+        };
         let walk = |walk: &Option<Walk>| walk.as_ref().map(|walk| actions_json(&walk.actions));
-        let first = self.others.first().filter(|_| relation.is_none());
+        let first = self.others.first().filter(|_| bisimulation.is_none());
         let line = json!({
             "marker": self.marker.name(),
-            "distinguishable": relation.is_none(),
+            "distinguishable": bisimulation.is_none(),
             "walk": first.and_then(|(_, first)| walk(first)),
             "relation": pairs,
-            "relation_starts": relation.map(|_| self.starts_text()),
+            "classes": classes,
+            "relation_starts": bisimulation.map(|_| self.starts_text()),
             "start": a.start_text(self.start),
             "starts": self.others.iter().map(|(pose, _)| b.start_text(*pose)).collect::<Vec<_>>(),
             "walks": self.others.iter().map(|(_, other)| walk(other)).collect::<Vec<_>>(),
@@ -156,8 +187,12 @@ impl<'w> RobotComparison<'w> {
         let start = a.start_text(self.start);
         writeln!(out)?;
         print_paragraph(out, &format!("{} marker: {}", self.marker.name(), self.marker.about()))?;
-        if let Some(relation) = &self.relation {
-            return Ok(self.print_relation(relation, out)?);
+        match &self.bisimulation {
+            Some(Bisimulation::Relation(relation)) => {
+                return Ok(self.print_relation(relation, out)?);
+            }
+            Some(Bisimulation::Classes(classes)) => return Ok(self.print_classes(classes, out)?),
+            None => {}
         }
         for (pose, walk) in self.others.iter().take(PRINTED_STARTS) {
             if let Some(Walk { actions, percepts: [one, other] }) = walk {
@@ -197,6 +232,39 @@ impl<'w> RobotComparison<'w> {
         let pairs: Vec<_> = printed.map(|pair| self.pair_text(pair).join("~")).collect();
         print_columns(out, &pairs)?;
         match relation.0.len().saturating_sub(PRINTED_PAIRS) {
+            0 => Ok(()),
+            more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
+        }
+    }
+}
+
+impl RobotComparison<'_> {
+    /// Why no walk distinguishes the worlds, if there are many pairs of states.
+    fn print_classes(&self, classes: &StateClasses, out: &mut dyn Write) -> io::Result<()> {
+        let [start, other] = self.starts_text();
+        let verdict = format!(
+            "No walk distinguishes the worlds from {start} in A and {other} in B. The robots can be \
+             in more than {} pairs of states. Two states of one class are indistinguishable, and each \
+             action leads from them to states of one class. There {}:",
+            grouped(MOST_PAIRS as u128),
+            match classes.count() {
+                1 => "is 1 class".to_owned(),
+                count => format!("are {} classes", grouped(count as u128)),
+            }
+        );
+        print_paragraph(out, &verdict)?;
+        for (number, states) in (1..=PRINTED_CLASSES).zip(classes.classes()) {
+            let [one, other] = states.each_ref().map(|states| counted(states.len(), "state"));
+            let [here, there] = [0, 1].map(|side| {
+                let first = states[side].first();
+                first.map_or_else(String::new, |&state| {
+                    format!(" ({}, ...)", self.worlds[side].state_text(&self.marker, state))
+                })
+            });
+            let text = format!("{one} of A{here} and {other} of B{there}");
+            print_hanging(out, &format!("  {number:>3}  "), &text)?;
+        }
+        match classes.count().saturating_sub(PRINTED_CLASSES) {
             0 => Ok(()),
             more => writeln!(out, "  and {} more (see --json)", grouped(more as u128)),
         }

@@ -48,7 +48,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return Ok(pairs::report_unfinished(&unfinished)),
+                Err(unfinished) => return pairs::report_unfinished(&unfinished),
             };
             found.push(WorldPairs::new(marker, class, &findings, false));
         }

@@ -86,11 +86,13 @@ impl WorldPairs {
     }
 }
 
-/// Prints why a search did not finish, and returns the outcome.
-pub(super) fn report_unfinished(unfinished: &Unfinished) -> Outcome {
-    eprintln!("{unfinished}");
+/// Returns the outcome of a search that did not finish. Prints why, if it was not stopped.
+pub(super) fn report_unfinished(unfinished: &Unfinished) -> Result<Outcome, Failure> {
     match unfinished {
-        Unfinished::Interrupted => Outcome::Incomplete,
-        Unfinished::Unconfirmed(_) => Outcome::Violated,
+        Unfinished::Interrupted => Err(Failure::Interrupted),
+        Unfinished::Unconfirmed(_) => {
+            eprintln!("{unfinished}");
+            Ok(Outcome::Violated)
+        }
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct EvaluateControlArguments {
     #[arg(long, default_value_t = 20_000, value_name = "N")]
     traversals: u64,
     /// Number of random plans, if no plan is given
-    #[arg(long, default_value_t = 40, value_name = "N")]
+    #[arg(long, default_value_t = 40, value_name = "N", conflicts_with = "plan")]
     plans: u64,
     #[command(flatten)]
     robots: RobotArguments,

@@ -18,7 +18,8 @@ use toposlam_robot::evaluation::{
 use toposlam_robot::truth::{JunctionTruth, Truth};
 
 use crate::cli::{
-    Failure, json::print_object, output, picture_file, scene::SceneLine, text::counted,
+    Failure, json::print_object, output, picture_file, progress::must_stop, scene::SceneLine,
+    text::counted,
 };
 
 /// The most views, and the most visits, of which pictures are written: first the wrong ones, then the
@@ -49,10 +50,10 @@ pub(super) fn write(
     };
     output::write_whole(&folder.join(name), &lines)?;
     failed.sort_by_key(|judged| !judged.verdict.is_wrong());
-    for judged in failed.iter().take(MOST) {
+    for judged in failed.iter().take(MOST).take_while(|_| !must_stop()) {
         write_view(folder, judge, judged, calibration)?;
     }
-    for visit in failed_visits.iter().take(MOST) {
+    for visit in failed_visits.iter().take(MOST).take_while(|_| !must_stop()) {
         for (nth, judged) in visit.pictures.iter().enumerate() {
             let name = format!("visit-{:05}{}-{nth}", judged.view.number, mark(calibration));
             write_steps(&folder.join(name), judge, judged, calibration)?;

@@ -15,7 +15,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::camera::Camera;
 
-use super::vision::{read_plan, unmeasured};
+use super::vision::{read_plan, unlearned, unmeasured};
 use crate::cli::{
     Failure,
     appearance::{ImageSize, looks},
@@ -38,10 +38,10 @@ pub(super) struct RobotArguments {
     #[arg(long)]
     images: bool,
     /// With --images: image size in pixels
-    #[arg(long, value_name = "SIZE", default_value = "640x480")]
+    #[arg(long, value_name = "SIZE", default_value = "640x480", requires = "images")]
     size: ImageSize,
     /// With --images: look of the buildings (repeatable) [default: every look]
-    #[arg(long, value_name = "NAME", value_parser = looks())]
+    #[arg(long, value_name = "NAME", value_parser = looks(), requires = "images")]
     look: Vec<&'static BuildingLook>,
     /// Multiple of the default noise of wheels and odometry, and of sensing without images
     #[arg(long, default_value_t = 1.0, value_name = "TIMES", value_parser = noise)]
@@ -103,7 +103,7 @@ impl RobotArguments {
         let camera = Camera::superscout().sized(self.size.pixels());
         let sensors = LearnedSensors::new(&camera, &looks, &progress);
         progress.finish();
-        sensors.map(Some).map_err(unmeasured)
+        sensors.map(Some).map_err(unlearned)
     }
 
     /// How the robots sense, in words.

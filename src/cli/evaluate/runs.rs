@@ -39,7 +39,7 @@ Exit codes: 0 every run is right, 1 one is not, 2 bad usage or input, 3 not all
 were made.")]
 pub(super) struct EvaluateRunsArguments {
     /// Number of random plans with 5 to 25 junctions, if no plan is given; with --images, of any size
-    #[arg(long, default_value_t = 200, value_name = "N")]
+    #[arg(long, default_value_t = 200, value_name = "N", conflicts_with = "plan")]
     plans: u64,
     /// Number of starts in each plan
     #[arg(long, default_value_t = 3, value_name = "N")]

@@ -10,9 +10,10 @@ use std::{
 use toposlam_model::floor_plan::FloorPlan;
 use toposlam_robot::{
     evaluation::{
+        LearningError,
         calibration::Calibration,
         failure_groups::groups,
-        judge::Judge,
+        judge::{Judge, JudgingError},
         judged_view::{JudgedView, JudgedVisit},
         plans,
         rendered_view::WhichEffects,
@@ -223,7 +224,18 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Fai
     let progress = Progress::new("learning colours", "looks")?;
     let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
     progress.finish();
-    judge.map_err(unmeasured)
+    judge.map_err(|error| match error {
+        JudgingError::Learning(error) => unlearned(error),
+        error => unmeasured(error),
+    })
+}
+
+/// The failure if the colours were not learned.
+pub(super) fn unlearned(error: LearningError) -> Failure {
+    match error {
+        LearningError::Interrupted(stopped) => stopped.into(),
+        error => unmeasured(error),
+    }
 }
 
 pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {

@@ -11,6 +11,7 @@ use toposlam_model::{
 use toposlam_robot::{
     explorer::ExplorerError,
     run::{Run, RunOutcome},
+    simulator::RobotFault,
 };
 
 use super::{Failure, Outcome};
@@ -25,6 +26,8 @@ pub(super) struct SimulationResult<'a> {
     pub(super) facing: Dart,
     pub(super) seed: u64,
     pub(super) run: &'a Run<'a>,
+    /// The faults that did not happen: the run ended before their pictures.
+    pub(super) missed: Vec<&'a RobotFault>,
     /// The result of the off-line version on the same pictures, if it is complete.
     pub(super) replayed: Option<Exploration>,
     /// How long the off-line version took, in seconds.
@@ -51,6 +54,7 @@ struct Line {
     conforms: bool,
     divergence: Option<String>,
     error: Option<String>,
+    faults_missed: Vec<String>,
     simulated_seconds: f64,
     compute_seconds: f64,
     frames: u64,
@@ -63,7 +67,8 @@ impl SimulationResult<'_> {
             Some(MappingError::Bound { .. } | MappingError::World(ExplorerError::Stopped { .. }))
         );
         match self.run.outcome() {
-            RunOutcome::Right => Outcome::Holds,
+            RunOutcome::Right if self.missed.is_empty() => Outcome::Holds,
+            RunOutcome::Right => Outcome::Incomplete,
             _ if incomplete => Outcome::Incomplete,
             RunOutcome::GaveUp(_) | RunOutcome::Wrong(_) => Outcome::Violated,
         }
@@ -97,6 +102,13 @@ impl SimulationResult<'_> {
         print_paragraph(out, &sentence(&self.in_words()))?;
         if let (Some(divergence), Some(_)) = (run.divergence(), &run.error) {
             print_paragraph(out, &sentence(&divergence.to_string()))?;
+        }
+        for fault in &self.missed {
+            let text = format!(
+                "The fault {fault} did not happen: the run ended after {} pictures.",
+                run.pictures
+            );
+            print_paragraph(out, &text)?;
         }
         let map = run.exploration.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
@@ -135,6 +147,7 @@ impl SimulationResult<'_> {
             conforms: divergence.is_none(),
             divergence,
             error: run.error.as_ref().map(ToString::to_string),
+            faults_missed: self.missed.iter().map(ToString::to_string).collect(),
             // The control loop counts in quarters of a second, a picture in tenths.
             simulated_seconds: (run.seconds * 1e3).round() / 1e3,
             compute_seconds: self.compute_seconds,

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::{WalkPage, side::WalkSide};
+use super::{MOST_PAIRS, WalkPage, side::WalkSide};
 use crate::{
     model::{
-        ambiguity::PlacedRobot,
+        ambiguity::{Bisimulation, PlacedRobot},
         marker::{Marker, MarkerPart},
         world::Action,
     },
@@ -14,10 +14,13 @@ use crate::{
 
 /// The data as JSON that can stand inside a `script` element.
 pub(super) fn json(page: &WalkPage, [one, other]: [&WalkSide; 2]) -> String {
-    let relation = page.comparison.relation(page.poses).map(|relation| {
-        let places = |&(here, there): &_| [one.place(here), other.place(there)];
-        relation.0.iter().map(places).collect::<Vec<_>>()
-    });
+    let relation = match page.comparison.bisimulation(page.poses, MOST_PAIRS, &()) {
+        Ok(Some(Bisimulation::Relation(relation))) => {
+            let places = |&(here, there): &_| [one.place(here), other.place(there)];
+            Some(relation.0.iter().map(places).collect::<Vec<_>>())
+        }
+        _ => None,
+    };
     let walk = page.comparison.walk(page.poses);
     let walk = walk.map(|walk| walk.actions.iter().map(Action::to_string).collect::<Vec<_>>());
     let data = json!({

@@ -11,6 +11,9 @@ use crate::{
 };
 use side::WalkSide;
 
+/// If the robots can be in more pairs of states, the pairs are not listed.
+pub const MOST_PAIRS: usize = 100_000;
+
 /// The content of the page.
 #[derive(Clone, Copy)]
 pub struct WalkPage<'a> {

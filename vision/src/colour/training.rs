@@ -2,6 +2,7 @@
 
 use image::RgbImage;
 use thiserror::Error;
+use toposlam_model::enumerate::{Interrupted, Watch};
 
 use super::{
     ColourModel, Confusion, FloorRing, PixelClass, Priors, Smoothing, Stripe,
@@ -210,6 +211,9 @@ pub enum TrainingError {
         /// The reason.
         cause: Box<TrainingError>,
     },
+    /// The work was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
 }
 
 /// The images and pixels of a class.
@@ -291,14 +295,21 @@ impl Training {
     /// the model that is learned from the others.
     ///
     /// # Errors
-    /// Returns an error if there are fewer images than parts, or if a part's others give no model.
-    pub fn cross_validate(&self, folds: usize) -> Result<Confusion, TrainingError> {
+    /// Returns an error if there are fewer images than parts, if a part's others give no model, or if the
+    /// watch stops.
+    pub fn cross_validate(
+        &self,
+        folds: usize,
+        watch: &dyn Watch,
+    ) -> Result<Confusion, TrainingError> {
         let images = self.examples.len();
         if folds < 2 || folds > images {
             return Err(TrainingError::Folds { folds, images });
         }
         let mut confusion = Confusion::default();
+        watch.parts(folds);
         for fold in 0..folds {
+            watch.go_on()?;
             let examples = self.examples.iter().enumerate();
             let (left_out, others): (Vec<_>, Vec<_>) =
                 examples.partition(|(nth, _)| nth % folds == fold);
@@ -309,11 +320,13 @@ impl Training {
             })?;
             let table = model.table();
             for (_, example) in left_out {
+                watch.go_on()?;
                 let lit = table.lit(light::gain(example.floor, model.floor));
                 for alike in &example.colours {
                     confusion.count(alike.class, lit.class(alike.colour), alike.pixels());
                 }
             }
+            watch.part_done(1);
         }
         Ok(confusion)
     }

@@ -1,0 +1,123 @@
+//! Classes of states that no walk distinguishes: a witness that is linear in the number of states, where
+//! the pairs of a [`Relation`](super::Relation) are quadratic.
+
+use super::space::{PlacedRobot, Space, StateLabel, States};
+use crate::{embedded_graph::Dart, world::State};
+
+/// A partition of the states of two worlds: states of one class are indistinguishable.
+#[derive(Clone, Debug)]
+pub struct StateClasses {
+    states: [States; 2],
+    /// The class of each state of the first and then of the second world.
+    class: Vec<u32>,
+    count: usize,
+}
+
+impl StateClasses {
+    /// The classes of the states of two worlds, from 0, those of the first world first.
+    pub(super) fn new(states: [States; 2], class: Vec<u32>) -> Self {
+        let count = class.iter().max().map_or(0, |&last| last as usize + 1);
+        Self { states, class, count }
+    }
+
+    /// The number of classes.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The states of each class: those of the first world, and those of the second.
+    #[must_use]
+    pub fn classes(&self) -> Vec<[Vec<State>; 2]> {
+        let mut classes = vec![[Vec::new(), Vec::new()]; self.count];
+        let (one, other) = self.class.split_at(self.states[0].len().min(self.class.len()));
+        for (side, of_side) in [one, other].into_iter().enumerate() {
+            for (number, &class) in (0..).zip(of_side) {
+                classes[class as usize][side].push(self.states[side].state(number));
+            }
+        }
+        classes
+    }
+
+    /// Whether this proves that the robots in the two worlds never perceive a difference: each state has
+    /// a class, the robots are in states of one class, states of one class have the same percept, and
+    /// turning, crossing and handling the marker lead from them to states of one class.
+    // paper: fig1.base, fig1.step, fig1.cases
+    #[must_use]
+    pub fn verify(&self, one: &PlacedRobot<'_>, other: &PlacedRobot<'_>) -> bool {
+        /// What states of one class have in common.
+        type Common = (StateLabel, [Option<u32>; 3]);
+        let mut common: Vec<Option<Common>> = vec![None; self.count];
+        let mut first = 0;
+        let mut starts = Vec::new();
+        for robot in [one, other] {
+            let marker = *robot.marker();
+            let placed = robot.state().placed.unwrap_or(Dart(0));
+            let states = States::of(robot.graph(), marker, placed);
+            let Some(class) = self.class.get(first..first + states.len()) else { return false };
+            let space = Space::of(robot.graph(), marker, &states);
+            for (number, &label) in space.labels.iter().enumerate() {
+                let mut leads_to = [None; 3];
+                for (map, to) in space.maps.iter().zip(&mut leads_to) {
+                    *to = Some(class[map[number] as usize]);
+                }
+                let Some(common) = common.get_mut(class[number] as usize) else { return false };
+                if *common.get_or_insert((label, leads_to)) != (label, leads_to) {
+                    return false;
+                }
+            }
+            starts.push(class[states.number(robot.state()) as usize]);
+            first += states.len();
+        }
+        first == self.class.len() && starts.windows(2).all(|pair| pair[0] == pair[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        ambiguity::{Bisimulation, Comparison},
+        embedded_graph::EmbeddedGraph,
+        marker::named,
+    };
+
+    fn chain(edges: usize) -> EmbeddedGraph {
+        let on_edges = |vertex: usize| {
+            let ends = [vertex.checked_sub(1), Some(vertex).filter(|&edge| edge < edges)];
+            (vertex.to_string(), ends.into_iter().flatten().map(|edge| edge.to_string()).collect())
+        };
+        let lists: Vec<(String, Vec<String>)> = (0..=edges).map(on_edges).collect();
+        EmbeddedGraph::from_edge_lists(&lists).unwrap()
+    }
+
+    #[test]
+    fn classes_are_verified_only_if_their_states_are_indistinguishable() {
+        for kind in ["none", "directional", "movable"] {
+            let (one, other) = (chain(3), chain(3));
+            let marker = named(kind).unwrap();
+            let comparison = Comparison::new(marker, (&one, Dart(0)), (&other, Dart(0)));
+            let poses = [Dart(0); 2];
+            let found = comparison.bisimulation(poses, 0, &()).unwrap().unwrap();
+            let Bisimulation::Classes(classes) = found else { panic!("at most 0 pairs") };
+            let [here, there] = comparison.starts(poses);
+            assert!(classes.verify(&here, &there), "{kind}");
+            assert!(classes.count() > 1);
+            let wrong = |class: Vec<u32>| {
+                let wrong = StateClasses { class, ..classes.clone() };
+                assert!(!wrong.verify(&here, &there), "{kind}: {wrong:?}");
+            };
+            wrong(vec![0; classes.class.len()]);
+            wrong(Vec::new());
+            wrong(classes.class[1..].to_vec());
+            wrong([&classes.class[..], &[0]].concat());
+            for state in 0..classes.class.len() {
+                for class in (0..=classes.count() as u32).filter(|&c| c != classes.class[state]) {
+                    let mut moved = classes.class.clone();
+                    moved[state] = class;
+                    wrong(moved);
+                }
+            }
+        }
+    }
+}
