@@ -1,7 +1,9 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
+mod expected;
 mod known_world;
 mod minimise;
+mod origin;
 mod report;
 mod report_lines;
 
@@ -148,7 +150,10 @@ impl ConformArguments {
             all.include(&judged.judgement.coverage);
             worst = worse(worst, judged.judgement.verdict());
             let shorter = self.shorter(&judged)?;
-            let report = judged.report(path, &quirks, shorter, self.html.is_some());
+            let mut report = judged.report(path, &quirks, shorter, self.html.is_some());
+            if self.html.is_some() {
+                report.sources = origin::sources(path, self.world.as_deref())?;
+            }
             if self.json {
                 report_lines::json(out, &report, &judged.judgement)?;
             } else {
@@ -160,7 +165,7 @@ impl ConformArguments {
             report_lines::together(out, &reports, self.json)?;
         }
         if let Some(path) = &self.html {
-            output::write_whole(path, page::conform_page(&reports).as_bytes())?;
+            output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
         Ok(worst)
     }

@@ -169,15 +169,15 @@ impl<'a> From<&'a NamedWorld> for Placement<'a> {
 }
 
 impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
-    /// The picture of a world with its own names, a directional marker at its start, and its name
-    /// as the title.
+    /// The picture of a world with its own names, its marker at its start, by default a directional one,
+    /// and its name as the title.
     fn from(world: &'a NamedWorld) -> Self {
         Self {
             graph: &world.graph,
             vertex_names: &world.vertex_names,
             edge_names: world.edge_names.as_deref(),
             start: world.start,
-            marker: &Directional,
+            marker: world.marker.unwrap_or(&Directional),
             placement: Placement::from(world),
             title: &world.name,
             caption: &world.about,

@@ -31,6 +31,8 @@ pub(super) struct Known {
     pub(super) reachable: trace::AlgorithmCoverage,
     /// The shapes of the junctions from each of their entries, if the world is a floor plan.
     pub(super) forms: Option<Vec<JunctionShape>>,
+    /// A complete run, if the start is known.
+    expected: Option<ExpectedRun>,
 }
 
 /// The word for an unknown start.

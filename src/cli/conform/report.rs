@@ -22,7 +22,7 @@ use toposlam_robot::{
 };
 
 use super::{Judged, minimise::Minimised};
-use crate::cli::text::{counted, grouped, vertices};
+use crate::cli::text::{counted, grouped, moment, vertices};
 
 /// The largest number of candidates that are listed.
 const LISTED: usize = 8;
@@ -52,6 +52,8 @@ impl Judged {
             verdict,
             remarks: self.remarks(verdict),
             facts: self.facts(),
+            begun: self.opened.log.start().map(moment),
+            sources: Vec::new(),
             events: self.lines(),
             divergence: divergence.map(|divergence| self.divergence_report(divergence)),
             coverage: self.coverage(),
