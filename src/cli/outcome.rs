@@ -28,6 +28,8 @@ impl From<Outcome> for ExitCode {
 pub(crate) enum Failure {
     /// Bad usage or bad input, exit code 2. The message names the place and the cause.
     Input(String),
+    /// Bad input that was reported when it was found, exit code 2.
+    Reported,
     /// The reader closed standard output: no message, exit code 3. A check whose report was not read to
     /// the end does not hold.
     ReaderGone,
@@ -51,8 +53,54 @@ impl Failure {
                 eprintln!("error: {message}");
                 ExitCode::from(2)
             }
+            Self::Reported => ExitCode::from(2),
             Self::ReaderGone => Outcome::Incomplete.into(),
         }
+    }
+}
+
+/// The worse of two results. Bad input is worse than a violation, that is worse than work that is not
+/// finished, and that is worse than a result that holds: exit codes 2, 1, 3, 0.
+pub(crate) fn worse(
+    one: Result<Outcome, Failure>,
+    other: Result<Outcome, Failure>,
+) -> Result<Outcome, Failure> {
+    let rank = |result: &Result<Outcome, Failure>| match result {
+        Err(Failure::Input(_) | Failure::Reported) => 3,
+        Ok(Outcome::Violated) => 2,
+        Ok(Outcome::Incomplete) | Err(Failure::ReaderGone) => 1,
+        Ok(Outcome::Holds) => 0,
+    };
+    if rank(&other) > rank(&one) { other } else { one }
+}
+
+/// The result of a verb that handles each of its inputs, also if another one is bad.
+pub(crate) struct SeveralInputs(Result<Outcome, Failure>);
+
+impl SeveralInputs {
+    /// The result without any input.
+    pub(crate) fn new() -> Self {
+        Self(Ok(Outcome::Holds))
+    }
+
+    /// Adds the result of one input, and prints its failure. Returns the value, if there is one.
+    pub(crate) fn add<T>(&mut self, result: Result<(T, Outcome), Failure>) -> Option<T> {
+        let (value, result) = match result {
+            Ok((value, outcome)) => (Some(value), Ok(outcome)),
+            Err(failure @ Failure::Input(_)) => {
+                failure.report();
+                (None, Err(Failure::Reported))
+            }
+            Err(failure) => (None, Err(failure)),
+        };
+        let so_far = std::mem::replace(&mut self.0, Ok(Outcome::Holds));
+        self.0 = worse(so_far, result);
+        value
+    }
+
+    /// The worst result of all inputs.
+    pub(crate) fn worst(self) -> Result<Outcome, Failure> {
+        self.0
     }
 }
 
