@@ -210,7 +210,7 @@ impl ConformArguments {
         if self.logs.len() > 1 {
             report_lines::together(out, self.logs.len(), &reports, self.json)?;
         }
-        if !self.require_coverage.is_empty() {
+        if !self.require_coverage.is_empty() && !reports.is_empty() {
             let required = required::report(out, &self.require_coverage, &all, self.json)?;
             logs.add(Ok(((), required)));
         }
