@@ -5,6 +5,7 @@
 //!
 //! * [`embedded_graph`]: darts, `opposite`, `clockwise` (Section 2.1);
 //! * [`percept`]: degrees, doors, sightings, door sequences (Section 2.1);
+//! * [`folding`]: what a walk proves about its world;
 //! * [`isomorphism`]: codes of starts, canonical forms, bijections as witnesses;
 //! * [`marker`]: what each kind of marker adds to a percept (Sections 2.2, 2.3);
 //! * [`floor_plan`]: hallways with geometry (Section 2.4);
@@ -44,6 +45,7 @@ pub mod driving;
 pub mod embedded_graph;
 pub mod enumerate;
 pub mod floor_plan;
+pub mod folding;
 pub mod format;
 pub mod isomorphism;
 pub mod mapping;

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::{
     embedded_graph::{Dart, Vertex},
+    folding::ContradictionReason,
     percept::{Percept, Sighting},
 };
 
@@ -159,6 +160,9 @@ pub enum Contradiction {
         /// The percept on the way back.
         perceived: Percept,
     },
+    /// The folded trail contradicts itself.
+    #[error(transparent)]
+    Trail(#[from] ContradictionReason),
 }
 
 /// A percept in words.

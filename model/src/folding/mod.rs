@@ -1,0 +1,49 @@
+//! Folding: what a walk proves about its world.
+//!
+//! A *trail* has one vertex for each percept of a walk, joined by the edges that were traversed. All
+//! sightings of the directional marker are one pose, so these poses are identified; identified poses
+//! have identified neighbours behind the same doors; and so on, until nothing changes. This is
+//! Stallings folding ("Topology of finite graphs", 1983), and it is congruence closure.
+//!
+//! * If the folding contradicts itself, no world of any size explains the walk.
+//! * Otherwise the folded trail maps, locally one to one, into every world that explains the walk. An
+//!   *open* dart is the end of an edge that was never traversed. Dead ends behind the open darts make
+//!   the folded trail a world that explains the walk, so there is at least one.
+//! * If no dart is open and the marker was seen, the folded trail *is* the world: a covering of it in
+//!   which the marker has one preimage.
+//!
+//! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
+//! another marker that lies at a vertex is compared where vertices are identified for another reason,
+//! because the robot returned along edges that it knows. A mark on an edge is not compared. With these
+//! markers a contradiction is still a proof, and its absence proves nothing.
+
+mod certificate;
+mod contradiction;
+mod trail;
+
+pub use certificate::{certificate, certificate_length};
+pub use contradiction::{Contradiction, ContradictionReason, FoldError, MAX_DARTS, TrailError};
+pub use trail::{ClosedTrail, FoldedTrail};
+
+use crate::percept::{Door, Percept};
+
+/// The folded trail of a walk: the percept at the start, and after each door the next percept. A last
+/// door may have no percept.
+///
+/// # Errors
+/// Returns the first event that no world of any size explains together with those before it, or at
+/// which the trail is too large.
+pub fn fold(percepts: &[Percept], doors: &[Door]) -> Result<FoldedTrail, FoldError> {
+    let Some((&first, later)) = percepts.split_first() else { return Ok(FoldedTrail::default()) };
+    let mut trail = FoldedTrail::new(first).map_err(|error| error.at(0))?;
+    for (index, &door) in doors.iter().enumerate() {
+        trail.check_door(door).map_err(|reason| TrailError::from(reason).at(2 * index + 1))?;
+        if let Some(&percept) = later.get(index) {
+            trail.step(door, percept).map_err(|error| error.at(2 * index + 2))?;
+        }
+    }
+    Ok(trail)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,363 @@
+//! Folded trails against worlds, against brute force over all small worlds, and against each other.
+
+use std::ops::ControlFlow;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    any_graph::{Class, any_graph},
+    embedded_graph::{Dart, EmbeddedGraph},
+    enumerate::{Each, EnumeratedGraph, Enumeration},
+    isomorphism::code,
+    marker::NoMarker,
+    percept::Sighting,
+    world::{GraphWorld, State, World},
+};
+
+/// What a robot perceives from a pose on a walk, and the darts by which it comes in.
+fn walk(
+    graph: &EmbeddedGraph,
+    facing: Dart,
+    pose: Dart,
+    turns: &[u8],
+) -> (Vec<Percept>, Vec<Door>, Vec<Dart>) {
+    let world = GraphWorld::new(graph, facing);
+    let mut world = world.clone().at(State { pose, ..world.state() });
+    let (mut percepts, mut doors, mut poses) = (vec![world.sensed()], vec![], vec![pose]);
+    for &turn in turns {
+        let door = Door(u32::from(turn) % world.sensed().degree);
+        world.traverse(door).unwrap();
+        doors.push(door);
+        percepts.push(world.sensed());
+        poses.push(world.pose());
+    }
+    (percepts, doors, poses)
+}
+
+/// The numbers of vertices and of open darts, by an equivalence of darts that grows until it is closed;
+/// `None` if it contradicts itself. There is one vertex for each percept.
+fn forced_equivalence(percepts: &[Percept], doors: &[Door]) -> Option<(usize, usize)> {
+    let darts: Vec<(usize, u32)> = (0..percepts.len())
+        .flat_map(|visit| (0..percepts[visit].degree).map(move |door| (visit, door)))
+        .collect();
+    let at = |wanted: (usize, u32)| darts.iter().position(|&dart| dart == wanted).unwrap();
+    let clockwise = |dart: usize| {
+        let (visit, door) = darts[dart];
+        at((visit, (door + 1) % percepts[visit].degree))
+    };
+    let marked = |dart: usize| {
+        let (visit, door) = darts[dart];
+        percepts[visit].sighting == Sighting::Pointing(Door(door))
+    };
+    let mut edges: Vec<(usize, usize)> = Vec::new();
+    for (moves, door) in doors.iter().enumerate() {
+        let (left, entered) = (at((moves, door.0)), at((moves + 1, 0)));
+        edges.extend([(left, entered), (entered, left)]);
+    }
+    // The class of each dart: its smallest member.
+    let mut class: Vec<usize> = (0..darts.len()).collect();
+    let merge = |class: &mut Vec<usize>, one: usize, other: usize| {
+        let (low, high) = (class[one].min(class[other]), class[one].max(class[other]));
+        class.iter_mut().filter(|class| **class == high).for_each(|class| *class = low);
+        low != high
+    };
+    let sightings: Vec<usize> = (0..darts.len()).filter(|&dart| marked(dart)).collect();
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for pair in sightings.windows(2) {
+            changed |= merge(&mut class, pair[0], pair[1]);
+        }
+        for one in 0..darts.len() {
+            for other in 0..one {
+                if class[one] == class[other] {
+                    if percepts[darts[one].0].degree != percepts[darts[other].0].degree {
+                        return None;
+                    }
+                    changed |= merge(&mut class, clockwise(one), clockwise(other));
+                }
+            }
+        }
+        for &(one, far) in &edges {
+            for &(other, other_far) in &edges {
+                if class[one] == class[other] {
+                    changed |= merge(&mut class, far, other_far);
+                }
+            }
+        }
+    }
+    let alike = |one: usize, other: usize| class[one] == class[other];
+    let contradicts = (0..darts.len()).any(|one| {
+        (0..one).any(|other| {
+            alike(one, other) && (darts[one].0 == darts[other].0 || marked(one) != marked(other))
+        })
+    });
+    if contradicts || edges.iter().any(|&(one, far)| alike(one, far)) {
+        return None;
+    }
+    let classes = |wanted: &dyn Fn(usize) -> bool| {
+        let mut found: Vec<usize> =
+            (0..darts.len()).filter(|&dart| wanted(dart)).map(|dart| class[dart]).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    };
+    let all = classes(&|_| true);
+    let joined = classes(&|dart| edges.iter().any(|&(one, _)| one == dart));
+    // A vertex has as many classes of darts as darts.
+    let mut vertices: Vec<Vec<usize>> = (0..percepts.len())
+        .map(|visit| {
+            let mut around: Vec<usize> =
+                (0..percepts[visit].degree).map(|door| class[at((visit, door))]).collect();
+            around.sort_unstable();
+            around
+        })
+        .collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    Some((vertices.len(), all.len() - joined.len()))
+}
+
+/// Whether a walk fits a world, with the marker along a dart or with none, from any pose.
+fn explains(graph: &EmbeddedGraph, percepts: &[Percept], doors: &[Door]) -> bool {
+    let fits = |sensed: &dyn Fn(Dart) -> Percept, start: Dart| {
+        let mut pose = start;
+        percepts.iter().enumerate().all(|(moves, &percept)| {
+            let fits = sensed(pose) == percept;
+            if let (true, Some(&door)) = (fits, doors.get(moves)) {
+                if door.0 >= percept.degree {
+                    return false;
+                }
+                pose = graph.after(pose, door);
+            }
+            fits
+        })
+    };
+    let anywhere =
+        |sensed: &dyn Fn(Dart) -> Percept| graph.darts().any(|start| fits(sensed, start));
+    let bare = GraphWorld::with_marker(graph, NoMarker, Dart(0));
+    anywhere(&|pose| bare.clone().at(State { pose, ..bare.state() }).sensed())
+        || graph.darts().any(|facing| {
+            let world = GraphWorld::new(graph, facing);
+            anywhere(&|pose| world.clone().at(State { pose, ..world.state() }).sensed())
+        })
+}
+
+/// Whether a world with at most this number of edges explains a walk.
+fn some_world_explains(most: usize, percepts: &[Percept], doors: &[Door]) -> bool {
+    (1..=most).any(|edges| {
+        let worlds = Enumeration::new(Each::World, Class::Multigraph, edges).unwrap();
+        let mut visit = |found: EnumeratedGraph| {
+            if explains(found.graph, percepts, doors) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        worlds.for_each(&mut visit).is_break()
+    })
+}
+
+fn percept(degree: u32, door: Option<u32>) -> Percept {
+    let sighting = door.map_or(Sighting::Nothing, |door| Sighting::Pointing(Door(door)));
+    Percept { degree, sighting }
+}
+
+fn reason(percepts: &[Percept], doors: &[u32]) -> (usize, ContradictionReason) {
+    let doors: Vec<Door> = doors.iter().copied().map(Door).collect();
+    match fold(percepts, &doors) {
+        Err(FoldError::Contradiction(Contradiction { event, reason })) => (event, reason),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_walk_round_a_ring_is_open_until_the_marker_is_seen_again() {
+    let [seen, plain] = [percept(2, Some(0)), percept(2, None)];
+    let around = [seen, plain, plain, seen];
+    let trail = fold(&around[..3], &[Door(1); 2]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count(), trail.is_complete()), (3, 2, false));
+    let trail = fold(&around, &[Door(1); 3]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count(), trail.is_complete()), (3, 0, true));
+    let ClosedTrail { graph, marker, .. } = trail.closed().unwrap();
+    assert_eq!((graph.edge_count(), marker), (3, Some(Dart(0))));
+}
+
+#[test]
+fn without_a_marker_two_places_are_one_only_if_the_robot_went_back() {
+    let corner = percept(2, None);
+    let trail = fold(&[corner; 5], &[Door(1), Door(1), Door(0), Door(1)]).unwrap();
+    assert_eq!((trail.vertex_count(), trail.open_count()), (3, 2));
+    // Back over an edge: the robot is where it was, and comes in by the door that it took.
+    assert_eq!(trail.pose(), Dart(1));
+}
+
+#[test]
+fn each_contradiction_has_its_reason() {
+    use ContradictionReason as Why;
+    let corner = percept(2, None);
+    assert_eq!(reason(&[percept(0, None)], &[]), (0, Why::NoDoors));
+    let past = Why::MarkerDoor { door: 2, degree: 2 };
+    assert_eq!(reason(&[percept(2, Some(2))], &[]), (0, past));
+    assert_eq!(reason(&[corner], &[2]), (1, Why::NoSuchDoor { door: 2, degree: 2 }));
+    // There and back.
+    let degree = Why::Degree { visits: [0, 2], degrees: [2, 3] };
+    assert_eq!(reason(&[corner, corner, percept(3, None)], &[1, 0]), (4, degree));
+    let sightings = [Sighting::Nothing, Sighting::Pointing(Door(0))];
+    let marker = Why::Marker { visits: [0, 2], sightings };
+    assert_eq!(reason(&[corner, corner, percept(2, Some(0))], &[1, 0]), (4, marker));
+    // Two sightings of the marker, at places with different degrees.
+    let apart = Why::Degree { visits: [0, 1], degrees: [1, 2] };
+    assert_eq!(reason(&[percept(1, Some(0)), percept(2, Some(0))], &[0]), (2, apart));
+    // The robot leaves by the marked door, and comes in by it.
+    let own = Why::OwnOpposite { visit: 0 };
+    assert_eq!(reason(&[percept(3, Some(1)), percept(3, Some(0))], &[1]), (2, own));
+    // Back over an edge, the marker points another way.
+    let [there, back] = [percept(2, Some(0)), percept(2, Some(0))];
+    let sightings = [Sighting::Pointing(Door(1)), Sighting::Pointing(Door(0))];
+    let turned = Why::Marker { visits: [0, 2], sightings };
+    assert_eq!(reason(&[there, corner, back], &[1, 0]), (4, turned));
+}
+
+#[test]
+fn a_rotation_of_a_vertex_is_a_contradiction() {
+    let mut trail = FoldedTrail::new(percept(3, None)).unwrap();
+    let error = trail.unite(Dart(0), Dart(1));
+    assert_eq!(error, Err(ContradictionReason::Rotation { visit: 0 }));
+}
+
+#[test]
+fn a_trail_with_too_many_darts_is_refused_and_proves_nothing() {
+    let huge = percept(u32::MAX, None);
+    assert_eq!(fold(&[huge], &[]).unwrap_err(), FoldError::TooManyDarts { event: 0 });
+}
+
+/// Every function of a trail that a union could change.
+fn state(trail: &FoldedTrail, darts: usize) -> (usize, usize, Vec<(Dart, Option<Dart>)>) {
+    let darts = (0..darts as u32).map(Dart);
+    let darts = darts.map(|dart| (trail.root_of(dart), trail.opposite(dart))).collect();
+    (trail.vertex_count(), trail.open_count(), darts)
+}
+
+proptest! {
+    #[test]
+    fn the_folded_trail_maps_into_the_world_and_is_the_world_if_it_is_complete(
+        graph in any_graph(Class::Multigraph, 9),
+        facing in any::<prop::sample::Index>(),
+        start in any::<prop::sample::Index>(),
+        turns in prop::collection::vec(any::<u8>(), 0..60),
+    ) {
+        let dart = |index: prop::sample::Index| Dart(index.index(graph.dart_count()) as u32);
+        let (facing, start) = (dart(facing), dart(start));
+        let (percepts, doors, poses) = walk(&graph, facing, start, &turns);
+        let mut trail = FoldedTrail::new(percepts[0]).unwrap();
+        let mut image = std::collections::HashMap::from([(trail.pose(), start)]);
+        for (moves, &door) in doors.iter().enumerate() {
+            trail.step(door, percepts[moves + 1]).unwrap();
+            image.insert(trail.pose(), poses[moves + 1]);
+        }
+        // The image of each dart, from any pose that was taken at its vertex.
+        let mut images = vec![None; 3 * 61 * graph.dart_count()];
+        for (pose, image) in image {
+            let around: Vec<_> = trail.darts_around(pose).collect();
+            for turn in 0..around.len() as u32 {
+                let [one, other] =
+                    [trail.behind(pose, Door(turn)), graph.behind(image, Door(turn))];
+                let entry: &mut Option<Dart> = &mut images[trail.root_of(one).at()];
+                prop_assert!(entry.is_none_or(|before| before == other));
+                *entry = Some(other);
+            }
+        }
+        let mut open = 0;
+        for first in trail.vertices() {
+            let around: Vec<_> = trail.darts_around(first).collect();
+            let Some(image) = images[first.at()] else { continue };
+            prop_assert_eq!(graph.degree(graph.vertex(image)) as usize, around.len());
+            for one in around {
+                let image = images[one.at()].unwrap();
+                match trail.opposite(one) {
+                    None => open += 1,
+                    Some(other) => {
+                        prop_assert_eq!(trail.opposite(other), Some(one));
+                        if let Some(other) = images[other.at()] {
+                            prop_assert_eq!(graph.opposite(image), other);
+                        }
+                    }
+                }
+            }
+        }
+        prop_assert!(open <= trail.open_count());
+        if let Some(marker) = trail.marker() {
+            prop_assert!(images[marker.at()].is_none_or(|image| image == facing));
+        }
+        let ClosedTrail { graph: closed, marker, .. } = trail.closed().unwrap();
+        prop_assert!(explains(&closed, &percepts, &doors));
+        if trail.is_complete() {
+            prop_assert_eq!(code(&closed, marker.unwrap()), code(&graph, facing));
+        }
+    }
+
+    #[test]
+    fn the_folded_trail_is_the_smallest_equivalence_of_the_darts_that_the_walk_forces(
+        graph in any_graph(Class::Multigraph, 5),
+        turns in prop::collection::vec(any::<u8>(), 0..14),
+        lie in prop::option::of((any::<prop::sample::Index>(), 1_u32..4)),
+    ) {
+        let (mut percepts, doors, _) = walk(&graph, Dart(0), Dart(0), &turns);
+        if let Some((wrong, degree)) = lie {
+            percepts[wrong.index(turns.len() + 1)] = percept(degree, None);
+        }
+        prop_assume!(doors.iter().zip(&percepts).all(|(door, percept)| door.0 < percept.degree));
+        let folded = fold(&percepts, &doors).ok();
+        let counts = folded.map(|trail| (trail.vertex_count(), trail.open_count()));
+        prop_assert_eq!(counts, forced_equivalence(&percepts, &doors));
+    }
+
+    #[test]
+    fn a_contradiction_is_reported_exactly_if_no_world_explains_the_walk(
+        graph in any_graph(Class::Multigraph, 3),
+        facing in any::<prop::sample::Index>(),
+        turns in prop::collection::vec(0_u8..4, 0..4),
+        wrong in any::<prop::sample::Index>(),
+        lie in (1_u32..4, prop::option::of(0_u32..3)),
+    ) {
+        let facing = Dart(facing.index(graph.dart_count()) as u32);
+        let (mut percepts, mut doors, _) = walk(&graph, facing, facing, &turns);
+        let wrong = wrong.index(percepts.len());
+        percepts[wrong] = percept(lie.0, lie.1.map(|door| door % lie.0));
+        percepts.truncate(wrong + 1);
+        doors.truncate(wrong);
+        let folded = fold(&percepts, &doors);
+        // A folded trail with its dead ends explains the walk, so no more edges are needed.
+        let most = match &folded {
+            Ok(trail) => trail.closed().unwrap().graph.edge_count(),
+            Err(_) => 5,
+        };
+        if most <= 5 {
+            prop_assert_eq!(folded.is_ok(), some_world_explains(most, &percepts, &doors));
+        }
+    }
+
+    #[test]
+    fn a_union_is_undone_completely(
+        graph in any_graph(Class::Multigraph, 8),
+        turns in prop::collection::vec(any::<u8>(), 0..40),
+        pairs in prop::collection::vec(any::<(prop::sample::Index, prop::sample::Index)>(), 1..6),
+    ) {
+        let (percepts, doors, _) = walk(&graph, Dart(0), Dart(0), &turns);
+        let mut trail = fold(&percepts, &doors).unwrap();
+        let darts: usize = trail.dart_count();
+        for (one, other) in pairs {
+            let [one, other] = [one, other].map(|index| Dart(index.index(darts) as u32));
+            let before = state(&trail, darts);
+            let united = trail.with_united(one, other, |trail| trail.root_of(one) == trail.root_of(other));
+            prop_assert_eq!(&state(&trail, darts), &before);
+            prop_assert!(united.unwrap_or(true));
+            // What fails changes nothing.
+            if trail.unite(one, other).is_err() {
+                prop_assert_eq!(&state(&trail, darts), &before);
+            }
+        }
+    }
+}
