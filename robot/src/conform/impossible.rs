@@ -3,15 +3,14 @@
 use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
+    folding::{Contradiction, ContradictionReason, FoldError, fold},
     marker::{Directional, Marker, NoMarker},
     percept::{Percept, Sighting},
     trace::Trace,
 };
 
-use super::folding::{ContradictionReason, fold};
-
 /// Why no world of any size explains an event together with all before it.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Impossibility {
     /// The walk contradicts itself.
     #[error(transparent)]
@@ -25,6 +24,26 @@ pub enum Impossibility {
         /// The class.
         class: Class,
     },
+}
+
+impl Impossibility {
+    /// Whether two events are impossible for the same reason, wherever they are.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.without_visits() == other.without_visits()
+    }
+
+    fn without_visits(&self) -> Self {
+        use ContradictionReason::{Degree, Marker, OwnOpposite, Rotation};
+        match *self {
+            Self::Walk(Degree { degrees, .. }) => Self::Walk(Degree { visits: [0; 2], degrees }),
+            Self::Walk(Marker { sightings, .. }) => {
+                Self::Walk(Marker { visits: [0; 2], sightings })
+            }
+            Self::Walk(Rotation { .. }) => Self::Walk(Rotation { visit: 0 }),
+            Self::Walk(OwnOpposite { .. }) => Self::Walk(OwnOpposite { visit: 0 }),
+            other => other,
+        }
+    }
 }
 
 /// The index of the first event of a trace that no world of any size explains together with all before
@@ -41,7 +60,12 @@ pub fn first_impossible(
         return None;
     }
     let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
-    let walk = fold(trace).err().map(|found| (found.event, Impossibility::Walk(found.reason)));
+    let walk = match fold(trace.percepts(), trace.doors()) {
+        Err(FoldError::Contradiction(Contradiction { event, reason })) => {
+            Some((event, Impossibility::Walk(reason)))
+        }
+        Ok(_) | Err(FoldError::TooManyDarts { .. }) => None,
+    };
     let marked = first(&|percept| !directional && percept.sighting != Sighting::Nothing);
     let crowded = first(&|percept| percept.degree > class.max_degree());
     let marked = marked.map(|event| (event, Impossibility::Marker));

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
+    embedded_graph::EmbeddedGraph,
     enumerate::Watch,
     mapping::FACING,
     marker::{Directional, Marker},
@@ -13,6 +14,7 @@ use toposlam_model::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, SearchLimit, SmallestWorld, Trace,
         TraceClaim, TraceOrderError, WorldSearch, match_algorithm, poses, smallest,
     },
+    world::GraphWorld,
 };
 
 use super::{
@@ -249,7 +251,9 @@ impl Judgement {
             if let Some((event, why)) = first_impossible(trace, question.marker, class) {
                 let event = trace.event(event);
                 found.note(event.id, DivergenceCause::NoWorld { event, why });
-            } else if let Some(graph) = explored.filter(|graph| class.contains(graph)) {
+            } else if let Some(graph) = explored
+                .filter(|graph| class.contains(graph) && explains(graph, question.marker, trace))
+            {
                 // A complete map is the only world that explains the run.
                 judgement.smallest = Some(SmallestWorld::World { graph, marker: Some(FACING) });
             } else {
@@ -304,6 +308,12 @@ impl Judgement {
             _ => 0,
         }
     }
+}
+
+/// Whether a map is a world in which the walk of a trace has its percepts.
+fn explains(map: &EmbeddedGraph, marker: &'static dyn Marker, trace: &Trace) -> bool {
+    let start = GraphWorld::with_marker(map, marker, FACING).state();
+    poses(map, &marker, &[start], trace).misfit.is_none()
 }
 
 /// The first divergence that is not tolerated.

@@ -5,7 +5,6 @@ mod consistency;
 mod divergence;
 mod events;
 mod extract;
-mod folding;
 mod impossible;
 mod inferred_events;
 mod judgement;

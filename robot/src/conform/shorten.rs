@@ -120,7 +120,7 @@ impl Divergence {
             (
                 DivergenceCause::NoWorld { why: one, .. },
                 DivergenceCause::NoWorld { why: other, .. },
-            ) => discriminant(one) == discriminant(other),
+            ) => one.is_like(other),
             (one, other) => one.name() == other.name(),
         };
         same && self.fault == other.fault

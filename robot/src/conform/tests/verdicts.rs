@@ -325,12 +325,14 @@ fn the_marker_is_honoured_without_a_world() {
     assert_eq!(why, Impossibility::Marker);
     // Algorithm 1 needs one.
     let algorithm = ConformConfig { driver: RunDriver::Algorithm1, ..unmarked.clone() };
-    let judged = |question: &ConformConfig| judge(events.clone(), question, &Quirks::default(), &());
+    let judged =
+        |question: &ConformConfig| judge(events.clone(), question, &Quirks::default(), &());
     assert_eq!(judged(&algorithm).unwrap_err(), JudgeError::Algorithm("none"));
     // If the marker is not recorded, the log does not show that it was not seen.
     let unmapped =
         Options { unmarked: true, ..bare() }.recorded(&log(&plan, starts_of(&plan)[0], 1));
-    let judged = |question: &ConformConfig| judge(unmapped.clone(), question, &Quirks::default(), &());
+    let judged =
+        |question: &ConformConfig| judge(unmapped.clone(), question, &Quirks::default(), &());
     assert_eq!(judged(&without_world()).unwrap_err(), JudgeError::Marker(MarkerNotRecorded));
     assert_eq!(judged(&unmarked).unwrap().divergence, None);
 }
