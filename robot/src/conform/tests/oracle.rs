@@ -101,7 +101,7 @@ pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dar
         }
     }
     let mut same: Vec<[usize; 2]> = markers.windows(2).map(|two| [two[0], two[1]]).collect();
-    while !same.is_empty() {
+    loop {
         for [one, other] in std::mem::take(&mut same) {
             let [one, other] = [label[one], label[other]];
             if degrees[vertices[one]] != degrees[vertices[other]] {
@@ -122,6 +122,9 @@ pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dar
             same.extend(other.map(|[_, other]| [*far, *other]));
         }
         same.retain(|[one, other]| label[*one] != label[*other]);
+        if same.is_empty() {
+            break;
+        }
     }
     let is_whole = |vertex: usize| {
         let labels = (first(vertex)..first(vertex + 1)).map(|dart| label[dart]);
