@@ -49,10 +49,12 @@ impl ConformArguments {
             );
         };
         let Some(divergence) = &judged.judgement.divergence else {
-            return not_written(path, "there is no divergence to show");
+            not_written(path, "there is no divergence to show");
+            return Ok(None);
         };
         let Some(ShortenedRun { events, event, by_itself }) = shorter else {
-            return not_written(path, "it does not diverge in less than all of it");
+            not_written(path, "it does not diverge in less than all of it");
+            return Ok(None);
         };
         let head = head(judged);
         let recorded = judged.judgement.events.events.get(divergence.event);
@@ -69,10 +71,8 @@ impl ConformArguments {
         let question = if by_itself { question.by_itself() } else { question };
         let again = divergence_of(&bytes, evidence, &question);
         if again.as_ref().is_none_or(|again| again.event != at || !again.is_like(divergence)) {
-            return not_written(
-                path,
-                "a log of less than all of it does not diverge in the same way",
-            );
+            not_written(path, "a log of less than all of it does not diverge in the same way");
+            return Ok(None);
         }
         output::write_whole(path, &bytes)?;
         let command = Some(self.command(path, judged, by_itself));
@@ -102,9 +102,8 @@ impl ConformArguments {
     }
 }
 
-fn not_written(path: &Path, why: &str) -> Result<Option<Minimised>, Failure> {
+fn not_written(path: &Path, why: &str) {
     eprintln!("{}: not written: {why}", path.display());
-    Ok(None)
 }
 
 fn is_marked(judged: &Judged) -> bool {

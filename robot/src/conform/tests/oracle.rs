@@ -2,7 +2,10 @@
 //! the witness. It is slow and simple: the ends of all vertices of the trail are labelled, and labels are
 //! made equal until nothing changes.
 
-use std::{collections::BTreeMap, ops::ControlFlow};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::ControlFlow,
+};
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -30,10 +33,9 @@ impl Place<'_> {
             let degree = graph.degree(graph.vertex(pose));
             let here = marker.filter(|&marker| graph.vertex(marker) == graph.vertex(pose));
             let sighting = here.map_or(Sighting::Nothing, |marker| {
-                let doors = (0..degree).map(|door| (door, graph.index(pose) + door));
-                let index = |at: u32| at % degree == graph.index(marker);
-                let door = doors.filter(|&(_, at)| index(at)).map(|(door, _)| door).next();
-                Sighting::Pointing(Door(door.unwrap()))
+                let points =
+                    |&door: &u32| (graph.index(pose) + door) % degree == graph.index(marker);
+                Sighting::Pointing(Door((0..degree).find(points).unwrap()))
             });
             if *percept != (Percept { degree, sighting }) {
                 return false;
@@ -57,9 +59,10 @@ pub(super) fn is_explained_by_small(trace: &Trace, edges: usize) -> bool {
             let graph = found.graph;
             let place = |marker| Place { graph, marker, pose: Dart(0) };
             let markers = graph.darts().map(Some).chain([None]);
-            match markers.map(place).any(|place| place.explains(trace)) {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
+            if markers.map(place).any(|place| place.explains(trace)) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         };
         let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
@@ -128,7 +131,7 @@ pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dar
     }
     let is_whole = |vertex: usize| {
         let labels = (first(vertex)..first(vertex + 1)).map(|dart| label[dart]);
-        labels.collect::<std::collections::BTreeSet<_>>().len() == degrees[vertex]
+        labels.collect::<BTreeSet<_>>().len() == degrees[vertex]
     };
     let marker = markers.first().map(|&dart| label[dart]);
     let looks = |vertex: usize| {
@@ -139,31 +142,38 @@ pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dar
     if itself || !(0..degrees.len()).all(|vertex| is_whole(vertex) && looks(vertex)) {
         return None;
     }
-    // The darts of the world, numbered; each whose end is not known leads to a dead end.
+    let turn: Vec<_> = (0..count).map(|dart| [label[dart], label[clockwise(dart)]]).collect();
+    let links: Vec<_> = links.iter().map(|ends| ends.map(|dart| label[dart])).collect();
+    let (graph, number) = world(&turn, &links);
+    Some((graph, marker.map(|label| number[&label]), number[&label[0]]))
+}
+
+/// The world of labelled darts, given what follows each clockwise and the known ends, and the dart of each
+/// label. A dart whose other end is not known leads to a dead end.
+fn world(clockwise: &[[usize; 2]], links: &[[usize; 2]]) -> (EmbeddedGraph, BTreeMap<usize, Dart>) {
     let mut number = BTreeMap::new();
-    for &label in &label {
-        let next = number.len() as u32;
-        number.entry(label).or_insert(next);
+    for [label, _] in clockwise {
+        let next = number.len();
+        number.entry(*label).or_insert(next);
     }
     let mut turn = vec![0; number.len()];
     let mut opposite = vec![None; number.len()];
-    for dart in 0..count {
-        turn[number[&label[dart]] as usize] = number[&label[clockwise(dart)]];
+    for [label, next] in clockwise {
+        turn[number[label]] = number[next] as u32;
     }
     for [near, far] in links {
-        opposite[number[&label[near]] as usize] = Some(number[&label[far]]);
+        opposite[number[near]] = Some(number[far] as u32);
     }
-    let mut ends = Vec::new();
     for dart in 0..opposite.len() {
         if opposite[dart].is_none() {
-            let end = (opposite.len() + ends.len()) as u32;
+            let end = opposite.len() as u32;
             opposite[dart] = Some(end);
             turn.push(end);
-            ends.push(Some(dart as u32));
+            opposite.push(Some(dart as u32));
         }
     }
-    let opposite: Vec<_> = opposite.into_iter().chain(ends).flatten().collect();
+    let opposite: Vec<_> = opposite.into_iter().flatten().collect();
     let (graph, darts) = EmbeddedGraph::from_permutations(&opposite, &turn).unwrap();
-    let named = |label: usize| darts[number[&label] as usize];
-    Some((graph, marker.map(named), named(label[0])))
+    let number = number.into_iter().map(|(label, dart)| (label, darts[dart])).collect();
+    (graph, number)
 }
