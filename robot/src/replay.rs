@@ -19,7 +19,7 @@ use crate::{
         reader::Log,
         topic_map::{Role, TopicMap, TopicMapError},
     },
-    record::{Event, EventKind, Frame, MapRecord, RunObserver},
+    record::{Arrival, Event, EventKind, Frame, MapRecord, RunObserver},
     robot::{Reckoned, Robot, RobotError},
 };
 
@@ -197,7 +197,7 @@ impl ReplayedRobot<'_> {
                 EventKind::Command { command: Some(command), .. } => {
                     self.recorded.commands.insert(last, command);
                 }
-                EventKind::Arrival(arrival) => self.recorded.percepts.push(arrival.percept),
+                EventKind::Arrival(arrival) => self.recorded.arrivals.push(arrival),
                 EventKind::Door { door, .. } => self.recorded.doors.push(door),
                 EventKind::Map(map) => self.recorded.map = Some(map),
                 _ => {}
@@ -251,7 +251,7 @@ struct RecordedResults {
     /// By the frame before.
     scenes: HashMap<u64, Scene>,
     commands: HashMap<u64, Command>,
-    percepts: Vec<Percept>,
+    arrivals: Vec<Arrival>,
     doors: Vec<Door>,
     map: Option<MapRecord>,
 }
@@ -289,16 +289,22 @@ impl RecordedResults {
                     to.differs(same, time, "door", &recorded, found);
                 }
                 EventKind::Arrival(arrival) => {
-                    let recorded = self.percepts.get(to.percepts.of as usize);
-                    let same = recorded == Some(&arrival.percept);
+                    let Some(percept) = arrival.percept() else { continue };
+                    let recorded = self.arrivals.get(to.percepts.of as usize);
+                    let same = recorded.is_some_and(|recorded| recorded.agrees(&percept));
                     to.percepts.note(same);
-                    to.differs(same, time, "percept", &recorded, &arrival.percept);
+                    // What is not recorded cannot differ.
+                    let recorded = recorded.map(|recorded| Percept {
+                        degree: recorded.degree,
+                        sighting: recorded.sighting.unwrap_or(percept.sighting),
+                    });
+                    to.differs(same, time, "percept", &recorded.as_ref(), &percept);
                 }
                 _ => {}
             }
         }
         // Recorded results that were not reached do not agree.
-        to.percepts.of = to.percepts.of.max(self.percepts.len() as u64);
+        to.percepts.of = to.percepts.of.max(self.arrivals.len() as u64);
         to.doors.of = to.doors.of.max(self.doors.len() as u64);
         to
     }

@@ -1,7 +1,5 @@
 //! The known world of a log.
 
-use std::path::Path;
-
 use toposlam_model::{
     driving::visit::JunctionShape,
     embedded_graph::Dart,
@@ -17,13 +15,12 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{ConformArguments, Failure};
+use super::Failure;
 use crate::cli::input;
 
 /// A known world.
-pub(super) struct Known {
-    pub(super) world: NamedWorld,
-    pub(super) marker: &'static dyn Marker,
+pub(super) struct Known<'w> {
+    pub(super) world: &'w NamedWorld,
     /// The robot's start, if it is known.
     pub(super) start: Option<Dart>,
     states: Vec<State>,
@@ -36,46 +33,48 @@ pub(super) struct Known {
 /// The word for an unknown start.
 const ANY: &str = "any";
 
-impl Known {
+/// Checks the text of `--start`.
+pub(super) fn check_start(world: &NamedWorld, start: Option<&str>) -> Result<(), Failure> {
+    match start {
+        None | Some(ANY) => Ok(()),
+        Some(_) => input::start_of(world, start).map(|_| ()),
+    }
+}
+
+impl<'w> Known<'w> {
+    /// The world of a log with a marker, and the start of `--start`, of the log or of the world file.
     pub(super) fn new(
-        path: &Path,
-        arguments: &ConformArguments,
+        world: &'w NamedWorld,
+        start: Option<&str>,
+        marker: &'static dyn Marker,
         run: Option<&Run>,
     ) -> Result<Self, Failure> {
-        let world = input::read_world(path)?;
-        let marker = match (arguments.marker, run.map_or("", |run| &*run.marker)) {
-            (Some(marker), _) => marker,
-            (None, "") => &toposlam_model::marker::Directional,
-            (None, name) => toposlam_model::marker::named(name)
-                .map_err(|error| Failure::at("the log", error))?,
-        };
-        let start = match arguments.start.as_deref() {
+        let start = match start {
             Some(ANY) => None,
-            Some(_) => Some(input::start_of(&world, arguments.start.as_deref())?),
-            None => run.and_then(|run| recorded_start(&world, run)).or(world.start),
+            Some(_) => Some(input::start_of(world, start)?),
+            None => run.and_then(|run| recorded_start(world, run)).or(world.start),
         };
         let states = match start {
             None => anywhere(&world.graph, &marker),
             Some(facing) => vec![GraphWorld::with_marker(&world.graph, marker, facing).state()],
         };
         let reachable = trace::reachable(&world.graph);
-        let forms = forms(&world);
-        Ok(Self { world, marker, start, states, reachable, forms })
+        let forms = forms(world);
+        Ok(Self { world, start, states, reachable, forms })
     }
 
     pub(super) fn question(&self) -> KnownWorld<'_> {
-        let Self { world, marker, states, .. } = self;
-        KnownWorld { graph: &world.graph, marker: *marker, states: states.clone() }
+        KnownWorld { graph: &self.world.graph, states: self.states.clone() }
     }
 
-    /// Prints a warning if the log was recorded in another world.
-    pub(super) fn warn(&self, log: &Path, run: &Run) {
+    /// A remark if the log was recorded in another world.
+    pub(super) fn other_world(&self, run: &Run) -> Option<String> {
+        let graph = &self.world.graph;
         let recorded = &run.world_hash;
-        let other =
-            self.world.graph.darts().all(|dart| world_hash(&self.world.graph, dart) != *recorded);
-        if !recorded.is_empty() && other {
-            eprintln!("{}: the log was recorded in another world, {}", log.display(), run.world);
-        }
+        let other = graph.darts().all(|dart| world_hash(graph, dart) != *recorded);
+        let name = if run.world.is_empty() { "" } else { ", " };
+        (!recorded.is_empty() && other)
+            .then(|| format!("the log was recorded in another world{name}{}", run.world))
     }
 
     /// A pose in words.
