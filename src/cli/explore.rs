@@ -45,8 +45,8 @@ which the vertex was first entered. When the robot has followed an unexplored da
 unexplored dart may be the other end of the same edge. A candidate is one that the percept does not \
 rule out. To test it, the robot follows the path that would lead from there to the marker.
 
-Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts or --max-states \
-was reached.")]
+Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts, \
+--max-states or 1 GiB of memory for the states was reached.")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
     world: PathBuf,
@@ -63,7 +63,8 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: ChoicesOption,
 
-    /// With --choices all: stop when there are more states [default: 1000000]
+    /// With --choices all: stop when there are more states, between rounds (line 4) and within
+    /// (line 8) [default: 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 

@@ -117,7 +117,7 @@ fn control_is_as_specified_on_any_number_of_threads() {
     let table = stdout_of(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
     // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
     assert!(table.contains("  26 pairs of entry door and exit door in 1 floor plan\n"), "{table}");
-    assert!(table.contains("holds: every door leads where it should"), "{table}");
+    assert!(table.contains("holds in these traversals: every door leads where it should"), "{table}");
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
     let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
     assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
     let table = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
-    let verdict = "holds: every map is right, or the robot gave up or was carried";
+    let verdict = "holds in these runs: every map is right, or the robot gave up or was carried";
     for part in ["dropped", "frozen", "carried", verdict] {
         assert!(table.contains(part), "{part}\n{table}");
     }
