@@ -3,6 +3,7 @@
 mod doors_writer;
 mod result;
 pub(super) mod story;
+mod summary;
 
 use std::{
     io::{self, Write},
@@ -20,12 +21,18 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use super::{ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output};
+use super::{
+    ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output,
+    text::print_paragraph,
+};
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
-use story::{Story, StoryDetail};
+use story::{Story, StoryDetail, head};
+use summary::Summary;
 
 /// Run Algorithm 1 on one world and print its story: each door, percept and hypothesis, and the map
+///
+/// The run in a world with more than 25 vertices is summarised on one screen; --story prints it all.
 ///
 /// The robot gets only percepts from the world. At the end a bijection proves that the map is
 /// isomorphic to the world.
@@ -39,6 +46,7 @@ Examples:
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --marker movable
+  toposlam explore worlds/building-25.toml --summary
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
@@ -72,6 +80,14 @@ pub(super) struct ExploreArguments {
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
     max_darts: usize,
 
+    /// Print the story of each round [default: in worlds with up to 25 vertices]
+    #[arg(long, conflicts_with = "json")]
+    story: bool,
+
+    /// Print counts of rounds and candidates in place of the story [default: in larger worlds]
+    #[arg(long, conflicts_with_all = ["story", "full", "doors", "json"])]
+    summary: bool,
+
     /// Print every rejected candidate, not only the first few of each round
     #[arg(long, conflicts_with = "json")]
     full: bool,
@@ -93,7 +109,16 @@ pub(super) struct ExploreArguments {
     json: bool,
 }
 
+/// The most vertices of a world whose run is printed round by round unless --story or --summary is given.
+const STORY_VERTICES: usize = 25;
+
 impl ExploreArguments {
+    /// Whether the run is summarised.
+    fn summarises(&self, world: &NamedWorld) -> bool {
+        let story = self.story || self.full || self.doors;
+        self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)
+    }
+
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
@@ -128,6 +153,12 @@ impl ExploreArguments {
             let run = algorithm.run(&mut robot, &mut state, &mut doors);
             doors.finish()?;
             run
+        } else if self.summarises(world) {
+            print_paragraph(&mut out, &head(world, facing))?;
+            let mut summary = Summary::default();
+            let run = algorithm.run(&mut robot, &mut state, &mut summary);
+            summary.print(&mut out)?;
+            run
         } else {
             let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
             let mut story = Story::new(&mut out, world, facing, detail);
@@ -152,7 +183,8 @@ impl ExploreArguments {
         if self.json {
             result.print_json(&mut out)?;
         } else {
-            result.print(&mut out)?;
+            let most = if self.summarises(world) { STORY_VERTICES } else { usize::MAX };
+            result.print(&mut out, most)?;
         }
         out.flush()?;
         match result.map() {

@@ -217,10 +217,10 @@ fn verify(path: &Path, log: &Log) -> Result<Verification, Failure> {
 }
 
 fn verification_line(found: &Verification) -> VerificationLine {
-    let damage = found.damage.iter().map(|error| DamageLine {
-        offset: error.offset,
-        cause: error.cause.to_string(),
-    });
+    let damage = found
+        .damage
+        .iter()
+        .map(|error| DamageLine { offset: error.offset, cause: error.cause.to_string() });
     VerificationLine {
         chunks: found.chunks,
         messages: found.messages,

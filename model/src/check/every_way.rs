@@ -190,7 +190,8 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
                     self.bytes -= round.map_or(0, |round| round.bytes);
                 }
             }
-            let next = frame.choices.next().filter(|_| self.limit != Some(SearchLimit::Interrupted));
+            let next =
+                frame.choices.next().filter(|_| self.limit != Some(SearchLimit::Interrupted));
             found = match next {
                 Some(choice) => self.after(choice)?,
                 None => self.leave(),

@@ -103,7 +103,10 @@ mod tests {
         // By the incomplete beta function of mpmath, as above: the bounds of 9 of 10 and of 95 of 100.
         close(lower_bound(1, 10), 0.005_116_196_891_823_7, 1e-9);
         close(lower_bound(5, 100), 0.019_905_563_662_172, 1e-9);
-        assert_eq!((lower_bound(0, 10), lower_bound(0, 0), lower_bound(5, 5)), (0.0, 0.0, 1.0 - upper_bound(0, 5)));
+        assert_eq!(
+            (lower_bound(0, 10), lower_bound(0, 0), lower_bound(5, 5)),
+            (0.0, 0.0, 1.0 - upper_bound(0, 5))
+        );
     }
 
     #[test]

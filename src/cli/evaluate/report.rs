@@ -201,10 +201,9 @@ impl<'o> Printer<'o> {
             Outcome::Violated if missed == 1 => "violated: a target is missed".to_owned(),
             Outcome::Violated => format!("violated: {missed} targets are missed"),
             Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
-            Outcome::Incomplete => format!(
-                "not shown: the sample is too small for {}",
-                counted(not_shown, "target")
-            ),
+            Outcome::Incomplete => {
+                format!("not shown: the sample is too small for {}", counted(not_shown, "target"))
+            }
         };
         writeln!(self.out, "\n{verdict}")?;
         Ok(())

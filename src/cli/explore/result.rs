@@ -115,7 +115,8 @@ impl ExploreResult<'_> {
         Ok(())
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    /// Prints the result with the names of at most so many vertices.
+    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), Failure> {
         writeln!(out)?;
         match &self.result {
             Err(flaw) => {
@@ -125,7 +126,7 @@ impl ExploreResult<'_> {
                     print_paragraph(out, "Use --max-darts N to raise the bound.")?;
                 }
             }
-            Ok(bijection) => self.print_map(bijection, out)?,
+            Ok(bijection) => self.print_map(bijection, listed, out)?,
         }
         match &self.ways {
             None => Ok(()),
@@ -137,7 +138,12 @@ impl ExploreResult<'_> {
         }
     }
 
-    fn print_map(&self, bijection: &Bijection, out: &mut dyn Write) -> io::Result<()> {
+    fn print_map(
+        &self,
+        bijection: &Bijection,
+        listed: usize,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let Self { world, journey, move_bound, .. } = self;
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
@@ -154,7 +160,12 @@ impl ExploreResult<'_> {
             image.map(|dart| world.at_text(dart)).unwrap_or_default()
         };
         let vertices = journey.map().vertices();
-        let names: Vec<_> = vertices.map(|v| format!("v{} = {}", v.0, name(v))).collect();
+        let names = vertices.take(listed).map(|v| format!("v{} = {}", v.0, name(v)));
+        let mut names: Vec<_> = names.collect();
+        let left = journey.map().vertex_count() - names.len();
+        if left > 0 {
+            names.push(format!("and {} more", grouped(left as u128)));
+        }
         print_paragraph(out, "It is isomorphic to the world:")?;
         print_hanging(out, "  ", &names.join(", "))?;
         let robot = journey.robot();

@@ -146,8 +146,7 @@ fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
     let hallway = judged(&Truth::Hallway(HALLWAY), in_hallway(0.0));
     let junction = judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2]));
     let standing = |hallways: usize, junctions: usize| {
-        let views =
-            [vec![hallway.clone(); hallways], vec![junction.clone(); junctions]].concat();
+        let views = [vec![hallway.clone(); hallways], vec![junction.clone(); junctions]].concat();
         let report = VisionReport::of(&views, &[], Calibration::Right);
         let zones = [ReportSubject::Hallway, ReportSubject::Junction];
         let rates = report.rates.iter().filter(|rate| zones.contains(&rate.subject));

@@ -33,7 +33,9 @@ pub(in crate::log) fn describe(source: &Source) -> io::Result<SelfDescription> {
     while let Some(head) = window.get(at, HEAD as u64)? {
         let (Some(&op), Some(length)) = (head.first(), u64_at(head, 1)) else { break };
         let content = at + HEAD as u64;
-        let Some(end) = content.checked_add(length).filter(|end| window.within(*end)) else { break };
+        let Some(end) = content.checked_add(length).filter(|end| window.within(*end)) else {
+            break;
+        };
         match op {
             // The checksum is at the end of the record, and covers the fields before it.
             ATTACHMENT if length >= 4 => {

@@ -158,7 +158,8 @@ impl Section {
     /// The bytes in the file that a checksum of its own covers, of the records or of their compression.
     pub(super) fn covered(&self, source: &Source) -> Result<Option<Range<u64>>, LogError> {
         let Range { start, end } = self.bytes;
-        let head = source.read(start..end.min(start.saturating_add(5))).map_err(unreadable(start))?;
+        let head =
+            source.read(start..end.min(start.saturating_add(5))).map_err(unreadable(start))?;
         let covers = self.checksum != 0 || self.compression.has_checksum(&head);
         Ok(covers.then(|| self.bytes.clone()))
     }
