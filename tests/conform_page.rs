@@ -8,9 +8,7 @@ use toposlam::{
     model::format::world_file,
     page::conform_page,
     picture::{WorldPicture, svg},
-    report::{
-        CoveredCase, DivergenceReport, EventLine, LogReport, ReportOrigin, SourceFile,
-    },
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport, ReportOrigin, SourceFile},
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 

@@ -51,6 +51,7 @@ pub mod isomorphism;
 pub mod mapping;
 pub mod marker;
 pub mod percept;
+pub mod similar;
 pub mod trace;
 pub mod world;
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use toposlam_model::{
     check::{
         Algorithm, Algorithm1, AllChoices, CostOrder, DEFAULT_STATE_BUDGET, Flaw, OpenChoices,
-        Shard, Sweep, Tally, check_worlds, every_way,
+        SearchLimit, Shard, Sweep, Tally, check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
@@ -67,20 +67,20 @@ fn every_way_of_every_start_is_mapped_right() {
 fn a_start_with_more_states_than_the_budget_is_given_up() {
     let graph = cycle(5);
     let all = every_way(&Algorithm1, &graph, Dart(0), 1000, &()).unwrap();
-    assert!(all.complete);
+    assert_eq!(all.limit, None);
     let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
-    assert!(!some.complete && some.states < all.states);
-    // Too deep to begin with, though there is no choice.
+    assert_eq!(some.limit, Some(SearchLimit::States(all.states - 1)));
+    assert!(some.states < all.states);
     let is_complete = |edges, budget| {
-        every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().complete
+        every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().limit.is_none()
     };
-    assert!(is_complete(100, 1000));
-    assert!(!is_complete(101, 1000));
+    // A long run without a choice.
+    assert!(is_complete(1000, 3000));
     // A chain of one edge: line 4, line 8 without a hypothesis, line 4 again.
     assert!(is_complete(1, 3));
     assert!(!is_complete(1, 2));
     let tally = check_worlds(&[graph], &AllChoices { budget: 3, ..ALL_CHOICES }, &());
-    assert_eq!((tally.starts, tally.mapped, tally.gave_up), (1, 1, 1));
+    assert_eq!((tally.starts, tally.mapped, tally.over_budget), (1, 1, 1));
 }
 
 /// Asked to stop, a check says that it did not finish, and does no more.

@@ -34,7 +34,8 @@ use toposlam_robot::{
 
 /// An arrival of which only this is known.
 fn arrival(percept: Percept, number: Option<u32>) -> Arrival {
-    Arrival { number, percept, form: None, entry: None }
+    let Percept { degree, sighting } = percept;
+    Arrival { number, degree, sighting: Some(sighting), form: None, entry: None }
 }
 
 fn main() {
@@ -71,10 +72,17 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
         },
     };
     let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
-    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
-    let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
-    let question = ConformConfig { world, driver: RunDriver::Algorithm1, search, dart_bound: 1000 };
+    let world = Some(KnownWorld { graph: plan.graph(), states });
+    let question = ConformConfig {
+        world,
+        marker: &Directional,
+        driver: RunDriver::Algorithm1,
+        search,
+        dart_bound: 1000,
+    };
     bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
 }
 
@@ -99,10 +107,17 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         }
     }
     let bytes = log.finish().unwrap();
-    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
-    let world = Some(KnownWorld { graph: plan.graph(), marker: &Directional, states });
-    let question = ConformConfig { world, driver: RunDriver::Algorithm1, search, dart_bound: 1000 };
+    let world = Some(KnownWorld { graph: plan.graph(), states });
+    let question = ConformConfig {
+        world,
+        marker: &Directional,
+        driver: RunDriver::Algorithm1,
+        search,
+        dart_bound: 1000,
+    };
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
         let mapping = TopicMap::unambiguous(&log);
@@ -119,6 +134,7 @@ fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
     let known = match_algorithm(&half, TraceClaim::Part, 1000).exploration.map().clone();
-    let search = WorldSearch { class: Class::Multigraph, edges: 400, steps: WorldSearch::STEPS };
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
     bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
 }

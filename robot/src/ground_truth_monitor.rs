@@ -177,8 +177,10 @@ impl RunObserver for GroundTruthMonitor<'_> {
             EventKind::Frame(frame) => self.odometry = frame.odometry,
             EventKind::Door { door, .. } => self.door = Some(*door),
             EventKind::Arrival(arrival) => {
-                if let (Some(pose), Some(entry)) = (event.truth, arrival.entry) {
-                    self.check(arrival.percept, pose, pose.heading + self.odometry.seen(entry));
+                if let (Some(pose), Some(entry), Some(percept)) =
+                    (event.truth, arrival.entry, arrival.percept())
+                {
+                    self.check(percept, pose, pose.heading + self.odometry.seen(entry));
                 }
             }
             _ => {}

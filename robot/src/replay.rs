@@ -9,7 +9,7 @@ use toposlam_model::{
     mapping::{Exploration, MappingError},
     percept::{Door, Percept},
 };
-use toposlam_vision::sensing::Sensor;
+use toposlam_vision::sensing::{Sensor, WrongSize};
 
 use crate::{
     explorer::{ExplorerError, RobotExplorer},
@@ -19,7 +19,7 @@ use crate::{
         reader::Log,
         topic_map::{Role, TopicMap, TopicMapError},
     },
-    record::{Event, EventKind, Frame, MapRecord, RunObserver},
+    record::{Arrival, CameraImage, Event, EventKind, Frame, MapRecord, RunObserver},
     robot::{Reckoned, Robot, RobotError},
 };
 
@@ -77,7 +77,8 @@ pub struct ReplayComparison {
     pub percepts: Agreement,
     /// Doors.
     pub doors: Agreement,
-    /// Whether the map is the last recorded one; `None` if none was recorded.
+    /// Whether the map is the last recorded one; `None` if none was recorded, or if the replay reached the
+    /// bound on darts.
     pub map: Option<bool>,
     /// The first result that differs from the recorded one.
     pub difference: Option<ReplayDifference>,
@@ -107,6 +108,12 @@ pub enum ReplayError {
     /// The topic map does not fit it.
     #[error(transparent)]
     TopicMap(#[from] TopicMapError),
+    /// The calibration is that of another camera.
+    #[error("the calibration is not that of its camera: {0}")]
+    Calibration(#[from] WrongSize),
+    /// There are images, and no calibration or no colours.
+    #[error("sensing its images needs --calibration and --colours: the log does not have both")]
+    NoSensor,
     /// There is nothing to replay.
     #[error(
         "it has neither pictures nor scenes together with odometry and the commands of Algorithm 2; \
@@ -118,7 +125,8 @@ pub enum ReplayError {
 /// Runs the off-line version on a log.
 ///
 /// # Errors
-/// Returns an error if the log cannot be read, or has nothing to replay.
+/// Returns an error if the log cannot be read or has nothing to replay, or if its first picture is not of
+/// the calibrated camera's size.
 // paper: exp.off-line
 pub fn replay(
     log: &Log,
@@ -143,6 +151,9 @@ pub fn replay(
         failure: None,
     };
     robot.advance();
+    if let Some(image) = robot.next.as_ref().and_then(|frame| frame.image.as_ref()) {
+        check_size(sensor.as_ref().ok_or(ReplayError::NoSensor)?, image)?;
+    }
     let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
     let mut exploration = Exploration::new(dart_bound);
     let error = explorer.map(&mut exploration).err();
@@ -156,9 +167,19 @@ pub fn replay(
     }
     let mut comparison = robot.recorded.compare(&results.0);
     let map = MapRecord::of(exploration.journey());
-    comparison.map = robot.recorded.map.map(|recorded| recorded.same_map(&map));
+    // A map that may not grow any more is not compared with the recorded one.
+    let ended = !matches!(error, Some(MappingError::Bound { .. }));
+    let recorded = robot.recorded.map.filter(|_| ended);
+    comparison.map = recorded.map(|recorded| recorded.same_map(&map));
     let length = log.end().unwrap_or(0).saturating_sub(start);
     Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, exploration })
+}
+
+/// Checks that a picture has the size of the calibrated camera's. A damaged picture has none.
+fn check_size(sensor: &Sensor, image: &CameraImage) -> Result<(), WrongSize> {
+    let Ok(pixels) = image.pixels() else { return Ok(()) };
+    let (found, expected) = ([pixels.width(), pixels.height()], sensor.camera().image);
+    if found == expected { Ok(()) } else { Err(WrongSize { found, expected }) }
 }
 
 /// A robot that returns the recorded frames one after the other, and collects the recorded results.
@@ -197,7 +218,7 @@ impl ReplayedRobot<'_> {
                 EventKind::Command { command: Some(command), .. } => {
                     self.recorded.commands.insert(last, command);
                 }
-                EventKind::Arrival(arrival) => self.recorded.percepts.push(arrival.percept),
+                EventKind::Arrival(arrival) => self.recorded.arrivals.push(arrival),
                 EventKind::Door { door, .. } => self.recorded.doors.push(door),
                 EventKind::Map(map) => self.recorded.map = Some(map),
                 _ => {}
@@ -251,7 +272,7 @@ struct RecordedResults {
     /// By the frame before.
     scenes: HashMap<u64, Scene>,
     commands: HashMap<u64, Command>,
-    percepts: Vec<Percept>,
+    arrivals: Vec<Arrival>,
     doors: Vec<Door>,
     map: Option<MapRecord>,
 }
@@ -289,16 +310,22 @@ impl RecordedResults {
                     to.differs(same, time, "door", &recorded, found);
                 }
                 EventKind::Arrival(arrival) => {
-                    let recorded = self.percepts.get(to.percepts.of as usize);
-                    let same = recorded == Some(&arrival.percept);
+                    let Some(percept) = arrival.percept() else { continue };
+                    let recorded = self.arrivals.get(to.percepts.of as usize);
+                    let same = recorded.is_some_and(|recorded| recorded.agrees(&percept));
                     to.percepts.note(same);
-                    to.differs(same, time, "percept", &recorded, &arrival.percept);
+                    // What is not recorded cannot differ.
+                    let recorded = recorded.map(|recorded| Percept {
+                        degree: recorded.degree,
+                        sighting: recorded.sighting.unwrap_or(percept.sighting),
+                    });
+                    to.differs(same, time, "percept", &recorded.as_ref(), &percept);
                 }
                 _ => {}
             }
         }
         // Recorded results that were not reached do not agree.
-        to.percepts.of = to.percepts.of.max(self.percepts.len() as u64);
+        to.percepts.of = to.percepts.of.max(self.arrivals.len() as u64);
         to.doors.of = to.doors.of.max(self.doors.len() as u64);
         to
     }
@@ -364,13 +391,14 @@ mod tests {
     }
 
     #[test]
-    fn results_after_the_dart_bound_do_not_agree() {
+    fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
         let (log, _) = recorded(0);
         let mapping = TopicMap::unambiguous(&log);
         let replay = replay(&log, &mapping, None, 4).unwrap();
         assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
         let to = replay.comparison;
-        assert!(!to.doors.is_whole() && to.map == Some(false));
+        assert!(!to.doors.is_whole());
+        assert_eq!((to.map, to.difference), (None, None));
     }
 
     #[test]

@@ -66,7 +66,8 @@ pub(super) struct CheckArguments {
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: ChoicesOption,
 
-    /// With --choices all: skip a start that has more states [default: 1000000]
+    /// With --choices all: skip a start that has more states, between rounds (line 4) and within
+    /// (line 8) [default: 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 

@@ -6,27 +6,32 @@ mod minimise;
 mod origin;
 mod report;
 mod report_lines;
+mod required;
 
 use std::{
     io::Write,
     path::{Path, PathBuf},
 };
 
-use clap::ValueEnum;
-use toposlam::page;
+use clap::{ValueEnum, builder::PossibleValue};
+use toposlam::{page, report::LogReport};
 use toposlam_model::{
+    embedded_graph::Dart,
     enumerate::{Class, Watch},
-    marker::Marker,
-    trace::WorldSearch,
+    format::named_world::NamedWorld,
+    marker::{Directional, Marker, NoMarker},
+    percept::Sighting,
+    trace::{SmallestWorld, WorldSearch},
 };
 use toposlam_robot::conform::{
-    ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError, Judgement,
-    Quirks, RunCoverage, RunDriver, SensingProgress, extract, judge,
+    CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError,
+    Judgement, Quirks, RunCoverage, RunDriver, RunEvents, SensingProgress, extract, judge,
 };
 
 use super::{
-    Failure, Outcome, input, marker_kinds,
+    Failure, Outcome, input,
     open_log::{LogOptions, OpenLog},
+    outcome::SeveralInputs,
     output,
     progress::Progress,
 };
@@ -36,12 +41,13 @@ use known_world::Known;
 ///
 /// For each log, the command reports that it conforms and which cases of the specification it covers, or
 /// the first event at which it diverges, why, and the class of the fault: perception, motion, algorithm
-/// or log.
+/// or log. If a limit was reached first, or the run did not end, the log is incomplete.
 ///
 /// A log is a ROS 1 bag or an MCAP file. If it records percepts and doors, these are checked. Otherwise
-/// they are inferred from its scenes or images and its odometry. They must fit the known world; without
-/// one, the command searches for the smallest world that explains them. The doors must be doors that
-/// Algorithm 1 takes, or may take.
+/// they are inferred from its scenes or images and its odometry. They must fit the known world. Without
+/// one, a log diverges at the first event that no world of any size explains, and the command searches
+/// for the smallest world that explains the log. The doors must be doors that Algorithm 1 takes, or may
+/// take.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -49,8 +55,9 @@ Examples:
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
   toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
 
-Exit codes: 0 all logs conform, 1 a log diverges, 2 bad usage or input, 3 a log is incomplete: it is \
-truncated, its run did not end, or the search for a world reached its step limit.")]
+Exit codes: 0 all logs conform, 1 a log diverges, 2 bad usage or input, 3 a log is incomplete (it is \
+truncated, its run did not end, or a limit was reached) or a required case is not covered. With several \
+logs the worst one counts: 2 before 1 before 3 before 0.")]
 pub(super) struct ConformArguments {
     /// The logs to check
     #[arg(required = true, value_name = "LOG")]
@@ -62,18 +69,23 @@ pub(super) struct ConformArguments {
     /// [default: from the log, or else from the world file, or else any]
     #[arg(long, value_name = "VERTEX:FACING", requires = "world")]
     start: Option<String>,
-    /// The kind of marker [default: from the log, or else directional]
-    #[arg(long, value_name = "MARKER", value_parser = marker_kinds())]
-    marker: Option<&'static dyn Marker>,
+    /// The robot's marker [default: from the log, or else directional]
+    #[arg(long, value_enum, value_name = "MARKER")]
+    marker: Option<RobotMarker>,
     /// What chose the doors
     #[arg(long, value_enum, default_value = "algorithm1", value_name = "WHO")]
     driver: Who,
     /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
-    /// Without --world: the largest number of edges to search; at least 4 more than Algorithm 1 knows
-    #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world")]
-    edges: usize,
+    /// Without --world: search worlds with up to this many edges
+    #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world",
+        value_parser = clap::value_parser!(u16).range(1..=WorldSearch::MOST_EDGES as i64))]
+    max_edges: u16,
+    /// Without --world: end the search after this many steps
+    #[arg(long, default_value_t = WorldSearch::STEPS, value_name = "N", conflicts_with = "world",
+        value_parser = clap::value_parser!(u64).range(1..))]
+    max_steps: u64,
     #[command(flatten)]
     sources: LogOptions,
     /// The source of the events [default: the first of these that the log has]
@@ -82,9 +94,16 @@ pub(super) struct ConformArguments {
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Stop when more edge ends are known
+    /// Follow Algorithm 1 until it knows more edge ends
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
+    /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = required::cases(),
+        hide_possible_values = true)]
+    require_coverage: Vec<String>,
+    /// Without --world: write the smallest world that was found: .toml, .json, .dot, or plantri's .ec or .pc
+    #[arg(long, value_name = "FILE", conflicts_with = "world")]
+    map: Option<PathBuf>,
     /// Write a shorter log that diverges in the same way
     #[arg(long, value_name = "FILE")]
     minimise: Option<PathBuf>,
@@ -105,6 +124,33 @@ enum Who {
     Anyone,
 }
 
+/// A marker that a log can record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RobotMarker {
+    Directional,
+    None,
+}
+
+impl RobotMarker {
+    fn marker(self) -> &'static dyn Marker {
+        match self {
+            Self::Directional => &Directional,
+            Self::None => &NoMarker,
+        }
+    }
+}
+
+impl ValueEnum for RobotMarker {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Directional, Self::None]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let marker = self.marker();
+        Some(PossibleValue::new(marker.name()).help(marker.about()))
+    }
+}
+
 /// The source of the events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Made {
@@ -118,11 +164,15 @@ enum Made {
 }
 
 /// A log and its judgement.
-struct Judged {
+struct Judged<'w> {
     opened: OpenLog,
     gathered: ExtractedRun,
     judgement: Judgement,
-    known: Option<Known>,
+    known: Option<Known<'w>>,
+    marker: &'static dyn Marker,
+    /// The limits of the check.
+    search: WorldSearch,
+    dart_bound: usize,
 }
 
 impl SensingProgress for Progress {
@@ -134,6 +184,7 @@ impl SensingProgress for Progress {
 impl ConformArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         self.check_places()?;
+        self.check_marker()?;
         let quirks = match &self.quirks {
             None => Quirks::default(),
             Some(path) => {
@@ -142,52 +193,93 @@ impl ConformArguments {
                 Quirks::read(&text).map_err(|error| Failure::in_file(path, error))?
             }
         };
+        let world = self.world.as_deref().map(input::read_world).transpose()?;
+        if let Some(world) = &world {
+            known_world::check_start(world, self.start.as_deref())?;
+        }
         let mut reports = Vec::new();
         let mut all = RunCoverage::default();
-        let mut worst = Outcome::Holds;
+        let mut logs = SeveralInputs::new();
         for path in &self.logs {
-            let judged = self.judge(path, &quirks)?;
+            let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
+                let outcome = outcome(judged.judgement.verdict());
+                (judged, outcome)
+            });
+            let Some(judged) = logs.add(judged) else { continue };
             all.include(&judged.judgement.coverage);
-            worst = worse(worst, judged.judgement.verdict());
-            let shorter = self.shorter(&judged)?;
-            let mut report = judged.report(path, &quirks, shorter, self.html.is_some());
-            if self.html.is_some() {
-                report.sources = origin::sources(path, self.world.as_deref())?;
-            }
-            if self.json {
-                report_lines::json(out, &report, &judged.judgement)?;
-            } else {
-                report_lines::text(out, &report)?;
-            }
-            reports.push(report);
+            reports.push(self.report(out, path, &judged, &quirks)?);
         }
-        if reports.len() > 1 {
-            report_lines::together(out, &reports, self.json)?;
+        if self.logs.len() > 1 {
+            report_lines::together(out, self.logs.len(), &reports, self.json)?;
         }
-        if let Some(path) = &self.html {
+        if !self.require_coverage.is_empty() && !reports.is_empty() {
+            let required = required::report(out, &self.require_coverage, &all, self.json)?;
+            logs.add(Ok(((), required)));
+        }
+        if let Some(path) = self.html.as_ref().filter(|_| !reports.is_empty()) {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
-        Ok(worst)
+        logs.worst()
+    }
+
+    /// Prints the report of a log, and writes what belongs to it.
+    fn report(
+        &self,
+        out: &mut dyn Write,
+        path: &Path,
+        judged: &Judged,
+        quirks: &Quirks,
+    ) -> Result<LogReport, Failure> {
+        let shorter = self.shorter(judged)?;
+        let mut report = judged.report(path, quirks, shorter, self.html.is_some());
+        if self.html.is_some() {
+            report.sources = origin::sources(path, self.world.as_deref())?;
+        }
+        if self.json {
+            report_lines::json(out, &report, judged)?;
+        } else {
+            report_lines::text(out, &report)?;
+        }
+        self.write_map(path, &judged.judgement)?;
+        Ok(report)
     }
 
     fn check_places(&self) -> Result<(), Failure> {
         if let Some(path) = &self.html {
             output::check_place(path, &["html", "htm"])?;
         }
+        if let Some(path) = &self.map {
+            output::check_world_place(path, self.class.is_simple())?;
+        }
         if let Some(path) = &self.minimise {
             output::check_place(path, &["mcap"])?;
-            if self.logs.len() > 1 {
-                return Err(Failure::at("--minimise", "this needs exactly one log"));
+        }
+        for (option, path) in [("--map", &self.map), ("--minimise", &self.minimise)] {
+            if path.is_some() && self.logs.len() > 1 {
+                return Err(Failure::at(option, "this needs exactly one log"));
             }
-            if self.logs.contains(path) {
-                return Err(Failure::at("--minimise", "this is the log itself"));
+            if path.as_ref().is_some_and(|path| self.logs.contains(path)) {
+                return Err(Failure::at(option, "this is the log itself"));
             }
         }
         Ok(())
     }
 
+    fn check_marker(&self) -> Result<(), Failure> {
+        if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm1 {
+            let cause = "Algorithm 1 needs the directional marker; add --driver anyone";
+            return Err(Failure::at("--marker none", cause));
+        }
+        Ok(())
+    }
+
     /// Reads and judges a log.
-    fn judge(&self, path: &Path, quirks: &Quirks) -> Result<Judged, Failure> {
+    fn judge<'w>(
+        &self,
+        path: &Path,
+        world: Option<&'w NamedWorld>,
+        quirks: &Quirks,
+    ) -> Result<Judged<'w>, Failure> {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = match self.events {
             Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
@@ -197,55 +289,96 @@ impl ConformArguments {
             }
             None => opened.evidence(path)?,
         };
-        let known = match &self.world {
-            None => None,
-            Some(world) => Some(Known::new(world, self, opened.run.as_ref())?),
+        let marker = match self.marker {
+            Some(marker) => marker.marker(),
+            None => opened.marker()?,
         };
-        if let (Some(known), Some(run)) = (&known, &opened.run) {
-            known.warn(path, run);
-        }
-        let marker = match (&known, self.marker) {
-            (Some(known), _) => known.marker,
-            (None, Some(marker)) => marker,
-            (None, None) => opened.marker()?,
-        };
+        let run = opened.run.as_ref();
+        let known = world.map(|world| Known::new(world, self.start.as_deref(), marker, run));
+        let known = known.transpose()?;
         let progress = Progress::endless("reading", "pictures")?;
         let sensor = opened.sensor();
-        let gathered = extract(
-            &opened.log,
-            &opened.mapping,
-            evidence,
-            sensor.as_ref(),
-            marker.name() == "directional",
-            &progress,
-        );
+        let marked = marker.name() == Directional.name();
+        let gathered =
+            extract(&opened.log, &opened.mapping, evidence, sensor.as_ref(), marked, &progress);
         let gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
             error => Failure::in_file(path, error),
         })?;
-        let question = self.question(known.as_ref());
+        let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
+        if assumed && self.driver == Who::Algorithm1 && !shows_marker(&gathered.events) {
+            let cause = "no percept in it shows a marker, which Algorithm 1 needs";
+            return Err(Failure::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
+        }
+        let question = self.question(known.as_ref(), marker);
         let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
+        let ConformConfig { search, dart_bound, .. } = question;
         progress.finish();
         let judgement = judgement.map_err(|error| match error {
             JudgeError::Empty if gathered.pictures > 0 => Failure::in_file(
                 path,
                 format!("no junction is visited in its {} images", gathered.pictures),
             ),
+            error @ (JudgeError::Marker(_) | JudgeError::Algorithm(_)) => {
+                Failure::in_file(path, format!("{error}{WITHOUT_MARKER}"))
+            }
             error => Failure::in_file(path, error),
         })?;
-        Ok(Judged { opened, gathered, judgement, known })
+        Ok(Judged { opened, gathered, judgement, known, marker, search, dart_bound })
     }
 
-    fn question<'k>(&self, known: Option<&'k Known>) -> ConformConfig<'k> {
+    fn question<'k>(
+        &self,
+        known: Option<&'k Known>,
+        marker: &'static dyn Marker,
+    ) -> ConformConfig<'k> {
         ConformConfig {
             world: known.map(Known::question),
+            marker,
             driver: match self.driver {
                 Who::Algorithm1 => RunDriver::Algorithm1,
                 Who::Anyone => RunDriver::Anyone,
             },
-            search: WorldSearch { class: self.class, edges: self.edges, steps: WorldSearch::STEPS },
+            search: WorldSearch {
+                class: self.class,
+                max_edges: self.max_edges.into(),
+                steps: self.max_steps,
+            },
             dart_bound: self.max_darts,
         }
+    }
+
+    /// Writes the smallest world that explains a log to the file of `--map`.
+    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), Failure> {
+        let Some(path) = &self.map else { return Ok(()) };
+        let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest else {
+            eprintln!("{}: not written: no world was found", path.display());
+            return Ok(());
+        };
+        let about = format!("The smallest world that explains {}", log.display());
+        let start = marker.or(Some(Dart(0)));
+        output::write_world(path, &NamedWorld::numbered("smallest", &about, graph.clone(), start))
+    }
+}
+
+/// The way out for a run without a marker.
+const WITHOUT_MARKER: &str = "; for a run without a marker add --driver anyone --marker none";
+
+/// Whether a marker is perceived, or may be: if that is not recorded, the judgement reports it.
+fn shows_marker(events: &RunEvents) -> bool {
+    events.events.iter().any(|event| match &event.kind {
+        CheckedKind::Arrival { arrival, .. } => {
+            arrival.sighting.is_none_or(|sighting| sighting != Sighting::Nothing)
+        }
+        _ => false,
+    })
+}
+
+fn outcome(verdict: ConformVerdict) -> Outcome {
+    match verdict {
+        ConformVerdict::Conforms => Outcome::Holds,
+        ConformVerdict::Diverged => Outcome::Violated,
+        ConformVerdict::Incomplete => Outcome::Incomplete,
     }
 }
 
@@ -256,14 +389,5 @@ impl From<Made> for Evidence {
             Made::Scenes => Self::Scenes,
             Made::Pictures => Self::Pictures,
         }
-    }
-}
-
-/// The worse outcome: a divergence is worse than an incomplete log.
-fn worse(worst: Outcome, verdict: ConformVerdict) -> Outcome {
-    match (worst, verdict) {
-        (Outcome::Violated, _) | (_, ConformVerdict::Diverged) => Outcome::Violated,
-        (_, ConformVerdict::Incomplete) | (Outcome::Incomplete, _) => Outcome::Incomplete,
-        (Outcome::Holds, ConformVerdict::Conforms) => Outcome::Holds,
     }
 }

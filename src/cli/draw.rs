@@ -10,10 +10,7 @@ use clap::ValueEnum;
 
 use toposlam::picture::{WorldPicture, png, svg};
 
-use toposlam_model::{
-    format::dot,
-    marker::Marker,
-};
+use toposlam_model::{format::dot, marker::Marker};
 
 use super::{Failure, Outcome, input, marker_kinds, output};
 

@@ -3,6 +3,7 @@
 mod doors_writer;
 mod result;
 pub(super) mod story;
+mod summary;
 
 use std::{
     io::{self, Write},
@@ -20,12 +21,18 @@ use toposlam_model::{
     world::GraphWorld,
 };
 
-use super::{ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output};
+use super::{
+    ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output,
+    text::print_paragraph,
+};
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
-use story::{Story, StoryDetail};
+use story::{Story, StoryDetail, head};
+use summary::Summary;
 
 /// Run Algorithm 1 on one world and print its story: each door, percept and hypothesis, and the map
+///
+/// The run in a world with more than 25 vertices is summarised on one screen; --story prints it all.
 ///
 /// The robot gets only percepts from the world. At the end a bijection proves that the map is
 /// isomorphic to the world.
@@ -39,14 +46,15 @@ Examples:
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --marker movable
+  toposlam explore worlds/building-25.toml --summary
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
 unexplored dart may be the other end of the same edge. A candidate is one that the percept does not \
 rule out. To test it, the robot follows the path that would lead from there to the marker.
 
-Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts or --max-states \
-was reached.")]
+Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts, \
+--max-states or 1 GiB of memory for the states was reached.")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
     world: PathBuf,
@@ -63,13 +71,22 @@ pub(super) struct ExploreArguments {
     #[arg(long, default_value = "default", hide_possible_values = true)]
     choices: ChoicesOption,
 
-    /// With --choices all: stop when there are more states [default: 1000000]
+    /// With --choices all: stop when there are more states, between rounds (line 4) and within
+    /// (line 8) [default: 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_states: Option<u64>,
 
     /// Stop when more darts (edge ends) are known
     #[arg(long, value_name = "N", default_value_t = DEFAULT_DART_BOUND)]
     max_darts: usize,
+
+    /// Print the story of each round [default: in worlds with up to 25 vertices]
+    #[arg(long, conflicts_with = "json")]
+    story: bool,
+
+    /// Print counts of rounds and candidates in place of the story [default: in larger worlds]
+    #[arg(long, conflicts_with_all = ["story", "full", "doors", "json"])]
+    summary: bool,
 
     /// Print every rejected candidate, not only the first few of each round
     #[arg(long, conflicts_with = "json")]
@@ -92,7 +109,16 @@ pub(super) struct ExploreArguments {
     json: bool,
 }
 
+/// The most vertices of a world whose run is printed round by round unless --story or --summary is given.
+const STORY_VERTICES: usize = 25;
+
 impl ExploreArguments {
+    /// Whether the run is summarised.
+    fn summarises(&self, world: &NamedWorld) -> bool {
+        let story = self.story || self.full || self.doors;
+        self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)
+    }
+
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
@@ -127,6 +153,12 @@ impl ExploreArguments {
             let run = algorithm.run(&mut robot, &mut state, &mut doors);
             doors.finish()?;
             run
+        } else if self.summarises(world) {
+            print_paragraph(&mut out, &head(world, facing))?;
+            let mut summary = Summary::default();
+            let run = algorithm.run(&mut robot, &mut state, &mut summary);
+            summary.print(&mut out)?;
+            run
         } else {
             let detail = StoryDetail { every_hypothesis: self.full, doors: self.doors };
             let mut story = Story::new(&mut out, world, facing, detail);
@@ -151,7 +183,8 @@ impl ExploreArguments {
         if self.json {
             result.print_json(&mut out)?;
         } else {
-            result.print(&mut out)?;
+            let most = if self.summarises(world) { STORY_VERTICES } else { usize::MAX };
+            result.print(&mut out, most)?;
         }
         out.flush()?;
         match result.map() {

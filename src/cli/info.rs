@@ -9,9 +9,11 @@ use std::{
 use serde::Serialize;
 use toposlam_robot::log::{
     Format,
+    error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
     topic_map::{RoleGuess, TopicMap, guess},
+    verify::Verification,
 };
 
 use super::{
@@ -19,7 +21,8 @@ use super::{
     json::print_object,
     outcome::SeveralInputs,
     output,
-    text::{grouped, print_rows},
+    progress::Progress,
+    text::{counted, grouped, moment, print_hanging, print_rows},
 };
 
 /// Show the contents of logs: times, completeness and topics
@@ -27,13 +30,19 @@ use super::{
 /// A log is a ROS 1 bag (version 2.0) or an MCAP file, from this program or any other. The command also
 /// lists the topics that could carry images, odometry, motion, percepts and doors. If several topics
 /// could, or none is recognised, a mapping file selects the topic.
+///
+/// A log is listed from its index, if it has one. --verify reads all of it, and compares it with its
+/// checksums and its index.
 #[derive(clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   toposlam info run.mcap --write-mapping mapping.toml
+  toposlam info run.mcap --verify
 
-A log that cannot be read is reported, and the others are shown. Exit code 2 if there is one; 3 if a log \
-is truncated: its contents up to there are shown.")]
+A log that cannot be read is reported, and the others are shown.
+
+Exit codes: 0 done, 1 --verify found damage, 2 bad usage or input, 3 a log is truncated (its contents up \
+to there are shown), or --verify was interrupted.")]
 pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
@@ -44,6 +53,9 @@ pub(super) struct InfoArguments {
     /// Write a mapping file with the topics that are unambiguous
     #[arg(long, value_name = "FILE")]
     write_mapping: Option<PathBuf>,
+    /// Read everything, and compare it with the checksums and the index of the log
+    #[arg(long)]
+    verify: bool,
     /// Print one JSON object for each log
     #[arg(long)]
     json: bool,
@@ -63,6 +75,9 @@ struct Line<'l> {
     duration: Option<f64>,
     messages: u64,
     truncated: Option<Truncated>,
+    /// Whether it has an index.
+    indexed: bool,
+    verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
@@ -72,6 +87,32 @@ struct Line<'l> {
 struct Truncated {
     offset: u64,
     cause: String,
+}
+
+/// With `--verify`.
+#[derive(Serialize)]
+struct VerificationLine {
+    chunks: u64,
+    messages: u64,
+    /// The number of bytes that a checksum covers.
+    covered_bytes: u64,
+    complete: bool,
+    damage: Vec<DamageLine>,
+    holds: bool,
+}
+
+#[derive(Serialize)]
+struct DamageLine {
+    offset: u64,
+    cause: String,
+}
+
+/// What `--json` prints for a log that is too damaged to be listed.
+#[derive(Serialize)]
+struct DamagedLine {
+    schema: u32,
+    log: String,
+    verification: VerificationLine,
 }
 
 #[derive(Serialize)]
@@ -102,31 +143,76 @@ impl InfoArguments {
         };
         let mut inputs = SeveralInputs::new();
         for path in &self.logs {
-            let Some(log) = inputs.add(opened(path, mapping.as_ref())) else { continue };
-            let carriers = carriers(&log, mapping.as_ref().map(|(_, mapping)| mapping));
-            if let Some(target) = &self.write_mapping {
-                write_mapping(target, &log, &carriers)?;
-            }
-            if self.json {
-                print_object(out, &line(path, &log, carriers))?;
-            } else {
-                print(out, path, &log, &carriers)?;
+            let read = inputs.add(self.show(out, path, mapping.as_ref()));
+            if read == Some(ReadTo::Interruption) {
+                break;
             }
         }
         inputs.worst()
     }
+
+    /// Shows one log.
+    fn show(
+        &self,
+        out: &mut dyn Write,
+        path: &Path,
+        mapping: Option<&(&PathBuf, TopicMap)>,
+    ) -> Result<(ReadTo, Outcome), Failure> {
+        let log = match input::log_or_cause(path)? {
+            Ok(log) => log,
+            Err(error) if self.verify && error.cause.is_damage() => {
+                self.print_damaged(out, path, error)?;
+                return Ok((ReadTo::End, Outcome::Violated));
+            }
+            Err(error) => return Err(Failure::in_file(path, error)),
+        };
+        if let Some((mapping_path, mapping)) = mapping {
+            mapping.bind(&log).map_err(|error| {
+                Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
+            })?;
+        }
+        let carriers = carriers(&log, mapping.map(|(_, mapping)| mapping));
+        if let Some(target) = &self.write_mapping {
+            write_mapping(target, &log, &carriers)?;
+        }
+        let verification = if self.verify { Some(verify(path, &log)?) } else { None };
+        if self.json {
+            print_object(out, &line(path, &log, verification.as_ref(), carriers))?;
+        } else {
+            print(out, path, &log, verification.as_ref(), &carriers)?;
+        }
+        let damaged = verification.as_ref().is_some_and(|found| !found.damage.is_empty());
+        let unread = verification.as_ref().is_some_and(|found| !found.complete);
+        let outcome = match () {
+            () if damaged => Outcome::Violated,
+            () if unread || log.truncation().is_some() => Outcome::Incomplete,
+            () => Outcome::Holds,
+        };
+        Ok((if unread { ReadTo::Interruption } else { ReadTo::End }, outcome))
+    }
+
+    /// Prints the damage of a log that cannot be listed.
+    fn print_damaged(
+        &self,
+        out: &mut dyn Write,
+        path: &Path,
+        error: LogError,
+    ) -> Result<(), Failure> {
+        let found = Verification { damage: vec![error], ..Verification::default() };
+        if self.json {
+            let (log, verification) = (path.display().to_string(), verification_line(&found));
+            return print_object(out, &DamagedLine { schema: 1, log, verification });
+        }
+        writeln!(out, "{}: damaged, and not read further", path.display())?;
+        print_damage(out, &found)
+    }
 }
 
-/// Opens a log, which is incomplete if it is truncated. The mapping must fit it.
-fn opened(path: &Path, mapping: Option<&(&PathBuf, TopicMap)>) -> Result<(Log, Outcome), Failure> {
-    let log = input::open_log(path)?;
-    if let Some((mapping_path, mapping)) = mapping {
-        mapping.bind(&log).map_err(|error| {
-            Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
-        })?;
-    }
-    let whole = log.truncation().is_none();
-    Ok((log, if whole { Outcome::Holds } else { Outcome::Incomplete }))
+/// How far a log was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ReadTo {
+    End,
+    Interruption,
 }
 
 /// For each role, the names of the topics that carry it or could carry it.
@@ -143,6 +229,54 @@ fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static st
     guess(log.topics()).into_iter().map(names).collect()
 }
 
+fn verify(path: &Path, log: &Log) -> Result<Verification, Failure> {
+    let progress = Progress::new("reading", "chunks")?;
+    let found = log.verify(&progress).map_err(|error| Failure::in_file(path, error));
+    progress.finish();
+    found
+}
+
+fn verification_line(found: &Verification) -> VerificationLine {
+    let damage = found
+        .damage
+        .iter()
+        .map(|error| DamageLine { offset: error.offset, cause: error.cause.to_string() });
+    VerificationLine {
+        chunks: found.chunks,
+        messages: found.messages,
+        covered_bytes: found.covered,
+        complete: found.complete,
+        damage: damage.collect(),
+        holds: found.complete && found.damage.is_empty(),
+    }
+}
+
+fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), Failure> {
+    for error in &found.damage {
+        print_hanging(out, "  ", &error.to_string())?;
+    }
+    Ok(())
+}
+
+/// What is known of the contents of a log.
+fn contents(log: &Log, verification: Option<&Verification>) -> String {
+    let index = if log.is_indexed() { "an index" } else { "no index" };
+    match verification {
+        None => format!("has {index}, contents not verified"),
+        Some(found) if !found.damage.is_empty() => format!("has {index}, contents damaged:"),
+        Some(found) if !found.complete => format!("has {index}, verification interrupted"),
+        Some(found) => {
+            let [covered, size] = [found.covered, log.size()].map(|bytes| grouped(bytes.into()));
+            let messages = counted(found.messages as usize, "message");
+            let chunks = counted(found.chunks as usize, "chunk");
+            format!(
+                "has {index}, contents verified: {messages}, {chunks}, checksums of {covered} of \
+                 {size} bytes"
+            )
+        }
+    }
+}
+
 fn format(log: &Log) -> &'static str {
     match log.format() {
         Format::Bag => "bag",
@@ -155,13 +289,23 @@ fn duration(log: &Log) -> Option<f64> {
     Some(log.end()?.saturating_sub(log.start()?) as f64 / 1e9)
 }
 
-/// The number of messages a second on a topic.
+/// A number a second, with three digits or more.
+fn rate_text(rate: f64) -> String {
+    if rate < 100.0 { format!("{rate:.2}") } else { grouped(rate.round() as u128) }
+}
+
+/// The number of messages a second on a topic. A log that is shorter than a second has none.
 fn rate(log: &Log, topic: &Topic) -> Option<f64> {
-    let duration = duration(log).filter(|duration| *duration > 0.0)?;
+    let duration = duration(log).filter(|duration| *duration >= 1.0)?;
     Some(topic.messages as f64 / duration)
 }
 
-fn line<'l>(path: &Path, log: &'l Log, carriers: Vec<(&'static str, Vec<&'l str>)>) -> Line<'l> {
+fn line<'l>(
+    path: &Path,
+    log: &'l Log,
+    verification: Option<&Verification>,
+    carriers: Vec<(&'static str, Vec<&'l str>)>,
+) -> Line<'l> {
     Line {
         schema: 1,
         log: path.display().to_string(),
@@ -174,6 +318,8 @@ fn line<'l>(path: &Path, log: &'l Log, carriers: Vec<(&'static str, Vec<&'l str>
         truncated: log
             .truncation()
             .map(|found| Truncated { offset: found.offset, cause: found.cause.to_string() }),
+        indexed: log.is_indexed(),
+        verification: verification.map(verification_line),
         topics: log
             .topics()
             .iter()
@@ -203,27 +349,30 @@ fn print(
     out: &mut dyn Write,
     path: &Path,
     log: &Log,
+    verification: Option<&Verification>,
     carriers: &[(&str, Vec<&str>)],
 ) -> Result<(), Failure> {
-    let whole = match log.truncation() {
-        None => "whole".to_owned(),
-        Some(truncation) => truncation.to_string(),
-    };
     let format = match log.format() {
         Format::Bag => "ROS 1 bag",
         Format::Mcap => "MCAP",
     };
-    writeln!(out, "{}: {format}, {} bytes, {whole}", path.display(), grouped(log.size().into()))?;
+    writeln!(out, "{}: {format}, {} bytes", path.display(), grouped(log.size().into()))?;
+    if let Some(truncation) = log.truncation() {
+        print_hanging(out, "", &truncation.to_string())?;
+    }
+    print_hanging(out, "", &contents(log, verification))?;
+    if let Some(found) = verification {
+        print_damage(out, found)?;
+    }
     if let (Some(start), Some(duration)) = (log.start(), duration(log)) {
-        let (seconds, rest) = (start / 1_000_000_000, start % 1_000_000_000);
-        writeln!(out, "from {seconds}.{rest:09} s, for {duration:.3} s")?;
+        writeln!(out, "from {}, for {duration:.3} s", moment(start))?;
     }
     writeln!(out, "{} messages\n", grouped(log.messages_total().into()))?;
     let rows: Vec<_> = log
         .topics()
         .iter()
         .map(|topic| {
-            let rate = rate(log, topic).map_or(String::new(), |rate| format!("{rate:.2}"));
+            let rate = rate(log, topic).map_or(String::new(), rate_text);
             let why = topic.definition.as_ref().err().map(|why| shown(&why.to_string()));
             [
                 format!("{:>10}", grouped(topic.messages.into())),

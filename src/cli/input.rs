@@ -12,7 +12,7 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
-use toposlam_robot::log::reader::Log;
+use toposlam_robot::log::{LogError, reader::Log};
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,
@@ -119,8 +119,13 @@ pub(crate) fn register(paths: &[PathBuf]) -> Result<(), Failure> {
 
 /// Opens a log.
 pub(crate) fn open_log(path: &Path) -> Result<Log, Failure> {
+    log_or_cause(path)?.map_err(|error| Failure::in_file(path, error))
+}
+
+/// Opens a log, or returns why it cannot be read.
+pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, Failure> {
     files().read(path)?;
-    Log::open(path).map_err(|error| Failure::in_file(path, error))
+    Ok(Log::open(path))
 }
 
 /// Reads a file. `-` is standard input.

@@ -17,7 +17,7 @@ use toposlam_vision::{
     annotate,
     camera::{Camera, calibration},
     colour::ColourModel,
-    sensing::Sensor,
+    sensing::{Sensor, WrongSize},
 };
 
 use super::{Failure, input};
@@ -41,6 +41,7 @@ pub(super) struct OpenLog {
     pub(super) log: Log,
     pub(super) mapping: TopicMap,
     mapping_path: Option<PathBuf>,
+    calibration_path: Option<PathBuf>,
     pub(super) run: Option<Run>,
     sensing: Option<(Camera, ColourModel)>,
 }
@@ -57,7 +58,9 @@ impl OpenLog {
                 .map_err(|error| Failure::in_file(file, error))?,
         };
         let mapping_path = sources.mapping.clone();
-        let mut opened = Self { log, mapping, mapping_path, run: None, sensing: None };
+        let calibration_path = sources.calibration.clone();
+        let mut opened =
+            Self { log, mapping, mapping_path, calibration_path, run: None, sensing: None };
         let bound = opened.mapping.bind(&opened.log);
         bound.map_err(|error| opened.wrong_mapping(path, &error))?;
         opened.run = head(path, &opened.log, &opened.mapping)?;
@@ -148,6 +151,14 @@ impl OpenLog {
         match &self.mapping_path {
             Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
             None => Failure::in_file(log, error),
+        }
+    }
+
+    /// The error for a calibration that does not fit the images of its log.
+    pub(super) fn wrong_calibration(&self, log: &Path, error: &WrongSize) -> Failure {
+        match &self.calibration_path {
+            Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
+            None => Failure::in_file(log, format!("its calibration: {error}")),
         }
     }
 

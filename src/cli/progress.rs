@@ -15,7 +15,10 @@ use std::{
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
-use super::{Failure, output, report_output};
+use super::{
+    Failure, output, report_output,
+    text::{duration_text, grouped, rough},
+};
 
 /// Set by the first Ctrl-C: the work stops soon.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -54,6 +57,8 @@ pub(crate) struct Progress {
     /// The noun for the cases.
     unit: &'static str,
     cases: AtomicU64,
+    parts: AtomicU64,
+    parts_done: AtomicU64,
 }
 
 impl Progress {
@@ -61,17 +66,20 @@ impl Progress {
     pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, Failure> {
         watch_for_interrupt()?;
         let style = ProgressStyle::with_template(
-            "{prefix} {wide_bar:.cyan/blue} {percent:>3} %  {msg}  {elapsed} done, {eta} to go",
+            // The message is cut at the end of the line.
+            "{prefix} {bar:12.cyan/blue} {percent:>3} %  {wide_msg}",
         )
         .map_err(|error| Failure::at("progress bar", error))?;
-        let bar = ProgressBar::new(0).with_style(style).with_prefix(work.to_owned());
-        Ok(Self { bar, unit, cases: AtomicU64::new(0) })
+        // Without a length, no part is done; with length 0, all would be.
+        let bar = ProgressBar::no_length().with_style(style).with_prefix(work.to_owned());
+        let [cases, parts, parts_done] = std::array::from_fn(|_| AtomicU64::new(0));
+        Ok(Self { bar, unit, cases, parts, parts_done })
     }
 
     /// Shows a bar for work of unknown length.
     pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, Failure> {
         let progress = Self::new(work, unit)?;
-        let style = ProgressStyle::with_template("{prefix} {spinner}  {msg}  {elapsed} done")
+        let style = ProgressStyle::with_template("{prefix} {spinner}  {wide_msg}")
             .map_err(|error| Failure::at("progress bar", error))?;
         Ok(Self { bar: progress.bar.with_style(style), ..progress })
     }
@@ -103,24 +111,40 @@ impl Progress {
 
 impl Watch for Progress {
     fn parts(&self, count: usize) {
+        self.parts.store(count as u64, Ordering::Relaxed);
+        self.parts_done.store(0, Ordering::Relaxed);
         self.bar.set_position(0);
         self.bar.set_length(count as u64);
     }
 
     fn part_done(&self, cases: u64) {
         let cases = self.cases.fetch_add(cases, Ordering::Relaxed) + cases;
+        let done = self.parts_done.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.inc(1);
         if !self.bar.is_hidden() {
-            let rate = cases as f64 / self.bar.elapsed().as_secs_f64().max(1e-3);
-            let (rate, times) = if rate < 1e4 { (rate, "") } else { (rate / 1e6, " million") };
-            let unit = self.unit;
-            self.bar.set_message(format!("{cases} {unit}, {rate:.2}{times} a second"));
+            let (seconds, parts) =
+                (self.bar.elapsed().as_secs_f64(), self.parts.load(Ordering::Relaxed));
+            self.bar.set_message(message(seconds, [done, parts], cases, self.unit));
         }
     }
 
     fn stop(&self) -> bool {
         must_stop()
     }
+}
+
+/// What stands beside the bar, the most important first: the end of a long line is cut. `parts` are the
+/// number of parts that are done, and of all parts; 0 if that is not known.
+fn message(seconds: f64, parts: [u64; 2], cases: u64, unit: &str) -> String {
+    let [done, all] = parts;
+    let time = if all >= done && done > 0 {
+        let left = seconds / done as f64 * (all - done) as f64;
+        format!("{} left", duration_text(left))
+    } else {
+        duration_text(seconds)
+    };
+    let rate = rough(cases as f64 / seconds.max(1e-3));
+    format!("{time}  {} {unit}, {rate} a second", grouped(cases.into()))
 }
 
 /// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed.
@@ -148,4 +172,24 @@ fn watch_for_interrupt() -> Result<(), Failure> {
         });
     });
     result.map_err(|error| Failure::at("Ctrl-C", error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_message_has_the_time_left_then_the_cases() {
+        let text = message(2.0, [1, 4], 12_345, "starts");
+        assert_eq!(text, "6 s left  12,345 starts, 6,200 a second");
+        let text = message(90.0, [7, 0], 7, "moves");
+        assert_eq!(text, "1 min 30 s  7 moves, 0.08 a second");
+    }
+
+    #[test]
+    fn a_bar_begins_at_0_percent() {
+        let Progress { bar, .. } = Progress::new("6 edges", "starts").unwrap();
+        // Of no length: indicatif shows 100 % of length 0.
+        assert_eq!((bar.position(), bar.length()), (0, None));
+    }
 }

@@ -3,7 +3,10 @@
 use std::{io::Write, path::PathBuf, time::Instant};
 
 use serde::Serialize;
-use toposlam_model::{format::named_world::NamedWorld, mapping::FACING};
+use toposlam_model::{
+    format::named_world::NamedWorld,
+    mapping::{FACING, MappingError},
+};
 use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
 use super::{
@@ -11,7 +14,7 @@ use super::{
     json::print_object,
     open_log::{LogOptions, OpenLog},
     output,
-    text::{counted, grouped, print_hanging, vertices},
+    text::{counted, grouped, print_hanging, since_start, vertices},
 };
 
 /// Run sensing and mapping again on the images of a log, without a robot
@@ -25,7 +28,7 @@ Example:
   toposlam simulate worlds/shape-6.toml --log run.mcap
   toposlam replay run.mcap
 
-Exit codes: 0 all results are as recorded, 1 one differs, 2 bad usage or input, 3 the log is truncated or its run is incomplete.")]
+Exit codes: 0 all results are as recorded, 1 one differs, 2 bad usage or input, 3 the log is truncated, its run is incomplete, or --max-darts was reached.")]
 pub(super) struct ReplayArguments {
     /// The log
     log: PathBuf,
@@ -83,6 +86,7 @@ impl ReplayArguments {
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
+            ReplayError::Calibration(error) => opened.wrong_calibration(&self.log, &error),
             error => Failure::in_file(&self.log, error),
         })?;
         if self.json {
@@ -146,6 +150,9 @@ impl ReplayArguments {
         writeln!(out, "  map         {vertices}, {edges}")?;
         if let Some(error) = &replay.error {
             print_hanging(out, "  ended early ", &error.to_string())?;
+            if matches!(error, MappingError::Bound { .. }) {
+                writeln!(out, "              Use --max-darts N to raise the bound.")?;
+            }
         }
         writeln!(out, "As recorded:")?;
         let rows = [
@@ -161,8 +168,9 @@ impl ReplayArguments {
             writeln!(out, "  map         {}", if same { "yes" } else { "no" })?;
         }
         if let Some(difference) = &comparison.difference {
-            let ReplayDifference { picture, time, what, recorded, found } = difference;
-            writeln!(out, "First difference: the {what} at picture {picture}, {time:.1} s")?;
+            let ReplayDifference { picture, what, recorded, found, .. } = difference;
+            let time = since_start(difference.time);
+            writeln!(out, "First difference: the {what} at picture {picture}, {time}")?;
             print_hanging(out, "  recorded    ", recorded)?;
             print_hanging(out, "  replayed    ", found)?;
         }
@@ -192,7 +200,7 @@ fn outcome(replay: &Replay) -> Outcome {
     let differs = replay.comparison.difference.is_some() || replay.comparison.map == Some(false);
     match &replay.error {
         _ if differs => Outcome::Violated,
-        // The log ends too early, or the robot gave up in the recorded run, too.
+        // The log ends too early, the robot gave up in the recorded run, too, or the bound is reached.
         Some(_) => Outcome::Incomplete,
         None if agreements.into_iter().all(Agreement::is_whole) => Outcome::Holds,
         None => Outcome::Violated,

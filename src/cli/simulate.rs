@@ -46,7 +46,7 @@ pub(super) use log::MAX_DARTS;
 /// Let a simulated SuperScout map a floor plan from rendered camera images
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
-/// it. Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1
+/// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L. Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1
 /// makes the map. Each move, each percept and the map are checked against the floor plan's embedded
 /// graph.
 #[derive(clap::Args)]
@@ -54,7 +54,7 @@ pub(super) use log::MAX_DARTS;
 pub(super) struct SimulateArguments {
     /// The floor plan
     plan: PathBuf,
-    /// Where the robot starts, and the door behind it [default: the plan's own start]
+    /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
     /// Random seed
@@ -140,7 +140,7 @@ impl SimulateArguments {
         let begun = Instant::now();
         let world = input::read_world(&self.plan)?;
         let plan = Arc::new(input::floor_plan(&self.plan, &world)?.clone());
-        let facing = input::start_of(&world, self.start.as_deref())?;
+        let facing = self.start_in(&world, &plan)?;
         feasible::check(&self.plan, &world, &plan, facing)?;
         let setting = SimulationConfig {
             noise: self.noise,
@@ -173,6 +173,19 @@ impl SimulateArguments {
             (None, None) => Pictures::None,
         };
         self.simulate(&simulation, robot, Some(sensor), pictures, log, out)
+    }
+
+    /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
+    fn start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, Failure> {
+        let facing = input::start_of(world, self.start.as_deref())?;
+        let nearest = feasible::nearest_start(plan, facing).filter(|_| self.start.is_none());
+        let Some(nearest) = nearest else { return Ok(facing) };
+        eprintln!(
+            "the run starts at {}: the start of the plan, {}, is not an L, where a marker can lie",
+            world.start_text(nearest),
+            world.at_text(facing),
+        );
+        Ok(nearest)
     }
 
     fn check_places(&self) -> Result<(), Failure> {

@@ -102,6 +102,72 @@ pub(crate) fn grouped(number: u128) -> String {
     out
 }
 
+/// A time in nanoseconds: a date if it can be one, otherwise seconds.
+///
+/// A date counts from 1970, in UTC. A clock that starts with the computer shows less than a year.
+pub(crate) fn moment(nanoseconds: u64) -> String {
+    const YEAR: u64 = 365 * 24 * 3600;
+    let (seconds, milliseconds) = (nanoseconds / 1_000_000_000, nanoseconds / 1_000_000 % 1000);
+    if seconds < YEAR {
+        return format!("{seconds}.{milliseconds:03} s");
+    }
+    let (days, second) = (seconds / 86_400, seconds % 86_400);
+    let [year, month, day] = date(days);
+    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.{milliseconds:03} UTC")
+}
+
+/// Seconds since the first message of a log; a date if the messages carry one and the log does not.
+pub(crate) fn since_start(seconds: f64) -> String {
+    const YEAR: f64 = 365.0 * 24.0 * 3600.0;
+    if seconds < YEAR { format!("{seconds:.1} s") } else { moment((seconds * 1e9) as u64) }
+}
+
+/// A duration in words, as in "9 s", "2 min 5 s", "1 h 20 min".
+pub(crate) fn duration_text(seconds: f64) -> String {
+    let seconds = seconds.round() as u64;
+    match (seconds / 3600, seconds / 60 % 60, seconds % 60) {
+        (0, 0, seconds) => format!("{seconds} s"),
+        (0, minutes, seconds) => format!("{minutes} min {seconds} s"),
+        (hours, minutes, _) => format!("{} h {minutes} min", grouped(hours.into())),
+    }
+}
+
+/// A number of which two digits matter, as in "0.31", "8.4", "1,200", "57 million".
+pub(crate) fn rough(number: f64) -> String {
+    let places = if number < 1.0 { 2 } else { usize::from(number < 10.0) };
+    if number < 100.0 {
+        return format!("{number:.places$}");
+    }
+    if number >= 1e6 {
+        return format!("{} million", rough(number / 1e6));
+    }
+    let step = 10_f64.powi(number.log10().floor() as i32 - 1);
+    grouped(((number / step).round() * step) as u128)
+}
+
+/// The year, month and day of the Gregorian calendar, so many days after 1970-01-01.
+fn date(days: u64) -> [u64; 3] {
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
+    let (mut year, mut rest) = (1970, days);
+    while rest >= 365 + u64::from(is_leap(year)) {
+        rest -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
+        if rest < length {
+            break;
+        }
+        rest -= length;
+        month += 1;
+    }
+    [year, month, rest + 1]
+}
+
 /// A number and its noun, as in "1 edge", "2 edges".
 pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(number as u128), if number == 1 { "" } else { "s" })
@@ -140,6 +206,43 @@ pub(crate) fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_time_since_1970_is_a_date_and_a_time_since_power_on_is_seconds() {
+        for (seconds, text) in [
+            (0, "0.000 s"),
+            (1, "1.000 s"),
+            (86_400, "86400.000 s"),
+            // By `date -u -d @SECONDS`.
+            (951_782_400, "2000-02-29 00:00:00.000 UTC"),
+            (1_700_000_000, "2023-11-14 22:13:20.000 UTC"),
+            (1_735_689_599, "2024-12-31 23:59:59.000 UTC"),
+            (4_107_542_400, "2100-03-01 00:00:00.000 UTC"),
+        ] {
+            assert_eq!(moment(seconds * 1_000_000_000), text);
+        }
+        assert_eq!(moment(1_034_567_890), "1.034 s");
+        assert_eq!(moment(u64::MAX), "2554-07-21 23:34:33.709 UTC");
+    }
+
+    #[test]
+    fn durations_and_rates_have_few_digits() {
+        let texts = [0.2, 59.4, 59.6, 125.0, 3600.0, 4830.0, 4e7].map(duration_text);
+        let expected =
+            ["0 s", "59 s", "1 min 0 s", "2 min 5 s", "1 h 0 min", "1 h 20 min", "11,111 h 6 min"];
+        assert_eq!(texts, expected);
+        let texts = [0.0, 0.312, 8.44, 57.1, 123.4, 1234.0, 57_142.0, 1.26e6, 57_142_857.14];
+        let texts = texts.map(rough);
+        let expected =
+            ["0.00", "0.31", "8.4", "57", "120", "1,200", "57,000", "1.3 million", "57 million"];
+        assert_eq!(texts, expected);
+    }
+
+    #[test]
+    fn a_stamp_of_another_clock_than_the_log_is_a_date() {
+        assert_eq!(since_start(76.24), "76.2 s");
+        assert_eq!(since_start(1.7e9), "2023-11-14 22:13:20.000 UTC");
+    }
 
     #[test]
     fn thousands_are_grouped() {

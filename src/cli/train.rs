@@ -120,6 +120,9 @@ impl TrainArguments {
             eprintln!("left out: {}: {cause}", image.display());
         }
         self.check_classes(&training)?;
+        if training.seen(PixelClass::Marker).images == 0 {
+            eprintln!("no marker is labelled: sensing with these colours sees no marker");
+        }
         let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
         let progress = Progress::new("cross-validating", "parts")?;
         let validation = self.validation(&training, &progress);
@@ -197,7 +200,7 @@ impl TrainArguments {
         if training.images() == 0 {
             return Err(Failure::in_file(&self.images, "every image was left out"));
         }
-        let needed = [PixelClass::Floor, PixelClass::Stripe, PixelClass::Marker];
+        let needed = [PixelClass::Floor, PixelClass::Stripe];
         match needed.into_iter().find(|&class| training.seen(class).images == 0) {
             None => Ok(()),
             Some(class) => {

@@ -184,6 +184,11 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
         (&[log, "--events", "pictures"], "--events: the log does not have"),
+        (&[log, "--max-edges", "0"], "--max-edges"),
+        (&[log, "--edges", "30"], "--edges"),
+        (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
+        (&[log, "--minimise", log], "this is the log itself"),
+        (&[log, "--marker", "movable"], "--marker"),
     ] {
         let output = run([&["conform"][..], arguments].concat());
         let stdout_of = stderr(&output);
@@ -300,4 +305,192 @@ fn logs_without_evidence_are_an_error() {
         assert_eq!(output.status.code(), Some(2), "{name}");
         assert!(stderr(&output).contains(cause), "{name}: {}", stderr(&output));
     }
+}
+
+/// A robot in building 12, of which one knows only the log. The smallest world that explains it has 14 edges.
+#[test]
+fn a_bound_that_is_reached_is_not_a_divergence() {
+    let folder = folder("conform-bound");
+    let log = logged(&folder, "worlds/building-12.toml", &["--start", "north-west:north"]);
+    let (code, report) = judged(&log, &["--driver", "anyone"]);
+    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
+    assert_eq!((&report["event"], &report["class"]), (&Value::Null, &Value::Null));
+    let limit = &report["limits"][0];
+    assert_eq!(
+        (&limit["option"], &limit["value"], &limit["edges"]),
+        (&"--max-edges".into(), &12.into(), &12.into())
+    );
+    let remark = report["remarks"][0].as_str().unwrap();
+    assert!(remark.contains("at most 12 edges") && remark.contains("--max-edges"), "{remark}");
+    assert!(report["shorter"].as_array().unwrap().is_empty());
+    // The world is written if it was found.
+    let map = folder.join("smallest.toml");
+    let map = map.to_str().unwrap();
+    let (code, _) = judged(&log, &["--driver", "anyone", "--map", map]);
+    assert!(code == Some(3) && !Path::new(map).exists());
+    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "14", "--map", map]);
+    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
+    assert_eq!(report["limits"], serde_json::json!([]));
+    let (code, report) = judged(&log, &["--driver", "anyone", "--world", map]);
+    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
+    // Few steps, and few edge ends.
+    let (code, report) = judged(&log, &["--driver", "anyone", "--max-steps", "5"]);
+    assert_eq!((code, &report["limits"][0]["option"]), (Some(3), &"--max-steps".into()));
+    let (code, report) = judged(&log, &["--max-darts", "1"]);
+    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
+    let limits = report["limits"].as_array().unwrap();
+    let darts = limits.iter().find(|limit| limit["option"] == "--max-darts").unwrap();
+    assert_eq!((&darts["value"], &darts["event"]), (&1.into(), &1.into()));
+}
+
+/// Percepts and doors of a robot without numbers, shapes and odometry.
+fn walked(folder: &Path, steps: &[(u32, i32, Option<u32>)]) -> PathBuf {
+    let log = folder.join("walk.mcap");
+    let mut writer = LogWriter::new(Vec::new()).unwrap();
+    for (moves, &(degree, marker, door)) in steps.iter().enumerate() {
+        let time = 2 * moves as u64;
+        let stamp = |second| Stamp { sec: second as i32, nanosec: 0 };
+        let number = moves as u32;
+        let percept = Percept {
+            stamp: stamp(time),
+            r#move: number,
+            degree,
+            marker,
+            form: [false; 4],
+            entry: f64::NAN,
+        };
+        writer.write(Percept::TOPIC, time, &percept).unwrap();
+        if let Some(door) = door {
+            let message = Door { stamp: stamp(time + 1), r#move: number + 1, door };
+            writer.write(Door::TOPIC, time + 1, &message).unwrap();
+        }
+    }
+    fs::write(&log, writer.finish().unwrap()).unwrap();
+    log
+}
+
+#[test]
+fn a_shorter_log_of_an_impossible_walk_diverges_for_the_same_reason() {
+    let folder = folder("conform-impossible");
+    // There and back again, twice. In the end the first junction has another degree.
+    let there = (3, -1, Some(0));
+    let log = walked(&folder, &[(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)]);
+    let short = folder.join("short.mcap");
+    let arguments = ["--driver", "anyone", "--max-edges", "1", "--minimise"];
+    let (code, report) = judged(&log, &[&arguments[..], &[short.to_str().unwrap()]].concat());
+    assert_eq!((code, &report["cause"]), (Some(1), &"no-world".into()), "{report}");
+    assert_eq!((&report["event"], &report["class"]), (&9.into(), &"perception".into()));
+    let condition = report["condition"].as_str().unwrap();
+    assert!(condition.starts_with("no world of any size explains"), "{condition}");
+    let events = report["shorter"].as_array().unwrap().len();
+    assert!((3..9).contains(&events), "{report}");
+    let words: Vec<_> = report["command"].as_str().unwrap().split(' ').skip(1).collect();
+    let output = run([&words[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let again = objects(&stdout(&output)).remove(0);
+    assert_eq!((&again["cause"], &again["event"]), (&report["cause"], &events.into()), "{again}");
+    let why = again["condition"].as_str().unwrap();
+    assert!(why.ends_with("are the same one, with 3 doors and with 2"), "{why}");
+}
+
+#[test]
+fn the_marker_is_asked_for_if_it_is_not_recorded() {
+    let folder = folder("conform-marker");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let log = log.to_str().unwrap();
+    let mapping = folder.join("mapping.toml");
+    let topics = "[percept]\ntopic = \"/toposlam/percept\"\ndegree = \"degree\"\n\
+                  [door]\ntopic = \"/toposlam/door\"\ndoor = \"door\"\n";
+    fs::write(&mapping, topics).unwrap();
+    let mapping = ["--mapping", mapping.to_str().unwrap()];
+    // Nothing is mapped as the marker: that is not a marker that was not seen.
+    for arguments in [&[][..], &["--driver", "anyone"], &["--world", SHAPE_6]] {
+        let output = run([&["conform", log][..], &mapping, arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+        let message = stderr(&output);
+        assert!(message.contains("--driver anyone --marker none"), "{message}");
+    }
+    let without = ["--driver", "anyone", "--marker", "none"];
+    for arguments in [&[][..], &["--world", SHAPE_6, "--start", "any"]] {
+        let output = run([&["conform", log][..], &mapping, &without, arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    }
+    // A marker that the log records is one that the robot has.
+    let (code, report) = judged(Path::new(log), &without);
+    assert_eq!((code, &report["event"]), (Some(1), &1.into()), "{report}");
+    assert_eq!((&report["cause"], &report["class"]), (&"no-world".into(), &"perception".into()));
+    let output = run(["conform", log, "--marker", "none"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("add --driver anyone"), "{}", stderr(&output));
+    // A robot that never sees a marker cannot run Algorithm 1.
+    let corridor = walked(&folder, &[(1, -1, Some(0)), (1, -1, None)]);
+    let output = run(["conform", corridor.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    assert!(stderr(&output).contains("--driver anyone --marker none"), "{}", stderr(&output));
+}
+
+#[test]
+fn another_world_is_a_remark_of_the_report() {
+    let folder = folder("conform-remark");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let page = folder.join("report.html");
+    let output = run([
+        "conform",
+        log.to_str().unwrap(),
+        "--world",
+        SHAPE_8,
+        "--html",
+        page.to_str().unwrap(),
+    ]);
+    let remark = "the log was recorded in another world, shape-6";
+    assert!(stdout(&output).contains(remark), "{}", stdout(&output));
+    assert!(!stderr(&output).contains(remark), "{}", stderr(&output));
+    assert!(fs::read_to_string(page).unwrap().contains("recorded in another world, shape-6"));
+    let (_, report) = judged(&log, &["--world", SHAPE_8]);
+    assert_eq!(report["remarks"][0], remark);
+    let (_, report) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!(report["remarks"], serde_json::json!([]));
+}
+
+#[test]
+fn an_unreadable_log_does_not_hide_the_others() {
+    let folder = folder("conform-unreadable");
+    let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let text = folder.join("text.mcap");
+    fs::write(&text, "not a log").unwrap();
+    let [good, text] = [&good, &text].map(|path| path.to_str().unwrap());
+    let output = run(["conform", "--json", text, good, "missing.mcap"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("text.mcap: ") && message.contains("missing.mcap: "), "{message}");
+    let report = objects(&stdout(&output));
+    assert_eq!((report.len(), &report[0]["verdict"]), (2, &"conforms".into()));
+    assert_eq!(
+        (&report[1]["logs"], &report[1]["conform"], &report[1]["unreadable"]),
+        (&3.into(), &1.into(), &2.into())
+    );
+    // A divergence is worse than an incomplete log, and a log that is not read is worse than both.
+    let other = ["--world", SHAPE_8];
+    let code = |logs: &[&str]| run([&["conform"][..], logs, &other].concat()).status.code();
+    assert_eq!((code(&[good]), code(&[good, text])), (Some(1), Some(2)));
+}
+
+#[test]
+fn required_cases_that_are_not_covered_are_listed() {
+    let folder = folder("conform-required");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let path = log.to_str().unwrap();
+    let run = |list| run(["conform", path, "--json", "--require-coverage", list]);
+    let output = run("confirmed,dead-end");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(objects(&stdout(&output))[1]["not_covered"], serde_json::json!([]));
+    // The run of shape 6 meets no L to the left.
+    let output = run("confirmed,l-left,rejected-on-the-way");
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let report = objects(&stdout(&output));
+    assert_eq!(report[0]["verdict"], "conforms");
+    assert_eq!(report[1]["not_covered"], serde_json::json!(["l-left", "rejected-on-the-way"]));
+    let output = run("confirmed,no-such-case");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("rejected-at-once"), "{}", stderr(&output));
 }

@@ -344,3 +344,45 @@ fn a_run_with_a_movable_marker_that_reaches_its_bound_is_incomplete() {
     assert!(stdout(&output).ends_with(last), "{}", stdout(&output));
     assert_eq!(run([&arguments[..], &["12"]].concat()).status.code(), Some(0));
 }
+
+#[test]
+fn the_summary_fits_on_a_screen_and_is_the_default_in_large_worlds() {
+    let folder = folder("explore_summary");
+    let path = folder.join("cycle.toml");
+    let name = |vertex: usize| format!("v{}", vertex % 200);
+    let list = |vertex| {
+        format!("{} = [\"{}\", \"{}\"]\n", name(vertex), name(vertex + 199), name(vertex + 1))
+    };
+    fs::write(&path, format!("[clockwise]\n{}", (0..200).map(list).collect::<String>())).unwrap();
+    let large = path.to_str().unwrap();
+    let summary = stdout_of(["explore", large]);
+    assert!(summary.lines().count() <= 24, "{summary}");
+    assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+    // Each edge of a cycle is one round; the last one closes it.
+    assert_eq!(numbers_after(&flat(&summary), &["rounds ", "a loop "]), [200, 1]);
+    assert!(flat(&summary).contains("that found a new vertex 199"), "{summary}");
+    assert!(summary.contains("and 175 more"), "{summary}");
+    assert_eq!(stdout_of(["explore", large, "--summary"]), summary);
+    let story = stdout_of(["explore", large, "--story"]);
+    assert!(story.contains("Round 200:"), "{story}");
+    let small = stdout_of(["explore", "worlds/shape-6.toml"]);
+    assert_eq!(stdout_of(["explore", "worlds/shape-6.toml", "--story"]), small);
+    assert!(small.contains("Round 1:"));
+    let summary = stdout_of(["explore", "worlds/shape-6.toml", "--summary"]);
+    assert!(!summary.contains("Round 1:") && summary.contains("The map is complete"));
+}
+
+#[test]
+fn the_limit_of_a_search_of_all_choices_is_named() {
+    let arguments = ["explore", "worlds/petersen.toml", "--choices", "all", "--max-states", "1000"];
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(3));
+    let text = flat(&stdout(&output));
+    assert!(text.contains("The search stopped at --max-states 1000."), "{text}");
+    let line = &objects(&stdout(&run([&arguments[..], &["--json"]].concat())))[0];
+    assert_eq!((&line["limit"], &line["complete"]), (&"max-states".into(), &false.into()));
+    let begun = ["states", "states_within_rounds"].map(|key| line[key].as_u64().unwrap());
+    assert!(begun[1] > 0 && begun.iter().sum::<u64>() <= 1000, "{begun:?}");
+    let whole = ["explore", "worlds/shape-6.toml", "--choices", "all", "--json"];
+    assert_eq!(objects(&stdout_of(whole))[0]["limit"], Value::Null);
+}

@@ -10,8 +10,9 @@ const RUN: &str = "fuzz/corpus/mcap/of-a-run";
 
 #[test]
 fn the_report_lists_the_topics_and_what_they_can_carry() {
-    let text = "fuzz/corpus/mcap/of-a-run: MCAP, 847 bytes, whole
-from 1.000000000 s, for 1.000 s
+    let text = "fuzz/corpus/mcap/of-a-run: MCAP, 847 bytes
+has an index, contents not verified
+from 1.000 s, for 1.000 s
 7 messages
 
     messages  a second  topic                     type
@@ -127,4 +128,37 @@ fn an_unreadable_log_does_not_stop_the_others_and_the_worst_exit_code_counts() {
     assert_eq!(lines.len(), 2, "{message}");
     assert!(lines[0].starts_with("error: no-such-log: "), "{message}");
     assert!(lines[1].starts_with("error: Cargo.toml: "), "{message}");
+}
+
+#[test]
+fn a_log_is_verified_against_its_checksums() {
+    let verify = |log: &str| {
+        let output = run(["info", "--verify", "--json", log]);
+        let line = objects(&stdout(&output)).remove(0);
+        (output.status.code(), line["verification"].clone())
+    };
+    let (code, found) = verify(RUN);
+    assert_eq!((code, &found["holds"], &found["messages"]), (Some(0), &json!(true), &json!(7)));
+    let damaged = "fuzz/corpus/mcap/error-a-wrong-checksum";
+    // Its index can be read, so without --verify it is listed.
+    assert_eq!(run(["info", damaged]).status.code(), Some(0));
+    let (code, found) = verify(damaged);
+    assert_eq!((code, &found["holds"]), (Some(1), &json!(false)));
+    let causes: Vec<_> =
+        found["damage"].as_array().unwrap().iter().map(|damage| damage["cause"].clone()).collect();
+    assert!(causes.contains(&json!("the checksum of the chunk is wrong")), "{found}");
+    let text = stdout(&run(["info", "--verify", damaged]));
+    assert!(text.contains(": the checksum of the chunk is wrong\n"), "{text}");
+    assert!(stdout_of(["info", "--verify", RUN]).contains("contents verified: 7 messages"));
+    // Damaged and truncated is damaged; truncated is not known.
+    assert_eq!(verify("fuzz/corpus/bag/error-a-chunk-that-grows-without-end").0, Some(1));
+    assert_eq!(verify("fuzz/corpus/mcap/cut-in-a-chunk").0, Some(3));
+}
+
+#[test]
+fn a_time_since_1970_is_a_date_and_a_short_log_has_no_rate() {
+    let text = stdout_of(["info", "fuzz/corpus/mcap/lz4"]);
+    assert!(text.contains("\nfrom 1.000 s, for 0.000 s\n"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(text.contains("           2            /t0"), "{text}");
 }

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use super::{folder, objects, read_world, run, stderr, stdout, stdout_of};
 
 // paper: exp.off-line-time
@@ -16,7 +18,7 @@ fn a_log_gives_the_same_map_again_in_less_time() {
     let map = folder.join("map.toml");
     let arguments = ["replay", log, "--json", "--map", map.to_str().unwrap()];
     let report = objects(&stdout_of(arguments)).remove(0);
-    assert_eq!((&report["map"], &report["difference"]), (&true.into(), &serde_json::Value::Null));
+    assert_eq!((&report["map"], &report["difference"]), (&true.into(), &Value::Null));
     assert_eq!(report["moves"], simulated["moves"]);
     for what in ["scenes", "commands", "percepts", "doors"] {
         assert_eq!(report[what][0], report[what][1], "{what}");
@@ -47,4 +49,30 @@ fn a_truncated_log_is_replayed_to_its_end_and_a_log_without_commands_is_an_error
     let report = objects(&stdout(&output)).remove(0);
     assert_eq!(report["complete"], false);
     assert!(report["error"].as_str().unwrap().contains("the log has no more pictures"), "{report}");
+}
+
+#[test]
+fn a_calibration_of_another_size_is_bad_input_and_the_bound_on_darts_is_a_limit() {
+    let folder = folder("replay-limits");
+    let log = folder.join("run.mcap");
+    let log = log.to_str().unwrap();
+    let few = ["--size", "640x480", "--effects", "none", "--json", "--log", log];
+    stdout_of([&["simulate", "worlds/shapes/shape-2.toml"][..], &few].concat());
+    let output = run(["replay", log, "--max-darts", "4", "--json"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));
+    let report = &objects(&stdout(&output))[0];
+    assert_eq!((&report["map"], &report["difference"]), (&Value::Null, &Value::Null));
+    let text = stdout(&run(["replay", log, "--max-darts", "4"]));
+    assert!(text.contains("Use --max-darts N to raise the bound."), "{text}");
+    let images = folder.join("large.png");
+    let images = images.to_str().unwrap();
+    let camera = folder.join("camera.toml");
+    let camera = camera.to_str().unwrap();
+    let pose = ["--pose", "2,4,0", "--size", "1280x960", "--out", images];
+    stdout_of([&["render", "worlds/shape-6.toml"][..], &pose].concat());
+    stdout_of(["calibrate", images, "--out", camera]);
+    let output = run(["replay", log, "--calibration", camera]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    let message = "the image has 640 x 480 pixels; those of the calibrated camera have 1280 x 960";
+    assert!(stderr(&output).contains(message), "{}", stderr(&output));
 }

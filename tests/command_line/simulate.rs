@@ -135,7 +135,10 @@ fn control_is_as_specified_on_any_number_of_threads() {
     let table = stdout_of(["evaluate", "control", "--traversals", "500", "--plan", SHAPE_6]);
     // Of six junctions: a dead end, four Ls with two entries and two doors each, a T with three.
     assert!(table.contains("  26 pairs of entry door and exit door in 1 floor plan\n"), "{table}");
-    assert!(table.contains("holds: every door leads where it should"), "{table}");
+    assert!(
+        table.contains("holds in these traversals: every door leads where it should"),
+        "{table}"
+    );
 }
 
 #[test]
@@ -160,7 +163,7 @@ fn whole_runs_are_right_and_those_with_faults_right_or_honest() {
     let runs: Vec<_> = lines.iter().filter(|line| line["kind"] == "run").collect();
     assert!(runs.len() > 25 && runs.iter().all(|run| run["moves"] == run["explore_moves"]));
     let table = stdout_of(["evaluate", "runs", "--plans", "12", "--starts", "2", "--faults"]);
-    let verdict = "holds: every map is right, or the robot gave up or was carried";
+    let verdict = "holds in these runs: every map is right, or the robot gave up or was carried";
     for part in ["dropped", "frozen", "carried", verdict] {
         assert!(table.contains(part), "{part}\n{table}");
     }
@@ -240,4 +243,23 @@ fn an_interrupted_run_reports_its_results_and_is_incomplete() {
     assert_eq!(output.status.code(), Some(3), "{text}{}", stderr(&output));
     assert!(text.contains("The robot gave up: the run was ended on move "), "{text}");
     assert!(text.contains("  map               "), "{text}");
+}
+
+#[test]
+fn a_run_starts_at_the_l_nearest_to_a_start_that_is_none() {
+    for (plan, start) in
+        [("worlds/building-12.toml", "courtyard"), ("worlds/building-25.toml", "east-door")]
+    {
+        let output = run(["simulate", plan, "--by-scene", "--json"]);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let note = format!("the start of the plan, {start}, is not an L, where a marker can lie\n");
+        assert!(message.starts_with("the run starts at ") && message.contains(&note), "{message}");
+        // A start that is asked for is not replaced.
+        let facing = if start == "courtyard" { "west" } else { "south-east" };
+        let given = format!("{start}:{facing}");
+        let output = run(["simulate", plan, "--by-scene", "--start", &given]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("is a dead end; a run starts at an L"));
+    }
 }

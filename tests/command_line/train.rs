@@ -240,7 +240,7 @@ type Breaking = fn(&Set) -> String;
 #[test]
 #[expect(clippy::too_many_lines, reason = "a list")]
 fn invalid_images_and_labels_are_refused_with_the_file() {
-    let cases: [(&str, Breaking); 19] = [
+    let cases: [(&str, Breaking); 18] = [
         ("no-image", |set| {
             fs::remove_dir_all(set.0.join("images")).unwrap();
             fs::create_dir(set.0.join("images")).unwrap();
@@ -318,7 +318,6 @@ fn invalid_images_and_labels_are_refused_with_the_file() {
             format!("{}: this is not an image; it must be PNG or JPEG", set.path("labels/7.png"))
         }),
         ("no-stripe", |set| relabelled(set, [255, 0, 0], "stripe (255,0,0)")),
-        ("no-marker", |set| relabelled(set, [0, 0, 255], "marker (0,0,255)")),
         ("no-light", |set| {
             for name in names_in(&set.0.join("images")) {
                 set.paint(&format!("images/{name}"), SIZE, [0; 3]);
@@ -358,6 +357,23 @@ fn invalid_images_and_labels_are_refused_with_the_file() {
         let error_message = set.error_message(&[]);
         assert!(error_message.starts_with(&expected), "{name}: {error_message}");
     }
+}
+
+#[test]
+fn without_a_labelled_marker_the_other_classes_are_learned() {
+    let set = Set::copy("train-no-marker", 7);
+    relabelled(&set, [0, 0, 255], "");
+    let output = run(set.train(&["--json"]));
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert_eq!(message, "no marker is labelled: sensing with these colours sees no marker\n");
+    let line = &objects(&stdout(&output))[0];
+    let pixels: Vec<_> =
+        line["classes"].as_array().unwrap().iter().map(|class| class["pixels"] != 0).collect();
+    assert_eq!(pixels, [true, true, false, true]);
+    // Nothing is taken for a marker.
+    let marker = |class: &str| &line["confusion"][class]["marker"];
+    assert!(CLASSES.iter().all(|class| marker(class) == 0), "{line}");
 }
 
 /// Sets one label colour to ignore. Returns the message that the class is missing.

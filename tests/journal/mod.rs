@@ -50,7 +50,7 @@ impl RunObserver for Keeper {
             }
             EventKind::Door { .. } => self.moves += 1,
             EventKind::Arrival(arrival) => {
-                let percept = arrival.percept;
+                let percept = arrival.percept().unwrap();
                 journal.calls.push(JunctionCall { rounds, pose, percept, conforms: true });
             }
             _ => {}

@@ -6,12 +6,37 @@
 pub struct EveryWay {
     /// Distinct states at line 4: the map, numbered by discovery, and the robot's vertex in it.
     pub states: u64,
+    /// States at line 8: within a round, the hypotheses that are left.
+    pub within_rounds: u64,
     /// Distinct sequences of choices. Stays at the largest `u128` if there are more.
     pub runs: u128,
     /// The numbers of moves that occur among the runs.
     pub costs: Costs,
-    /// Whether these are all: the budget of states was not used up.
-    pub complete: bool,
+    /// Why these are not all; `None` if they are.
+    pub limit: Option<SearchLimit>,
+}
+
+/// A limit on the search for all runs of a start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchLimit {
+    /// The budget of states, at line 4 and at line 8 together.
+    States(u64),
+    /// The memory for the states of one start: 1 GiB.
+    Memory,
+    /// The search was interrupted.
+    Interrupted,
+}
+
+impl SearchLimit {
+    /// Its name, as in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::States(_) => "max-states",
+            Self::Memory => "memory",
+            Self::Interrupted => "interrupted",
+        }
+    }
 }
 
 /// A set of small numbers, as bits.
@@ -37,6 +62,11 @@ impl Costs {
         while self.0.last() == Some(&0) {
             self.0.pop();
         }
+    }
+
+    /// Its size in memory.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<u64>() * self.0.len()
     }
 
     /// The costs, ascending.

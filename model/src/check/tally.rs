@@ -1,6 +1,6 @@
 //! The counts of a check.
 
-use super::{CostOrder, EveryWay, FalseStep, Flaw};
+use super::{CostOrder, EveryWay, FalseStep, Flaw, SearchLimit};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The start that took the most moves.
@@ -53,12 +53,20 @@ pub struct Tally {
     /// With all choices: the fewest and the most moves of any run.
     pub extremes: Option<(u64, u64)>,
     /// With all choices: starts with more states than the budget.
-    pub gave_up: u64,
+    pub over_budget: u64,
+    /// With all choices: starts whose states took too much memory.
+    pub over_memory: u64,
     /// Whether the check was interrupted.
     pub interrupted: bool,
 }
 
 impl Tally {
+    /// With all choices: starts of which not all runs were tried.
+    #[must_use]
+    pub fn gave_up(&self) -> u64 {
+        self.over_budget + self.over_memory
+    }
+
     /// Starts on which the algorithm failed.
     #[must_use]
     pub fn failed(&self) -> u64 {
@@ -91,7 +99,12 @@ impl Tally {
     pub(super) fn count_every_way(&mut self, ways: &EveryWay) {
         self.states += ways.states;
         self.runs = self.runs.saturating_add(ways.runs);
-        self.gave_up += u64::from(!ways.complete);
+        match ways.limit {
+            None => {}
+            Some(SearchLimit::States(_)) => self.over_budget += 1,
+            Some(SearchLimit::Memory) => self.over_memory += 1,
+            Some(SearchLimit::Interrupted) => self.interrupted = true,
+        }
         self.count_extremes(ways.costs.min().zip(ways.costs.max()));
     }
 
@@ -115,7 +128,8 @@ impl Tally {
         self.mapped += later.mapped;
         self.moves_total += later.moves_total;
         self.states += later.states;
-        self.gave_up += later.gave_up;
+        self.over_budget += later.over_budget;
+        self.over_memory += later.over_memory;
         self.runs = self.runs.saturating_add(later.runs);
         self.interrupted |= later.interrupted;
         self.count_extremes(later.extremes);

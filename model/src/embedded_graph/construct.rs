@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::{
     Dart, EmbeddedGraph, GraphError, ListError, Vertex, clockwise_fault, opposite_fault, size_fault,
 };
+use crate::similar::SimilarName;
 
 /// The opposite of a dart that is not known yet.
 const UNPAIRED: Dart = Dart(u32::MAX);
@@ -76,9 +77,13 @@ impl EmbeddedGraph {
                 let vertex_name = || name.as_ref().to_owned();
                 let neighbour_name = || neighbour.as_ref().to_owned();
                 let Some(&other) = number.get(neighbour.as_ref()) else {
+                    // A vertex cannot be its own neighbour, so it is not offered.
+                    let others = lists.iter().map(|(other, _)| other.as_ref());
+                    let others = others.filter(|other| *other != name.as_ref());
                     return Err(ListError::UnknownNeighbour {
                         vertex: vertex_name(),
                         neighbour: neighbour_name(),
+                        similar: SimilarName::of(neighbour.as_ref(), others),
                     });
                 };
                 if other == vertex {

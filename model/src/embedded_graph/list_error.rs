@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::GraphError;
+use crate::similar::SimilarName;
 
 /// Why lists of names are not an embedded graph.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -14,12 +15,14 @@ pub enum ListError {
         vertex: String,
     },
     /// A neighbour list names something that has no list.
-    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex")]
+    #[error("vertex `{vertex}` lists the neighbour `{neighbour}`, which is not a vertex{similar}")]
     UnknownNeighbour {
         /// The vertex with the list.
         vertex: String,
         /// The name that is not a vertex.
         neighbour: String,
+        /// A vertex with a similar name.
+        similar: SimilarName,
     },
     /// A vertex lists a neighbour that does not list it back.
     #[error(

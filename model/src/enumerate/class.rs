@@ -4,6 +4,8 @@ use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
+use crate::embedded_graph::EmbeddedGraph;
+
 /// A class of embedded graphs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
@@ -47,6 +49,15 @@ impl Class {
     #[must_use]
     pub fn max_degree(self) -> u32 {
         if self == Self::Corridor { 3 } else { u32::MAX }
+    }
+
+    /// Whether a connected graph is in the class.
+    #[must_use]
+    pub fn contains(self, graph: &EmbeddedGraph) -> bool {
+        let fits = |vertex| graph.degree(vertex) <= self.max_degree();
+        (!self.is_simple() || graph.is_simple())
+            && graph.vertices().all(fits)
+            && (self != Self::Planar || graph.genus() == 0)
     }
 }
 

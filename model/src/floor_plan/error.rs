@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::embedded_graph::ListError;
+use crate::{embedded_graph::ListError, similar::SimilarName};
 
 /// Why junctions and hallways are not a floor plan; names the culprits.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -46,12 +46,14 @@ pub enum FloorPlanError {
         least: f64,
     },
     /// A hallway ends at a junction that is not there.
-    #[error("there is no junction `{junction}`")]
+    #[error("there is no junction `{junction}`{similar}")]
     UnknownJunction {
         /// The hallway's index in the list of hallways.
         number: usize,
         /// The name that is no junction.
         junction: String,
+        /// A junction with a similar name.
+        similar: SimilarName,
     },
     /// A hallway ends where it begins.
     #[error("the hallway from `{junction}` to `{junction}` has no length")]

@@ -11,7 +11,10 @@ use std::collections::HashMap;
 pub use error::FloorPlanError;
 pub use floor::Rectangle;
 
-use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
+use crate::{
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    similar::SimilarName,
+};
 
 /// The largest difference between equal lengths, in metres.
 const TOLERANCE: f64 = 1e-6;
@@ -216,6 +219,7 @@ fn between_known_junctions(
         vertex.ok_or_else(|| FloorPlanError::UnknownJunction {
             number,
             junction: String::clone(name),
+            similar: SimilarName::of(name, junctions.iter().map(|(known, _)| known.as_str())),
         })
     };
     hallways

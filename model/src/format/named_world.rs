@@ -7,6 +7,7 @@ use crate::{
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
     marker::Marker,
+    similar::SimilarName,
     world::State,
 };
 
@@ -44,10 +45,12 @@ pub enum StartError {
         text: String,
     },
     /// No vertex has this name.
-    #[error("there is no vertex `{vertex}`")]
+    #[error("there is no vertex `{vertex}`{similar}")]
     UnknownVertex {
         /// The name.
         vertex: String,
+        /// A vertex with a similar name.
+        similar: SimilarName,
     },
     /// The vertex has no such neighbour.
     #[error("vertex `{vertex}` has no neighbour `{facing}`; it has {listed}")]
@@ -136,8 +139,10 @@ impl NamedWorld {
     /// # Errors
     /// Returns an error if there is no such dart, or if the edge is a loop and no end is named.
     pub fn start_from_names(&self, at: &str, facing: &str) -> Result<Dart, StartError> {
-        let vertex =
-            self.vertex_named(at).ok_or_else(|| StartError::UnknownVertex { vertex: shown(at) })?;
+        let vertex = self.vertex_named(at).ok_or_else(|| StartError::UnknownVertex {
+            vertex: shown(at),
+            similar: SimilarName::of(at, self.vertex_names.iter().map(String::as_str)),
+        })?;
         let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
         let mut bare_loop = false;
         for dart in self.graph.darts_of(vertex) {
@@ -298,6 +303,14 @@ mod tests {
         assert_eq!(
             message(&world, "v:\u{1b}[1m"),
             "no edge `\\u{1b}[1m` ends at vertex `v`; the edges there are b, c"
+        );
+        let long = NamedWorld {
+            vertex_names: ["corner", "tee", "end"].map(str::to_owned).to_vec(),
+            ..path()
+        };
+        assert_eq!(
+            message(&long, "corne:tee"),
+            "there is no vertex `corne`; did you mean `corner`?"
         );
         assert_eq!(message(&path(), "v1:v1"), "vertex `v1` has no neighbour `v1`; it has v0, v2");
     }

@@ -52,6 +52,11 @@ pub enum MatchEnd {
     EndOfTrace,
     /// To an event that it does not have.
     Departure(Departure),
+    /// To an event at which it would know more darts than the bound allows. What follows is not matched.
+    Bound {
+        /// The event.
+        event: TraceEvent,
+    },
 }
 
 /// The first event of a trace that no run of Algorithm 1 has.
@@ -95,8 +100,6 @@ pub enum StepPurpose {
     Contradicted(Contradiction),
     /// The step is not valid: the enumeration of choices is wrong.
     InvalidStep(InvalidStep),
-    /// More darts are known than the bound allows.
-    Bound,
 }
 
 impl fmt::Display for StepPurpose {
@@ -111,7 +114,6 @@ impl fmt::Display for StepPurpose {
             Self::Done => write!(out, "line 4: the map is complete"),
             Self::Contradicted(contradiction) => write!(out, "{contradiction}"),
             Self::InvalidStep(step) => write!(out, "{step}"),
-            Self::Bound => write!(out, "more darts are known than the bound allows"),
         }
     }
 }
@@ -211,9 +213,11 @@ pub fn match_algorithm(trace: &Trace, claim: TraceClaim, bound: usize) -> Algori
         _ => 2 * world.moves + 1,
     };
     let from = (from < trace.len()).then(|| trace.event(from).id);
-    let (reached, script) = found.unwrap_or_else(|| search.departure(trace));
+    let (reached, script) = found.unwrap_or_else(|| search.end(trace));
     let choices = match &reached {
-        MatchEnd::Departure(departure) if Some(departure.event.id) == from => {
+        MatchEnd::Departure(Departure { event, .. }) | MatchEnd::Bound { event }
+            if Some(event.id) == from =>
+        {
             MatchedChoices::Default
         }
         _ => MatchedChoices::Other { from },
@@ -289,6 +293,8 @@ struct Search {
     allowed: Vec<AllowedStep>,
     /// and the choices of the first of them.
     script: Vec<MappingChoice>,
+    /// Of the longest run that reached the bound on known darts: the index of the event, and the choices.
+    bound: Option<(usize, Vec<MappingChoice>)>,
 }
 
 impl Default for Search {
@@ -300,6 +306,7 @@ impl Default for Search {
             farthest: 0,
             allowed: Vec::new(),
             script: Vec::new(),
+            bound: None,
         }
     }
 }
@@ -389,7 +396,13 @@ impl Search {
                 (at_percept, None, StepPurpose::Contradicted(*contradiction))
             }
             MappingError::InvalidStep(step) => (at_percept, None, StepPurpose::InvalidStep(*step)),
-            MappingError::Bound { .. } => (at_percept, None, StepPurpose::Bound),
+            // What this run would do after it is not known.
+            MappingError::Bound { .. } => {
+                if self.bound.as_ref().is_none_or(|(farthest, _)| at_percept > *farthest) {
+                    self.bound = Some((at_percept, way.script.clone()));
+                }
+                return;
+            }
         };
         self.departed(event, AllowedStep { door, purpose }, &way.script);
     }
@@ -406,8 +419,12 @@ impl Search {
         }
     }
 
-    /// The departure of the longest runs.
-    fn departure(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
+    /// The bound, if a run reached it: that run may be longer than all others. Otherwise the departure of
+    /// the longest runs.
+    fn end(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
+        if let Some((event, script)) = self.bound {
+            return (MatchEnd::Bound { event: trace.event(event) }, script);
+        }
         let departure = Departure { event: trace.event(self.farthest), allowed: self.allowed };
         (MatchEnd::Departure(departure), self.script)
     }
@@ -504,13 +521,13 @@ mod tests {
     }
 
     #[test]
-    fn more_darts_than_the_bound_depart() {
+    fn a_run_that_reaches_the_bound_is_not_matched_further() {
         let trace = explored(&lollipop(), Dart(0));
-        let MatchEnd::Departure(departure) = match_algorithm(&trace, TraceClaim::Part, 3).reached
-        else {
-            panic!()
-        };
-        assert_eq!(departure.allowed[0].purpose, StepPurpose::Bound);
+        // The end of the tail has one dart, and the fork behind it has three.
+        for (bound, event) in [(0, 0), (3, 2)] {
+            let end = MatchEnd::Bound { event: trace.event(event) };
+            assert_eq!(match_algorithm(&trace, TraceClaim::Part, bound).reached, end);
+        }
     }
 
     proptest! {

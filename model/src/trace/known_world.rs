@@ -62,19 +62,39 @@ pub fn poses(
     starts: &[State],
     trace: &Trace,
 ) -> Poses {
+    poses_amended(graph, marker, starts, trace, |_| None)
+}
+
+/// Follows a trace in a known world. At a percept that fits no state, `amend` may return the percept that
+/// takes its place; it must be one that a candidate expects.
+#[must_use]
+pub fn poses_amended(
+    graph: &EmbeddedGraph,
+    marker: &impl Marker,
+    starts: &[State],
+    trace: &Trace,
+    mut amend: impl FnMut(&Misfit) -> Option<Percept>,
+) -> Poses {
     let mut states = starts.to_vec();
     let mut left = Vec::with_capacity(trace.len());
     let mut alone = Vec::with_capacity(trace.len());
     for (index, event) in trace.events().enumerate() {
         let judged = |&state: &State| (state, after(graph, marker, state, event.kind));
         let judged: Vec<_> = states.iter().map(judged).collect();
-        let fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
+        let mut fit: Vec<State> = judged.iter().filter_map(|(_, after)| after.ok()).collect();
         if fit.is_empty() {
             let why =
                 |(state, after): (State, Result<State, MisfitReason>)| Some((state, after.err()?));
             let candidates = judged.into_iter().filter_map(why).collect();
-            let misfit = Some(Misfit { event, moves: index / 2, candidates });
-            return Poses { left, alone, states, misfit };
+            let misfit = Misfit { event, moves: index / 2, candidates };
+            if let Some(expected) = amend(&misfit) {
+                let expects =
+                    |(_, why): &&(State, MisfitReason)| *why == MisfitReason::Percept { expected };
+                fit = misfit.candidates.iter().filter(expects).map(|&(state, _)| state).collect();
+            }
+            if fit.is_empty() {
+                return Poses { left, alone, states, misfit: Some(misfit) };
+            }
         }
         left.push(fit.len());
         alone.push(if let [state] = fit[..] { Some(state) } else { None });

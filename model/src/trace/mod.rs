@@ -14,9 +14,9 @@ pub use algorithm_match::{
     TraceWorld, TraceWorldError, match_algorithm,
 };
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
-pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses};
+pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
 pub use shorten::shortened;
-pub use world_search::{SmallestWorld, WorldSearch, smallest};
+pub use world_search::{SearchLimit, SmallestWorld, WorldSearch, smallest};
 
 use crate::percept::{Door, Percept};
 

@@ -17,8 +17,8 @@ use super::Trace;
 pub struct WorldSearch {
     /// The class of worlds.
     pub class: Class,
-    /// The largest number of edges.
-    pub edges: usize,
+    /// The largest number of edges, up to [`WorldSearch::MOST_EDGES`].
+    pub max_edges: usize,
     /// The largest number of steps.
     pub steps: u64,
 }
@@ -26,6 +26,9 @@ pub struct WorldSearch {
 impl WorldSearch {
     /// About a second's work.
     pub const STEPS: u64 = 500_000;
+
+    /// The largest number of edges that is ever tried: the depth of the search is the number of edges.
+    pub const MOST_EDGES: usize = 1000;
 }
 
 /// The smallest world that explains a trace.
@@ -38,16 +41,24 @@ pub enum SmallestWorld {
         /// The dart along which the marker lies, if it was perceived.
         marker: Option<Dart>,
     },
-    /// No world up to the bound explains the trace.
-    None {
-        /// The index of the first event that no world explains together with all before it.
-        event: usize,
-    },
-    /// The search was not finished; no world with at most this many edges explains the trace.
-    Unfinished {
+    /// No world with at most this many edges explains the trace. Larger ones were not searched.
+    NotFound {
         /// The number of edges.
         edges: usize,
+        /// Why the search ended.
+        limit: SearchLimit,
     },
+}
+
+/// Why a search ended without a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchLimit {
+    /// It reached the largest number of edges.
+    Edges,
+    /// It reached the largest number of steps.
+    Steps,
+    /// It was stopped.
+    Stopped,
 }
 
 /// Finds the smallest world of a class in which a robot from some start, with a directional marker
@@ -71,27 +82,19 @@ pub fn smallest(
     let known = known.filter(|map| map.vertex_count() > 0);
     let darts = darts.max(known.map_or(1, |map| map.dart_count() as u64));
     let least = usize::try_from(darts.div_ceil(2)).unwrap_or(usize::MAX);
-    if least > MOST_EDGES {
-        return SmallestWorld::Unfinished { edges: least - 1 };
-    }
-    for edges in least..=search.edges.min(MOST_EDGES) {
+    let most = search.max_edges.min(WorldSearch::MOST_EDGES);
+    for edges in least..=most {
         growing.edges = edges;
         if growing.begin(known) {
             let (graph, marker) = (growing.world.graph(), growing.world.marker.map(Dart));
             return SmallestWorld::World { graph, marker };
         }
-        if growing.stopped {
-            return SmallestWorld::Unfinished { edges: edges - 1 };
+        if let Some(limit) = growing.stopped {
+            return SmallestWorld::NotFound { edges: edges - 1, limit };
         }
     }
-    if search.edges > MOST_EDGES {
-        return SmallestWorld::Unfinished { edges: MOST_EDGES };
-    }
-    SmallestWorld::None { event: growing.farthest }
+    SmallestWorld::NotFound { edges: most.max(least - 1), limit: SearchLimit::Edges }
 }
-
-/// The largest number of edges ever tried: the depth of the search is the number of edges.
-const MOST_EDGES: usize = 1000;
 
 /// A world that grows, and the state of the search.
 struct Growing<'t> {
@@ -100,9 +103,7 @@ struct Growing<'t> {
     watch: &'t dyn Watch,
     edges: usize,
     steps: u64,
-    stopped: bool,
-    /// The first event that no world has explained yet.
-    farthest: usize,
+    stopped: Option<SearchLimit>,
     world: Draft,
 }
 
@@ -227,7 +228,7 @@ impl Draft {
 impl<'t> Growing<'t> {
     fn new(trace: &'t Trace, class: Class, watch: &'t dyn Watch) -> Self {
         let world = Draft::default();
-        Self { trace, class, watch, edges: 0, steps: 0, stopped: false, farthest: 0, world }
+        Self { trace, class, watch, edges: 0, steps: 0, stopped: None, world }
     }
 
     /// Explains the whole trace with the present number of edges.
@@ -276,7 +277,6 @@ impl<'t> Growing<'t> {
     fn explain(&mut self, mut at: At) -> bool {
         // Along known edges there is no choice.
         let leaving = loop {
-            self.farthest = self.farthest.max(2 * at.moves + 1);
             let Some(&door) = self.trace.doors().get(at.moves) else {
                 return self.complete(0);
             };
@@ -284,7 +284,6 @@ impl<'t> Growing<'t> {
             if door.0 >= self.world.degree(vertex) {
                 return false;
             }
-            self.farthest = self.farthest.max(2 * at.moves + 2);
             let dart = self.world.behind(at.pose, door.0);
             let opposite = self.world.opposite[dart as usize];
             if opposite == FREE {
@@ -335,10 +334,11 @@ impl<'t> Growing<'t> {
 
     /// Joins what is left over after everything is explained, from a dart on.
     fn complete(&mut self, from: u32) -> bool {
-        self.farthest = self.trace.len();
         if self.world.free == 0 {
             let exact = self.world.vertex.len() == 2 * self.edges;
-            return exact && (self.class != Class::Planar || self.world.graph().genus() == 0);
+            // What Algorithm 1 knows may be outside of the class.
+            return exact
+                && (self.class == Class::Multigraph || self.class.contains(&self.world.graph()));
         }
         if self.is_over() {
             return false;
@@ -389,11 +389,13 @@ impl<'t> Growing<'t> {
 
     /// Whether there are too many edges, or the search is to end.
     fn is_over(&mut self) -> bool {
-        if self.steps == 0 || self.watch.stop() {
-            self.stopped = true;
+        if self.watch.stop() {
+            self.stopped = Some(SearchLimit::Stopped);
+        } else if self.steps == 0 {
+            self.stopped = Some(SearchLimit::Steps);
         }
         self.steps = self.steps.saturating_sub(1);
-        self.stopped || self.world.edges() > self.edges
+        self.stopped.is_some() || self.world.edges() > self.edges
     }
 }
 
@@ -417,7 +419,7 @@ mod tests {
     };
 
     fn search(class: Class, edges: usize) -> WorldSearch {
-        WorldSearch { class, edges, steps: 10_000_000 }
+        WorldSearch { class, max_edges: edges, steps: 10_000_000 }
     }
 
     /// The number of edges of the smallest world, by trying them all: every start, with the marker
@@ -464,13 +466,13 @@ mod tests {
     }
 
     #[test]
-    fn an_impossible_event_is_reported() {
+    fn no_world_explains_a_vertex_that_changes() {
         let graph = lollipop();
         let mut trace = walked(&graph, Dart(0), &[Door(0), Door(0), Door(0)]);
         // The end of the tail is left and come back to, and looks different.
         trace.percepts[2].degree = 3;
         let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
-        assert_eq!(found, SmallestWorld::None { event: 4 });
+        assert_eq!(found, SmallestWorld::NotFound { edges: 6, limit: SearchLimit::Edges });
     }
 
     #[test]
@@ -481,14 +483,26 @@ mod tests {
         // An end and a corner are not one vertex.
         let trace = Trace::new([percept(1), TraceEventKind::Door(Door(0)), percept(2)]).unwrap();
         let found = smallest(&trace, None, search(Class::Multigraph, 6), &());
-        assert_eq!(found, SmallestWorld::None { event: 2 });
+        assert_eq!(found, SmallestWorld::NotFound { edges: 6, limit: SearchLimit::Edges });
     }
 
     #[test]
-    fn a_search_that_reaches_its_limit_is_unfinished() {
+    fn a_search_names_the_limit_that_it_reached() {
         let trace = explored(&lollipop(), Dart(0));
+        // The world of the trace has four edges.
+        let limited = |search| smallest(&trace, None, search, &());
+        assert_eq!(
+            limited(search(Class::Multigraph, 3)),
+            SmallestWorld::NotFound { edges: 3, limit: SearchLimit::Edges }
+        );
+        // Vertices of degrees 1, 2 and 3 have three edges, which no bound makes fewer.
+        assert_eq!(
+            limited(search(Class::Multigraph, 1)),
+            SmallestWorld::NotFound { edges: 2, limit: SearchLimit::Edges }
+        );
         let short = WorldSearch { steps: 3, ..search(Class::Multigraph, 6) };
-        assert!(matches!(smallest(&trace, None, short, &()), SmallestWorld::Unfinished { .. }));
+        let SmallestWorld::NotFound { limit, .. } = limited(short) else { panic!() };
+        assert_eq!(limit, SearchLimit::Steps);
     }
 
     proptest! {
@@ -544,8 +558,8 @@ mod tests {
                     prop_assert!(explains(&graph, marker, &trace));
                     Some(graph.edge_count())
                 }
-                SmallestWorld::None { .. } => None,
-                SmallestWorld::Unfinished { .. } => panic!("it was cut short"),
+                SmallestWorld::NotFound { limit: SearchLimit::Edges, .. } => None,
+                other => panic!("{other:?}"),
             };
             prop_assert_eq!(edges, by_trying_all(&trace, class, 5));
         }

@@ -21,13 +21,13 @@ impl RunEvents {
             let mut fault = |cause| faults.push((place, cause));
             match &event.kind {
                 CheckedKind::Arrival { arrival, entry_off } => {
-                    let Arrival { percept, number, form, .. } = arrival;
+                    let Arrival { degree, number, form, .. } = *arrival;
                     if let Some(recorded) = number.filter(|&number| number != moves) {
                         fault(DivergenceCause::Number { expected: moves, recorded });
                     }
-                    let doors = form.map_or(percept.degree, JunctionShape::degree);
-                    if doors != percept.degree {
-                        fault(DivergenceCause::Form { degree: percept.degree, doors });
+                    let doors = form.map_or(degree, JunctionShape::degree);
+                    if doors != degree {
+                        fault(DivergenceCause::Form { degree, doors });
                     }
                     if let Some(off) = entry_off.filter(|&off| off > OFF) {
                         fault(DivergenceCause::Entry { off });

@@ -2,7 +2,9 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
-use toposlam_model::trace::{Departure, Misfit, TraceEventKind, TraceOrderError};
+use toposlam_model::trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError};
+
+use super::impossible::Impossibility;
 
 /// The first event that the specification does not allow.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,10 +90,12 @@ pub enum DivergenceCause {
     Undecided,
     /// It does not fit the known world.
     World(Misfit),
-    /// It fits no world.
+    /// No world of any size explains it together with all before it.
     NoWorld {
-        /// The largest number of edges that was searched.
-        edges: usize,
+        /// The event.
+        event: TraceEvent,
+        /// Why there is none.
+        why: Impossibility,
     },
     /// No run of Algorithm 1 has it.
     Algorithm(Departure),
@@ -122,14 +126,14 @@ impl DivergenceCause {
                 FaultClass::Log
             }
             Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
-            Self::Entry { .. } | Self::Undecided | Self::NoWorld { .. } => FaultClass::Perception,
+            Self::Entry { .. } | Self::Undecided => FaultClass::Perception,
             Self::Unfinished { .. } | Self::Map | Self::WrongMap => FaultClass::Algorithm,
-            Self::World(Misfit { event, .. }) | Self::Algorithm(Departure { event, .. }) => {
-                match event.kind {
-                    TraceEventKind::Percept(_) => FaultClass::Perception,
-                    TraceEventKind::Door(_) => FaultClass::Algorithm,
-                }
-            }
+            Self::World(Misfit { event, .. })
+            | Self::Algorithm(Departure { event, .. })
+            | Self::NoWorld { event, .. } => match event.kind {
+                TraceEventKind::Percept(_) => FaultClass::Perception,
+                TraceEventKind::Door(_) => FaultClass::Algorithm,
+            },
         }
     }
 
@@ -212,8 +216,8 @@ impl fmt::Display for DivergenceCause {
                     write!(out, "it fits none of the {poses} candidate poses in the known world")
                 }
             },
-            Self::NoWorld { edges } => {
-                write!(out, "no world with at most {edges} edges explains the log up to here")
+            Self::NoWorld { why, .. } => {
+                write!(out, "no world of any size explains the log up to here: {why}")
             }
             Self::Algorithm(departure) => out.write_str(match departure.event.kind {
                 TraceEventKind::Percept(_) => "this percept contradicts the percepts before it",

@@ -3,7 +3,8 @@
 
 use thiserror::Error;
 use toposlam_model::{
-    percept::Door,
+    marker::{Marker, NoMarker},
+    percept::{Door, Percept, Sighting},
     trace::{Trace, TraceEvent, TraceEventKind, TraceOrderError},
 };
 
@@ -88,15 +89,42 @@ pub struct OutOfOrder {
     pub before: u64,
 }
 
+/// An arrival that does not record whether the robot saw its marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("its percepts do not record whether the robot saw its marker")]
+pub struct MarkerNotRecorded;
+
 impl RunEvents {
-    /// The trace of the arrivals and doors. The id of an event is its index here.
+    /// Completes the arrivals that do not record whether the marker was seen: without a marker, none was.
+    ///
+    /// # Errors
+    /// Returns an error if there is such an arrival of a robot with a marker.
+    pub fn complete_sightings(&mut self, marker: &dyn Marker) -> Result<(), MarkerNotRecorded> {
+        for event in &mut self.events {
+            if let CheckedKind::Arrival { arrival, .. } = &mut event.kind
+                && arrival.sighting.is_none()
+            {
+                if marker.name() != NoMarker.name() {
+                    return Err(MarkerNotRecorded);
+                }
+                arrival.sighting = Some(Sighting::Nothing);
+            }
+        }
+        Ok(())
+    }
+
+    /// The trace of the arrivals and doors. The id of an event is its index here. An arrival that does not
+    /// record whether the marker was seen counts as one without it.
     ///
     /// # Errors
     /// Returns the first event that is out of turn.
     pub fn trace(&self) -> Result<Trace, TraceOrderError> {
         let event = |(id, event): (usize, &CheckedEvent)| {
             let kind = match &event.kind {
-                CheckedKind::Arrival { arrival, .. } => TraceEventKind::Percept(arrival.percept),
+                CheckedKind::Arrival { arrival: Arrival { degree, sighting, .. }, .. } => {
+                    let sighting = sighting.unwrap_or(Sighting::Nothing);
+                    TraceEventKind::Percept(Percept { degree: *degree, sighting })
+                }
                 CheckedKind::Door { door, .. } => TraceEventKind::Door(*door),
                 CheckedKind::Aside { .. } | CheckedKind::TurnedBack | CheckedKind::Undecided => {
                     return None;

@@ -8,7 +8,7 @@ use toposlam_model::{
         scene::{JunctionView, Place, Scene, wrapped},
         visit::{JunctionEstimate, JunctionShape},
     },
-    percept::Door,
+    percept::{Door, Percept},
 };
 
 use super::{
@@ -163,7 +163,14 @@ impl InferredEvents {
             self.push(*visited, CheckedKind::Undecided);
             return None;
         };
-        let arrival = Arrival { number: None, percept, form: Some(form), entry: Some(*entry) };
+        let Percept { degree, sighting } = percept;
+        let arrival = Arrival {
+            number: None,
+            degree,
+            sighting: Some(sighting),
+            form: Some(form),
+            entry: Some(*entry),
+        };
         let kind = CheckedKind::Arrival { arrival, entry_off: None };
         self.push(*visited, kind);
         Some((form, *entry))

@@ -1,26 +1,29 @@
 //! Judges a recorded run: its consistency, a known world or the smallest one, and Algorithm 1.
 //! Sections 2.1 and 2.3.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
+    embedded_graph::EmbeddedGraph,
     enumerate::Watch,
-    mapping::{Contradiction, FACING},
-    percept::Percept,
+    mapping::FACING,
+    marker::{Directional, Marker},
     trace::{
-        AlgorithmCoverage, AlgorithmMatch, Departure, MatchEnd, Misfit, MisfitReason, Poses,
-        SmallestWorld, StepPurpose, Trace, TraceClaim, TraceOrderError, WorldSearch,
-        match_algorithm, poses, smallest,
+        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, SearchLimit, SmallestWorld, Trace,
+        TraceClaim, TraceOrderError, WorldSearch, match_algorithm, poses, smallest,
     },
+    world::GraphWorld,
 };
 
 use super::{
     divergence::{Divergence, DivergenceCause, FaultClass},
-    events::{CheckedEvent, CheckedKind, OutOfOrder, RunEvents},
+    events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
+    impossible::first_impossible,
     known_world::KnownWorld,
     quirks::Quirks,
+    tolerance::Tolerance,
 };
 
 /// What a run is checked against.
@@ -28,6 +31,8 @@ use super::{
 pub struct ConformConfig<'w> {
     /// The world, if it is known.
     pub world: Option<KnownWorld<'w>>,
+    /// The kind of marker.
+    pub marker: &'static dyn Marker,
     /// What chose the doors.
     pub driver: RunDriver,
     /// The worlds to search if none is known.
@@ -56,7 +61,7 @@ pub struct Judgement {
     pub divergence: Option<Divergence>,
     /// The candidate poses in the known world.
     pub poses: Option<Poses>,
-    /// The smallest world that explains the log, if none is known.
+    /// The smallest world that explains the log, if none is known and one of any size may.
     pub smallest: Option<SmallestWorld>,
     /// How far Algorithm 1 follows the log.
     pub algorithm: Option<AlgorithmMatch>,
@@ -117,12 +122,41 @@ pub enum JudgeError {
     /// The events are out of order.
     #[error(transparent)]
     OutOfOrder(#[from] OutOfOrder),
+    /// The percepts do not record the marker.
+    #[error(transparent)]
+    Marker(#[from] MarkerNotRecorded),
+    /// Algorithm 1 does not run with this marker.
+    #[error("Algorithm 1 needs the directional marker, not `{0}`")]
+    Algorithm(&'static str),
+}
+
+/// A limit that was reached before everything was checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReachedLimit {
+    /// No world with at most this many edges explains the log; larger ones were not searched.
+    Edges {
+        /// The number of edges.
+        edges: usize,
+    },
+    /// No world with at most this many edges explains the log; then the search reached its last step.
+    Steps {
+        /// The number of edges.
+        edges: usize,
+    },
+    /// The search was stopped.
+    Stopped,
+    /// Algorithm 1 would know more darts than the bound allows.
+    Darts {
+        /// The index of the event.
+        event: usize,
+    },
 }
 
 /// Checks a run against the specification. A tolerated event is replaced by the expected one.
 ///
 /// # Errors
-/// Returns an error if there is no event, or if they are out of order.
+/// Returns an error if there is no event, if they are out of order, if they do not record the marker, or if
+/// Algorithm 1 does not run with the marker.
 pub fn judge(
     mut events: RunEvents,
     question: &ConformConfig,
@@ -130,69 +164,28 @@ pub fn judge(
     watch: &dyn Watch,
 ) -> Result<Judgement, JudgeError> {
     events.check_order()?;
-    let mut tolerated: Vec<(Divergence, usize)> = Vec::new();
+    events.complete_sightings(question.marker)?;
+    if question.driver == RunDriver::Algorithm1 && question.marker.name() != Directional.name() {
+        return Err(JudgeError::Algorithm(question.marker.name()));
+    }
+    let mut tolerance = Tolerance::new(events, quirks);
     loop {
-        let mut judgement = Judgement::new(&events, question, &tolerated, watch)?;
-        let found = judgement.divergence.clone().and_then(|divergence| {
-            let quirk = quirks.tolerating(&divergence)?;
-            amend(&mut events, &divergence).then_some((divergence, quirk))
-        });
-        let Some(found) = found else {
-            judgement.tolerated = tolerated;
-            return Ok(judgement);
-        };
-        tolerated.push(found);
-    }
-}
-
-/// Replaces an event by the expected one; `false` if that is not known.
-fn amend(events: &mut RunEvents, divergence: &Divergence) -> bool {
-    let expected = match &divergence.cause {
-        DivergenceCause::World(misfit) => expected_by(misfit),
-        DivergenceCause::Algorithm(departure) => expected_after(departure),
-        DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => return false,
-        // It is skipped.
-        _ => return true,
-    };
-    let Some(expected) = expected else { return false };
-    match events.events.get_mut(divergence.event).map(|event| &mut event.kind) {
-        Some(CheckedKind::Arrival { arrival, .. }) => {
-            arrival.percept = expected;
-            // Its shape belongs to the tolerated percept.
-            arrival.form = None;
-            true
+        let judgement = Judgement::new(tolerance.events(), question, tolerance.noted(), watch)?;
+        if !tolerance.grows(&judgement, question) {
+            return Ok(Judgement { tolerated: tolerance.finish(), ..judgement });
         }
-        _ => false,
     }
-}
-
-/// The percept that all candidate poses expect.
-fn expected_by(misfit: &Misfit) -> Option<Percept> {
-    let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
-        MisfitReason::Percept { expected } => Some(*expected),
-        MisfitReason::NoSuchDoor { .. } => None,
-    });
-    let first = expected.next()??;
-    expected.all(|other| other == Some(first)).then_some(first)
-}
-
-/// The percept that Algorithm 1 expects.
-fn expected_after(departure: &Departure) -> Option<Percept> {
-    departure.allowed.iter().find_map(|allowed| match allowed.purpose {
-        StepPurpose::Contradicted(
-            Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
-        ) => Some(expected),
-        _ => None,
-    })
 }
 
 impl Judgement {
     fn new(
         events: &RunEvents,
         question: &ConformConfig,
-        tolerated: &[(Divergence, usize)],
+        tolerated: &BTreeSet<(usize, &'static str)>,
         watch: &dyn Watch,
     ) -> Result<Self, JudgeError> {
+        #[cfg(test)]
+        JUDGED.set(JUDGED.get() + 1);
         let mut found = Found { tolerated, first: None };
         let trace = match events.trace() {
             Ok(all) => all,
@@ -224,9 +217,9 @@ impl Judgement {
         };
         let trace = &judgement.trace;
         if let Some(known) = &question.world {
-            let poses = poses(known.graph, &known.marker, &known.states, trace);
+            let poses = poses(known.graph, &question.marker, &known.states, trace);
             if let Some(misfit) = &poses.misfit {
-                let fault = known.fault(trace, misfit);
+                let fault = known.fault(trace, misfit, question.marker);
                 found.note_as(misfit.event.id, DivergenceCause::World(misfit.clone()), fault);
             }
             judgement.poses = Some(poses);
@@ -240,7 +233,7 @@ impl Judgement {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
                 }
                 MatchEnd::Mapped => explored = followed.exploration.map().complete().cloned(),
-                MatchEnd::EndOfTrace => {}
+                MatchEnd::EndOfTrace | MatchEnd::Bound { .. } => {}
             }
             if in_turn {
                 for cause in events.false_ending(&followed, question.world.as_ref()) {
@@ -254,26 +247,21 @@ impl Judgement {
             found.note(len, cause);
         }
         if question.world.is_none() {
-            let darts = judgement
-                .algorithm
-                .as_ref()
-                .map_or(0, |followed| followed.exploration.map().dart_count());
-            // The bound must exceed what is already known.
-            let edges = question.search.edges.max(darts.div_ceil(2) + BEYOND);
-            let search = WorldSearch { edges, ..question.search };
-            // A complete map is the only world that explains the run; an incomplete one is part of it.
-            let smallest = if let Some(graph) = explored {
-                SmallestWorld::World { graph, marker: Some(FACING) }
+            let class = question.search.class;
+            if let Some((event, why)) = first_impossible(trace, question.marker, class) {
+                let event = trace.event(event);
+                found.note(event.id, DivergenceCause::NoWorld { event, why });
+            } else if let Some(graph) = explored
+                .filter(|graph| class.contains(graph) && explains(graph, question.marker, trace))
+            {
+                // A complete map is the only world that explains the run.
+                judgement.smallest = Some(SmallestWorld::World { graph, marker: Some(FACING) });
             } else {
+                // An incomplete one is part of every world that does.
                 let followed = judgement.algorithm.as_ref();
                 let known = followed.map(|followed| followed.exploration.map());
-                smallest(trace, known, search, watch)
-            };
-            if let SmallestWorld::None { event } = smallest {
-                // Everything before this event is explained.
-                found.note(trace.event(event).id, DivergenceCause::NoWorld { edges });
+                judgement.smallest = Some(smallest(trace, known, question.search, watch));
             }
-            judgement.smallest = Some(smallest);
         }
         judgement.divergence = found.first;
         Ok(judgement)
@@ -283,14 +271,31 @@ impl Judgement {
     #[must_use]
     pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
-            return ConformVerdict::Diverged;
-        }
-        let searched = !matches!(self.smallest, Some(SmallestWorld::Unfinished { .. }));
-        if searched && self.events.is_whole(self.algorithm.is_some()) {
+            ConformVerdict::Diverged
+        } else if self.limits().is_empty() && self.events.is_whole(self.algorithm.is_some()) {
             ConformVerdict::Conforms
         } else {
             ConformVerdict::Incomplete
         }
+    }
+
+    /// The limits that were reached.
+    #[must_use]
+    pub fn limits(&self) -> Vec<ReachedLimit> {
+        let mut limits = Vec::new();
+        if let Some(SmallestWorld::NotFound { edges, limit }) = self.smallest {
+            limits.push(match limit {
+                SearchLimit::Edges => ReachedLimit::Edges { edges },
+                SearchLimit::Steps => ReachedLimit::Steps { edges },
+                SearchLimit::Stopped => ReachedLimit::Stopped,
+            });
+        }
+        if let Some(MatchEnd::Bound { event }) =
+            self.algorithm.as_ref().map(|followed| &followed.reached)
+        {
+            limits.push(ReachedLimit::Darts { event: event.id });
+        }
+        limits
     }
 
     /// The number of candidate poses after the last event that fits; 1 if the world was not known and one
@@ -305,9 +310,16 @@ impl Judgement {
     }
 }
 
+/// Whether a map is a world in which the walk of a trace has its percepts.
+fn explains(map: &EmbeddedGraph, marker: &'static dyn Marker, trace: &Trace) -> bool {
+    let start = GraphWorld::with_marker(map, marker, FACING).state();
+    poses(map, &marker, &[start], trace).misfit.is_none()
+}
+
 /// The first divergence that is not tolerated.
 struct Found<'t> {
-    tolerated: &'t [(Divergence, usize)],
+    /// The events and causes that are.
+    tolerated: &'t BTreeSet<(usize, &'static str)>,
     first: Option<Divergence>,
 }
 
@@ -319,17 +331,18 @@ impl Found<'_> {
 
     /// Of two at the same event, the first to be noted counts.
     fn note_as(&mut self, event: usize, cause: DivergenceCause, fault: FaultClass) {
-        let same = |other: &Divergence| other.event == event && other.cause.name() == cause.name();
-        let tolerated = self.tolerated.iter().any(|(tolerated, _)| same(tolerated));
         let earlier = self.first.as_ref().is_none_or(|first| event < first.event);
-        if earlier && !tolerated {
+        if earlier && !self.tolerated.contains(&(event, cause.name())) {
             self.first = Some(Divergence { event, cause, fault });
         }
     }
 }
 
-/// Worlds with at least this many more edges than Algorithm 1 knows are tried.
-const BEYOND: usize = 4;
+#[cfg(test)]
+thread_local! {
+    /// The number of times that this thread has judged a whole run.
+    pub(super) static JUDGED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
 
 /// The number of arrivals at each junction shape, seen from the entry door.
 fn junctions(events: &RunEvents) -> BTreeMap<JunctionShape, u64> {

@@ -17,8 +17,6 @@ use super::divergence::FaultClass;
 pub struct KnownWorld<'w> {
     /// The embedded graph.
     pub graph: &'w EmbeddedGraph,
-    /// The kind of marker.
-    pub marker: &'static dyn Marker,
     /// The possible states of the robot and the marker at the start.
     pub states: Vec<State>,
 }
@@ -26,26 +24,31 @@ pub struct KnownWorld<'w> {
 impl KnownWorld<'_> {
     /// The fault class of a misfit. It is motion if the following events fit better from another pose than
     /// after one wrong percept.
-    pub(super) fn fault(&self, trace: &Trace, misfit: &Misfit) -> FaultClass {
+    pub(super) fn fault(
+        &self,
+        trace: &Trace,
+        misfit: &Misfit,
+        marker: &'static dyn Marker,
+    ) -> FaultClass {
         let TraceEventKind::Percept(perceived) = misfit.event.kind else {
             return FaultClass::Algorithm;
         };
         let moves = misfit.moves;
         let perceived_wrongly = misfit.candidates.iter().filter_map(|&(state, why)| {
             let MisfitReason::Percept { expected } = why else { return None };
-            Some(self.fitting(&ahead(trace, moves, expected), &[state]))
+            Some(self.fitting(&ahead(trace, moves, expected), &[state], marker))
         });
         let perceived_wrongly = perceived_wrongly.max().unwrap_or(0);
         let placed = misfit.candidates.iter().map(|(state, _)| state.placed);
         let elsewhere = |placed| self.graph.darts().map(move |pose| State { pose, placed });
         let elsewhere: Vec<_> = placed.take(1).flat_map(elsewhere).collect();
-        let came_elsewhere = self.fitting(&ahead(trace, moves, perceived), &elsewhere);
+        let came_elsewhere = self.fitting(&ahead(trace, moves, perceived), &elsewhere, marker);
         if came_elsewhere > perceived_wrongly { FaultClass::Motion } else { FaultClass::Perception }
     }
 
     /// The number of events that fit.
-    fn fitting(&self, trace: &Trace, states: &[State]) -> usize {
-        poses(self.graph, &self.marker, states, trace).left.len()
+    fn fitting(&self, trace: &Trace, states: &[State], marker: &'static dyn Marker) -> usize {
+        poses(self.graph, &marker, states, trace).left.len()
     }
 
     /// Whether a map is this world from one of its starts.

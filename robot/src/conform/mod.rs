@@ -5,24 +5,30 @@ mod consistency;
 mod divergence;
 mod events;
 mod extract;
+mod impossible;
 mod inferred_events;
 mod judgement;
 mod known_world;
 mod quirks;
 mod recorded_events;
 mod shorten;
+mod tolerance;
 
 #[cfg(test)]
 mod tests;
 
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
-pub use events::{CheckedEvent, CheckedKind, EventSource, OutOfOrder, RunEvents};
+pub use events::{
+    CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
+};
 pub use extract::{
     Evidence, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
 };
+pub use impossible::{Impossibility, first_impossible};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{
-    ConformConfig, ConformVerdict, JudgeError, Judgement, RunCoverage, RunDriver, judge,
+    ConformConfig, ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, RunDriver,
+    judge,
 };
 pub use known_world::KnownWorld;
 pub use quirks::{Quirk, QuirkError, Quirks};

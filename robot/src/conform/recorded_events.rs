@@ -110,15 +110,15 @@ pub fn direction(form: JunctionShape, entry: f64, door: Door) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use toposlam_model::percept::{Percept, Sighting};
+    use toposlam_model::percept::Sighting;
 
     use super::*;
 
     fn arrival(number: u32, form: [bool; 4], entry: f64) -> EventKind {
         let form = JunctionShape(form);
-        let percept = Percept { degree: form.degree(), sighting: Sighting::Nothing };
+        let (degree, sighting) = (form.degree(), Some(Sighting::Nothing));
         let (number, form, entry) = (Some(number), Some(form), Some(entry));
-        EventKind::Arrival(Arrival { number, percept, form, entry })
+        EventKind::Arrival(Arrival { number, degree, sighting, form, entry })
     }
 
     /// A robot that comes to a T by its stem, leaves by a door as the log says, and drives somewhere.

@@ -4,7 +4,8 @@ use std::mem::discriminant;
 
 use toposlam_model::{
     enumerate::Watch,
-    trace::{Trace, TraceEvent, TraceEventKind, shortened},
+    percept::Percept,
+    trace::{MisfitReason, Trace, TraceEvent, TraceEventKind, WorldSearch, shortened},
 };
 
 use super::{
@@ -21,6 +22,8 @@ use crate::record::Arrival;
 pub struct ShortenedRun {
     /// Its events.
     pub events: RunEvents,
+    /// The index of the event that diverges.
+    pub event: usize,
     /// Whether it diverges in any world and with any driver.
     pub by_itself: bool,
 }
@@ -37,10 +40,13 @@ pub fn shorten_run(
     watch: &dyn Watch,
 ) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
-    let anyone = ConformConfig { world: None, driver: RunDriver::Anyone, ..question.clone() };
+    // A world that explains a shorter log is not a divergence.
+    let search = WorldSearch { max_edges: 0, ..question.search };
+    let question = &ConformConfig { search, ..question.clone() };
+    let anyone = question.clone().by_itself();
     let judged = |events: &RunEvents, question: &ConformConfig| {
         let judgement = judge(events.clone(), question, &Quirks::default(), watch).ok()?;
-        judgement.divergence.filter(|found| alike(found, divergence))
+        judgement.divergence.filter(|found| found.is_like(divergence))
     };
     match divergence.cause {
         DivergenceCause::World(_)
@@ -55,7 +61,9 @@ pub fn shorten_run(
             let cut = judgement.trace.up_to(last);
             let short = shortened(&cut, shows);
             let events = RunEvents { has_head: judgement.events.has_head, ..of_trace(&short) };
-            judged(&events, question).map(|_| ShortenedRun { events, by_itself: false })
+            let event = events.events.len() - 1;
+            let found = judged(&events, question)?;
+            (found.event == event).then_some(ShortenedRun { events, event, by_itself: false })
         }
         DivergenceCause::Unfinished { .. }
         | DivergenceCause::Map
@@ -67,8 +75,8 @@ pub fn shorten_run(
             (0..=divergence.event).rev().find_map(|first| {
                 let events = judgement.events.from(first, last)?;
                 let found = judged(&events, &anyone)?;
-                let same = found.event == divergence.event - first;
-                same.then_some(ShortenedRun { events, by_itself: true })
+                let event = divergence.event - first;
+                (found.event == event).then_some(ShortenedRun { events, event, by_itself: true })
             })
         }
     }
@@ -99,14 +107,31 @@ pub fn shorten_frames<'s>(
 /// The largest number of scenes that are kept.
 const FAR: usize = 400;
 
-/// Whether two divergences have the same cause, and for percepts the same expectation.
-fn alike(one: &Divergence, other: &Divergence) -> bool {
-    match (&one.cause, &other.cause) {
-        (DivergenceCause::World(one), DivergenceCause::World(other)) => {
-            let mut why = one.candidates.iter().map(|(_, why)| why);
-            why.all(|why| other.candidates.iter().any(|(_, other)| other == why))
-        }
-        (one, other) => one.name() == other.name(),
+impl Divergence {
+    /// Whether two divergences have the same cause and class, and for percepts the same expectation.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        let same = match (&self.cause, &other.cause) {
+            (DivergenceCause::World(one), DivergenceCause::World(other)) => {
+                let expected = |(_, why): &(_, MisfitReason)| *why;
+                let other: Vec<_> = other.candidates.iter().map(expected).collect();
+                one.candidates.iter().map(expected).all(|why| other.contains(&why))
+            }
+            (
+                DivergenceCause::NoWorld { why: one, .. },
+                DivergenceCause::NoWorld { why: other, .. },
+            ) => one.is_like(other),
+            (one, other) => one.name() == other.name(),
+        };
+        same && self.fault == other.fault
+    }
+}
+
+impl ConformConfig<'_> {
+    /// The same without what is outside of the log: in any world, with any driver.
+    #[must_use]
+    pub fn by_itself(self) -> Self {
+        Self { world: None, driver: RunDriver::Anyone, ..self }
     }
 }
 
@@ -117,7 +142,9 @@ fn of_trace(trace: &Trace) -> RunEvents {
         let source = EventSource { time: index as u64 * 1_000_000_000, ..EventSource::default() };
         let kind = match event.kind {
             TraceEventKind::Percept(percept) => {
-                let arrival = Arrival { percept, number: Some(moves), form: None, entry: None };
+                let Percept { degree, sighting } = percept;
+                let (number, sighting) = (Some(moves), Some(sighting));
+                let arrival = Arrival { number, degree, sighting, form: None, entry: None };
                 CheckedKind::Arrival { arrival, entry_off: None }
             }
             TraceEventKind::Door(door) => {

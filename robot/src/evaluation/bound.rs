@@ -1,4 +1,4 @@
-//! Upper bounds of rates from counted cases.
+//! Bounds of rates from counted cases.
 
 /// The confidence of a bound.
 const CONFIDENCE: f64 = 0.95;
@@ -23,6 +23,21 @@ pub fn upper_bound(seen: usize, of: usize) -> f64 {
         }
     }
     high
+}
+
+/// The lower bound, with a confidence of 95 %, of the rate of an event that was seen in `seen` of `of`
+/// independent cases. It is exact, as [`upper_bound`].
+#[must_use]
+pub fn lower_bound(seen: usize, of: usize) -> f64 {
+    if seen == 0 { 0.0 } else { 1.0 - upper_bound(of.saturating_sub(seen), of) }
+}
+
+/// The least number of cases, none of them the event, after which the upper bound of its rate is at most
+/// `limit`.
+#[must_use]
+#[expect(clippy::cast_sign_loss, reason = "both logarithms are negative")]
+pub fn cases_needed(limit: f64) -> usize {
+    ((1.0 - CONFIDENCE).ln() / (-limit).ln_1p()).ceil() as usize
 }
 
 /// The probability of at most `seen` events if the rate is `rate`, at or above `seen / of`.
@@ -80,6 +95,25 @@ mod tests {
         // freedom: 4.7439, 6.2958, 7.7537, 16.962 (Poisson tables).
         for (seen, expected) in [(1, 4.7439), (2, 6.2958), (3, 7.7537), (10, 16.962)] {
             close(upper_bound(seen, 10_000_000) * 1e7, expected, 1e-4);
+        }
+    }
+
+    #[test]
+    fn an_event_and_its_absence_have_the_same_bounds() {
+        // By the incomplete beta function of mpmath, as above: the bounds of 9 of 10 and of 95 of 100.
+        close(lower_bound(1, 10), 0.005_116_196_891_823_7, 1e-9);
+        close(lower_bound(5, 100), 0.019_905_563_662_172, 1e-9);
+        assert_eq!(
+            (lower_bound(0, 10), lower_bound(0, 0), lower_bound(5, 5)),
+            (0.0, 0.0, 1.0 - upper_bound(0, 5))
+        );
+    }
+
+    #[test]
+    fn so_many_cases_without_a_failure_show_a_limit() {
+        for (limit, cases) in [(0.5, 5), (0.05, 59), (0.01, 299), (0.005, 598), (0.001, 2995)] {
+            assert_eq!(cases_needed(limit), cases);
+            assert!(upper_bound(0, cases) <= limit && upper_bound(0, cases - 1) > limit, "{limit}");
         }
     }
 

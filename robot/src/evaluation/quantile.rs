@@ -51,6 +51,12 @@ impl ErrorSample {
         self.values.len()
     }
 
+    /// The number of values greater than a limit.
+    #[must_use]
+    pub fn exceeding(&self, limit: f64) -> usize {
+        self.values.len() - self.values.partition_point(|value| *value <= limit)
+    }
+
     /// The value below which this share of the values lies, from 0 to 1; `None` without values.
     /// Between two values it is interpolated (Hyndman and Fan 1996, definition 7, as in R and
     /// NumPy).
@@ -78,6 +84,12 @@ mod tests {
             let found = sample.quantile(part).unwrap();
             assert!((found - value).abs() < 1e-12, "{part}: {found}");
         }
+    }
+
+    #[test]
+    fn a_value_at_the_limit_does_not_exceed_it() {
+        let sample: ErrorSample = [3.0, 1.0, 2.0, 2.0].into_iter().collect();
+        assert_eq!([0.5, 1.0, 2.0, 3.0].map(|limit| sample.exceeding(limit)), [4, 3, 1, 0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use toposlam_model::{
 };
 
 use super::{
-    bound::upper_bound,
+    bound::{cases_needed, lower_bound, upper_bound},
     calibration::Calibration,
     judged_view::{JudgedView, JudgedVisit, Zone},
     quantile::{ErrorSample, Quantile},
@@ -89,15 +89,48 @@ pub enum ErrorUnit {
     Centimetres,
 }
 
-/// Whether a target is met.
+/// Whether a target is met, by the one-sided intervals of the rate with a confidence of 95 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TargetStatus {
-    /// It is met, or there is no target.
+    /// The upper bound is within the target, or there is no target.
     Met,
-    /// Nothing was measured.
-    Empty,
-    /// It is missed.
+    /// The target lies between the bounds: the sample is too small.
+    NotShown,
+    /// The lower bound is beyond the target.
     Missed,
+}
+
+impl TargetStatus {
+    /// The status of a greatest allowed rate.
+    #[must_use]
+    pub fn of(seen: usize, cases: usize, limit: f64) -> Self {
+        if upper_bound(seen, cases) <= shown_as(limit) {
+            Self::Met
+        } else if lower_bound(seen, cases) > limit {
+            Self::Missed
+        } else {
+            Self::NotShown
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::NotShown => "not shown",
+            Self::Missed => "missed",
+        }
+    }
+}
+
+/// No sample shows that something never happens. A target of 0 is met if it was not seen, and the rate is
+/// at most this.
+const NEVER: f64 = 0.001;
+
+/// The rate that must be shown for a target.
+fn shown_as(limit: f64) -> f64 {
+    if limit > 0.0 { limit } else { NEVER }
 }
 
 /// Factor of the allowed rates if the camera differs from its calibration.
@@ -136,7 +169,7 @@ impl VisionReport {
     pub fn standing(&self) -> TargetStatus {
         let rates = self.rates.iter().map(Rate::standing);
         let errors = self.errors.iter().map(Errors::standing);
-        rates.chain(errors).max().unwrap_or(TargetStatus::Empty)
+        rates.chain(errors).max().unwrap_or(TargetStatus::NotShown)
     }
 }
 
@@ -340,12 +373,13 @@ impl Rate {
     /// Whether the target is met.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
-        match (self.limit, self.rate()) {
-            (None, _) => TargetStatus::Met,
-            (Some(_), None) => TargetStatus::Empty,
-            (Some(limit), Some(rate)) if rate <= limit => TargetStatus::Met,
-            (Some(_), Some(_)) => TargetStatus::Missed,
-        }
+        self.limit.map_or(TargetStatus::Met, |limit| TargetStatus::of(self.seen, self.cases, limit))
+    }
+
+    /// The least number of cases, all without a failure, that meet the target.
+    #[must_use]
+    pub fn cases_needed(&self) -> Option<usize> {
+        self.limit.map(|limit| cases_needed(shown_as(limit)))
     }
 }
 
@@ -353,22 +387,33 @@ impl Errors {
     /// A quantile of the errors, in the unit.
     #[must_use]
     pub fn quantile(&self, quantile: Quantile) -> Option<f64> {
-        let factor = match self.unit {
-            ErrorUnit::Degrees => 1.0_f64.to_degrees(),
-            ErrorUnit::Centimetres => 100.0,
-        };
-        self.sample.quantile(quantile.part()).map(|value| value * factor)
+        self.sample.quantile(quantile.part()).map(|value| value * self.factor())
     }
 
-    /// Whether the targets are met.
+    /// A unit of the sample in the unit of output.
+    fn factor(&self) -> f64 {
+        match self.unit {
+            ErrorUnit::Degrees => 1.0_f64.to_degrees(),
+            ErrorUnit::Centimetres => 100.0,
+        }
+    }
+
+    /// Whether the targets are met: a quantile is at most its limit if no more than the rest of the errors
+    /// exceed the limit.
     #[must_use]
     pub fn standing(&self) -> TargetStatus {
-        let standing = self.limits.iter().map(|&(quantile, limit)| match self.quantile(quantile) {
-            None => TargetStatus::Empty,
-            Some(error) if error <= limit => TargetStatus::Met,
-            Some(_) => TargetStatus::Missed,
+        let standing = self.limits.iter().map(|&(quantile, limit)| {
+            let exceeding = self.sample.exceeding(limit / self.factor());
+            TargetStatus::of(exceeding, self.sample.count(), 1.0 - quantile.part())
         });
         standing.max().unwrap_or(TargetStatus::Met)
+    }
+
+    /// The least number of cases, none beyond its limit, that meet the targets.
+    #[must_use]
+    pub fn cases_needed(&self) -> Option<usize> {
+        let needed = self.limits.iter();
+        needed.map(|(quantile, _)| cases_needed(shown_as(1.0 - quantile.part()))).max()
     }
 }
 

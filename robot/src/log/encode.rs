@@ -20,7 +20,7 @@ use super::messages::{Command, Door, End, Hypothesis, Map, Percept, Scene, Stamp
 use crate::record::{Arrival, EventKind, MapRecord, RunEnd, RunEnding};
 
 /// Stands for none in a message.
-pub(super) const NONE: i32 = -1;
+const NONE: i32 = -1;
 /// Stands for an unknown number of moves in a message.
 const UNKNOWN: u32 = u32::MAX;
 
@@ -137,15 +137,15 @@ pub(super) fn command_of(command: &Command) -> EventKind {
 /// An arrival at a junction.
 #[must_use]
 pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
-    let Arrival { number: moves, percept, form, entry } = arrival;
-    let marker = match percept.sighting {
-        Sighting::Pointing(door) => number(door.0),
+    let Arrival { number: moves, degree, sighting, form, entry } = arrival;
+    let marker = match sighting {
+        Some(Sighting::Pointing(door)) => number(door.0),
         _ => NONE,
     };
     Percept {
         stamp,
         r#move: moves.unwrap_or(UNKNOWN),
-        degree: percept.degree,
+        degree: *degree,
         marker,
         form: form.map_or([false; 4], |form| form.0),
         entry: entry.unwrap_or(f64::NAN),
@@ -156,10 +156,8 @@ pub fn arrival(stamp: Stamp, arrival: &Arrival) -> Percept {
 pub(super) fn arrival_of(message: &Percept) -> Arrival {
     Arrival {
         number: known(message.r#move),
-        percept: percept::Percept {
-            degree: message.degree,
-            sighting: sighting_of(message.marker.into()),
-        },
+        degree: message.degree,
+        sighting: Some(sighting_of(message.marker.into())),
         form: message.form.contains(&true).then_some(JunctionShape(message.form)),
         entry: message.entry.is_finite().then_some(message.entry),
     }

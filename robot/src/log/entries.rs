@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
-    percept::{Door, Percept},
+    percept::Door,
 };
 
 use super::{
@@ -139,10 +139,8 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
             let marker = whole::<i64>(carried, value, MessagePart::Marker)?;
             EventKind::Arrival(Arrival {
                 number: whole(carried, value, MessagePart::Move)?,
-                percept: Percept {
-                    degree: whole(carried, value, MessagePart::Degree)?.unwrap_or_default(),
-                    sighting: encode::sighting_of(marker.unwrap_or(encode::NONE.into())),
-                },
+                degree: whole(carried, value, MessagePart::Degree)?.unwrap_or_default(),
+                sighting: marker.map(encode::sighting_of),
                 form: None,
                 entry: None,
             })

@@ -4,7 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
-use super::decode::DecodeError;
+use super::{container::CheckedPart, decode::DecodeError};
 
 /// Why a log cannot be read, or not further.
 #[derive(Debug, Error)]
@@ -66,9 +66,20 @@ pub enum LogErrorKind {
         /// The size found; one more than claimed if it is too long.
         found: u64,
     },
-    /// The checksum of a chunk is wrong.
-    #[error("the checksum of the chunk is wrong")]
-    Checksum,
+    /// A checksum is wrong.
+    #[error("the checksum of the {0} is wrong")]
+    Checksum(CheckedPart),
+    /// The index counts other messages than there are.
+    #[error("the index counts {indexed} messages, and there are {found}, or on other topics")]
+    Count {
+        /// The number of messages by the index.
+        indexed: u64,
+        /// The number of messages found.
+        found: u64,
+    },
+    /// A message lies outside of the times of its chunk.
+    #[error("the time of a message is outside of the times of its chunk")]
+    OutsideTimes,
     /// The topic of a message is unknown.
     #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
@@ -98,6 +109,16 @@ pub enum LogErrorKind {
 }
 
 impl LogErrorKind {
+    /// Whether the bytes of the log are wrong. Otherwise the file cannot be read, or is of a kind that is
+    /// not read.
+    #[must_use]
+    pub fn is_damage(&self) -> bool {
+        !matches!(
+            self,
+            Self::Unreadable(_) | Self::NotALog | Self::Version(_) | Self::Compression(..)
+        )
+    }
+
     pub(super) fn at(self, offset: u64) -> LogError {
         LogError { offset, cause: self }
     }

@@ -19,10 +19,11 @@ pub mod standard;
 pub mod topic;
 pub mod topic_map;
 pub mod value;
+pub mod verify;
 mod world_hash;
 pub mod writer;
 
-pub use container::{Format, MOST_GROWTH};
+pub use container::{CheckedPart, Format, MOST_GROWTH};
 pub use encode::{arrival as arrival_message, door as door_message, scene as scene_message};
 pub use merge::{RawMessage, RawMessages};
 pub use world_hash::world_hash;

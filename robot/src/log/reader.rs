@@ -22,6 +22,7 @@ pub struct Log {
     pub(super) sections: Vec<Section>,
     truncation: Option<Truncation>,
     times: Option<[u64; 2]>,
+    indexed: bool,
 }
 
 impl Log {
@@ -56,12 +57,14 @@ impl Log {
         let mut topics = Topics::default();
         let scan = container::scan(format, &source, &mut |record| topics.add_record(record))?;
         let mut sections = scan.sections;
+        let mut indexed = true;
         for section in &mut sections {
             let known = section.counts.as_ref().is_some_and(|counts| {
                 let declared = counts.keys().all(|id| topics.connections.contains_key(id));
                 declared && (section.times.is_some() || counts.values().all(|count| *count == 0))
             });
             if !known {
+                indexed = false;
                 scan_section(section, format, &source, &mut topics)?;
             }
         }
@@ -74,6 +77,7 @@ impl Log {
             sections,
             truncation: scan.truncation,
             times: None,
+            indexed,
         };
         log.count();
         Ok(log)
@@ -130,6 +134,12 @@ impl Log {
     #[must_use]
     pub fn messages_total(&self) -> u64 {
         self.topics.iter().fold(0, |sum, topic| sum.saturating_add(topic.messages))
+    }
+
+    /// Whether it has an index of its messages. If not, all of it was read to find them.
+    #[must_use]
+    pub fn is_indexed(&self) -> bool {
+        self.indexed
     }
 
     /// Where it is truncated, if it is.

@@ -7,7 +7,7 @@ use toposlam_model::{
         visit::JunctionShape,
     },
     mapping::MappingEvent,
-    percept::{Door, Percept},
+    percept::{Door, Percept, Sighting},
 };
 
 use super::{Frame, MapRecord};
@@ -78,8 +78,10 @@ pub enum EventKind {
 pub struct Arrival {
     /// The number of moves made, if known.
     pub number: Option<u32>,
-    /// The percept.
-    pub percept: Percept,
+    /// The number of doors.
+    pub degree: u32,
+    /// What was seen of the marker; `None` if that is not recorded.
+    pub sighting: Option<Sighting>,
     /// The junction's shape, seen from the entry door, if known.
     pub form: Option<JunctionShape>,
     /// The direction of the entry door in the frame of odometry, in radians, if known.
@@ -92,7 +94,21 @@ impl Arrival {
     pub fn new(moves: u64, at: &Standing) -> Self {
         let &Standing { form, percept, entry } = at;
         let number = Some(u32::try_from(moves).unwrap_or(u32::MAX));
-        Self { number, percept, form: Some(form), entry: Some(entry) }
+        let Percept { degree, sighting } = percept;
+        Self { number, degree, sighting: Some(sighting), form: Some(form), entry: Some(entry) }
+    }
+
+    /// The percept; `None` if it is not recorded whether the marker was seen.
+    #[must_use]
+    pub fn percept(&self) -> Option<Percept> {
+        Some(Percept { degree: self.degree, sighting: self.sighting? })
+    }
+
+    /// Whether a percept agrees with it, as far as it is recorded.
+    #[must_use]
+    pub fn agrees(&self, percept: &Percept) -> bool {
+        self.degree == percept.degree
+            && self.sighting.is_none_or(|sighting| sighting == percept.sighting)
     }
 }
 

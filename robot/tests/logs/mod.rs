@@ -10,4 +10,5 @@ mod broken;
 mod mcap_file;
 mod recorded;
 mod roles;
+mod verified;
 mod written;

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, io::Cursor};
 use mcap::{WriteOptions, records::MessageHeader};
 use toposlam_model::{
     driving::visit::JunctionShape,
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Sighting},
 };
 use toposlam_robot::{
     log::{
@@ -143,7 +143,8 @@ fn the_usual_topics_need_no_topic_map_file() {
     assert_eq!(motion.stamp, Stamp { sec: 1, nanosec: 0 });
     let arrival = Arrival {
         number: Some(3),
-        percept: Percept { degree: 2, sighting: Sighting::Nothing },
+        degree: 2,
+        sighting: Some(Sighting::Nothing),
         form: Some(JunctionShape([true, false, true, false])),
         entry: Some(0.5),
     };
@@ -162,7 +163,8 @@ fn topics_of_others_are_read_through_paths_and_units() {
     let [percept, door, odometry, lost, _] = &entries[..] else { panic!("{entries:?}") };
     let arrival = Arrival {
         number: None,
-        percept: Percept { degree: 4, sighting: Sighting::Pointing(Door(2)) },
+        degree: 4,
+        sighting: Some(Sighting::Pointing(Door(2))),
         form: None,
         entry: None,
     };
@@ -174,7 +176,12 @@ fn topics_of_others_are_read_through_paths_and_units() {
     assert!((at.position[0] - 0.254).abs() < 1e-12 && (at.position[1] + 0.508).abs() < 1e-12);
     assert!((at.heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     let Content::Event(EventKind::Arrival(lost)) = &lost.content else { panic!() };
-    assert_eq!(lost.percept.sighting, Sighting::Nothing);
+    assert_eq!(lost.sighting, Some(Sighting::Nothing));
+    // A mapping without the marker leaves open whether it was seen.
+    let unmarked = mapping.replace("marker = \"arrow[0]\"\n", "");
+    let entries = self::entries(&log, &TopicMap::read(unmarked.as_bytes()).unwrap());
+    let Content::Event(EventKind::Arrival(arrival)) = &entries[0].content else { panic!() };
+    assert_eq!((arrival.degree, arrival.sighting, arrival.percept()), (4, None, None));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
 use std::{
+    collections::BTreeMap,
     fmt::Write as _,
     io::{self, Write},
     path::Path,
@@ -126,7 +127,7 @@ impl<'o> CheckReport<'o> {
         if self.choice != RunChoices::Default {
             let (least, most) = tally.extremes.unwrap_or_default();
             let at_least =
-                if tally.runs == u128::MAX || tally.gave_up > 0 { "at least " } else { "" };
+                if tally.runs == u128::MAX || tally.gave_up() > 0 { "at least " } else { "" };
             let all = format!(
                 "{} states, {at_least}{} runs of {} to {} moves",
                 grouped(tally.states.into()),
@@ -152,12 +153,12 @@ impl<'o> CheckReport<'o> {
 
     /// Prints the verdict and returns the outcome. A check does not hold if it is empty or interrupted.
     pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
-        let Tally { starts, mapped, gave_up, interrupted, .. } = self.total;
+        let Tally { starts, mapped, over_budget, over_memory, interrupted, .. } = self.total;
         let (outcome, verdict) = match () {
             () if mapped < starts => (Outcome::Violated, "violated"),
             () if interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
             () if starts == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
-            () if gave_up > 0 => (Outcome::Incomplete, "incomplete"),
+            () if over_budget + over_memory > 0 => (Outcome::Incomplete, "incomplete"),
             () => (Outcome::Holds, "holds"),
         };
         if self.json {
@@ -169,9 +170,13 @@ impl<'o> CheckReport<'o> {
             let _ = write!(verdict, ": {mapped} of {starts} starts mapped correctly, ");
             verdict += "each proved by a bijection";
         }
-        if gave_up > 0 {
-            let gave_up = grouped(gave_up.into());
-            let _ = write!(verdict, "; {gave_up} have more states than --max-states");
+        if over_budget > 0 {
+            let starts = grouped(over_budget.into());
+            let _ = write!(verdict, "; {starts} have more states than --max-states");
+        }
+        if over_memory > 0 {
+            let starts = grouped(over_memory.into());
+            let _ = write!(verdict, "; the states of {starts} need more than 1 GiB of memory");
         }
         writeln!(self.out)?;
         print_paragraph(self.out, &verdict)?;
@@ -215,8 +220,10 @@ struct EveryWayLine {
     runs: u128,
     moves_least: Option<u64>,
     moves_most: Option<u64>,
-    /// Starts with more states than the budget.
+    /// Starts of which not all runs were tried.
     gave_up: u64,
+    /// Those with more states than `--max-states`, and those with more than fit in memory.
+    limits: BTreeMap<&'static str, u64>,
 }
 
 /// The first start that was mapped wrongly.
@@ -249,7 +256,8 @@ impl<'a> Line<'a> {
                 runs: tally.runs,
                 moves_least: tally.extremes.map(|(least, _)| least),
                 moves_most: tally.extremes.map(|(_, most)| most),
-                gave_up: tally.gave_up,
+                gave_up: tally.gave_up(),
+                limits: limits(tally),
             }),
             shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
             interrupted: tally.interrupted,
@@ -261,10 +269,16 @@ impl<'a> Line<'a> {
             }),
             holds: tally.failed() == 0
                 && tally.starts > 0
-                && tally.gave_up == 0
+                && tally.gave_up() == 0
                 && !tally.interrupted,
         }
     }
+}
+
+/// The number of starts that reached each limit on the search for all runs.
+fn limits(tally: &Tally) -> BTreeMap<&'static str, u64> {
+    let counts = [("max-states", tally.over_budget), ("memory", tally.over_memory)];
+    counts.into_iter().filter(|(_, count)| *count > 0).collect()
 }
 
 fn failed_world(failure: &FailedStart, subject: AlgorithmInfo) -> NamedWorld {

@@ -1,10 +1,9 @@
 //! The known world of a log.
 
-use std::path::Path;
-
 use toposlam_model::{
     driving::visit::JunctionShape,
     embedded_graph::Dart,
+    floor_plan::FloorPlan,
     format::named_world::NamedWorld,
     marker::Marker,
     trace::{self, anywhere},
@@ -17,13 +16,12 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{ConformArguments, Failure};
+use super::{Failure, expected::ExpectedRun};
 use crate::cli::input;
 
 /// A known world.
-pub(super) struct Known {
-    pub(super) world: NamedWorld,
-    pub(super) marker: &'static dyn Marker,
+pub(super) struct Known<'w> {
+    pub(super) world: &'w NamedWorld,
     /// The robot's start, if it is known.
     pub(super) start: Option<Dart>,
     states: Vec<State>,
@@ -38,46 +36,60 @@ pub(super) struct Known {
 /// The word for an unknown start.
 const ANY: &str = "any";
 
-impl Known {
+/// Checks the text of `--start`.
+pub(super) fn check_start(world: &NamedWorld, start: Option<&str>) -> Result<(), Failure> {
+    match start {
+        None | Some(ANY) => Ok(()),
+        Some(_) => input::start_of(world, start).map(|_| ()),
+    }
+}
+
+impl<'w> Known<'w> {
+    /// The world of a log with a marker, and the start of `--start`, of the log or of the world file.
     pub(super) fn new(
-        path: &Path,
-        arguments: &ConformArguments,
+        world: &'w NamedWorld,
+        start: Option<&str>,
+        marker: &'static dyn Marker,
         run: Option<&Run>,
     ) -> Result<Self, Failure> {
-        let world = input::read_world(path)?;
-        let marker = match (arguments.marker, run.map_or("", |run| &*run.marker)) {
-            (Some(marker), _) => marker,
-            (None, "") => &toposlam_model::marker::Directional,
-            (None, name) => toposlam_model::marker::named(name)
-                .map_err(|error| Failure::at("the log", error))?,
-        };
-        let start = match arguments.start.as_deref() {
+        let start = match start {
             Some(ANY) => None,
-            Some(_) => Some(input::start_of(&world, arguments.start.as_deref())?),
-            None => run.and_then(|run| recorded_start(&world, run)).or(world.start),
+            Some(_) => Some(input::start_of(world, start)?),
+            None => run.and_then(|run| recorded_start(world, run)).or(world.start),
         };
         let states = match start {
             None => anywhere(&world.graph, &marker),
             Some(facing) => vec![GraphWorld::with_marker(&world.graph, marker, facing).state()],
         };
         let reachable = trace::reachable(&world.graph);
-        let forms = forms(&world);
-        Ok(Self { world, marker, start, states, reachable, forms })
+        let forms = forms(world);
+        let expected = start.map(|start| ExpectedRun::of(&world.graph, start));
+        Ok(Self { world, start, states, reachable, forms, expected })
+    }
+
+    /// Whether a complete run of Algorithm 1 has a case.
+    pub(super) fn expects_case(&self, case: trace::AlgorithmCase) -> bool {
+        self.expected.as_ref().is_some_and(|expected| expected.coverage.count(case) > 0)
+    }
+
+    /// Whether the robot enters a junction of a shape in a complete run of Algorithm 1.
+    pub(super) fn expects_form(&self, form: JunctionShape) -> bool {
+        let (Some(expected), Some(plan)) = (&self.expected, &self.world.plan) else { return false };
+        expected.poses.iter().any(|&pose| form_of(plan, pose) == Some(form))
     }
 
     pub(super) fn question(&self) -> KnownWorld<'_> {
-        let Self { world, marker, states, .. } = self;
-        KnownWorld { graph: &world.graph, marker: *marker, states: states.clone() }
+        KnownWorld { graph: &self.world.graph, states: self.states.clone() }
     }
 
-    /// Prints a warning if the log was recorded in another world.
-    pub(super) fn warn(&self, log: &Path, run: &Run) {
+    /// A remark if the log was recorded in another world.
+    pub(super) fn other_world(&self, run: &Run) -> Option<String> {
+        let graph = &self.world.graph;
         let recorded = &run.world_hash;
-        let other =
-            self.world.graph.darts().all(|dart| world_hash(&self.world.graph, dart) != *recorded);
-        if !recorded.is_empty() && other {
-            eprintln!("{}: the log was recorded in another world, {}", log.display(), run.world);
-        }
+        let other = graph.darts().all(|dart| world_hash(graph, dart) != *recorded);
+        let name = if run.world.is_empty() { "" } else { ", " };
+        (!recorded.is_empty() && other)
+            .then(|| format!("the log was recorded in another world{name}{}", run.world))
     }
 
     /// A pose in words.
@@ -95,11 +107,13 @@ fn recorded_start(world: &NamedWorld, run: &Run) -> Option<Dart> {
 /// The shapes of the junctions of a floor plan, from each of their entries.
 fn forms(world: &NamedWorld) -> Option<Vec<JunctionShape>> {
     let plan = world.plan.as_ref()?;
-    let graph = plan.graph();
-    let form = |dart| {
-        let position = plan.junction(graph.vertex(dart)).position;
-        let heading = angle(plan.direction(dart).reversed());
-        JunctionTruth::of(plan, graph.vertex(dart), Pose { position, heading }).form
-    };
-    Some(graph.darts().filter_map(form).collect())
+    Some(plan.graph().darts().filter_map(|entry| form_of(plan, entry)).collect())
+}
+
+/// The shape of a junction from an entry.
+fn form_of(plan: &FloorPlan, entry: Dart) -> Option<JunctionShape> {
+    let vertex = plan.graph().vertex(entry);
+    let position = plan.junction(vertex).position;
+    let heading = angle(plan.direction(entry).reversed());
+    JunctionTruth::of(plan, vertex, Pose { position, heading }).form
 }

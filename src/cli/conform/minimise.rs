@@ -2,24 +2,31 @@
 
 use std::{f64::consts::PI, path::Path};
 
-use toposlam_model::driving::odometry::Odometry;
+use toposlam_model::{
+    driving::odometry::Odometry,
+    enumerate::Class,
+    marker::{Directional, Marker},
+};
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, RunEvents, SensedScene, ShortenedRun, direction, shorten_frames,
+        CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, Quirks, RunEvents,
+        SensedScene, ShortenedRun, direction, extract, infer_events, judge, shorten_frames,
         shorten_run,
     },
     log::{
         arrival_message, door_message,
         messages::{Door, Percept, ProjectMessage, Run, Scene, Stamp},
+        reader::Log,
         recorder::ODOM,
         scene_message, standard,
+        topic_map::TopicMap,
         writer::{LogWriteError, LogWriter},
     },
     record::Arrival,
 };
 
 use super::{ConformArguments, Failure, Judged};
-use crate::cli::output;
+use crate::cli::{output, text::quoted};
 
 /// A shorter log.
 pub(super) struct Minimised {
@@ -34,31 +41,39 @@ const DISTANCE: f64 = 2.0;
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, Failure> {
-        let question = self.question(judged.known.as_ref());
-        let Some(ShortenedRun { events, by_itself }) =
-            shorten_run(&judged.judgement, &question, &())
-        else {
-            if let Some(path) = &self.minimise {
-                let why = match judged.judgement.divergence {
-                    None => "there is no divergence to show",
-                    Some(_) => "it does not diverge in less than all of it",
-                };
-                eprintln!("{}: not written: {why}", path.display());
-            }
+        let question = self.question(judged.known.as_ref(), judged.marker);
+        let shorter = shorten_run(&judged.judgement, &question, &());
+        let Some(path) = &self.minimise else {
+            return Ok(
+                shorter.map(|ShortenedRun { events, .. }| Minimised { events, command: None })
+            );
+        };
+        let Some(divergence) = &judged.judgement.divergence else {
+            not_written(path, "there is no divergence to show");
             return Ok(None);
         };
-        let Some(path) = &self.minimise else {
-            return Ok(Some(Minimised { events, command: None }));
+        let Some(ShortenedRun { events, event, by_itself }) = shorter else {
+            not_written(path, "it does not diverge in less than all of it");
+            return Ok(None);
         };
-        let run = judged.opened.run.as_ref();
-        let divergence = judged.judgement.divergence.as_ref();
-        let event = divergence.and_then(|found| judged.judgement.events.events.get(found.event));
-        let seen = event.and_then(|event| shorten_frames(&judged.gathered.seen, event));
-        let bytes = match seen {
-            Some(seen) => write_seen(seen, run),
-            None => write(&events, run),
+        let head = head(judged);
+        let recorded = judged.judgement.events.events.get(divergence.event);
+        let seen = recorded.and_then(|event| shorten_frames(&judged.gathered.seen, event));
+        let (bytes, evidence, at) = match seen {
+            Some(seen) => {
+                // Its last event diverges.
+                let last = infer_events(seen, is_marked(judged)).len().saturating_sub(1);
+                (write_seen(seen, &head), Evidence::Scenes, last)
+            }
+            None => (write(&events, &head), Evidence::Recorded, event),
         };
         let bytes = bytes.map_err(|error| Failure::in_file(path, error))?;
+        let question = if by_itself { question.by_itself() } else { question };
+        let again = divergence_of(&bytes, evidence, &question);
+        if again.as_ref().is_none_or(|again| again.event != at || !again.is_like(divergence)) {
+            not_written(path, "a log of less than all of it does not diverge in the same way");
+            return Ok(None);
+        }
         output::write_whole(path, &bytes)?;
         let command = Some(self.command(path, judged, by_itself));
         Ok(Some(Minimised { events, command }))
@@ -67,14 +82,17 @@ impl ConformArguments {
     /// The command that checks a shorter log as this one was checked.
     fn command(&self, path: &Path, judged: &Judged, by_itself: bool) -> String {
         let mut words =
-            vec!["toposlam".to_owned(), "conform".to_owned(), path.display().to_string()];
+            vec!["toposlam".to_owned(), "conform".to_owned(), quoted(&path.display().to_string())];
+        if self.class != Class::Multigraph {
+            words.extend(["--class".to_owned(), self.class.to_string()]);
+        }
         if by_itself {
             words.extend(["--driver", "anyone"].map(str::to_owned));
             return words.join(" ");
         }
         if let (Some(known), Some(world)) = (&judged.known, &self.world) {
             let start = known.start.map_or("any".to_owned(), |start| known.world.start_text(start));
-            words.extend(["--world".to_owned(), world.display().to_string()]);
+            words.extend(["--world".to_owned(), quoted(&world.display().to_string())]);
             words.extend(["--start".to_owned(), start]);
         }
         if self.driver == super::Who::Anyone {
@@ -84,10 +102,27 @@ impl ConformArguments {
     }
 }
 
+fn not_written(path: &Path, why: &str) {
+    eprintln!("{}: not written: {why}", path.display());
+}
+
+fn is_marked(judged: &Judged) -> bool {
+    judged.marker.name() == Directional.name()
+}
+
+/// The first divergence of a written log.
+fn divergence_of(bytes: &[u8], evidence: Evidence, question: &ConformConfig) -> Option<Divergence> {
+    let log = Log::of_bytes(bytes.to_vec()).ok()?;
+    let mapping = TopicMap::unambiguous(&log);
+    let marked = question.marker.name() == Directional.name();
+    let run = extract(&log, &mapping, evidence, None, marked, &()).ok()?;
+    judge(run.events, question, &Quirks::default(), &()).ok()?.divergence
+}
+
 /// A log of the events: percepts and doors. It has odometry only where an event has an angle off its door
 /// or its entry.
-fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
-    let mut log = begin(run)?;
+fn write(events: &RunEvents, head: &Run) -> Result<Vec<u8>, LogWriteError> {
+    let mut log = begin(head)?;
     let begun = events.events.first().map_or(0, |event| event.source.time);
     let mut at = Odometry::default();
     let mut last = LastJunction::default();
@@ -124,8 +159,8 @@ fn write(events: &RunEvents, run: Option<&Run>) -> Result<Vec<u8>, LogWriteError
 }
 
 /// A log of the scenes and odometry.
-fn write_seen(seen: &[SensedScene], run: Option<&Run>) -> Result<Vec<u8>, LogWriteError> {
-    let mut log = begin(run)?;
+fn write_seen(seen: &[SensedScene], head: &Run) -> Result<Vec<u8>, LogWriteError> {
+    let mut log = begin(head)?;
     let begun = seen.first().map_or(0, |seen| seen.source.time);
     for SensedScene { source, scene, odometry: there } in seen {
         let time = source.time.saturating_sub(begun);
@@ -136,11 +171,16 @@ fn write_seen(seen: &[SensedScene], run: Option<&Run>) -> Result<Vec<u8>, LogWri
     log.finish()
 }
 
-/// A log with the head of another, without the calibration and colours: it has no pictures.
-fn begin(run: Option<&Run>) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
+/// The head of a shorter log, without the calibration and colours: it has no pictures.
+fn head(judged: &Judged) -> Run {
+    let run = judged.opened.run.clone().unwrap_or_default();
+    let marker = judged.marker.name().to_owned();
+    Run { marker, calibration: String::new(), colours: String::new(), ..run }
+}
+
+fn begin(head: &Run) -> Result<LogWriter<Vec<u8>>, LogWriteError> {
     let mut log = LogWriter::new(Vec::new())?;
-    let run = run.cloned().unwrap_or_default();
-    log.write(Run::TOPIC, 0, &Run { calibration: String::new(), colours: String::new(), ..run })?;
+    log.write(Run::TOPIC, 0, head)?;
     Ok(log)
 }
 

@@ -10,12 +10,13 @@ use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     mapping::PartialMap,
-    percept::Percept,
+    percept::{Percept, Sighting},
     trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason, SmallestWorld},
 };
 use toposlam_robot::{
     conform::{
         CheckedEvent, CheckedKind, ConformVerdict, Divergence, DivergenceCause, Evidence, Quirks,
+        ReachedLimit,
     },
     evaluation::scene_class::FORMS,
     record::{Arrival, RunEnding},
@@ -27,7 +28,7 @@ use crate::cli::text::{counted, grouped, moment, vertices};
 /// The largest number of candidates that are listed.
 const LISTED: usize = 8;
 
-impl Judged {
+impl Judged<'_> {
     /// The report of a log; with pictures if it is `shown` on a page.
     pub(super) fn report(
         &self,
@@ -67,6 +68,9 @@ impl Judged {
 
     fn remarks(&self, verdict: ConformVerdict) -> Vec<String> {
         let mut remarks = Vec::new();
+        let run = self.opened.run.as_ref();
+        remarks
+            .extend(self.known.as_ref().zip(run).and_then(|(known, run)| known.other_world(run)));
         if let Some(truncation) = self.opened.log.truncation() {
             remarks.push(format!("the log is {truncation}"));
         }
@@ -82,11 +86,9 @@ impl Judged {
             }
             Some(RunEnding::Mapped) | None => {}
         }
-        if let Some(SmallestWorld::Unfinished { edges }) = self.judgement.smallest {
-            remarks.push(format!(
-                "no world with at most {} explains it; the search reached its step limit",
-                counted(edges, "edge")
-            ));
+        // What was not searched matters only if nothing diverged.
+        if verdict != ConformVerdict::Diverged {
+            remarks.extend(self.judgement.limits().into_iter().map(|limit| self.limit(limit)));
         }
         if let (ConformVerdict::Conforms, Some(followed)) = (verdict, &self.judgement.algorithm)
             && followed.reached == MatchEnd::EndOfTrace
@@ -98,6 +100,33 @@ impl Judged {
             remarks.push(format!("{images} could not be decoded and were skipped"));
         }
         remarks
+    }
+
+    /// A limit that was reached, and the option that raises it.
+    fn limit(&self, limit: ReachedLimit) -> String {
+        let no_world =
+            |edges| format!("no world with at most {} explains it", counted(edges, "edge"));
+        match limit {
+            ReachedLimit::Edges { edges } => {
+                format!("{}; larger ones were not searched (--max-edges)", no_world(edges))
+            }
+            ReachedLimit::Steps { edges } => {
+                let steps = grouped(self.search.steps.into());
+                format!(
+                    "{}; the search reached its limit of {steps} steps (--max-steps)",
+                    no_world(edges)
+                )
+            }
+            ReachedLimit::Stopped => "the search for a world was stopped".to_owned(),
+            ReachedLimit::Darts { event } => {
+                let darts = counted(self.dart_bound, "edge end");
+                format!(
+                    "Algorithm 1 was followed up to event {}: more than {darts} are known there \
+                     (--max-darts)",
+                    event + 1
+                )
+            }
+        }
     }
 
     fn facts(&self) -> Vec<(&'static str, String)> {
@@ -114,7 +143,7 @@ impl Judged {
         let mut facts = vec![("events", format!("{count}, {made}"))];
         match (&self.known, &judgement.poses, &judgement.smallest) {
             (Some(known), Some(poses), _) => {
-                let world = &known.world;
+                let world = known.world;
                 let from = match known.start {
                     None => "from any start".to_owned(),
                     Some(start) => format!("from {}", world.start_text(start)),
@@ -137,6 +166,13 @@ impl Judged {
                 facts.push((
                     "world",
                     format!("unknown; the smallest that explains the log has {smallest}"),
+                ));
+            }
+            (_, _, Some(SmallestWorld::NotFound { edges, .. })) => {
+                let edges = counted(*edges, "edge");
+                facts.push((
+                    "world",
+                    format!("unknown; none with at most {edges} explains the log"),
                 ));
             }
             _ => facts.push(("world", "unknown".to_owned())),
@@ -246,10 +282,16 @@ impl Judged {
 
     fn coverage(&self) -> Vec<CoveredCase> {
         let Judged { judgement, known, .. } = self;
+        let default = judgement.algorithm.as_ref().map(|followed| followed.choices)
+            == Some(MatchedChoices::Default);
+        let run = known.as_ref().filter(|_| default);
+        // Percepts of other robots may have no shapes.
+        let shaped = run.filter(|_| !judgement.coverage.junctions.is_empty());
         let cases = AlgorithmCase::ALL.into_iter().map(|case| CoveredCase {
             case: case.name().to_owned(),
             count: judgement.coverage.algorithm.count(case),
             reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),
+            expected: run.is_some_and(|known| known.expects_case(case)),
         });
         let junctions = FORMS.into_iter().map(|(form, name)| CoveredCase {
             case: name.to_owned(),
@@ -258,6 +300,7 @@ impl Judged {
                 .as_ref()
                 .and_then(|known| known.forms.as_ref())
                 .map(|forms| forms.contains(&form)),
+            expected: shaped.is_some_and(|known| known.expects_form(form)),
         });
         cases.chain(junctions).collect()
     }
@@ -274,7 +317,7 @@ impl Judged {
     /// A drawing of the known world, or of the smallest one that explains the log.
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
-            (Some(known), _) => Some(picture::svg(&WorldPicture::from(&known.world))),
+            (Some(known), _) => Some(picture::svg(&WorldPicture::from(known.world))),
             (None, Some(SmallestWorld::World { graph, marker })) => {
                 let start = marker.or(Some(Dart(0)));
                 let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
@@ -298,10 +341,13 @@ fn map_in_words(map: &PartialMap) -> String {
 /// The description of an event.
 pub(super) fn what(kind: &CheckedKind) -> String {
     match kind {
-        CheckedKind::Arrival { arrival: Arrival { percept, form, .. }, .. } => {
+        CheckedKind::Arrival { arrival, .. } => {
+            let Arrival { degree, sighting, form, .. } = arrival;
             let name = form.and_then(|form| FORMS.iter().find(|(known, _)| *known == form));
             let kind = name.map_or(String::new(), |(_, name)| format!(" ({name})"));
-            format!("percept: {}{kind}", in_words(percept))
+            // A judged percept has its sighting.
+            let sighting = sighting.unwrap_or(Sighting::Nothing);
+            format!("percept: {}{kind}", Percept { degree: *degree, sighting })
         }
         CheckedKind::Door { door, .. } => format!("door {}", door.0),
         CheckedKind::Aside { off } => {
@@ -310,8 +356,4 @@ pub(super) fn what(kind: &CheckedKind) -> String {
         CheckedKind::TurnedBack => "turned back".to_owned(),
         CheckedKind::Undecided => "junction not recognised".to_owned(),
     }
-}
-
-fn in_words(percept: &Percept) -> String {
-    percept.to_string()
 }

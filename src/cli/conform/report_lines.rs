@@ -4,9 +4,9 @@ use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
-use toposlam_robot::conform::{ConformVerdict, FaultClass, Judgement};
+use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 
-use super::Failure;
+use super::{Failure, Judged};
 use crate::cli::{
     json::print_object,
     text::{counted, print_command, print_hanging},
@@ -21,6 +21,7 @@ const SHORT: usize = 12;
 #[derive(Serialize)]
 struct Line<'r> {
     schema: u32,
+    kind: &'static str,
     log: &'r str,
     verdict: &'static str,
     event: Option<usize>,
@@ -39,19 +40,34 @@ struct Line<'r> {
     offset: Option<u64>,
     facts: BTreeMap<&'static str, &'r str>,
     remarks: &'r [String],
+    limits: Vec<Limit>,
     tolerated: BTreeMap<&'r str, usize>,
     shorter: &'r [String],
     command: Option<&'r str>,
+}
+
+/// A limit that was reached, and the option that raises it.
+#[derive(Serialize)]
+struct Limit {
+    option: Option<&'static str>,
+    value: Option<u64>,
+    /// No world with at most this many edges explains the log.
+    edges: Option<usize>,
+    /// The event at which the limit was reached.
+    event: Option<usize>,
 }
 
 /// What `--json` prints for several logs together.
 #[derive(Serialize)]
 struct Together<'r> {
     schema: u32,
+    kind: &'static str,
     logs: usize,
     conform: usize,
     diverged: usize,
     incomplete: usize,
+    /// The number of logs that could not be read.
+    unreadable: usize,
     coverage: BTreeMap<&'r str, u64>,
     classes: BTreeMap<&'static str, usize>,
 }
@@ -59,19 +75,20 @@ struct Together<'r> {
 pub(super) fn json(
     out: &mut dyn Write,
     report: &LogReport,
-    judgement: &Judgement,
+    judged: &Judged,
 ) -> Result<(), Failure> {
     let divergence = report.divergence.as_ref();
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
     let line = Line {
         schema: 1,
+        kind: "log",
         log: &report.log,
         verdict: report.verdict.name(),
         event: divergence.map(|divergence| divergence.event),
         class: divergence.map(|divergence| divergence.fault.name()),
         events: report.events.len(),
         matched: divergence.map_or(report.events.len(), |divergence| divergence.event - 1),
-        candidates: judgement.candidates(),
+        candidates: judged.judgement.candidates(),
         coverage: counts(&report.coverage),
         unreachable: unreachable.map(|covered| &*covered.case).collect(),
         cause: divergence.map(|divergence| divergence.cause),
@@ -82,6 +99,12 @@ pub(super) fn json(
         offset: divergence.and_then(|divergence| divergence.message).map(|(_, offset)| offset),
         facts: report.facts.iter().map(|(name, fact)| (*name, &**fact)).collect(),
         remarks: &report.remarks,
+        limits: judged
+            .judgement
+            .limits()
+            .into_iter()
+            .map(|reached| limit(reached, judged))
+            .collect(),
         tolerated: report
             .tolerated
             .iter()
@@ -91,6 +114,24 @@ pub(super) fn json(
         command: report.command.as_deref(),
     };
     print_object(out, &line)
+}
+
+fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
+    let none = Limit { option: None, value: None, edges: None, event: None };
+    let of = |option, value| Limit { option: Some(option), value: Some(value), ..none };
+    match reached {
+        ReachedLimit::Edges { edges } => {
+            let edges = Some(edges);
+            Limit { edges, ..of("--max-edges", judged.search.max_edges as u64) }
+        }
+        ReachedLimit::Steps { edges } => {
+            Limit { edges: Some(edges), ..of("--max-steps", judged.search.steps) }
+        }
+        ReachedLimit::Darts { event } => {
+            Limit { event: Some(event + 1), ..of("--max-darts", judged.dart_bound as u64) }
+        }
+        ReachedLimit::Stopped => none,
+    }
 }
 
 fn counts(coverage: &[CoveredCase]) -> BTreeMap<&str, u64> {
@@ -205,12 +246,14 @@ fn covered(coverage: &[CoveredCase]) -> String {
 /// The summary of several logs.
 pub(super) fn together(
     out: &mut dyn Write,
+    logs: usize,
     reports: &[LogReport],
     as_json: bool,
 ) -> Result<(), Failure> {
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);
+    let unreadable = logs - reports.len();
     let coverage = LogReport::coverage_of(reports);
     let faults = reports.iter().filter_map(|report| Some(report.divergence.as_ref()?.fault));
     if as_json {
@@ -218,14 +261,27 @@ pub(super) fn together(
         for fault in faults {
             *classes.entry(fault.name()).or_default() += 1;
         }
-        let (coverage, logs) = (counts(&coverage), reports.len());
-        let line = Together { schema: 1, logs, conform, diverged, incomplete, coverage, classes };
+        let line = Together {
+            schema: 1,
+            kind: "logs",
+            logs,
+            conform,
+            diverged,
+            incomplete,
+            unreadable,
+            coverage: counts(&coverage),
+            classes,
+        };
         return print_object(out, &line);
     }
+    let unreadable = match unreadable {
+        0 => String::new(),
+        count => format!(", {count} unreadable"),
+    };
     writeln!(
         out,
-        "{}: {conform} conform, {diverged} diverge, {incomplete} incomplete",
-        counted(reports.len(), "log")
+        "{}: {conform} conform, {diverged} diverge, {incomplete} incomplete{unreadable}",
+        counted(logs, "log")
     )?;
     print_hanging(out, &format!("  {:<10} ", "covered"), &covered(&coverage))?;
     Ok(())

@@ -52,25 +52,27 @@ impl EvaluateControlArguments {
         let progress = Progress::new("traversals", "traversals")?;
         let judged = traversals.judged(0..self.traversals, sensors.as_ref(), &progress);
         progress.finish();
-        if self.robots.json {
-            self.print_json(&judged, &traversals, out)?;
-        } else {
-            self.print(&judged, &traversals, out)?;
-        }
-        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(if judged.iter().any(|traversal| traversal.outcome != Made::Right) {
+        let outcome = if judged.iter().any(|traversal| traversal.outcome != Made::Right) {
             Outcome::Violated
         } else if judged.is_empty() || (judged.len() as u64) < self.traversals {
             Outcome::Incomplete
         } else {
             Outcome::Holds
-        })
+        };
+        if self.robots.json {
+            self.print_json(&judged, &traversals, outcome, out)?;
+        } else {
+            self.print(&judged, &traversals, outcome, out)?;
+        }
+        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
+        Ok(outcome)
     }
 
     fn print(
         &self,
         judged: &[JudgedTraversal],
         traversals: &TraversalSampler,
+        outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         let doors = grouped(traversals.cases() as u128);
@@ -87,10 +89,11 @@ impl EvaluateControlArguments {
         let seconds = mean(judged.iter().map(|traversal| traversal.seconds).sum());
         let pictures = mean(judged.iter().map(|traversal| traversal.pictures as f64).sum());
         writeln!(out, "  {pictures:.1} images and {seconds:.1} s of simulated time per traversal")?;
-        let verdict = match (judged.is_empty(), wrong + gave_up) {
-            (true, _) => "nothing was measured",
-            (_, 0) => "holds: every door leads where it should",
-            _ => "violated",
+        let verdict = match outcome {
+            Outcome::Incomplete if judged.is_empty() => "incomplete: nothing was measured",
+            Outcome::Incomplete => "incomplete, interrupted",
+            Outcome::Holds => "holds in these traversals: every door leads where it should",
+            Outcome::Violated => "violated",
         };
         Ok(writeln!(out, "{verdict}")?)
     }
@@ -99,6 +102,7 @@ impl EvaluateControlArguments {
         &self,
         judged: &[JudgedTraversal],
         traversals: &TraversalSampler,
+        outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
@@ -114,7 +118,7 @@ impl EvaluateControlArguments {
         let line = json!({
             "schema": 1, "kind": "control", "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
-            "holds": !judged.is_empty() && wrong + gave_up == 0,
+            "holds": outcome == Outcome::Holds,
         });
         print_object(out, &line)
     }

@@ -16,7 +16,7 @@ use toposlam_robot::evaluation::{
 use crate::cli::{
     Failure, Outcome,
     json::print_object,
-    text::{grouped, print_hanging, print_rows},
+    text::{counted, grouped, print_hanging, print_rows},
 };
 
 /// The views and visits that are measured.
@@ -31,7 +31,7 @@ pub(super) struct Printer<'o> {
     out: &'o mut dyn Write,
     json: bool,
     missed: usize,
-    empty: usize,
+    not_shown: usize,
 }
 
 /// The number of pairs of groups that are printed.
@@ -39,7 +39,7 @@ const HALVES: usize = 10;
 
 impl<'o> Printer<'o> {
     pub(super) fn new(out: &'o mut dyn Write, json: bool) -> Self {
-        Self { out, json, missed: 0, empty: 0 }
+        Self { out, json, missed: 0, not_shown: 0 }
     }
 
     pub(super) fn header(&mut self, header: &EvaluationHeader) -> Result<(), Failure> {
@@ -78,7 +78,7 @@ impl<'o> Printer<'o> {
         let standings = report.rates.iter().map(Rate::standing);
         for standing in standings.chain(report.errors.iter().map(Errors::standing)) {
             self.missed += usize::from(standing == TargetStatus::Missed);
-            self.empty += usize::from(standing == TargetStatus::Empty);
+            self.not_shown += usize::from(standing == TargetStatus::NotShown);
         }
         if self.json {
             return self.report_lines(report);
@@ -118,7 +118,8 @@ impl<'o> Printer<'o> {
                 rate: rate.rate(),
                 upper_bound: rate.upper_bound(),
                 limit: rate.limit,
-                met: rate.limit.map(|_| rate.standing() == TargetStatus::Met),
+                target: rate.limit.map(|_| rate.standing().name()),
+                cases_needed: rate.cases_needed(),
             };
             print_object(self.out, &line)?;
         }
@@ -127,7 +128,7 @@ impl<'o> Printer<'o> {
             let [median, p95, p99, most] = Quantile::ALL.map(|quantile| errors.quantile(quantile));
             let limits =
                 errors.limits.iter().map(|&(quantile, limit)| json!([quantile.part(), limit]));
-            let met = (!errors.limits.is_empty()).then(|| errors.standing() == TargetStatus::Met);
+            let target = (!errors.limits.is_empty()).then(|| errors.standing().name());
             let line = ErrorsLine {
                 schema: 1,
                 kind: "errors",
@@ -141,7 +142,8 @@ impl<'o> Printer<'o> {
                 p99,
                 most,
                 limits: limits.collect(),
-                met,
+                target,
+                cases_needed: errors.cases_needed(),
             };
             print_object(self.out, &line)?;
         }
@@ -185,11 +187,11 @@ impl<'o> Printer<'o> {
     }
 
     pub(super) fn verdict(&mut self, outcome: Outcome, interrupted: bool) -> Result<(), Failure> {
-        let (missed, empty) = (self.missed, self.empty);
+        let (missed, not_shown) = (self.missed, self.not_shown);
         if self.json {
             let holds = outcome == Outcome::Holds;
             let line = json!({
-                "schema": 1, "kind": "verdict", "missed": missed, "unmeasured": empty,
+                "schema": 1, "kind": "verdict", "missed": missed, "not_shown": not_shown,
                 "interrupted": interrupted, "holds": holds,
             });
             return print_object(self.out, &line);
@@ -199,7 +201,9 @@ impl<'o> Printer<'o> {
             Outcome::Violated if missed == 1 => "violated: a target is missed".to_owned(),
             Outcome::Violated => format!("violated: {missed} targets are missed"),
             Outcome::Incomplete if interrupted => "incomplete, interrupted".to_owned(),
-            Outcome::Incomplete => format!("incomplete: {empty} targets have no case"),
+            Outcome::Incomplete => {
+                format!("not shown: the sample is too small for {}", counted(not_shown, "target"))
+            }
         };
         writeln!(self.out, "\n{verdict}")?;
         Ok(())
@@ -218,7 +222,9 @@ struct RateLine<'a> {
     rate: Option<f64>,
     upper_bound: f64,
     limit: Option<f64>,
-    met: Option<bool>,
+    target: Option<&'a str>,
+    /// The least number of cases that can meet the target.
+    cases_needed: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -235,7 +241,8 @@ struct ErrorsLine<'a> {
     p99: Option<f64>,
     most: Option<f64>,
     limits: Vec<Value>,
-    met: Option<bool>,
+    target: Option<&'a str>,
+    cases_needed: Option<usize>,
 }
 
 fn group_row(group: &FailureGroup) -> [String; 5] {
@@ -267,7 +274,8 @@ fn rate_row(rate: &Rate) -> [String; 6] {
         match rate.limit {
             None => rate.what.to_owned(),
             Some(limit) => {
-                let (target, status) = (percent(limit), status(rate.standing()));
+                let (target, status) =
+                    (percent(limit), status(rate.standing(), rate.cases_needed()));
                 format!("{}; target {}: {status}", rate.what, target.trim_start())
             }
         },
@@ -288,7 +296,7 @@ fn errors_row(errors: &Errors) -> [String; 7] {
         what.push_str("; target ");
         what.push_str(&targets.join(", "));
         what.push_str(": ");
-        what.push_str(status(errors.standing()));
+        what.push_str(&status(errors.standing(), errors.cases_needed()));
     }
     let cases = format!("{:>7}", grouped(errors.sample.count() as u128));
     [errors.subject.name().to_owned(), cases, median, p95, p99, most, what]
@@ -303,11 +311,13 @@ fn confusion(out: &mut dyn Write, report: &VisionReport) -> io::Result<()> {
     Ok(())
 }
 
-fn status(status: TargetStatus) -> &'static str {
-    match status {
-        TargetStatus::Met => "met",
-        TargetStatus::Empty => "no case",
-        TargetStatus::Missed => "missed",
+/// The status of a target. If it is not shown, also the number of cases that could show it.
+fn status(status: TargetStatus, needed: Option<usize>) -> String {
+    match (status, needed) {
+        (TargetStatus::NotShown, Some(needed)) => {
+            format!("{}, {} cases needed", status.name(), grouped(needed as u128))
+        }
+        _ => status.name().to_owned(),
     }
 }
 

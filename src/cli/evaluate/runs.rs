@@ -76,23 +76,24 @@ impl EvaluateRunsArguments {
         let judged = runs.judged(0..wanted, sensors.as_ref(), &progress);
         progress.finish();
         let violations = judged.iter().filter(|run| self.violates(run)).count();
-        if json {
-            self.print_json(&judged, violations, out)?;
-        } else {
-            let sensing = self.robots.sensing();
-            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
-            let plans = counted(count, "floor plan");
-            writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
-            self.print(&judged, violations, out)?;
-        }
-        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
-        Ok(if violations > 0 {
+        let outcome = if violations > 0 {
             Outcome::Violated
         } else if judged.is_empty() || (judged.len() as u64) < wanted {
             Outcome::Incomplete
         } else {
             Outcome::Holds
-        })
+        };
+        if json {
+            self.print_json(&judged, violations, outcome, out)?;
+        } else {
+            let sensing = self.robots.sensing();
+            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
+            let plans = counted(count, "floor plan");
+            writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
+            self.print(&judged, outcome, out)?;
+        }
+        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
+        Ok(outcome)
     }
 
     /// Whether a run fails: without faults it must be right, with faults it must not be wrong unnoticed.
@@ -103,7 +104,7 @@ impl EvaluateRunsArguments {
     fn print(
         &self,
         judged: &[JudgedRun],
-        violations: usize,
+        outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for run in
@@ -128,11 +129,16 @@ impl EvaluateRunsArguments {
         let hours = judged.iter().map(|run| run.seconds).sum::<f64>() / 3600.0;
         let (moves, pictures) = (grouped(moves.into()), grouped(pictures.into()));
         writeln!(out, "  {moves} moves, {pictures} images, {hours:.1} hours of simulated time")?;
-        let verdict = match (judged.is_empty(), violations, self.faults) {
-            (true, ..) => "nothing was measured",
-            (_, 0, false) => "holds: every map is right, and every move is as specified",
-            (_, 0, true) => "holds: every map is right, or the robot gave up or was carried",
-            _ => "violated",
+        let verdict = match (outcome, self.faults) {
+            (Outcome::Incomplete, _) if judged.is_empty() => "incomplete: nothing was measured",
+            (Outcome::Incomplete, _) => "incomplete, interrupted",
+            (Outcome::Holds, false) => {
+                "holds in these runs: every map is right, and every move is as specified"
+            }
+            (Outcome::Holds, true) => {
+                "holds in these runs: every map is right, or the robot gave up or was carried"
+            }
+            (Outcome::Violated, _) => "violated",
         };
         Ok(writeln!(out, "{verdict}")?)
     }
@@ -141,6 +147,7 @@ impl EvaluateRunsArguments {
         &self,
         judged: &[JudgedRun],
         violations: usize,
+        outcome: Outcome,
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for run in judged {
@@ -163,7 +170,7 @@ impl EvaluateRunsArguments {
         }
         let line = json!({
             "schema": 1, "kind": "runs", "runs": judged.len(), "seed": self.robots.seed,
-            "violations": violations, "holds": !judged.is_empty() && violations == 0,
+            "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_object(out, &line)
     }

@@ -53,8 +53,12 @@ Examples:
   toposlam evaluate vision --plan worlds/shape-8.toml --out failing
   toposlam evaluate vision --view 17 --out seventeen  one view, stage by stage
 
-Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 not
-everything was measured.")]
+A target is met if the 95 % interval of the rate is within it, missed if the
+interval is beyond it, and otherwise not shown: the sample is too small. A target
+of 0 is met if nothing was seen, and the rate is at most 0.1 %.
+
+Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 one is
+not shown, or not everything was measured.")]
 pub(super) struct EvaluateVisionArguments {
     /// Number of views
     #[arg(long, default_value_t = 1000, value_name = "N")]
@@ -132,11 +136,11 @@ impl EvaluateVisionArguments {
                 eprintln!("{written} in {}", folder.display());
             }
         }
-        let standing = standings.into_iter().max().unwrap_or(TargetStatus::Empty);
+        let standing = standings.into_iter().max().unwrap_or(TargetStatus::NotShown);
         let outcome = match standing {
             TargetStatus::Missed => Outcome::Violated,
             TargetStatus::Met if !interrupted => Outcome::Holds,
-            TargetStatus::Met | TargetStatus::Empty => Outcome::Incomplete,
+            TargetStatus::Met | TargetStatus::NotShown => Outcome::Incomplete,
         };
         printer.verdict(outcome, interrupted)?;
         let threads = rayon::current_num_threads();

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{EveryWay, Flaw},
+    check::{EveryWay, Flaw, SearchLimit},
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
@@ -36,9 +36,13 @@ struct Rest {
 #[derive(Serialize)]
 struct EveryWayRest {
     states: u64,
+    states_within_rounds: u64,
     runs: u128,
     costs: Vec<u64>,
     complete: bool,
+    /// What stopped the search, if something did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<&'static str>,
 }
 
 /// The result of a run.
@@ -62,7 +66,7 @@ impl ExploreResult<'_> {
         match (&self.result, &self.ways) {
             (Err(Flaw::Error(MappingError::Bound { .. })), _) => Outcome::Incomplete,
             (Err(_), _) | (_, Some(Err(_))) => Outcome::Violated,
-            (Ok(_), Some(Ok(ways))) if !ways.complete => Outcome::Incomplete,
+            (Ok(_), Some(Ok(ways))) if ways.limit.is_some() => Outcome::Incomplete,
             (Ok(_), _) => Outcome::Holds,
         }
     }
@@ -99,9 +103,11 @@ impl ExploreResult<'_> {
             error: self.error().map(ToString::to_string),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
+                states_within_rounds: ways.within_rounds,
                 runs: ways.runs,
                 costs: ways.costs.iter().collect(),
-                complete: ways.complete,
+                complete: ways.limit.is_none(),
+                limit: ways.limit.map(SearchLimit::name),
             }),
         };
         let rest = serde_json::to_string(&rest).map_err(io::Error::from)?;
@@ -109,7 +115,8 @@ impl ExploreResult<'_> {
         Ok(())
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    /// Prints the result with the names of at most so many vertices.
+    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), Failure> {
         writeln!(out)?;
         match &self.result {
             Err(flaw) => {
@@ -119,7 +126,7 @@ impl ExploreResult<'_> {
                     print_paragraph(out, "Use --max-darts N to raise the bound.")?;
                 }
             }
-            Ok(bijection) => self.print_map(bijection, out)?,
+            Ok(bijection) => self.print_map(bijection, listed, out)?,
         }
         match &self.ways {
             None => Ok(()),
@@ -131,7 +138,12 @@ impl ExploreResult<'_> {
         }
     }
 
-    fn print_map(&self, bijection: &Bijection, out: &mut dyn Write) -> io::Result<()> {
+    fn print_map(
+        &self,
+        bijection: &Bijection,
+        listed: usize,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let Self { world, journey, move_bound, .. } = self;
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
@@ -148,7 +160,12 @@ impl ExploreResult<'_> {
             image.map(|dart| world.at_text(dart)).unwrap_or_default()
         };
         let vertices = journey.map().vertices();
-        let names: Vec<_> = vertices.map(|v| format!("v{} = {}", v.0, name(v))).collect();
+        let names = vertices.take(listed).map(|v| format!("v{} = {}", v.0, name(v)));
+        let mut names: Vec<_> = names.collect();
+        let left = journey.map().vertex_count() - names.len();
+        if left > 0 {
+            names.push(format!("and {} more", grouped(left as u128)));
+        }
         print_paragraph(out, "It is isomorphic to the world:")?;
         print_hanging(out, "  ", &names.join(", "))?;
         let robot = journey.robot();
@@ -164,17 +181,33 @@ impl ExploreResult<'_> {
 
 /// What a run can cost with other choices.
 fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
-    let EveryWay { states, runs, costs, complete } = ways;
+    let EveryWay { states, within_rounds, runs, costs, limit } = ways;
+    let complete = limit.is_none();
     let at_least = |exact: bool| if exact { "" } else { "at least " };
     let text = format!(
         "With all choices there are {}{} states and {}{} runs.",
-        at_least(*complete),
+        at_least(complete),
         grouped((*states).into()),
-        at_least(*complete && *runs < u128::MAX),
+        at_least(complete && *runs < u128::MAX),
         grouped(*runs),
     );
     writeln!(out)?;
     print_paragraph(out, &text)?;
+    let reached = match limit {
+        None => None,
+        Some(SearchLimit::States(most)) => Some(format!(
+            "The search stopped at --max-states {most}. That counts the states between rounds, at line \
+             4, and the {} states within rounds, at line 8.",
+            grouped((*within_rounds).into()),
+        )),
+        Some(SearchLimit::Memory) => {
+            Some("The search stopped because its states need more than 1 GiB of memory.".to_owned())
+        }
+        Some(SearchLimit::Interrupted) => Some("The search was interrupted.".to_owned()),
+    };
+    if let Some(text) = reached {
+        print_paragraph(out, &text)?;
+    }
     let costs: Vec<_> = costs.iter().map(|cost| grouped(cost.into())).collect();
     let text = match (complete, costs.join(" ")) {
         (_, costs) if costs.is_empty() => "No run was finished.".to_owned(),

@@ -49,14 +49,7 @@ pub(crate) struct Story<W> {
 
 impl<W: Write> Story<W> {
     pub(crate) fn new(out: W, world: &NamedWorld, facing: Dart, detail: StoryDetail) -> Self {
-        let NamedWorld { name, edge_names, .. } = world;
-        let (at, behind) = (world.at_text(facing), world.facing_text(facing));
-        let behind = match edge_names {
-            None => format!("the door to {behind}"),
-            Some(_) => format!("the door of edge {behind}"),
-        };
-        let head = format!("World {name}. The robot starts at {at}, with its back to {behind}.");
-        Self::with_head(out, &head, detail)
+        Self::with_head(out, &head(world, facing), detail)
     }
 
     /// The story of a run in a world that the head describes.
@@ -218,6 +211,17 @@ impl<W: ?Sized, O: Write> Observer<W> for Story<O> {
             self.result = self.print_event(journey, event);
         }
     }
+}
+
+/// The world and the start of a run.
+pub(super) fn head(world: &NamedWorld, facing: Dart) -> String {
+    let NamedWorld { name, edge_names, .. } = world;
+    let (at, behind) = (world.at_text(facing), world.facing_text(facing));
+    let behind = match edge_names {
+        None => format!("the door to {behind}"),
+        Some(_) => format!("the door of edge {behind}"),
+    };
+    format!("World {name}. The robot starts at {at}, with its back to {behind}.")
 }
 
 /// A number of moves in parentheses, unless it is zero.

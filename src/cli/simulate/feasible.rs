@@ -1,6 +1,6 @@
 //! Checks before a run that the robot can drive in the plan and see the marker.
 
-use std::path::Path;
+use std::{collections::VecDeque, path::Path};
 
 use toposlam_model::{
     driving::scene::Scene,
@@ -24,6 +24,32 @@ const ROOM: f64 = 0.40;
 const WIDEST: f64 = 2.3;
 /// The marker must be visible from this distance to the centre of its junction, in metres.
 const BEFORE: f64 = 0.5;
+
+/// The L nearest to the plan's own start, entered on the way from there: a marker cannot be seen at a
+/// dead end or at a T. `None` if the start is an L, or if the plan has none.
+pub(super) fn nearest_start(plan: &FloorPlan, facing: Dart) -> Option<Dart> {
+    let graph = plan.graph();
+    let is_l = |dart: Dart| plan.junction(graph.vertex(dart)).kind == JunctionKind::L;
+    if is_l(facing) {
+        return None;
+    }
+    let mut known = vec![false; graph.vertex_count()];
+    known[graph.vertex(facing).at()] = true;
+    let mut reached = VecDeque::from([facing]);
+    while let Some(entry) = reached.pop_front() {
+        for dart in graph.darts_of(graph.vertex(entry)) {
+            let next = graph.opposite(dart);
+            if std::mem::replace(&mut known[graph.vertex(next).at()], true) {
+                continue;
+            }
+            if is_l(next) {
+                return Some(next);
+            }
+            reached.push_back(next);
+        }
+    }
+    None
+}
 
 /// Rejects a plan in which the robot cannot drive, and a start that is not an L.
 pub(super) fn check(

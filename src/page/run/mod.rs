@@ -68,7 +68,8 @@ mod tests {
             places.borrow_mut().insert(place.to_owned());
             String::new()
         });
-        let known = ["about", "camera", "data", "layout", "maps", "plan", "script", "style", "title"];
+        let known =
+            ["about", "camera", "data", "layout", "maps", "plan", "script", "style", "title"];
         assert_eq!(places.into_inner(), known.map(str::to_owned).into());
     }
 

@@ -5,7 +5,9 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, ListError},
     floor_plan::{FloorPlan, FloorPlanError},
     format::{
-        document::{Document, DocumentEntry, DocumentError, DocumentTable, DocumentValue, TextPosition},
+        document::{
+            Document, DocumentEntry, DocumentError, DocumentTable, DocumentValue, TextPosition,
+        },
         named_world::{NamedWorld, StartError},
     },
     marker::{MARKERS, Marker},
@@ -158,11 +160,23 @@ fn in_lists(table: &DocumentTable<'_>, error: ListError) -> WorldFileError {
         | ListError::OneSided { vertex, .. }
         | ListError::RepeatedNeighbour { vertex, .. }
         | ListError::OwnNeighbour { vertex } => Some(vertex.as_str()),
-        ListError::NotTwoEnds { .. }
-        | ListError::NotConnected { .. }
-        | ListError::GraphError(_) => None,
+        ListError::NotConnected { vertex, .. } => Some(vertex.as_str()),
+        ListError::NotTwoEnds { .. } | ListError::GraphError(_) => None,
     };
-    let position = position_of_key(table, vertex);
+    // The first name of the list that is wrong.
+    let item = match &error {
+        ListError::UnknownNeighbour { vertex, neighbour, .. }
+        | ListError::OneSided { vertex, neighbour } => {
+            position_in_list(table, Some(vertex), neighbour, 0)
+        }
+        ListError::RepeatedNeighbour { vertex, neighbour } => {
+            position_in_list(table, Some(vertex), neighbour, 1)
+        }
+        ListError::OwnNeighbour { vertex } => position_in_list(table, Some(vertex), vertex, 0),
+        ListError::NotTwoEnds { edge, .. } => position_in_list(table, None, edge, 0),
+        _ => None,
+    };
+    let position = item.unwrap_or_else(|| position_of_key(table, vertex));
     WorldFileErrorKind::from(error).at(position)
 }
 
@@ -182,6 +196,18 @@ fn in_plan(file: &DocumentTable<'_>, error: FloorPlanError) -> WorldFileError {
         _ => file.get("hallways").map(DocumentValue::position),
     };
     WorldFileErrorKind::from(Box::new(error)).at(position.unwrap_or_default())
+}
+
+/// Where a name stands in the list of a vertex, or of any vertex, for the time after `skip` times.
+fn position_in_list(
+    table: &DocumentTable<'_>,
+    vertex: Option<&str>,
+    name: &str,
+    skip: usize,
+) -> Option<TextPosition> {
+    let lists = table.entries().filter(|entry| vertex.is_none_or(|vertex| entry.key == vertex));
+    let items = lists.filter_map(|entry| entry.value.list("").ok()).flatten();
+    items.filter(|item| item.text() == Ok(name)).nth(skip).map(DocumentValue::position)
 }
 
 /// Where a key of a table is; where the table is, if there is no such key.

@@ -241,28 +241,28 @@ fn an_error_in_lists_has_their_vertex() {
     for (text, expected) in [
         (
             "[clockwise]\na = [\"b\"]\nb = []",
-            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `b`, which does not list `a` back",
+            "line 2, column 6: clockwise.a[0]: vertex `a` lists the neighbour `b`, which does not list `a` back",
         ),
         (
             "[clockwise]\na = [\"q\"]",
-            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `q`, which is not a vertex",
+            "line 2, column 6: clockwise.a[0]: vertex `a` lists the neighbour `q`, which is not a vertex",
         ),
         (
             "[clockwise]\na = [\"b\", \"b\"]\nb = [\"a\", \"a\"]",
-            "line 2, column 1: clockwise.a: vertex `a` lists the neighbour `b` twice; \
+            "line 2, column 11: clockwise.a[1]: vertex `a` lists the neighbour `b` twice; \
              parallel edges need edge names, in [doors]",
         ),
         (
             "[clockwise]\na = [\"a\"]",
-            "line 2, column 1: clockwise.a: vertex `a` lists itself; loops need edge names, in [doors]",
+            "line 2, column 6: clockwise.a[0]: vertex `a` lists itself; loops need edge names, in [doors]",
         ),
         (
             "[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]",
-            "line 1, column 2: doors: edge `e` occurs 3 times (a, a, b); an edge has two ends",
+            "line 2, column 6: doors.a[0]: edge `e` occurs 3 times (a, a, b); an edge has two ends",
         ),
         (
             "[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]",
-            "line 1, column 2: clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+            "line 4, column 1: clockwise.c: the world is not connected: vertex `c` cannot be reached from `a`",
         ),
         ("[clockwise]", "line 1, column 2: clockwise: there is no edge; a world has at least one"),
         ("[doors]\na = []", "line 1, column 2: doors: there is no edge; a world has at least one"),

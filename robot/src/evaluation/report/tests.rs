@@ -89,6 +89,7 @@ fn views_are_counted_in_their_zones() {
     assert_eq!(found(ReportSubject::Past, "kind and entry not right"), (1, 1));
     assert_eq!(found(ReportSubject::Between, "unknown"), (0, 1));
     assert_eq!(found(ReportSubject::Turned, "kind wrong"), (0, 0));
+    // The four hallways are too few to show a rate, but half of them are not hallways.
     assert_eq!(report.standing(), TargetStatus::Missed);
     let error = |what| {
         let errors = report.errors.iter().find(|errors| errors.what == what).unwrap();
@@ -141,15 +142,60 @@ fn a_visit_is_wrong_undecided_or_right_and_so_is_its_marker() {
 #[test]
 fn an_empty_report_does_not_hold_and_a_perfect_one_does() {
     let empty = VisionReport::of(&[], &[], Calibration::Right);
-    assert_eq!(empty.standing(), TargetStatus::Empty);
-    let views = [
-        judged(&Truth::Hallway(HALLWAY), in_hallway(0.0)),
-        judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2])),
-    ];
-    let report = VisionReport::of(&views, &[], Calibration::Right);
-    let asked = report.rates.iter().filter(|rate| rate.cases > 0).map(Rate::standing);
-    let errors = report.errors.iter().map(Errors::standing);
-    assert!(asked.chain(errors).all(|standing| standing == TargetStatus::Met), "{report:?}");
+    assert_eq!(empty.standing(), TargetStatus::NotShown);
+    let hallway = judged(&Truth::Hallway(HALLWAY), in_hallway(0.0));
+    let junction = judged(&corner(0.3), at_junction(&[PI, FRAC_PI_2]));
+    let standing = |hallways: usize, junctions: usize| {
+        let views = [vec![hallway.clone(); hallways], vec![junction.clone(); junctions]].concat();
+        let report = VisionReport::of(&views, &[], Calibration::Right);
+        let zones = [ReportSubject::Hallway, ReportSubject::Junction];
+        let rates = report.rates.iter().filter(|rate| zones.contains(&rate.subject));
+        let all = rates.map(Rate::standing).chain(report.errors.iter().map(Errors::standing));
+        all.max().unwrap()
+    };
+    // None of 11 cases failed: the rate is at most 23.8 %, and the target is 0.5 %.
+    assert_eq!(standing(11, 20), TargetStatus::NotShown);
+    // A target of 0.05 % needs 5,990 cases, one of 0.1 % needs 2,995.
+    assert_eq!(standing(5_989, 2_995), TargetStatus::NotShown);
+    assert_eq!(standing(5_990, 2_994), TargetStatus::NotShown);
+    assert_eq!(standing(5_990, 2_995), TargetStatus::Met);
+}
+
+#[test]
+fn a_target_is_met_missed_or_not_shown() {
+    for (seen, cases, limit, status) in [
+        (0, 0, 0.005, TargetStatus::NotShown),
+        (0, 11, 0.005, TargetStatus::NotShown),
+        (0, 597, 0.005, TargetStatus::NotShown),
+        (0, 598, 0.005, TargetStatus::Met),
+        // More than allowed, but it may be chance: the interval begins at 0.085 %.
+        (1, 60, 0.005, TargetStatus::NotShown),
+        (9, 60, 0.005, TargetStatus::Missed),
+        // What must never happen is missed by one case.
+        (1, 100_000, 0.0, TargetStatus::Missed),
+        (0, 2_994, 0.0, TargetStatus::NotShown),
+        (0, 2_995, 0.0, TargetStatus::Met),
+    ] {
+        assert_eq!(TargetStatus::of(seen, cases, limit), status, "{seen} of {cases}, {limit}");
+    }
+}
+
+#[test]
+fn a_quantile_is_met_by_the_share_of_greater_errors() {
+    let errors = |count: usize, greater: usize| Errors {
+        subject: ReportSubject::Hallway,
+        what: "direction",
+        unit: ErrorUnit::Degrees,
+        sample: (0..count)
+            .map(|case| if case < greater { 5.0_f64 } else { 1.0 }.to_radians())
+            .collect(),
+        limits: vec![(Quantile::P99, 4.0)],
+    };
+    assert_eq!(errors(298, 0).standing(), TargetStatus::NotShown);
+    assert_eq!(errors(299, 0).standing(), TargetStatus::Met);
+    assert_eq!(errors(299, 1).standing(), TargetStatus::NotShown);
+    assert_eq!(errors(299, 10).standing(), TargetStatus::Missed);
+    assert_eq!(errors(299, 0).cases_needed(), Some(299));
 }
 
 #[test]

@@ -233,6 +233,7 @@ fn one(
                 times: None,
                 // Of an empty one there is no index.
                 counts: (size == 0).then(BTreeMap::new),
+                in_chunk: true,
             });
             Ok(op)
         }

@@ -5,6 +5,7 @@ use std::io::Read;
 use lz4_flex::frame::FrameDecoder as Lz4Decoder;
 use ruzstd::decoding::FrameDecoder;
 
+use super::CheckedPart;
 use crate::log::error::LogErrorKind;
 
 /// The largest factor between the size of a chunk and its compressed size.
@@ -37,6 +38,18 @@ impl Compression {
             b"bz2" => Ok(Self::Bz2),
             b"lz4" => Ok(Self::Lz4),
             _ => Err(unknown(name, "none, bz2 and lz4")),
+        }
+    }
+
+    /// Whether compressed bytes carry a checksum that decompression compares, by their first five bytes.
+    /// The checksum of Zstandard is not compared.
+    pub(super) fn has_checksum(self, head: &[u8]) -> bool {
+        // Of the blocks or of the content, by the flags of an LZ4 frame.
+        const LZ4_CHECKSUMS: u8 = 0b0001_0100;
+        match self {
+            Self::None | Self::Zstd => false,
+            Self::Bz2 => true,
+            Self::Lz4 => head.get(4).is_some_and(|flags| flags & LZ4_CHECKSUMS != 0),
         }
     }
 
@@ -89,7 +102,7 @@ pub(super) fn decompress(
         return Err(LogErrorKind::Size { claimed: size, found });
     }
     if checksum != 0 && crc32fast::hash(&whole) != checksum {
-        return Err(LogErrorKind::Checksum);
+        return Err(LogErrorKind::Checksum(CheckedPart::Chunk));
     }
     Ok(whole)
 }

@@ -11,16 +11,17 @@ use crate::log::{
 /// How an MCAP file begins and ends.
 pub(in crate::log) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-const FOOTER: u8 = 2;
+pub(super) const FOOTER: u8 = 2;
 const SCHEMA: u8 = 3;
 const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
 const MESSAGE_INDEX: u8 = 7;
-const STATISTICS: u8 = 11;
+pub(super) const STATISTICS: u8 = 11;
+pub(super) const DATA_END: u8 = 15;
 
 /// The opcode and length of a record.
-const HEAD: usize = 9;
+pub(super) const HEAD: usize = 9;
 /// The fields before the bytes of a message: channel, sequence, and two times.
 const MESSAGE_HEAD: usize = 22;
 
@@ -212,5 +213,6 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
         // An end before the start is ignored.
         times: (size > 0 && times[0] <= times[1]).then_some(times),
         counts: (size == 0).then(BTreeMap::new),
+        in_chunk: true,
     }))
 }

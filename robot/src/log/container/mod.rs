@@ -5,15 +5,19 @@
 //! say is not needed for that, so files without them are read the same way.
 
 mod bag;
+mod checksum;
 mod compression;
 mod mcap;
+mod mcap_end;
 
 use std::{collections::BTreeMap, io, ops::Range};
 
 pub(super) use bag::MAGIC as BAG_MAGIC;
+pub use checksum::CheckedPart;
 pub use compression::MOST_GROWTH;
 use compression::{Compression, decompress};
 pub(super) use mcap::MAGIC as MCAP_MAGIC;
+pub(super) use mcap_end::describe;
 
 use super::{
     error::{LogError, LogErrorKind, Truncation},
@@ -60,6 +64,8 @@ pub(super) struct Section {
     pub(super) times: Option<[u64; 2]>,
     /// The number of messages of each connection, if known.
     pub(super) counts: Option<BTreeMap<u32, u64>>,
+    /// Whether it is a chunk.
+    in_chunk: bool,
 }
 
 /// The structure of a file.
@@ -106,6 +112,7 @@ impl Scan {
             checksum: 0,
             times: None,
             counts: Some(BTreeMap::new()),
+            in_chunk: false,
         });
         section.bytes.end = record.end;
         section.size = section.bytes.end - section.bytes.start;
@@ -141,6 +148,20 @@ impl Section {
         let wrong = |cause: LogErrorKind| cause.at(self.offset);
         let bytes = source.read(self.bytes.clone()).map_err(|error| wrong(error.into()))?;
         decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
+    }
+
+    /// Whether it is a chunk, and not a stretch of the file outside of chunks.
+    pub(super) fn is_chunk(&self) -> bool {
+        self.in_chunk
+    }
+
+    /// The bytes in the file that a checksum of its own covers, of the records or of their compression.
+    pub(super) fn covered(&self, source: &Source) -> Result<Option<Range<u64>>, LogError> {
+        let Range { start, end } = self.bytes;
+        let head =
+            source.read(start..end.min(start.saturating_add(5))).map_err(unreadable(start))?;
+        let covers = self.checksum != 0 || self.compression.has_checksum(&head);
+        Ok(covers.then(|| self.bytes.clone()))
     }
 
     /// Its size in memory, in bytes.

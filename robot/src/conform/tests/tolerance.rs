@@ -1,0 +1,70 @@
+//! Many tolerated divergences do not need as many judgements.
+
+use super::*;
+use crate::conform::judgement::JUDGED;
+
+/// Quirks of these causes, everywhere.
+fn everywhere(causes: &[&str]) -> Quirks {
+    let quirk = |cause: &&str| {
+        format!("[[quirk]]\nname = \"{cause}\"\ncause = \"{cause}\"\nreason = \"known\"\n")
+    };
+    Quirks::read(&causes.iter().map(quirk).collect::<String>()).unwrap()
+}
+
+/// The number of judgements, and the result.
+fn counted(events: &RunEvents, question: &ConformConfig, quirks: &Quirks) -> (u64, Judgement) {
+    let before = JUDGED.get();
+    let judgement = judge(events.clone(), question, quirks, &()).unwrap();
+    (JUDGED.get() - before, judgement)
+}
+
+/// The events of a good log with wrong percepts and wrong numbers.
+fn wrong(good: &RunEvents) -> RunEvents {
+    let mut events = good.clone();
+    for event in &mut events.events {
+        match &mut event.kind {
+            CheckedKind::Arrival { arrival, .. } if arrival.number != Some(0) => {
+                arrival.degree += 7;
+                arrival.form = None;
+            }
+            CheckedKind::Door { number: Some(number), .. } => *number += 100,
+            _ => {}
+        }
+    }
+    events
+}
+
+#[test]
+fn all_quirks_of_a_log_need_two_judgements() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let facing = starts_of(&plan)[0];
+    let good = log(&plan, facing, 1).recorded();
+    let question = question(&plan, Some(facing));
+    let events = wrong(&good);
+    let quirks = everywhere(&["percept", "number"]);
+    let (count, judgement) = counted(&events, &question, &quirks);
+    assert_eq!((count, judgement.verdict()), (2, ConformVerdict::Conforms));
+    // Each event but the first is wrong in one way.
+    let tolerated: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
+    assert_eq!(tolerated, (1..good.events.len()).collect::<Vec<_>>());
+    // Without quirks there is one.
+    assert_eq!(counted(&good, &question, &Quirks::default()).0, 1);
+    assert_eq!(counted(&events, &question, &Quirks::default()).0, 1);
+}
+
+#[test]
+fn what_follows_a_divergence_is_not_tolerated() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let facing = starts_of(&plan)[0];
+    let mut events = wrong(&log(&plan, facing, 1).recorded());
+    let CheckedKind::Door { door, .. } = &mut events.events[5].kind else { panic!() };
+    // There is no such door, and it is not known how the run continues.
+    door.0 = 9;
+    let question = question(&plan, Some(facing));
+    let quirks = everywhere(&["percept", "number", "aside"]);
+    let (_, judgement) = counted(&events, &question, &quirks);
+    assert_eq!(judgement.divergence.unwrap().event, 5);
+    let tolerated: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
+    assert_eq!(tolerated[..4], [1, 2, 3, 4]);
+    assert!(tolerated.iter().all(|&event| event <= 5), "{tolerated:?}");
+}

@@ -1,0 +1,354 @@
+//! "Conforms", "diverged" and "incomplete" are three verdicts: a good log never diverges, a mutated log
+//! conforms only if another walk explains it, and a log diverges only at an event that cannot be explained.
+
+use proptest::prelude::*;
+use toposlam_model::{
+    embedded_graph::EmbeddedGraph,
+    enumerate::{Each, EnumeratedGraph, Enumeration},
+    marker::NoMarker,
+    trace::{SearchLimit, SmallestWorld, Trace, TraceEventKind},
+    world::World,
+};
+
+use super::{
+    oracle::{Place, is_explained_by_small, witness},
+    *,
+};
+
+/// How a log is recorded and judged.
+#[derive(Clone, Debug)]
+struct Options {
+    seed: u64,
+    junctions: usize,
+    /// Whether the world is known, and the start in it.
+    world: Option<bool>,
+    class: Class,
+    max_edges: usize,
+    steps: u64,
+    driver: RunDriver,
+    dart_bound: usize,
+    /// Without numbers, shapes, directions and odometry, as logs of others.
+    bare: bool,
+    /// Without a marker, and without a record of it.
+    unmarked: bool,
+}
+
+fn options() -> impl Strategy<Value = Options> {
+    let world = prop::sample::select(vec![None, Some(true), Some(false)]);
+    let drivers = prop::sample::select(vec![RunDriver::Algorithm1, RunDriver::Anyone]);
+    let limits = (1_usize..20, prop::sample::select(vec![30, 20_000]), 3_usize..40);
+    let class = prop::sample::select(Class::ALL.to_vec());
+    (0_u64..1000, 2_usize..9, world, class, limits, drivers, any::<[bool; 2]>()).prop_map(
+        |(
+            seed,
+            junctions,
+            world,
+            class,
+            (max_edges, steps, dart_bound),
+            driver,
+            [bare, unmarked],
+        )| {
+            Options {
+                seed,
+                junctions,
+                world,
+                class,
+                max_edges,
+                steps,
+                driver: if unmarked { RunDriver::Anyone } else { driver },
+                dart_bound,
+                bare,
+                unmarked,
+            }
+        },
+    )
+}
+
+impl Options {
+    fn question<'p>(&self, plan: &'p FloorPlan, facing: Dart) -> ConformConfig<'p> {
+        let known = self.world.map(|known| question(plan, known.then_some(facing)).world.unwrap());
+        ConformConfig {
+            world: known,
+            marker: if self.unmarked { &NoMarker } else { &Directional },
+            driver: self.driver,
+            search: WorldSearch { class: self.class, max_edges: self.max_edges, steps: self.steps },
+            dart_bound: self.dart_bound,
+        }
+    }
+
+    /// The events of a log, as far as they are recorded.
+    fn recorded(&self, log: &Log) -> RunEvents {
+        let mut events = log.recorded();
+        for event in &mut events.events {
+            match &mut event.kind {
+                CheckedKind::Arrival { arrival, entry_off } => {
+                    if self.unmarked {
+                        arrival.sighting = None;
+                    }
+                    if self.bare {
+                        (arrival.number, arrival.form, arrival.entry) = (None, None, None);
+                        *entry_off = None;
+                    }
+                }
+                CheckedKind::Door { number, off, .. } if self.bare => {
+                    (*number, *off) = (None, None)
+                }
+                _ => {}
+            }
+        }
+        events
+    }
+
+    /// The places in which the walk may begin, if the world is known.
+    fn places<'p>(&self, plan: &'p FloorPlan, facing: Dart) -> Vec<Place<'p>> {
+        let graph = plan.graph();
+        let place = |pose| Place { graph, marker: Some(pose).filter(|_| !self.unmarked), pose };
+        match self.world {
+            None => Vec::new(),
+            Some(true) => vec![place(facing)],
+            Some(false) => graph.darts().map(place).collect(),
+        }
+    }
+}
+
+/// Why a mutated log conforms.
+#[derive(Debug)]
+#[expect(dead_code, reason = "the reasons are printed if they do not hold")]
+enum Unobservable {
+    /// The mutation changes nothing that is compared: see [`Log::mutate`].
+    NotCompared(&'static str),
+    /// What was mutated is not in the log.
+    NotRecorded,
+    /// The log is one of another walk in the known world.
+    AnotherWalk,
+    /// The log is one of a walk in another world, which was found.
+    AnotherWorld,
+}
+
+fn trace_of(events: &RunEvents, question: &ConformConfig) -> Trace {
+    let mut events = events.clone();
+    events.complete_sightings(question.marker).unwrap();
+    events.trace().unwrap()
+}
+
+/// Checks that no world of any size explains the trace up to an event, and that one explains it up to the
+/// event before.
+fn assert_impossible(trace: &Trace, event: usize) {
+    if let Some(before) = event.checked_sub(1) {
+        let before = trace.up_to(before);
+        let (graph, marker, pose) = witness(&before).expect("it is possible before the event");
+        assert!(Place { graph: &graph, marker, pose }.explains(&before));
+    }
+    let cut = trace.up_to(event);
+    assert!(witness(&cut).is_none(), "event {event} is possible");
+    assert!(!is_explained_by_small(&cut, 3), "event {event} is possible");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn a_good_log_never_diverges(options in options(), cut in any::<prop::sample::Index>()) {
+        let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
+        let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
+        let log = log(&plan, facing, options.seed);
+        let whole = options.recorded(&log);
+        let last = cut.index(2 * whole.events.len());
+        let is_cut = last < whole.events.len();
+        let events = if is_cut { whole.up_to(last) } else { whole };
+        let question = options.question(&plan, facing);
+        let judgement = judged(&events, &question);
+        prop_assert_eq!(&judgement.divergence, &None);
+        let complete = !is_cut && judgement.limits().is_empty();
+        let expected =
+            if complete { ConformVerdict::Conforms } else { ConformVerdict::Incomplete };
+        prop_assert_eq!(judgement.verdict(), expected);
+        if let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest {
+            let trace = trace_of(&events, &question);
+            let place = Place { graph, marker: *marker, pose: Dart(0) };
+            prop_assert!(place.explains(&trace));
+            prop_assert!(options.class.contains(graph));
+        }
+    }
+
+    #[test]
+    fn a_mutated_log_diverges_where_it_must_or_another_walk_explains_it(
+        options in options(),
+        event in any::<prop::sample::Index>(),
+        mutation in prop::sample::select(MUTATIONS.to_vec()),
+        by in 0_u32..3,
+    ) {
+        let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
+        let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
+        let good = log(&plan, facing, options.seed);
+        let mut mutated = good.clone();
+        let shows = mutated.mutate(event.index(good.places().len()), mutation, by);
+        if shows == Shows::NotOne {
+            return Ok(());
+        }
+        let question = options.question(&plan, facing);
+        let [before, mut events] = [&good, &mutated].map(|log| options.recorded(log));
+        events.end.as_mut().unwrap().moves = good.moves();
+        let Ok(judgement) = judge(events.clone(), &question, &Quirks::default(), &()) else {
+            return Ok(());
+        };
+        match judgement.divergence.as_ref().map(|divergence| &divergence.cause) {
+            Some(DivergenceCause::NoWorld { .. }) => {
+                let event = judgement.divergence.as_ref().unwrap().event;
+                assert_impossible(&judgement.trace, judgement.trace.index_of(event));
+            }
+            Some(DivergenceCause::World(misfit)) => {
+                let cut = judgement.trace.up_to(judgement.trace.index_of(misfit.event.id));
+                let places = options.places(&plan, facing);
+                prop_assert!(!places.iter().any(|place| place.explains(&cut)));
+            }
+            Some(DivergenceCause::Algorithm(departure)) => {
+                // A percept that contradicts others does so in every world.
+                if let TraceEventKind::Percept(_) = departure.event.kind {
+                    let event = judgement.trace.index_of(departure.event.id);
+                    prop_assert!(witness(&judgement.trace.up_to(event)).is_none());
+                }
+            }
+            Some(_) => {}
+            None if judgement.verdict() == ConformVerdict::Incomplete => {}
+            None => {
+                let trace = trace_of(&events, &question);
+                let same = trace == trace_of(&before, &question);
+                let why = match (shows, &judgement.smallest) {
+                    (Shows::Never(why), _) => Unobservable::NotCompared(why),
+                    _ if same => Unobservable::NotRecorded,
+                    (_, Some(_)) => Unobservable::AnotherWorld,
+                    (_, None) => Unobservable::AnotherWalk,
+                };
+                let holds = match &why {
+                    Unobservable::NotCompared(_) => same,
+                    Unobservable::NotRecorded => {
+                        options.bare || (options.unmarked && mutation == Mutation::Marker)
+                    }
+                    Unobservable::AnotherWalk => {
+                        options.places(&plan, facing).iter().any(|place| place.explains(&trace))
+                    }
+                    Unobservable::AnotherWorld => match &judgement.smallest {
+                        Some(SmallestWorld::World { graph, marker }) => {
+                            let place = Place { graph, marker: *marker, pose: Dart(0) };
+                            place.explains(&trace) && options.class.contains(graph)
+                        }
+                        _ => false,
+                    },
+                };
+                prop_assert!(holds, "{:?} conforms: {:?}", mutation, why);
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_impossible_event_is_exact(
+        edges in 1_usize..4,
+        start in any::<prop::sample::Index>(),
+        walk in prop::collection::vec(0_u32..4, 0..9),
+        changed in any::<prop::sample::Index>(),
+        change in 0_u32..9,
+    ) {
+        let mut starts: Vec<EmbeddedGraph> = Vec::new();
+        let mut visit = |found: EnumeratedGraph| {
+            starts.push(found.graph.clone());
+            std::ops::ControlFlow::Continue(())
+        };
+        let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+        let _ = all.for_each(&mut visit);
+        let mut world = GraphWorld::new(&starts[start.index(starts.len())], Dart(0));
+        let mut kinds = vec![TraceEventKind::Percept(world.sensed())];
+        for step in walk {
+            let door = Door(step % world.sensed().degree);
+            world.traverse(door).unwrap();
+            kinds.extend([TraceEventKind::Door(door), TraceEventKind::Percept(world.sensed())]);
+        }
+        let good = Trace::new(kinds.clone()).unwrap();
+        prop_assert_eq!(first_impossible(&good, &Directional, Class::Multigraph), None);
+        let at = changed.index(kinds.len());
+        match &mut kinds[at] {
+            TraceEventKind::Percept(percept) if change < 3 => percept.degree = change + 1,
+            TraceEventKind::Percept(percept) => {
+                percept.sighting = match change {
+                    3 => Sighting::Nothing,
+                    door => Sighting::Pointing(Door(door - 4)),
+                };
+            }
+            TraceEventKind::Door(door) => door.0 = change % 5,
+        }
+        let trace = Trace::new(kinds).unwrap();
+        match first_impossible(&trace, &Directional, Class::Multigraph) {
+            Some((event, _)) => {
+                prop_assert!(event >= at);
+                assert_impossible(&trace, event);
+            }
+            None => {
+                let (graph, marker, pose) = witness(&trace).expect("a world explains it");
+                let place = Place { graph: &graph, marker, pose };
+                prop_assert!(place.explains(&trace));
+            }
+        }
+    }
+}
+
+/// A walk of others in building 12: the smallest world that explains it has 14 edges.
+#[test]
+fn a_bound_is_not_a_divergence() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let facing = starts_of(&plan)[0];
+    let events = log(&plan, facing, 1).recorded();
+    let search = |max_edges| WorldSearch { max_edges, ..without_world().search };
+    let anyone = ConformConfig { driver: RunDriver::Anyone, ..without_world() };
+    let small = judged(&events, &ConformConfig { search: search(5), ..anyone.clone() });
+    assert_eq!((small.verdict(), &small.divergence), (ConformVerdict::Incomplete, &None));
+    assert_eq!(small.limits(), [ReachedLimit::Edges { edges: 5 }]);
+    let limit = SmallestWorld::NotFound { edges: 5, limit: SearchLimit::Edges };
+    assert_eq!(small.smallest, Some(limit));
+    let large = judged(&events, &ConformConfig { search: search(14), ..anyone });
+    assert_eq!(large.verdict(), ConformVerdict::Conforms);
+    // Algorithm 1 does not come to its end if it may know only one dart.
+    let few = judged(&events, &ConformConfig { dart_bound: 1, ..without_world() });
+    assert_eq!((few.verdict(), &few.divergence), (ConformVerdict::Incomplete, &None));
+    assert!(few.limits().contains(&ReachedLimit::Darts { event: 0 }), "{:?}", few.limits());
+}
+
+#[test]
+fn the_marker_is_honoured_without_a_world() {
+    let (_, plan) = plans().unwrap().swap_remove(2);
+    let events = log(&plan, starts_of(&plan)[0], 1).recorded();
+    // A robot without a marker does not see one.
+    let unmarked =
+        ConformConfig { marker: &NoMarker, driver: RunDriver::Anyone, ..without_world() };
+    let divergence = judged(&events, &unmarked).divergence.unwrap();
+    assert_eq!((divergence.event, divergence.fault), (0, FaultClass::Perception));
+    let DivergenceCause::NoWorld { why, .. } = divergence.cause else { panic!() };
+    assert_eq!(why, Impossibility::Marker);
+    // Algorithm 1 needs one.
+    let algorithm = ConformConfig { driver: RunDriver::Algorithm1, ..unmarked.clone() };
+    let judged =
+        |question: &ConformConfig| judge(events.clone(), question, &Quirks::default(), &());
+    assert_eq!(judged(&algorithm).unwrap_err(), JudgeError::Algorithm("none"));
+    // If the marker is not recorded, the log does not show that it was not seen.
+    let unmapped =
+        Options { unmarked: true, ..bare() }.recorded(&log(&plan, starts_of(&plan)[0], 1));
+    let judged =
+        |question: &ConformConfig| judge(unmapped.clone(), question, &Quirks::default(), &());
+    assert_eq!(judged(&without_world()).unwrap_err(), JudgeError::Marker(MarkerNotRecorded));
+    assert_eq!(judged(&unmarked).unwrap().divergence, None);
+}
+
+/// Judged as a log of others.
+fn bare() -> Options {
+    Options {
+        seed: 1,
+        junctions: 6,
+        world: None,
+        class: Class::Multigraph,
+        max_edges: 12,
+        steps: 100_000,
+        driver: RunDriver::Anyone,
+        dart_bound: DARTS,
+        bare: true,
+        unmarked: false,
+    }
+}

@@ -1,0 +1,168 @@
+//! Tolerated divergences: each tolerated event is replaced by the expected one.
+//!
+//! A run is judged anew after a divergence was tolerated. So that a run with many of them is not judged as
+//! often, the divergences that can be found without a judgement are tolerated together.
+
+use std::collections::BTreeSet;
+
+use toposlam_model::{
+    mapping::Contradiction,
+    percept::Percept,
+    trace::{Departure, Misfit, MisfitReason, StepPurpose, poses_amended},
+};
+
+use super::{
+    divergence::{Divergence, DivergenceCause},
+    events::{CheckedEvent, CheckedKind, RunEvents},
+    judgement::{ConformConfig, Judgement},
+    quirks::Quirks,
+};
+
+/// The divergences of a run that are tolerated so far.
+pub(super) struct Tolerance<'q> {
+    quirks: &'q Quirks,
+    recorded: RunEvents,
+    /// With the expected events in place of the tolerated ones.
+    amended: RunEvents,
+    /// In the order of the events, each with the index of its quirk.
+    tolerated: Vec<(Divergence, usize)>,
+    noted: BTreeSet<(usize, &'static str)>,
+}
+
+impl<'q> Tolerance<'q> {
+    pub(super) fn new(recorded: RunEvents, quirks: &'q Quirks) -> Self {
+        let amended = recorded.clone();
+        Self { quirks, recorded, amended, tolerated: Vec::new(), noted: BTreeSet::new() }
+    }
+
+    pub(super) fn events(&self) -> &RunEvents {
+        &self.amended
+    }
+
+    /// The events that are tolerated, and the names of their causes.
+    pub(super) fn noted(&self) -> &BTreeSet<(usize, &'static str)> {
+        &self.noted
+    }
+
+    pub(super) fn finish(self) -> Vec<(Divergence, usize)> {
+        self.tolerated
+    }
+
+    /// Tolerates the divergence of a judgement of these events, and those after it that can be found
+    /// without another judgement. `false` if the judgement stands.
+    pub(super) fn grows(&mut self, judgement: &Judgement, question: &ConformConfig) -> bool {
+        if self.tolerated.is_empty() && self.quirks.all().is_empty() {
+            return false;
+        }
+        // What was tolerated ahead of a judgement and lies after its divergence is not tolerated.
+        let last = judgement.divergence.as_ref().map_or(usize::MAX, |first| first.event);
+        let before = self.tolerated.len();
+        self.tolerated.retain(|(divergence, _)| divergence.event <= last);
+        let too_many = self.tolerated.len() < before;
+        if too_many {
+            self.amend();
+        }
+        let Some(divergence) = &judgement.divergence else { return too_many };
+        let Some(quirk) = self.quirk(divergence) else { return too_many };
+        self.tolerated.push((divergence.clone(), quirk));
+        self.amend();
+        let limit = self.own_faults();
+        self.misfits(question, limit);
+        self.tolerated.sort_by_key(|(divergence, _)| divergence.event);
+        self.amend();
+        true
+    }
+
+    /// The quirk that tolerates a divergence, if it is known how the run continues.
+    fn quirk(&self, divergence: &Divergence) -> Option<usize> {
+        let quirk = self.quirks.tolerating(divergence)?;
+        match &divergence.cause {
+            DivergenceCause::World(_) | DivergenceCause::Algorithm(_) => {
+                let arrival = match &self.amended.events.get(divergence.event)?.kind {
+                    CheckedKind::Arrival { .. } => expected(&divergence.cause),
+                    _ => None,
+                };
+                arrival.map(|_| quirk)
+            }
+            DivergenceCause::NotInTurn(_) | DivergenceCause::NoWorld { .. } => None,
+            // It is skipped.
+            _ => Some(quirk),
+        }
+    }
+
+    /// Replaces the tolerated events by the expected ones.
+    fn amend(&mut self) {
+        self.amended = self.recorded.clone();
+        self.noted.clear();
+        for (divergence, _) in &self.tolerated {
+            self.noted.insert((divergence.event, divergence.cause.name()));
+            if let (Some(Percept { degree, sighting }), Some(CheckedEvent { kind, .. })) =
+                (expected(&divergence.cause), self.amended.events.get_mut(divergence.event))
+                && let CheckedKind::Arrival { arrival, .. } = kind
+            {
+                (arrival.degree, arrival.sighting) = (degree, Some(sighting));
+                // Its shape belongs to the tolerated percept.
+                arrival.form = None;
+            }
+        }
+    }
+
+    /// Tolerates the contradictions of single events, and returns the first event with one that is not
+    /// tolerated.
+    fn own_faults(&mut self) -> usize {
+        for (event, cause) in self.amended.own_faults() {
+            if self.noted.contains(&(event, cause.name())) {
+                continue;
+            }
+            let divergence = Divergence { event, fault: cause.fault(), cause };
+            let Some(quirk) = self.quirk(&divergence) else { return event };
+            self.tolerated.push((divergence, quirk));
+        }
+        usize::MAX
+    }
+
+    /// Tolerates the percepts before an event that do not fit the known world.
+    fn misfits(&mut self, question: &ConformConfig, limit: usize) {
+        let (Some(known), Ok(trace)) = (&question.world, self.amended.trace()) else { return };
+        let mut tolerated = Vec::new();
+        let amend = |misfit: &Misfit| {
+            let event = misfit.event.id;
+            let cause = DivergenceCause::World(misfit.clone());
+            let divergence = Divergence { event, fault: cause.fault(), cause };
+            let quirk = self.quirk(&divergence).filter(|_| event < limit)?;
+            tolerated.push((divergence, quirk));
+            expected_by(misfit)
+        };
+        let _ = poses_amended(known.graph, &question.marker, &known.states, &trace, amend);
+        self.tolerated.extend(tolerated);
+    }
+}
+
+/// The percept that is expected in place of one that diverges, if it is known.
+fn expected(cause: &DivergenceCause) -> Option<Percept> {
+    match cause {
+        DivergenceCause::World(misfit) => expected_by(misfit),
+        DivergenceCause::Algorithm(departure) => expected_after(departure),
+        _ => None,
+    }
+}
+
+/// The percept that all candidate poses expect.
+fn expected_by(misfit: &Misfit) -> Option<Percept> {
+    let mut expected = misfit.candidates.iter().map(|(_, why)| match why {
+        MisfitReason::Percept { expected } => Some(*expected),
+        MisfitReason::NoSuchDoor { .. } => None,
+    });
+    let first = expected.next()??;
+    expected.all(|other| other == Some(first)).then_some(first)
+}
+
+/// The percept that Algorithm 1 expects.
+fn expected_after(departure: &Departure) -> Option<Percept> {
+    departure.allowed.iter().find_map(|allowed| match allowed.purpose {
+        StepPurpose::Contradicted(
+            Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
+        ) => Some(expected),
+        _ => None,
+    })
+}

@@ -1,0 +1,60 @@
+//! The cases that the logs must cover: `--require-coverage`.
+
+use std::io::Write;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde::Serialize;
+use toposlam_model::trace::AlgorithmCase;
+use toposlam_robot::{conform::RunCoverage, evaluation::scene_class::FORMS};
+
+use super::{Failure, Outcome};
+use crate::cli::{
+    json::print_object,
+    text::{counted, print_hanging},
+};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Line<'r> {
+    schema: u32,
+    kind: &'static str,
+    required: &'r [String],
+    not_covered: Vec<&'r str>,
+}
+
+/// Parses the name of a case.
+pub(super) fn cases() -> impl TypedValueParser<Value = String> {
+    let algorithm = AlgorithmCase::ALL.into_iter().map(AlgorithmCase::name);
+    let junctions = FORMS.into_iter().map(|(_, name)| name);
+    PossibleValuesParser::new(algorithm.chain(junctions))
+}
+
+/// Prints which required cases are not covered.
+pub(super) fn report(
+    out: &mut dyn Write,
+    required: &[String],
+    coverage: &RunCoverage,
+    as_json: bool,
+) -> Result<Outcome, Failure> {
+    let not_covered: Vec<_> =
+        required.iter().map(String::as_str).filter(|case| !covers(coverage, case)).collect();
+    let outcome = if not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete };
+    if as_json {
+        print_object(out, &Line { schema: 1, kind: "required-coverage", required, not_covered })?;
+    } else {
+        let cases = counted(required.len(), "required case");
+        let text = match &not_covered[..] {
+            [] => "all are covered".to_owned(),
+            not => format!("not covered: {}", not.join(", ")),
+        };
+        print_hanging(out, &format!("{cases}: "), &text)?;
+    }
+    Ok(outcome)
+}
+
+fn covers(coverage: &RunCoverage, name: &str) -> bool {
+    let count = |case| coverage.algorithm.count(case) > 0;
+    let mut algorithm = AlgorithmCase::ALL.into_iter().filter(|case| case.name() == name);
+    let mut junctions = FORMS.into_iter().filter(|(_, form)| *form == name);
+    algorithm.any(count) || junctions.any(|(form, _)| coverage.junctions.contains_key(&form))
+}

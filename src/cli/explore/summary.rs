@@ -1,0 +1,61 @@
+//! The summary of a run: its rounds and hypotheses, counted.
+
+use std::io::{self, Write};
+
+use toposlam_model::mapping::{Journey, MappingEvent, MovableEvent, Observer};
+
+use crate::cli::text::grouped;
+
+/// Counts the events of a run.
+#[derive(Default)]
+pub(super) struct Summary {
+    rounds: u64,
+    vertices: u64,
+    loops: u64,
+    /// Candidates that the percept on arrival ruled out.
+    ruled_out: u64,
+    rejected: u64,
+    confirmed: u64,
+}
+
+impl Summary {
+    pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out)?;
+        let Self { rounds, vertices, loops, ruled_out, rejected, confirmed } = *self;
+        for (name, count) in [
+            ("rounds", rounds),
+            ("that found a new vertex", vertices),
+            ("that closed a loop", loops),
+            ("candidates ruled out by the percept", ruled_out),
+            ("candidates rejected by their path", rejected),
+            ("candidates confirmed", confirmed),
+        ] {
+            let indent = if name.starts_with("that") { "    " } else { "  " };
+            let name = format!("{indent}{name}");
+            writeln!(out, "{name:<40}{:>12}", grouped(count.into()))?;
+        }
+        writeln!(out, "\nUse --story for each round.")
+    }
+}
+
+impl<W: ?Sized> Observer<W> for Summary {
+    fn event(&mut self, _: &mut W, _: &Journey, event: MappingEvent) {
+        match event {
+            MappingEvent::Arrived { contradicted, .. } => {
+                self.rounds += 1;
+                self.ruled_out += contradicted as u64;
+            }
+            MappingEvent::Movable(MovableEvent::Arrived { .. }) => self.rounds += 1,
+            MappingEvent::Rejected { .. }
+            | MappingEvent::Movable(MovableEvent::NotAt { .. } | MovableEvent::NotBehind { .. }) => {
+                self.rejected += 1;
+            }
+            MappingEvent::Confirmed { .. } | MappingEvent::Movable(MovableEvent::Behind { .. }) => {
+                self.confirmed += 1;
+            }
+            MappingEvent::LoopClosed { .. } => self.loops += 1,
+            MappingEvent::VertexAdded { .. } => self.vertices += 1,
+            _ => {}
+        }
+    }
+}
