@@ -12,7 +12,7 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     format::{named_world::NamedWorld, plantri, world_file},
 };
-use toposlam_robot::log::{LogError, reader::Log};
+use toposlam_robot::log::{error::LogError, reader::Log};
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,
