@@ -5,7 +5,8 @@
 //! picture, even if edges have to cross. Bottom up: `geometry`, `text`, `doors` and `size`; the `layout` of
 //! the vertices and its `scale`; the `curves`, the `ways` that an edge may take and the chosen `routes`;
 //! `labels`; the `drawing` combines them, `signs` adds the marker, and `svg` and `png` write it. `growth`
-//! draws a map while it is built, `run` a robot's way through a floor plan.
+//! draws a map while it is built, `run` a robot's way through a floor plan, `stage` the legend of a picture of
+//! sensing.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -26,6 +27,7 @@ mod run;
 mod scale;
 mod signs;
 mod size;
+mod stage;
 mod svg;
 mod text;
 mod ways;
@@ -45,6 +47,7 @@ pub use png::{PictureError, png};
 pub(crate) use run::example;
 pub use run::run_svg;
 pub(crate) use run::{Drawn, run_drawing};
+pub use stage::with_legend;
 pub(crate) use text::escaped;
 
 /// A picture of a world, to be drawn.

@@ -14,9 +14,14 @@ function drawn(name, attributes = {}, ...children) {
 /** The smallest font size that is readable, in pixels. */
 const READABLE = 11;
 
-/** Gives a drawing the width `--readable`, at which names of a font size, in its units, are readable. */
-function keepReadable(svg, size) {
-  svg.style.setProperty("--readable", `${(svg.viewBox.baseVal.width * READABLE) / size}px`);
+/** The font size of the names of a drawing, in its units. */
+const nameSize = (svg) => parseFloat(getComputedStyle(svg.querySelector(".name") ?? svg).fontSize);
+
+/** Gives a drawing the width and height at which names of a font size, in its units, are readable. */
+function keepReadable(svg, size = nameSize(svg)) {
+  const { width, height } = svg.viewBox.baseVal;
+  svg.style.setProperty("--readable", `${(width * READABLE) / size}px`);
+  svg.style.setProperty("--readable-height", `${(height * READABLE) / size}px`);
 }
 
 /** Scrolls a box, and nothing else, so that an element is in the middle of it. */

@@ -12,7 +12,7 @@ const last = rounds.length - 1;
 const floor = new Floor(find(".floor"), rounds, data.body);
 const stages = [...document.querySelectorAll(".map .stage")];
 for (const svg of document.querySelectorAll(".map svg")) {
-  keepReadable(svg, Number(svg.querySelector(".name").getAttribute("font-size")));
+  keepReadable(svg);
 }
 const called = new Map(calls.map((call) => [call.rounds - 1, call]));
 
