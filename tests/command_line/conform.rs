@@ -509,8 +509,8 @@ fn the_page_shows_version_command_date_and_hashes() {
     let command = format!("toposlam conform {log} --world {SHAPE_6} --html {page}");
     assert!(written.contains(&format!("<code>{command}</code>")));
     assert!(written.contains(&format!("Made by toposlam {} with", env!("CARGO_PKG_VERSION"))));
-    // Simulated logs begin at 1,700,000,000 s.
-    assert!(written.contains("<th scope=\"row\">first message</th><td>2023-11-14 22:13:20"));
+    let begun = "<th scope=\"row\">first message</th><td>no date: 0.000 s on the log's clock</td>";
+    assert!(written.contains(begun));
     let hash = |path: &str| {
         let output = Command::new("sha256sum").arg(path).output().unwrap();
         String::from_utf8(output.stdout).unwrap().split(' ').next().unwrap().to_owned()
@@ -526,7 +526,6 @@ fn the_page_shows_version_command_date_and_hashes() {
 
 #[test]
 fn a_case_that_a_complete_run_has_is_expected() {
-    // The log of one driver stops at the first junction: the rest is expected.
     let folder = folder("conform-expected");
     let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
     let cut = folder.join("cut.mcap");

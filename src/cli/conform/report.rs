@@ -53,7 +53,7 @@ impl Judged<'_> {
             verdict,
             remarks: self.remarks(verdict),
             facts: self.facts(),
-            begun: self.opened.log.start().map(moment),
+            begun: self.opened.log.start().map(date_text),
             sources: Vec::new(),
             events: self.lines(),
             divergence: divergence.map(|divergence| self.divergence_report(divergence)),
@@ -326,6 +326,12 @@ impl Judged<'_> {
             _ => None,
         }
     }
+}
+
+/// The date of a message, or the time on a clock that starts with the robot or the simulation.
+fn date_text(nanoseconds: u64) -> String {
+    let text = moment(nanoseconds);
+    if text.ends_with("UTC") { text } else { format!("no date: {text} on the log's clock") }
 }
 
 fn map_in_words(map: &PartialMap) -> String {

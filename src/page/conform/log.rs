@@ -191,9 +191,13 @@ fn world(report: &LogReport, level: Level) -> String {
     let known = report.coverage.iter().any(|case| case.reachable.is_some());
     let name = if known { "The known world" } else { "The smallest world that explains the log" };
     let address = wording::svg_address(svg);
+    let own = wording::svg_width(svg).map_or_else(String::new, |width| {
+        // The stylesheet keeps the names readable with it.
+        format!(" style=\"--own:{width}px\"")
+    });
     let image = format!(
         "<div class=\"drawing\" tabindex=\"0\"><img class=\"world\" alt=\"A drawing of the world\" \
-         src=\"{address}\"></div>\n"
+         src=\"{address}\"{own}></div>\n"
     );
     panel(level, "", name, &image)
 }
