@@ -509,7 +509,8 @@ fn the_page_shows_version_command_date_and_hashes() {
     let command = format!("toposlam conform {log} --world {SHAPE_6} --html {page}");
     assert!(written.contains(&format!("<code>{command}</code>")));
     assert!(written.contains(&format!("Made by toposlam {} with", env!("CARGO_PKG_VERSION"))));
-    let begun = "<th scope=\"row\">first message</th><td>no date: 0.000 s on the log's clock</td>";
+    let begun =
+        "<th scope=\"row\">first message</th><td>no date: 0.000 s on the clock of the log</td>";
     assert!(written.contains(begun));
     let hash = |path: &str| {
         let output = Command::new("sha256sum").arg(path).output().unwrap();

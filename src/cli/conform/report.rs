@@ -331,7 +331,7 @@ impl Judged<'_> {
 /// The date of a message, or the time on a clock that starts with the robot or the simulation.
 fn date_text(nanoseconds: u64) -> String {
     let text = moment(nanoseconds);
-    if text.ends_with("UTC") { text } else { format!("no date: {text} on the log's clock") }
+    if text.ends_with("UTC") { text } else { format!("no date: {text} on the clock of the log") }
 }
 
 fn map_in_words(map: &PartialMap) -> String {
