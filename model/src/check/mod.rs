@@ -19,7 +19,7 @@ pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
 pub use mapping_algorithm::MappingAlgorithm;
-pub use sweep::{Shard, ShardError, Sweep, check_worlds};
+pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
 pub use tally::{FailedStart, Tally, WorstStart};
 
 #[cfg(test)]
