@@ -31,6 +31,15 @@ fn the_folding_explorer_maps_every_start_in_few_moves() {
 }
 
 #[test]
+fn strict_tests_map_every_start_in_more_moves() {
+    let sweep = Sweep::new(Class::Multigraph, 5, Shard::WHOLE).unwrap();
+    let strict = sweep.run_explorers(FoldingExplorer::strict, &());
+    assert_eq!((strict.failure, strict.mapped), (None, 8162));
+    let cheapest = sweep.run_explorers(FoldingExplorer::default, &());
+    assert!(strict.moves_total > cheapest.moves_total);
+}
+
+#[test]
 fn no_run_is_shorter_than_the_certificate() {
     let mut explorer = FoldingExplorer::default();
     let mut candidate = Candidate::default();
