@@ -97,7 +97,7 @@ pub(super) struct ConformArguments {
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Follow Algorithm 1 until it knows more edge ends
+    /// Follow Algorithm 1 until more edge ends are known
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3

@@ -61,7 +61,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// With all choices: starts of which not all runs were tried.
+    /// With all choices: starts with runs that were not tried.
     #[must_use]
     pub fn gave_up(&self) -> u64 {
         self.over_budget + self.over_memory

@@ -14,7 +14,7 @@
 //!
 //! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
 //! another marker that lies at a vertex is compared where vertices are identified for another reason,
-//! because the robot returned along edges that it knows. A mark on an edge is not compared. With these
+//! because the robot returned along known edges. A mark on an edge is not compared. With these
 //! markers a contradiction is still a proof, and its absence proves nothing.
 
 mod certificate;

@@ -1,6 +1,6 @@
 //! Tolerated divergences: each tolerated event is replaced by the expected one.
 //!
-//! A run is judged anew after a divergence was tolerated. So that a run with many of them is not judged as
+//! A run is judged again after a divergence was tolerated. So that a run with many of them is not judged as
 //! often, the divergences that can be found without a judgement are tolerated together.
 
 use std::collections::BTreeSet;

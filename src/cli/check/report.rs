@@ -250,7 +250,7 @@ struct EveryWayLine {
     runs: u128,
     moves_least: Option<u64>,
     moves_most: Option<u64>,
-    /// Starts of which not all runs were tried.
+    /// Starts with runs that were not tried.
     gave_up: u64,
     /// Those with more states than `--max-states`, and those with more than fit in memory.
     limits: BTreeMap<&'static str, u64>,
