@@ -12,7 +12,7 @@ mod sweep;
 mod tally;
 
 pub use algorithm::{Algorithm, Algorithm1, CostOrder, MovableMarker, OpenChoices, RunState};
-pub use costs::{Costs, EveryWay, SearchLimit};
+pub use costs::{ChoicesLimit, Costs, EveryWay};
 pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;

@@ -22,7 +22,9 @@ mod contradiction;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
-pub use contradiction::{Contradiction, ContradictionReason, FoldError, MAX_DARTS, TrailError};
+pub use contradiction::{
+    ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
+};
 pub use trail::{ClosedTrail, FoldedTrail};
 
 use crate::percept::{Door, Percept};
