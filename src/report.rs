@@ -3,6 +3,26 @@
 
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
+/// How reports were made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReportOrigin {
+    /// The version of the program.
+    pub version: String,
+    /// The command, as a shell reads it.
+    pub command: String,
+}
+
+/// A file that was read for a report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceFile {
+    /// What it is, for example `log`.
+    pub role: &'static str,
+    /// Its path.
+    pub path: String,
+    /// The SHA-256 hash of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
 /// The report on a log.
 #[derive(Clone, Debug)]
 pub struct LogReport {
@@ -14,6 +34,10 @@ pub struct LogReport {
     pub remarks: Vec<String>,
     /// What was checked, and against what: lines of a name and a text.
     pub facts: Vec<(&'static str, String)>,
+    /// The date of the first message; `None` if the log has none.
+    pub begun: Option<String>,
+    /// The files that were read, if their hashes are wanted.
+    pub sources: Vec<SourceFile>,
     /// Every event.
     pub events: Vec<EventLine>,
     /// The first divergence.
@@ -42,6 +66,7 @@ impl LogReport {
                 None => together.push(covered.clone()),
                 Some(known) => {
                     known.count = known.count.saturating_add(covered.count);
+                    known.expected |= covered.expected;
                     known.reachable = match (known.reachable, covered.reachable) {
                         (Some(true), _) | (_, Some(true)) => Some(true),
                         (Some(false), Some(false)) => Some(false),
@@ -97,4 +122,7 @@ pub struct CoveredCase {
     pub count: u64,
     /// Whether the known world can reach it; `None` if no world is known.
     pub reachable: Option<bool>,
+    /// Whether a complete run from the log's start has it: Algorithm 1 with its default choices, in the
+    /// known world.
+    pub expected: bool,
 }

@@ -8,7 +8,7 @@ use toposlam::{
     model::format::world_file,
     page::conform_page,
     picture::{WorldPicture, svg},
-    report::{CoveredCase, DivergenceReport, EventLine, LogReport},
+    report::{CoveredCase, DivergenceReport, EventLine, LogReport, ReportOrigin, SourceFile},
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
@@ -68,6 +68,12 @@ fn conforming(log: &str, events: usize) -> LogReport {
         ]
         .map(|(name, fact)| (name, fact.to_owned()))
         .into(),
+        begun: Some("2023-11-14 22:13:20.000 UTC".to_owned()),
+        sources: vec![SourceFile {
+            role: "log",
+            path: "logs/shape-6.mcap".to_owned(),
+            sha256: "9f86d081884c7d65".repeat(4),
+        }],
         events: (1..=events).map(line).collect(),
         divergence: None,
         coverage: cases
@@ -75,6 +81,7 @@ fn conforming(log: &str, events: usize) -> LogReport {
                 case: case.to_owned(),
                 count,
                 reachable: Some(reachable),
+                expected: case == "marker-missed",
             })
             .into(),
         tolerated: vec![(
@@ -141,6 +148,10 @@ fn the_page_of_a_report_opens_and_leads_to_its_events() {
     let right = conforming("logs/monday.mcap", 211);
     let wrong = diverged("logs/tuesday.mcap", 10_000, 7_003);
     let cut = incomplete("logs/wednesday-<b>of-the-second-floor</b>-2026-11-22-08-15.mcap");
+    let origin = ReportOrigin {
+        version: "0.1.0".to_owned(),
+        command: "toposlam conform logs/monday.mcap --world worlds/shape-6.toml".to_owned(),
+    };
     let pages = [
         ("conforms", vec![right.clone()]),
         ("diverged", vec![wrong.clone()]),
@@ -148,7 +159,7 @@ fn the_page_of_a_report_opens_and_leads_to_its_events() {
     ];
     let pages = pages.map(|(name, reports)| {
         let file = folder.join(format!("conform-{name}.html"));
-        fs::write(&file, conform_page(&reports)).unwrap();
+        fs::write(&file, conform_page(&reports, &origin)).unwrap();
         format!("{name}={}", file.display())
     });
     browser::open("conform_page.mjs", &pages);

@@ -56,7 +56,13 @@ fn the_page_of_a_run_follows_it_to_its_end() {
     let mut empty = run.clone();
     empty.rounds.clear();
     empty.calls.clear();
-    let pages = [("right", run), ("wrong", wrong), ("empty", empty)]
-        .map(|(name, journal)| format!("{name}={}", write(name, &run_page(&journal)).display()));
+    let mut blind = run.clone();
+    blind.rounds.iter_mut().for_each(|round| round.picture = None);
+    let large = journal::journal("building-25", Vec::new());
+    let pages =
+        [("right", run), ("wrong", wrong), ("blind", blind), ("large", large), ("empty", empty)]
+            .map(|(name, journal)| {
+                format!("{name}={}", write(name, &run_page(&journal)).display())
+            });
     browser::open("run_page.mjs", &pages);
 }

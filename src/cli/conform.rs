@@ -1,7 +1,9 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
+mod expected;
 mod known_world;
 mod minimise;
+mod origin;
 mod report;
 mod report_lines;
 mod required;
@@ -232,7 +234,7 @@ impl ConformArguments {
         }
         self.ci.write("conform", &cases)?;
         if let Some(path) = self.html.as_ref().filter(|_| !reports.is_empty()) {
-            output::write_whole(path, page::conform_page(&reports).as_bytes())?;
+            output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
         logs.worst()
     }
@@ -246,7 +248,10 @@ impl ConformArguments {
         quirks: &Quirks,
     ) -> Result<LogReport, Failure> {
         let shorter = self.shorter(judged)?;
-        let report = judged.report(path, quirks, shorter, self.html.is_some());
+        let mut report = judged.report(path, quirks, shorter, self.html.is_some());
+        if self.html.is_some() {
+            report.sources = origin::sources(path, self.world.as_deref())?;
+        }
         if self.json {
             report_lines::json(out, &report, judged)?;
         } else {

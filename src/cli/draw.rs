@@ -10,10 +10,7 @@ use clap::ValueEnum;
 
 use toposlam::picture::{WorldPicture, png, svg};
 
-use toposlam_model::{
-    format::dot,
-    marker::{Directional, Marker},
-};
+use toposlam_model::{format::dot, marker::Marker};
 
 use super::{Failure, Outcome, input, marker_kinds, output};
 
@@ -28,7 +25,7 @@ pub(super) struct DrawArguments {
     /// Where the robot and its marker start [default: the start in the file]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
-    /// Kind of marker, in a picture [default: directional]
+    /// Kind of marker, in a picture [default: the one in the file, or else directional]
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
     /// The file to write: .svg, .png or .dot [default: standard output]
@@ -57,12 +54,12 @@ impl DrawArguments {
         if let (Format::Dot, Some(_)) = (self.format(), self.marker) {
             return Err(Failure::at("--marker", "a DOT file does not show the marker"));
         }
-        let marker = self.marker.unwrap_or(&Directional);
         let mut world = input::read_world(&self.world)?;
+        world.marker = self.marker.or(world.marker);
         if let Some(text) = &self.start {
             world.start = Some(input::start_of(&world, Some(text))?);
         }
-        let drawn = || svg(&WorldPicture { marker, ..WorldPicture::from(&world) });
+        let drawn = || svg(&WorldPicture::from(&world));
         let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
             Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,

@@ -3,7 +3,8 @@
 use std::{ffi::OsStr, io::Cursor, path::Path};
 
 use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
-use toposlam_vision::{image_file::ImageFile, sensing::WrongSize};
+use toposlam::picture::with_legend;
+use toposlam_vision::{annotate, image_file::ImageFile, sensing::WrongSize};
 
 use super::{Failure, input, output};
 
@@ -33,6 +34,12 @@ pub(super) fn read_if(
 /// Writes an image as JPEG (`.jpg`, `.jpeg`) or else as PNG.
 pub(super) fn write(path: &Path, picture: &RgbImage) -> Result<(), Failure> {
     output::write_whole(path, &encoded(path, picture)?)
+}
+
+/// Writes the picture of a step of sensing, with its legend and its scale below it.
+pub(super) fn write_stage(path: &Path, stage: &str, picture: &RgbImage) -> Result<(), Failure> {
+    let whole = with_legend(picture, &annotate::legend(stage));
+    write(path, &whole.map_err(|error| Failure::in_file(path, error))?)
 }
 
 /// The bytes that [`write`] writes.

@@ -134,7 +134,7 @@ impl SenseArguments {
         for (stage, picture) in &stages {
             let mut name = name.clone();
             name.push(format!("-{stage}.png"));
-            picture_file::write(&folder.join(name), picture)?;
+            picture_file::write_stage(&folder.join(name), stage, picture)?;
         }
         Ok(scene)
     }

@@ -5,7 +5,8 @@
 //! picture, even if edges have to cross. Bottom up: `geometry`, `text`, `doors` and `size`; the `layout` of
 //! the vertices and its `scale`; the `curves`, the `ways` that an edge may take and the chosen `routes`;
 //! `labels`; the `drawing` combines them, `signs` adds the marker, and `svg` and `png` write it. `growth`
-//! draws a map while it is built, `run` a robot's way through a floor plan.
+//! draws a map while it is built, `run` a robot's way through a floor plan, `stage` the legend of a picture of
+//! sensing.
 
 #![expect(
     clippy::cast_precision_loss,
@@ -26,6 +27,7 @@ mod run;
 mod scale;
 mod signs;
 mod size;
+mod stage;
 mod svg;
 mod text;
 mod ways;
@@ -45,6 +47,7 @@ pub use png::{PictureError, png};
 pub(crate) use run::example;
 pub use run::run_svg;
 pub(crate) use run::{Drawn, run_drawing};
+pub use stage::with_legend;
 pub(crate) use text::escaped;
 
 /// A picture of a world, to be drawn.
@@ -169,15 +172,15 @@ impl<'a> From<&'a NamedWorld> for Placement<'a> {
 }
 
 impl<'a> From<&'a NamedWorld> for WorldPicture<'a> {
-    /// The picture of a world with its own names, a directional marker at its start, and its name
-    /// as the title.
+    /// The picture of a world with its own names, its marker at its start, by default a directional one,
+    /// and its name as the title.
     fn from(world: &'a NamedWorld) -> Self {
         Self {
             graph: &world.graph,
             vertex_names: &world.vertex_names,
             edge_names: world.edge_names.as_deref(),
             start: world.start,
-            marker: &Directional,
+            marker: world.marker.unwrap_or(&Directional),
             placement: Placement::from(world),
             title: &world.name,
             caption: &world.about,

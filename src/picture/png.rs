@@ -1,5 +1,6 @@
 //! SVG to PNG, with the built-in font only.
 
+use image::{Rgb, RgbImage};
 use resvg::{tiny_skia, usvg};
 use thiserror::Error;
 
@@ -38,16 +39,32 @@ pub enum PictureError {
 /// # Errors
 /// Returns an error if the text is not SVG, or the image would have no pixels.
 pub fn png(svg: &str) -> Result<Vec<u8>, PictureError> {
+    let image = rendered(svg, scale)?;
+    image.encode_png().map_err(|error| PictureError::Png(error.to_string()))
+}
+
+/// The SVG with one pixel per unit. Its background is opaque.
+pub(super) fn pixels(svg: &str) -> Result<RgbImage, PictureError> {
+    let image = rendered(svg, |_| 1.0)?;
+    let row = image.width() as usize;
+    Ok(RgbImage::from_fn(image.width(), image.height(), |x, y| {
+        let pixel = image.pixels().get(y as usize * row + x as usize);
+        Rgb(pixel.map_or([0; 3], |pixel| [pixel.red(), pixel.green(), pixel.blue()]))
+    }))
+}
+
+/// The SVG at a scale, which may depend on its longer side.
+fn rendered(svg: &str, scale: impl Fn(f32) -> f32) -> Result<tiny_skia::Pixmap, PictureError> {
     let outlined = with_outlines(svg).map_err(usvg::Error::ParsingFailed)?;
     let tree = usvg::Tree::from_str(&outlined, &usvg::Options::default())?;
     let size = tree.size();
     let scale = scale(size.width().max(size.height()));
-    let (width, height) = (pixels(size.width() * scale), pixels(size.height() * scale));
+    let (width, height) = (rounded(size.width() * scale), rounded(size.height() * scale));
     let mut image =
         tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
-    image.encode_png().map_err(|error| PictureError::Png(error.to_string()))
+    Ok(image)
 }
 
 /// Pixels per unit of a picture with this longer side.
@@ -56,7 +73,7 @@ fn scale(side: f32) -> f32 {
 }
 
 #[expect(clippy::cast_sign_loss, reason = "the sizes of an SVG are positive")]
-fn pixels(length: f32) -> u32 {
+fn rounded(length: f32) -> u32 {
     length.round() as u32
 }
 

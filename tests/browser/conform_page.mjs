@@ -5,7 +5,7 @@
 // conforms, diverged: of one log; several: of three.
 
 import assert from "node:assert/strict";
-import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+import { DESK, PHONE, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
 
 const VERDICTS = {
   conforms: ["Conforms"],
@@ -35,7 +35,19 @@ async function photographAll(page, file) {
   await page.setViewportSize(DESK);
 }
 
+/** On a phone, a drawing of a world is scrolled, not made small. */
+async function assertWorldReadable(page) {
+  await page.setViewportSize(PHONE);
+  for (const image of await page.locator("img.world").all()) {
+    const [shown, own] = await image.evaluate((it) => [it.getBoundingClientRect().width, it.naturalWidth]);
+    assert.ok(shown >= 0.9 * own, `a drawing ${own} wide is ${shown} wide`);
+  }
+  await page.setViewportSize(DESK);
+}
+
 async function visit(page, kind, file) {
+  await assertWorldReadable(page);
+  assert.match(await page.locator(".origin").textContent(), /Made by toposlam 0\.1\.0 .*toposlam conform/s);
   assert.deepEqual(await page.locator(".verdict strong").allTextContents(), VERDICTS[kind]);
   assert.equal(await page.locator("h1").count(), 1);
   for (const image of await page.locator("img").all()) {
@@ -53,12 +65,12 @@ async function visit(page, kind, file) {
   }
   const row = await follow(page, page.getByRole("link", { name: "Event 7003 of 10000" }));
   assert.match(row, /^7003.*does not fit/s);
-  const copy = page.getByRole("button", { name: "Copy" });
+  const copy = page.locator("section .copy").first();
   await copy.click();
   await page.getByRole("button", { name: /Copied|Marked/ }).waitFor();
   assert.equal(
     await page.evaluate(() => getSelection().toString()),
-    await page.locator(".command code").textContent(),
+    await page.locator("section .command code").first().textContent(),
   );
   return { events: await page.locator(".leaf tbody tr").count() };
 }

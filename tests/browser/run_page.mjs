@@ -1,11 +1,12 @@
 // Follows the pages of runs.
 //
-//   node run_page.mjs CHROMIUM right=FILE wrong=FILE empty=FILE
+//   node run_page.mjs CHROMIUM right=FILE wrong=FILE blind=FILE large=FILE empty=FILE
 //
-// right: every call conforms; wrong: one does not; empty: no picture was taken.
+// right: every call conforms; wrong: one does not; blind: there are no pictures; large: the plan is large, and
+// there are no pictures; empty: there are no frames.
 
 import assert from "node:assert/strict";
-import { DESK, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
+import { DESK, LAPTOP, assertFitsPhone, assertNamesReadable, photograph, visitAll } from "./visits.mjs";
 
 /** What the page shows now. */
 function shown(page) {
@@ -58,7 +59,7 @@ async function assertShows(page, data, at) {
   assert.equal(now.slider, at);
   const there = await onScreen(page, round);
   const off = Math.hypot(now.robot.x - there.x, now.robot.y - there.y);
-  assert.ok(off < 1.5, `the robot is ${off} pixels from where picture ${at} was taken`);
+  assert.ok(off < 1.5, `the robot is ${off} pixels from where frame ${at} was taken`);
   const places = data.rounds.slice(0, at + 1).map(({ x, y }) => `${x},${y}`);
   assert.equal(now.way, at === 0 ? 0 : new Set(places).size);
   assert.equal(now.calls, data.calls.filter(({ rounds }) => rounds <= at + 1).length);
@@ -72,11 +73,11 @@ async function assertShows(page, data, at) {
   const before = data.rounds.slice(0, at).map(({ story }) => story).filter((lines) => lines < round.story);
   assert.deepEqual(now.latest, now.story.slice(Math.max(0, ...before)));
   assert.equal(now.image, round.picture === null ? null : data.pictures[round.picture]);
-  assert.equal(now.noPicture, round.picture === null ? 1 : 0);
+  assert.equal(now.noPicture, data.pictures.length > 0 && round.picture === null ? 1 : 0);
   const call = data.calls.find(({ rounds }) => rounds === at + 1);
   const judged = call?.conforms ? "as specified" : "not as specified";
   assert.deepEqual(now.called, call ? [[`${call.percept}: ${judged}`, !call.conforms]] : []);
-  assert.match(now.said, new RegExp(`^picture ${at + 1} of ${data.rounds.length}, `));
+  assert.match(now.said, new RegExp(`^frame ${at + 1} of ${data.rounds.length}, `));
   return now;
 }
 
@@ -117,8 +118,8 @@ async function followByKeysAndButtons(page, data) {
     await page.getByRole("button", { name, exact: true }).click();
     await assertShows(page, data, at);
   };
-  await click("One picture back", last - 1);
-  await click("One picture on", last);
+  await click("One frame back", last - 1);
+  await click("One frame on", last);
   await click("To the junction before", junctions.filter((at) => at < last).at(-1));
   await click("To the next junction", junctions.filter((at) => at < last).length < junctions.length ? junctions.at(-1) : last);
   // With the focus on the slider, an arrow is still one picture.
@@ -155,6 +156,21 @@ async function play(page, data) {
   await page.keyboard.press("End");
 }
 
+/** Floor, camera, map and story are on a screen of this size together. */
+async function assertOneScreen(page, kind) {
+  await page.setViewportSize(LAPTOP);
+  const panels = ["floor", "camera", "map", "story-panel", "controls"];
+  assert.equal(await page.locator(".camera").count(), kind === "right" || kind === "wrong" ? 1 : 0);
+  for (const name of panels.filter((name) => name !== "camera" || kind === "right" || kind === "wrong")) {
+    const box = await page.locator(`.${name}`).boundingBox();
+    const inside = box.x >= 0 && box.y >= 0 && box.x + box.width <= LAPTOP.width && box.y + box.height <= LAPTOP.height;
+    assert.ok(inside, `${name} is not on the screen: ${JSON.stringify(box)}`);
+    assert.ok(box.height > (name === "controls" ? 40 : 150), `${name} is ${box.height} high`);
+  }
+  assert.equal(await page.evaluate(() => scrollY), 0);
+  await page.setViewportSize(DESK);
+}
+
 async function enlarge(page) {
   const wide = () => page.locator(".floor svg").evaluate((svg) => svg.getBoundingClientRect().height);
   const before = await wide();
@@ -170,13 +186,32 @@ async function visitEmpty(page, file) {
   assert.equal(await page.locator("#play").isDisabled(), true);
   assert.equal(await page.locator("#round").isDisabled(), true);
   await page.keyboard.press("Space");
-  assert.equal(await page.locator(".now").textContent(), "no picture was taken");
+  assert.equal(await page.locator(".now").textContent(), "the run has no frame");
   await photograph(page, file, "light");
   return {};
 }
 
+/** A large plan: its names are readable on a phone, and the robot is on the screen. */
+async function visitLarge(page, file) {
+  await assertOneScreen(page, "large");
+  const data = await readData(page);
+  const mapped = data.rounds.findIndex(({ maps }) => maps > 0);
+  for (const at of [mapped, Math.floor(data.rounds.length / 2), data.rounds.length - 1]) {
+    await page.locator("#round").fill(String(at));
+    await assertNamesReadable(page, [".floor .name", ".map .stage:not([hidden]) .name"]);
+    const [box, robot] = await page.evaluate(() =>
+      [".ground", ".robot circle"].map((it) => document.querySelector(it).getBoundingClientRect().toJSON()),
+    );
+    assert.ok(robot.left >= box.left - 1 && robot.right <= box.right + 1, `the robot is hidden at ${at}`);
+  }
+  await assertFitsPhone(page);
+  await photograph(page, file, "phone");
+  return { frames: data.rounds.length };
+}
+
 async function visit(page, kind, file) {
   if (kind === "empty") return visitEmpty(page, file);
+  if (kind === "large") return visitLarge(page, file);
   const data = await readData(page);
   await assertShows(page, data, 0);
   await followBySlider(page, data);
@@ -190,7 +225,9 @@ async function visit(page, kind, file) {
   await page.emulateMedia({ colorScheme: "dark" });
   await photograph(page, file, "dark");
   await page.emulateMedia({ colorScheme: "light" });
+  await assertOneScreen(page, kind);
   await enlarge(page);
+  await assertNamesReadable(page, [".floor .name", ".map .stage:not([hidden]) .name"]);
   await assertFitsPhone(page);
   const buttons = await page.locator(".controls button").all();
   for (const button of buttons) {
@@ -210,4 +247,4 @@ async function visit(page, kind, file) {
   return { pictures: data.rounds.length, story: data.story.length };
 }
 
-await visitAll(["right", "wrong", "empty"], visit);
+await visitAll(["right", "wrong", "blind", "large", "empty"], visit);

@@ -13,12 +13,33 @@ import { chromium } from "playwright-core";
 
 export const PHONE = { width: 360, height: 740 };
 export const DESK = { width: 1280, height: 900 };
+/** A small screen of a computer. */
+export const LAPTOP = { width: 1280, height: 800 };
+/** The width of a phone on which names have to be readable, and the smallest font, in pixels. */
+const READER = { width: 390, height: 844 };
+const READABLE = 10;
 
 /** Makes the window as small as a phone, and sees that there is nothing to scroll sideways. */
 export async function assertFitsPhone(page) {
   await page.setViewportSize(PHONE);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= PHONE.width, `the page is ${wide} wide on a phone of ${PHONE.width}`);
+}
+
+/** On a phone, no text of these drawings is smaller than a reader can read. */
+export async function assertNamesReadable(page, selectors) {
+  const before = page.viewportSize();
+  await page.setViewportSize(READER);
+  await page.waitForTimeout(100);
+  for (const selector of selectors) {
+    const sizes = await page.locator(selector).evaluateAll((names) =>
+      names.map((name) => Number(name.getAttribute("font-size")) * name.getScreenCTM().a),
+    );
+    assert.ok(sizes.length > 0, `there is no ${selector}`);
+    const least = Math.min(...sizes);
+    assert.ok(least >= READABLE, `${selector} is ${least} pixels high on a phone`);
+  }
+  await page.setViewportSize(before);
 }
 
 export async function photograph(page, file, name) {

@@ -494,3 +494,49 @@ fn required_cases_that_are_not_covered_are_listed() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("rejected-at-once"), "{}", stderr(&output));
 }
+
+#[test]
+fn the_page_shows_version_command_date_and_hashes() {
+    let folder = folder("conform-origin");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let page = folder.join("report.html");
+    let [log, page] = [&log, &page].map(|path| path.to_str().unwrap());
+    let write = || {
+        stdout_of(["conform", log, "--world", SHAPE_6, "--html", page]);
+        fs::read_to_string(page).unwrap()
+    };
+    let written = write();
+    let command = format!("toposlam conform {log} --world {SHAPE_6} --html {page}");
+    assert!(written.contains(&format!("<code>{command}</code>")));
+    assert!(written.contains(&format!("Made by toposlam {} with", env!("CARGO_PKG_VERSION"))));
+    let begun =
+        "<th scope=\"row\">first message</th><td>no date: 0.000 s on the clock of the log</td>";
+    assert!(written.contains(begun));
+    let hash = |path: &str| {
+        let output = Command::new("sha256sum").arg(path).output().unwrap();
+        String::from_utf8(output.stdout).unwrap().split(' ').next().unwrap().to_owned()
+    };
+    for path in [log, SHAPE_6] {
+        assert!(written.contains(&format!("<code class=\"hash\">{}</code>", hash(path))), "{path}");
+    }
+    assert_eq!(write(), written, "the same log, the same bytes");
+    // A complete run has no case that was expected and not reached: the others are grey.
+    assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
+    assert!(!written.contains("<tr class=\"missed\">"));
+}
+
+#[test]
+fn a_case_that_a_complete_run_has_is_expected() {
+    let folder = folder("conform-expected");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
+    let cut = folder.join("cut.mcap");
+    let bytes = fs::read(&log).unwrap();
+    fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    let page = folder.join("report.html");
+    let [cut, page] = [&cut, &page].map(|path| path.to_str().unwrap());
+    let output = run(["conform", cut, "--world", SHAPE_6, "--html", page]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let written = fs::read_to_string(page).unwrap();
+    assert!(written.contains("<tr class=\"missed\"><th scope=\"row\">confirmed</th>"), "{written}");
+    assert!(written.contains("<tr class=\"beyond\"><th scope=\"row\">l-left</th>"));
+}

@@ -142,6 +142,14 @@ fn the_text_has_labelled_rows_and_each_stage_has_a_picture() {
     let names = names_in(&steps);
     let expected = ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
     assert_eq!(names, expected.map(|step| format!("words-{step}.png")));
+    // Below each picture stands its legend.
+    for name in &names {
+        let picture = image::open(steps.join(name)).unwrap().to_rgb8();
+        let square = if name.ends_with("image.png") { SIZE[1] } else { 800 };
+        assert!((square + 30..square + 200).contains(&picture.height()), "{name}");
+        let ink = picture.rows().skip(square as usize).flatten();
+        assert!(ink.filter(|pixel| pixel.0 == [0x2b, 0x34, 0x40]).count() > 50, "{name}");
+    }
     let file = steps.join("words.txt");
     assert_eq!(stdout_of(sense(&[&image], &["--out", file.to_str().unwrap()])), "");
     assert_eq!(fs::read_to_string(file).unwrap(), text);

@@ -1,5 +1,7 @@
 //! Pictures of each step of sensing. Section 3, Figures 6 to 9.
 
+mod legend;
+
 use image::{Rgb, RgbImage};
 use toposlam_model::driving::scene::{CentreLine, MarkerView, Place, Scene};
 
@@ -13,6 +15,8 @@ use crate::{
     sensing::{SensingTrace, Sensor, WrongSize},
     wall::WallSegment,
 };
+
+pub use legend::{LegendSign, StageLegend, legend};
 
 /// The robot's body.
 const BODY: Rgb<u8> = Rgb([90, 90, 90]);
@@ -43,8 +47,16 @@ const RADIUS: f64 = 0.205;
 const CENTRE_LINE: f64 = 1.6;
 /// The pixels around each pixel of a line over an image.
 const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+/// The floor up to its farthest point.
+const REACH: Rgb<u8> = Rgb([40, 60, 40]);
+/// Walls of a scene.
+const WALL: Rgb<u8> = Rgb([150, 150, 150]);
 /// The background.
 const DARK: Rgb<u8> = Rgb([24, 24, 28]);
+
+/// The names of the steps, in their order.
+pub const STAGES: [&str; 6] =
+    ["1-classes", "2-boundary", "3-clusters", "4-lines", "5-scene", "6-image"];
 
 /// The name of each step, and its picture.
 pub type Stages = [(&'static str, RgbImage); 6];
@@ -55,13 +67,14 @@ pub type Stages = [(&'static str, RgbImage); 6];
 /// Returns an error if the image is not of the calibrated camera's size.
 pub fn stages(sensor: &mut Sensor, image: &RgbImage) -> Result<(Scene, Stages), WrongSize> {
     let (found, trace) = sensor.trace(image)?;
+    let [one, two, three, four, five, six] = STAGES;
     let stages = [
-        ("1-classes", classes(sensor.ground_view())),
-        ("2-boundary", boundary(&trace)),
-        ("3-clusters", clusters(&trace)),
-        ("4-lines", lines(&trace)),
-        ("5-scene", scene(&found, &trace)),
-        ("6-image", over(image, sensor.camera(), &found)),
+        (one, classes(sensor.ground_view())),
+        (two, boundary(&trace)),
+        (three, clusters(&trace)),
+        (four, lines(&trace)),
+        (five, scene(&found, &trace)),
+        (six, over(image, sensor.camera(), &found)),
     ];
     Ok((found, stages))
 }
@@ -101,7 +114,7 @@ pub fn boundary(trace: &SensingTrace) -> RgbImage {
         let [x, y] = crate::boundary::direction(bearing);
         let at = |range: f64| [range * x, range * y];
         if sight.floor > 0.0 {
-            line(&mut picture, at(0.30), at(sight.floor), Rgb([40, 60, 40]));
+            line(&mut picture, at(0.30), at(sight.floor), REACH);
         }
         for edge in sight.edges() {
             dot(&mut picture, at(edge.range), 1, if edge.sure { WHITE } else { ORANGE });
@@ -147,7 +160,7 @@ pub fn scene(scene: &Scene, trace: &SensingTrace) -> RgbImage {
     let mut picture = empty();
     for wall in &trace.walls {
         let Some([from, to]) = ends(trace, wall) else { continue };
-        thick(&mut picture, from, to, Rgb([150, 150, 150]));
+        thick(&mut picture, from, to, WALL);
     }
     for corner in trace.corners.iter().filter(|corner| corner.formed != CornerSource::End) {
         let Some(frame) = trace.frame else { continue };

@@ -22,6 +22,8 @@ pub struct NamedWorld {
     pub graph: EmbeddedGraph,
     /// The facing dart, if the file has a start.
     pub start: Option<Dart>,
+    /// The kind of marker that the world is about, if the file has one.
+    pub marker: Option<&'static dyn Marker>,
     /// The name of each vertex.
     pub vertex_names: Vec<String>,
     /// The name of each dart's edge; `None` if the file lists neighbours, which it can only do for a
@@ -95,6 +97,7 @@ impl NamedWorld {
             name: name.to_owned(),
             about: about.to_owned(),
             start,
+            marker: None,
             vertex_names: (0..graph.vertex_count()).map(|n| format!("v{n}")).collect(),
             edge_names,
             positions: None,

@@ -3,6 +3,7 @@
 use toposlam_model::{
     driving::visit::JunctionShape,
     embedded_graph::Dart,
+    floor_plan::FloorPlan,
     format::named_world::NamedWorld,
     marker::Marker,
     trace::{self, anywhere},
@@ -15,7 +16,7 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::Failure;
+use super::{Failure, expected::ExpectedRun};
 use crate::cli::input;
 
 /// A known world.
@@ -28,6 +29,8 @@ pub(super) struct Known<'w> {
     pub(super) reachable: trace::AlgorithmCoverage,
     /// The shapes of the junctions from each of their entries, if the world is a floor plan.
     pub(super) forms: Option<Vec<JunctionShape>>,
+    /// A complete run, if the start is known.
+    expected: Option<ExpectedRun>,
 }
 
 /// The word for an unknown start.
@@ -60,7 +63,19 @@ impl<'w> Known<'w> {
         };
         let reachable = trace::reachable(&world.graph);
         let forms = forms(world);
-        Ok(Self { world, start, states, reachable, forms })
+        let expected = start.map(|start| ExpectedRun::of(&world.graph, start));
+        Ok(Self { world, start, states, reachable, forms, expected })
+    }
+
+    /// Whether a complete run of Algorithm 1 has a case.
+    pub(super) fn expects_case(&self, case: trace::AlgorithmCase) -> bool {
+        self.expected.as_ref().is_some_and(|expected| expected.coverage.count(case) > 0)
+    }
+
+    /// Whether the robot enters a junction of a shape in a complete run of Algorithm 1.
+    pub(super) fn expects_form(&self, form: JunctionShape) -> bool {
+        let (Some(expected), Some(plan)) = (&self.expected, &self.world.plan) else { return false };
+        expected.poses.iter().any(|&pose| form_of(plan, pose) == Some(form))
     }
 
     pub(super) fn question(&self) -> KnownWorld<'_> {
@@ -92,11 +107,13 @@ fn recorded_start(world: &NamedWorld, run: &Run) -> Option<Dart> {
 /// The shapes of the junctions of a floor plan, from each of their entries.
 fn forms(world: &NamedWorld) -> Option<Vec<JunctionShape>> {
     let plan = world.plan.as_ref()?;
-    let graph = plan.graph();
-    let form = |dart| {
-        let position = plan.junction(graph.vertex(dart)).position;
-        let heading = angle(plan.direction(dart).reversed());
-        JunctionTruth::of(plan, graph.vertex(dart), Pose { position, heading }).form
-    };
-    Some(graph.darts().filter_map(form).collect())
+    Some(plan.graph().darts().filter_map(|entry| form_of(plan, entry)).collect())
+}
+
+/// The shape of a junction from an entry.
+fn form_of(plan: &FloorPlan, entry: Dart) -> Option<JunctionShape> {
+    let vertex = plan.graph().vertex(entry);
+    let position = plan.junction(vertex).position;
+    let heading = angle(plan.direction(entry).reversed());
+    JunctionTruth::of(plan, vertex, Pose { position, heading }).form
 }

@@ -23,7 +23,7 @@ use toposlam_robot::{
 };
 
 use super::{Judged, minimise::Minimised};
-use crate::cli::text::{counted, grouped, vertices};
+use crate::cli::text::{counted, grouped, moment, vertices};
 
 /// The largest number of candidates that are listed.
 const LISTED: usize = 8;
@@ -53,6 +53,8 @@ impl Judged<'_> {
             verdict,
             remarks: self.remarks(verdict),
             facts: self.facts(),
+            begun: self.opened.log.start().map(date_text),
+            sources: Vec::new(),
             events: self.lines(),
             divergence: divergence.map(|divergence| self.divergence_report(divergence)),
             coverage: self.coverage(),
@@ -280,10 +282,16 @@ impl Judged<'_> {
 
     fn coverage(&self) -> Vec<CoveredCase> {
         let Judged { judgement, known, .. } = self;
+        let default = judgement.algorithm.as_ref().map(|followed| followed.choices)
+            == Some(MatchedChoices::Default);
+        let run = known.as_ref().filter(|_| default);
+        // Percepts of other robots may have no shapes.
+        let shaped = run.filter(|_| !judgement.coverage.junctions.is_empty());
         let cases = AlgorithmCase::ALL.into_iter().map(|case| CoveredCase {
             case: case.name().to_owned(),
             count: judgement.coverage.algorithm.count(case),
             reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),
+            expected: run.is_some_and(|known| known.expects_case(case)),
         });
         let junctions = FORMS.into_iter().map(|(form, name)| CoveredCase {
             case: name.to_owned(),
@@ -292,6 +300,7 @@ impl Judged<'_> {
                 .as_ref()
                 .and_then(|known| known.forms.as_ref())
                 .map(|forms| forms.contains(&form)),
+            expected: shaped.is_some_and(|known| known.expects_form(form)),
         });
         cases.chain(junctions).collect()
     }
@@ -317,6 +326,12 @@ impl Judged<'_> {
             _ => None,
         }
     }
+}
+
+/// The date of a message, or the time on a clock that starts with the robot or the simulation.
+fn date_text(nanoseconds: u64) -> String {
+    let text = moment(nanoseconds);
+    if text.ends_with("UTC") { text } else { format!("no date: {text} on the clock of the log") }
 }
 
 fn map_in_words(map: &PartialMap) -> String {

@@ -54,13 +54,12 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
         }
         rows.push(Row { marker, found });
     }
-    for Row { marker, found } in &rows {
+    for Row { found, .. } in &rows {
         for found in found {
             found.write(folder)?;
             for world in found.worlds() {
-                let picture = WorldPicture { marker: *marker, ..WorldPicture::from(world) };
                 let path = folder.join(format!("{}.svg", world.name));
-                output::write_whole(&path, svg(&picture).as_bytes())?;
+                output::write_whole(&path, svg(&WorldPicture::from(world)).as_bytes())?;
             }
         }
     }

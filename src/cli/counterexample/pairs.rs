@@ -22,7 +22,12 @@ pub(super) struct WorldPairs {
 
 impl WorldPairs {
     /// The smallest pair, or all.
-    pub(super) fn new(marker: &dyn Marker, class: Class, findings: &Findings, all: bool) -> Self {
+    pub(super) fn new(
+        marker: &'static dyn Marker,
+        class: Class,
+        findings: &Findings,
+        all: bool,
+    ) -> Self {
         let pairs = if all { findings.pairs() } else { findings.smallest().into_iter().collect() };
         let mut worlds: Vec<&PlacedWorld> = Vec::new();
         let mut places = BTreeMap::new();
@@ -44,7 +49,10 @@ impl WorldPairs {
                 marker.name()
             );
             let graph = world.graph.clone();
-            NamedWorld::numbered(&name(place), &about, graph, Some(PlacedWorld::FACING))
+            NamedWorld {
+                marker: Some(marker),
+                ..NamedWorld::numbered(&name(place), &about, graph, Some(PlacedWorld::FACING))
+            }
         };
         Self { worlds: worlds.iter().enumerate().map(named).collect(), pairs, all }
     }

@@ -93,7 +93,7 @@ fn write_steps(
         judge.stages(&judged.view, calibration).map_err(|error| Failure::at("evaluate", error))?;
     picture_file::write(&folder.join("0-picture.png"), &image)?;
     for (name, picture) in &stages {
-        picture_file::write(&folder.join(format!("{name}.png")), picture)?;
+        picture_file::write_stage(&folder.join(format!("{name}.png")), name, picture)?;
     }
     let plan = world_file::to_toml(&plan_of(&judged.view));
     output::write_whole(&folder.join("plan.toml"), plan.as_bytes())?;

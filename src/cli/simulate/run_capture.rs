@@ -97,7 +97,7 @@ impl<'o> RunCapture<'o> {
             facing,
             rounds: self.rounds,
             calls: calls.collect(),
-            story: story.lines().map(str::to_owned).collect(),
+            story: unwrapped(&story),
             maps: self.maps,
             ending: String::new(),
         })
@@ -113,7 +113,7 @@ impl<'o> RunCapture<'o> {
             scene: frame.scene.as_ref().map(in_words).unwrap_or_default(),
             command: None,
             picture: self.picture(frame),
-            story: self.story.out().text().lines().count(),
+            story: unwrapped(self.story.out().text()).len(),
             maps: self.maps.len(),
         };
         self.rounds.push(round);
@@ -138,6 +138,28 @@ impl<'o> RunCapture<'o> {
         small.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, QUALITY)).ok()?;
         Some(bytes)
     }
+}
+
+/// The lines of a story before they were wrapped for a terminal: a page wraps them itself.
+fn unwrapped(story: &str) -> Vec<String> {
+    /// The indent of a line that continues the one before, at least.
+    const CONTINUES: &str = "    ";
+    let mut lines: Vec<String> = Vec::new();
+    for line in story.lines() {
+        match lines.last_mut() {
+            // A paragraph is not indented: each of its lines but the last ends within a sentence.
+            Some(last)
+                if line.starts_with(CONTINUES)
+                    || !(last.is_empty() || line.is_empty() || last.ends_with(['.', ':']))
+                        && !line.starts_with(' ') =>
+            {
+                last.push(' ');
+                last.push_str(line.trim_start());
+            }
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    lines
 }
 
 impl RunObserver for RunCapture<'_> {
@@ -168,5 +190,28 @@ impl RunObserver for RunCapture<'_> {
 
     fn stop(&self) -> bool {
         self.failure.is_some() || self.progress.stop()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_story_for_a_page_is_not_wrapped() {
+        let story = "World w. The robot starts at a, with its back to the door to\nb.\nIt senses 2 doors.\n\n\
+                     Round 1: the robot takes v0.0 (1 move) and\n         senses 1 door.\n  \
+                     Candidate v1.1: rejected, sensed 3\n    doors (2 moves).\n  Known: 2 vertices.\n";
+        assert_eq!(
+            unwrapped(story),
+            [
+                "World w. The robot starts at a, with its back to the door to b.",
+                "It senses 2 doors.",
+                "",
+                "Round 1: the robot takes v0.0 (1 move) and senses 1 door.",
+                "  Candidate v1.1: rejected, sensed 3 doors (2 moves).",
+                "  Known: 2 vertices.",
+            ]
+        );
     }
 }

@@ -1,10 +1,10 @@
 // The floor: the robot, and the part of the drawing that has happened so far.
 
 /** The largest font size of a name, in units of the drawing, so that it covers nothing beside it. */
-const LARGEST = 22;
+const LARGEST = 30;
 
 class Floor {
-  /** `rounds`: where each picture was taken. `body`: the robot's radius, in units of the drawing. */
+  /** `rounds`: where each frame was taken. `body`: the robot's radius, in units of the drawing. */
   constructor(figure, rounds, body) {
     this.svg = figure.querySelector("svg");
     this.rounds = rounds;
@@ -24,6 +24,8 @@ class Floor {
       turn += ((((round.turn - turn) % 360) + 540) % 360) - 180;
       return turn;
     });
+    const { x, y, width, height } = this.svg.viewBox.baseVal;
+    this.box = { x, y, width, height };
     this.names = all(".names text").map((name) => [name, Number(name.getAttribute("font-size"))]);
     this.robot = drawn("g", { class: "robot" });
     this.robot.append(drawn("circle", { r: 1 }), drawn("path", { d: "M0 0H1" }));
@@ -35,18 +37,34 @@ class Floor {
 
   /** What has to be seen is not drawn smaller than a reader can. */
   scale() {
+    this.fit(this.box);
+    // Larger names need more room, in which everything is a little smaller: twice is close enough.
+    for (let pass = 0; pass < 2; pass += 1) {
+      for (const [name, size] of this.names) {
+        const wish = Math.min(READABLE * this.pixel, LARGEST);
+        name.setAttribute("font-size", Math.max(size, wish));
+      }
+      const { x, y, width, height } = this.box;
+      const names = this.svg.querySelector(".names").getBBox();
+      const [left, top] = [Math.min(x, names.x), Math.min(y, names.y)];
+      const right = Math.max(x + width, names.x + names.width);
+      const bottom = Math.max(y + height, names.y + names.height);
+      this.fit({ x: left, y: top, width: right - left, height: bottom - top });
+    }
+    keepReadable(this.svg, LARGEST);
+    this.place();
+  }
+
+  /** Shows this part of the drawing. */
+  fit({ x, y, width, height }) {
+    this.svg.setAttribute("viewBox", `${x} ${y} ${width} ${height}`);
     // Units of the drawing per pixel of the screen.
     this.pixel = 1 / (this.svg.getScreenCTM()?.a || 1);
     this.svg.style.setProperty("--pixel", this.pixel);
     this.svg.classList.toggle("small", this.pixel > 1.6);
-    for (const [name, size] of this.names) {
-      const wish = Math.min(9.5 * this.pixel, LARGEST);
-      name.setAttribute("font-size", Math.max(size, wish));
-    }
-    this.place();
   }
 
-  /** Shows the run as it was at a picture; with a `duration`, in milliseconds, the robot travels there. */
+  /** Shows the run as it was at a frame; with a `duration`, in milliseconds, the robot travels there. */
   show(at, duration = 0) {
     const late = (sign, is) => sign.classList.toggle("later", is);
     this.at = at;
@@ -67,5 +85,6 @@ class Floor {
     const size = Math.max(this.body, 7 * this.pixel);
     const turn = this.turns[this.at];
     this.robot.style.transform = `translate(${x}px, ${y}px) rotate(${turn}deg) scale(${size})`;
+    reveal(this.svg.parentElement, this.robot);
   }
 }

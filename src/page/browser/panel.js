@@ -67,6 +67,7 @@ class Panel {
     this.svg.setAttribute("viewBox", box.join(" "));
     this.svg.setAttribute("width", box[2]);
     this.svg.setAttribute("height", box[3]);
+    keepReadable(this.svg);
   }
 
   /** How many units of the picture a pixel of the screen is. */
@@ -102,6 +103,7 @@ class Panel {
     const size = Math.max(0.46 * this.discs.get(this.state.vertex).r, 6 * this.pixel);
     const turn = (angle * 180) / Math.PI;
     this.robot.setAttribute("transform", `translate(${at.x} ${at.y}) rotate(${turn}) scale(${size})`);
+    reveal(this.svg.parentElement, this.robot);
   }
 
   /** Where a dart leaves its disc. */

@@ -1,4 +1,4 @@
-// The run: the slider, the buttons and the keys choose a picture; the page shows the run at that time.
+// The run: the slider, the buttons and the keys choose a frame; the page shows the run at that time.
 
 const data = JSON.parse(find("#data").textContent);
 const { rounds, calls, story, pictures } = data;
@@ -11,6 +11,9 @@ const last = rounds.length - 1;
 
 const floor = new Floor(find(".floor"), rounds, data.body);
 const stages = [...document.querySelectorAll(".map .stage")];
+for (const svg of document.querySelectorAll(".map svg")) {
+  keepReadable(svg);
+}
 const called = new Map(calls.map((call) => [call.rounds - 1, call]));
 
 const lines = story.map((line) => {
@@ -34,13 +37,15 @@ const write = (selector, text) => {
   find(selector).textContent = text;
 };
 
+/** Nothing if the run has no pictures: then there is no camera on the page. */
 function showCamera({ picture }) {
   const image = find(".camera img");
+  if (!image) return;
   const kept = picture !== null;
   image.hidden = !kept;
   find(".no-picture").hidden = kept;
   if (kept && image.src !== pictures[picture]) image.src = pictures[picture];
-  image.alt = kept ? `What the camera saw at picture ${at + 1}` : "";
+  image.alt = kept ? `What the camera saw at frame ${at + 1}` : "";
 }
 
 function showFacts(round) {
@@ -58,6 +63,9 @@ function showFacts(round) {
 
 function showMap({ maps }) {
   for (const [stage, element] of stages.entries()) element.hidden = stage !== maps - 1;
+  // On a phone a large map is scrolled: to its newest vertex.
+  const newest = [...(stages[maps - 1]?.querySelectorAll(".name") ?? [])].at(-1);
+  if (newest) reveal(stages[maps - 1], newest);
   find(".no-map").hidden = maps > 0;
   write(".grown", `${maps} of ${stages.length}`);
 }
@@ -71,7 +79,7 @@ function showStory({ story: shown }) {
   box.scrollTop = box.scrollHeight;
 }
 
-/** Shows a picture, by its number; with a `duration`, in milliseconds, the robot travels there. */
+/** Shows a frame, by its number; with a `duration`, in milliseconds, the robot travels there. */
 function show(number, duration = 0) {
   at = Math.min(Math.max(number, 0), last);
   const round = rounds[at];
@@ -80,12 +88,11 @@ function show(number, duration = 0) {
   showFacts(round);
   showMap(round);
   showStory(round);
-  const now = `${round.time} min, move ${round.moves}`;
+  const now = `frame ${at + 1} of ${rounds.length}, ${round.time} min, move ${round.moves}`;
   slider.value = at;
-  slider.setAttribute("aria-valuetext", `picture ${at + 1} of ${rounds.length}, ${now}`);
-  write(".number", `picture ${at + 1} of ${rounds.length}`);
+  slider.setAttribute("aria-valuetext", now);
   write(".now", now);
-  // For screen readers: the current picture, but not while the run plays.
+  // For screen readers: the current frame, but not while the run plays.
   if (timer === null) write("[role=status]", `${now}, ${round.state}: ${round.scene}`);
 }
 
@@ -116,7 +123,7 @@ function go(number) {
   show(number);
 }
 
-/** The next picture, in a direction, at which the robot had decided a junction. */
+/** The next frame, in a direction, at which the robot had decided a junction. */
 function junction(direction) {
   const places = [0, ...called.keys(), last].filter((place) => (place - at) * direction > 0);
   return direction > 0 ? Math.min(last, ...places) : Math.max(0, ...places);
@@ -124,9 +131,9 @@ function junction(direction) {
 
 // Buttons and keys.
 
-/** The floor above the camera and as large as the screen allows, or beside it. */
+/** The floor as large as the screen allows, or as one of the panels on the screen. */
 function enlarge() {
-  const large = find(".views").classList.toggle("large");
+  const large = find(".run").classList.toggle("large");
   find("#larger").setAttribute("aria-pressed", String(large));
 }
 
@@ -174,5 +181,5 @@ if (last >= 0) {
   for (const control of document.querySelectorAll(".controls button, .controls input, select")) {
     control.disabled = true;
   }
-  write(".now", "no picture was taken");
+  write(".now", "the run has no frame");
 }

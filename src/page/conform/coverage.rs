@@ -18,7 +18,10 @@ fn row(case: &CoveredCase, most: u64) -> String {
     let name = escaped(&case.case);
     let (class, cells) = match (case.count, case.reachable) {
         (0, Some(false)) => ("beyond", "<td colspan=\"2\">not reachable</td>".to_owned()),
-        (0, _) => ("missed", "<td colspan=\"2\">not reached</td>".to_owned()),
+        (0, _) if case.expected => {
+            ("missed", "<td colspan=\"2\">expected, but not reached</td>".to_owned())
+        }
+        (0, _) => ("beyond", "<td colspan=\"2\">not reached</td>".to_owned()),
         (count, reachable) => {
             let part = 100.0 * count as f64 / most as f64;
             let bar = format!("<span class=\"bar\" style=\"--part:{part:.1}%\"></span>");
@@ -54,7 +57,7 @@ mod tests {
     use super::*;
 
     fn case(case: &str, count: u64, reachable: Option<bool>) -> CoveredCase {
-        CoveredCase { case: case.to_owned(), count, reachable }
+        CoveredCase { case: case.to_owned(), count, reachable, expected: false }
     }
 
     #[test]
@@ -67,8 +70,15 @@ mod tests {
     fn a_case_is_reached_or_not_or_cannot_be() {
         let of = |count, reachable| row(&case("x", count, reachable), 8);
         assert!(of(4, Some(true)).contains("--part:50.0%"));
-        assert!(of(0, Some(true)).contains("\"missed\""));
-        assert!(of(0, None).contains(">not reached<"));
+        let grey = "<tr class=\"beyond\">";
+        for reachable in [None, Some(true)] {
+            let row = of(0, reachable);
+            assert!(row.starts_with(grey) && row.contains(">not reached<"), "{row}");
+        }
+        let expected = CoveredCase { expected: true, ..case("x", 0, Some(true)) };
+        let row = row(&expected, 8);
+        assert!(row.starts_with("<tr class=\"missed\">"), "{row}");
+        assert!(row.contains(">expected, but not reached<"), "{row}");
         assert!(of(0, Some(false)).contains(">not reachable<"));
         assert!(of(8, Some(false)).contains("not in the known world"));
     }

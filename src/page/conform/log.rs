@@ -4,7 +4,7 @@ use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
     page::clock,
     picture::escaped,
-    report::{DivergenceReport, LogReport},
+    report::{DivergenceReport, LogReport, SourceFile},
 };
 
 /// The number of items of a list that are not folded.
@@ -112,13 +112,7 @@ fn shorter(report: &LogReport, level: Level) -> String {
             wording::counted(count, "event")
         ),
     };
-    let command = report.command.as_ref().map_or_else(String::new, |command| {
-        format!(
-            "<div class=\"command\"><pre><code>{}</code></pre>\
-             <button type=\"button\" class=\"copy\" hidden>Copy</button></div>\n",
-            escaped(command)
-        )
-    });
+    let command = report.command.as_deref().map_or_else(String::new, super::command);
     if events.is_empty() && command.is_empty() {
         return String::new();
     }
@@ -160,16 +154,24 @@ fn tolerated(report: &LogReport, log: usize, level: Level) -> String {
 }
 
 fn facts(report: &LogReport, level: Level) -> String {
-    if report.facts.is_empty() {
-        return String::new();
-    }
-    let row = |(name, fact): &(&str, String)| {
+    let row = |(name, fact): (&str, &str)| {
         format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(fact))
     };
-    let table = format!(
-        "<table class=\"facts\">\n<tbody>\n{}</tbody>\n</table>\n",
-        each(&report.facts, row)
-    );
+    let facts = report.facts.iter().map(|(name, fact)| (*name, &**fact));
+    let begun = report.begun.iter().map(|begun| ("first message", &**begun));
+    let source = |SourceFile { role, path, sha256 }: &SourceFile| {
+        format!(
+            "<tr><th scope=\"row\">{role} file</th><td>{}<br><span class=\"faint\">SHA-256</span> \
+             <code class=\"hash\">{}</code></td></tr>\n",
+            escaped(path),
+            escaped(sha256)
+        )
+    };
+    let rows = each(facts.chain(begun), row) + &each(&report.sources, source);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let table = format!("<table class=\"facts\">\n<tbody>\n{rows}</tbody>\n</table>\n");
     panel(level, "late", "What was checked", &table)
 }
 
@@ -189,7 +191,14 @@ fn world(report: &LogReport, level: Level) -> String {
     let known = report.coverage.iter().any(|case| case.reachable.is_some());
     let name = if known { "The known world" } else { "The smallest world that explains the log" };
     let address = wording::svg_address(svg);
-    let image = format!("<img class=\"world\" alt=\"A drawing of the world\" src=\"{address}\">\n");
+    let own = wording::svg_width(svg).map_or_else(String::new, |width| {
+        // The stylesheet keeps the names readable with it.
+        format!(" style=\"--own:{width}px\"")
+    });
+    let image = format!(
+        "<div class=\"drawing\" tabindex=\"0\"><img class=\"world\" alt=\"A drawing of the world\" \
+         src=\"{address}\"{own}></div>\n"
+    );
     panel(level, "", name, &image)
 }
 

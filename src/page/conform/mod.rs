@@ -13,7 +13,10 @@ mod wording;
 mod tests;
 
 use super::{PAGE_STYLE, filled};
-use crate::{picture::escaped, report::LogReport};
+use crate::{
+    picture::escaped,
+    report::{LogReport, ReportOrigin},
+};
 
 const PAGE: &str = include_str!("../browser/conform.html");
 const SCRIPT: &str = include_str!("../browser/conform.js");
@@ -21,7 +24,7 @@ const SCRIPT: &str = include_str!("../browser/conform.js");
 /// The page of these reports as an HTML document; several have a summary above. The same reports give the
 /// same bytes.
 #[must_use]
-pub fn conform_page(reports: &[LogReport]) -> String {
+pub fn conform_page(reports: &[LogReport], origin: &ReportOrigin) -> String {
     let alone = matches!(reports, [_]);
     let numbered: Vec<_> = reports.iter().zip(1..).collect();
     filled(PAGE, |place| match place {
@@ -32,6 +35,8 @@ pub fn conform_page(reports: &[LogReport]) -> String {
         "logs" => each(&numbered, |(report, number)| {
             log::section(report, *number, if alone { Level::First } else { Level::Second })
         }),
+        "version" => escaped(&origin.version),
+        "command" => command(&origin.command),
         "script" => SCRIPT.to_owned(),
         _ => String::new(),
     })
@@ -80,6 +85,15 @@ fn short_list<T>(items: &[T], few: usize, of: impl Fn(&T) -> String) -> String {
     let more =
         format!("<details><summary>{} more</summary>\n{}</details>\n", rest.len(), list(rest));
     list(first) + &more
+}
+
+/// A command that can be copied.
+fn command(command: &str) -> String {
+    format!(
+        "<div class=\"command\"><pre><code>{}</code></pre>\
+         <button type=\"button\" class=\"copy\" hidden>Copy</button></div>\n",
+        escaped(command)
+    )
 }
 
 /// A panel with a heading.

@@ -5,7 +5,12 @@ use std::{cell::RefCell, collections::BTreeSet};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use super::*;
-use crate::report::{CoveredCase, DivergenceReport, EventLine};
+use crate::report::{CoveredCase, DivergenceReport, EventLine, SourceFile};
+
+fn page_of(reports: &[LogReport]) -> String {
+    let command = "toposlam conform logs/shape-6.mcap --html report.html".to_owned();
+    conform_page(reports, &ReportOrigin { version: "0.1.0".to_owned(), command })
+}
 
 fn line(number: usize) -> EventLine {
     EventLine {
@@ -26,6 +31,12 @@ fn conforming(events: usize) -> LogReport {
         verdict: ConformVerdict::Conforms,
         remarks: Vec::new(),
         facts: vec![("world", "shape-6".to_owned()), ("driver", "Algorithm 1".to_owned())],
+        begun: Some("2023-11-14 22:13:20.000 UTC".to_owned()),
+        sources: vec![SourceFile {
+            role: "log",
+            path: "logs/shape-6.mcap".to_owned(),
+            sha256: "9f86d081884c7d65".repeat(4),
+        }],
         events: (1..=events).map(line).collect(),
         divergence: None,
         coverage: [("new-vertex", 9, true), ("confirmed", 0, true), ("marker-missed", 0, false)]
@@ -33,6 +44,7 @@ fn conforming(events: usize) -> LogReport {
                 case: case.to_owned(),
                 count,
                 reachable: Some(can),
+                expected: false,
             })
             .into(),
         tolerated: Vec::new(),
@@ -85,7 +97,7 @@ fn every_place_of_the_template_is_filled() {
         places.borrow_mut().insert(place.to_owned());
         String::new()
     });
-    let known = ["icon", "logs", "script", "style", "title", "together"];
+    let known = ["command", "icon", "logs", "script", "style", "title", "together", "version"];
     assert_eq!(places.into_inner(), known.map(str::to_owned).into());
 }
 
@@ -108,7 +120,7 @@ fn the_words_of_a_log_are_escaped_everywhere() {
     }
     let quiet = LogReport { log: nasty(), remarks: vec![nasty()], ..conforming(0) };
     for reports in [vec![report.clone()], vec![report, quiet]] {
-        let page = conform_page(&reports);
+        let page = page_of(&reports);
         assert_eq!(page.matches("<script").count(), 1, "the template's own");
         assert_eq!(page.matches("</script").count(), 1);
         assert!(!page.contains("<i "));
@@ -119,8 +131,23 @@ fn the_words_of_a_log_are_escaped_everywhere() {
 }
 
 #[test]
+fn the_page_shows_how_it_was_made() {
+    let page = page_of(&[conforming(3)]);
+    for part in [
+        "Made by toposlam 0.1.0 with this command.",
+        "<code>toposlam conform logs/shape-6.mcap --html report.html</code>",
+        "<tr><th scope=\"row\">first message</th><td>2023-11-14 22:13:20.000 UTC</td></tr>",
+        "<tr><th scope=\"row\">log file</th><td>logs/shape-6.mcap<br>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let hash = "9f86d081884c7d65".repeat(4);
+    assert!(page.contains(&format!("<code class=\"hash\">{hash}</code>")));
+}
+
+#[test]
 fn each_verdict_has_its_word_sign_and_colour() {
-    let of = |report: LogReport| conform_page(&[report]);
+    let of = |report: LogReport| page_of(&[report]);
     let pages = [of(conforming(4)), of(diverged(4, 3)), of(incomplete())];
     for (page, [name, word]) in pages.iter().zip([
         ["conforms", "Conforms"],
@@ -143,7 +170,7 @@ fn each_verdict_has_its_word_sign_and_colour() {
 
 #[test]
 fn a_divergence_is_shown_with_the_events_before_it_and_what_is_allowed() {
-    let page = conform_page(&[diverged(9, 7)]);
+    let page = page_of(&[diverged(9, 7)]);
     for part in [
         "<b>Perceives 4 doors.</b>",
         "<span class=\"chip\">perception</span>",
@@ -165,34 +192,34 @@ fn a_divergence_is_shown_with_the_events_before_it_and_what_is_allowed() {
 
 #[test]
 fn a_divergence_may_be_the_first_event_or_missing_at_the_end() {
-    let first = conform_page(&[diverged(4, 1)]);
+    let first = page_of(&[diverged(4, 1)]);
     assert!(led_there(&first).contains("<tbody>\n<tr class=off><td>1<"));
-    let missing = conform_page(&[diverged(4, 5)]);
+    let missing = page_of(&[diverged(4, 5)]);
     assert!(missing.contains(">After all 4 events</a>"));
     assert!(led_there(&missing).contains("<tr><td>4<td>0:02.0"));
     assert_eq!(missing.matches(" id=event-1-5>").count(), 1);
-    let nothing = conform_page(&[diverged(0, 1)]);
+    let nothing = page_of(&[diverged(0, 1)]);
     assert_eq!(nothing.matches(" id=event-1-1>").count(), 1);
 }
 
 #[test]
 fn what_there_is_not_takes_no_room() {
-    let page = conform_page(&[conforming(2)]);
+    let page = page_of(&[conforming(2)]);
     assert!(!page.contains("<img"));
     for name in ["What the camera saw", "Events before it", "tolerated", "A shorter log"] {
         assert!(!page.contains(name), "{name}");
     }
     let odd = LogReport { picture: Some(b"GIF89a".to_vec()), ..conforming(2) };
-    assert_eq!(conform_page(&[odd]), page);
+    assert_eq!(page_of(&[odd]), page);
     let png = LogReport { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
-    assert!(conform_page(&[png]).contains("src=\"data:image/png;base64,"));
+    assert!(page_of(&[png]).contains("src=\"data:image/png;base64,"));
 }
 
 #[test]
 fn what_is_tolerated_leads_to_its_events() {
     let at = vec![2, 4, 6];
     let quirk = ("glare".to_owned(), "the sun stands low".to_owned(), at);
-    let page = conform_page(&[LogReport { tolerated: vec![quirk], ..conforming(5) }]);
+    let page = page_of(&[LogReport { tolerated: vec![quirk], ..conforming(5) }]);
     assert!(page.contains("<b>glare</b>, 3 times: The sun stands low."));
     assert!(page.contains("<p>All 5 events fit, except 3 that are tolerated.</p>"));
     for event in [2, 4] {
@@ -205,7 +232,7 @@ fn what_is_tolerated_leads_to_its_events() {
 
 #[test]
 fn many_events_make_a_page_that_is_not_large() {
-    let page = conform_page(&[diverged(10_000, 7_000)]);
+    let page = page_of(&[diverged(10_000, 7_000)]);
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     assert!(page.contains("<summary>All 10000 events</summary>"));
     assert_eq!(page.matches("<div class=\"leaf\">").count(), 100);
@@ -214,7 +241,7 @@ fn many_events_make_a_page_that_is_not_large() {
 #[test]
 fn several_logs_are_summed_up_above() {
     let logs = [conforming(3), diverged(9, 7), incomplete()];
-    let page = conform_page(&logs);
+    let page = page_of(&logs);
     assert!(page.contains("<title>3 logs: 1 diverged, 1 incomplete, 1 conforms</title>"));
     assert!(page.contains("<div class=\"verdict diverged\">\n<h1>"), "the worst of all");
     assert_eq!(page.matches("<h1>").count(), 1);
@@ -225,12 +252,12 @@ fn several_logs_are_summed_up_above() {
     let (above, _) = page.split_once("<section id=\"log-1\">").unwrap();
     assert!(above.contains(">27</td>"), "what all of them cover");
     assert!(page.contains("#event-2-7"));
-    assert_eq!(page, conform_page(&logs));
+    assert_eq!(page, page_of(&logs));
 }
 
 #[test]
 fn no_log_does_not_conform() {
-    let page = conform_page(&[]);
+    let page = page_of(&[]);
     assert!(page.contains("<div class=\"verdict incomplete\">"));
     assert!(page.contains("<strong>No log was checked</strong>"));
 }
@@ -243,7 +270,7 @@ fn a_long_list_is_folded() {
         if let Some(divergence) = &mut report.divergence {
             divergence.allowed = doors(count);
         }
-        let page = conform_page(std::slice::from_ref(&report));
+        let page = page_of(std::slice::from_ref(&report));
         assert_eq!(page.matches("<li>door ").count(), count);
         assert_eq!(summary.is_some_and(|summary| page.contains(summary)), summary.is_some());
         assert_eq!(page.contains(" more</summary>"), summary.is_some());

@@ -122,6 +122,12 @@ pub(super) fn svg_address(svg: &str) -> String {
     format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg))
 }
 
+/// The width of a drawing in its own size, in pixels.
+pub(super) fn svg_width(svg: &str) -> Option<u32> {
+    let (_, width) = svg.split_once(" width=\"")?;
+    width.split_once('"')?.0.parse().ok()
+}
+
 /// A JPEG or PNG file as the address of an image; `None` if it is neither.
 pub(super) fn picture_address(file: &[u8]) -> Option<String> {
     let kind = if file.starts_with(b"\xff\xd8\xff") {

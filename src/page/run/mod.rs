@@ -11,6 +11,8 @@ use crate::{
 };
 
 const PAGE: &str = include_str!("../browser/run.html");
+/// The panel of the pictures.
+const CAMERA: &str = include_str!("../browser/camera.html");
 /// In the order of their dependencies; they share one scope.
 const SCRIPT: [&str; 3] =
     [PAGE_SCRIPT, include_str!("../browser/floor.js"), include_str!("../browser/run.js")];
@@ -23,12 +25,19 @@ pub fn run_page(journal: &Journal) -> String {
         "title" => escaped(&journal.name),
         "about" => escaped(&words::about(journal)),
         "style" => PAGE_STYLE.to_owned(),
+        "layout" if !has_pictures(journal) => " no-camera".to_owned(),
         "plan" => drawn.svg.clone(),
+        "camera" if has_pictures(journal) => CAMERA.to_owned(),
         "maps" => maps(journal),
         "data" => data::json(journal, &drawn),
         "script" => SCRIPT.concat(),
         _ => String::new(),
     })
+}
+
+/// Whether any frame has a picture.
+fn has_pictures(journal: &Journal) -> bool {
+    journal.rounds.iter().any(|round| round.picture.is_some())
 }
 
 /// Every map, each in its own element; the page shows one of them.
@@ -59,7 +68,8 @@ mod tests {
             places.borrow_mut().insert(place.to_owned());
             String::new()
         });
-        let known = ["about", "data", "maps", "plan", "script", "style", "title"];
+        let known =
+            ["about", "camera", "data", "layout", "maps", "plan", "script", "style", "title"];
         assert_eq!(places.into_inner(), known.map(str::to_owned).into());
     }
 
@@ -94,6 +104,17 @@ mod tests {
         assert_eq!(Value::from(shown), json!([null, 0, 1, 2, 3, 3, 3]));
         assert_eq!(data["pictures"][3], "data:image/jpeg;base64,BAQE");
         assert_eq!(document.matches("image/jpeg").count(), 4);
+    }
+
+    #[test]
+    fn a_run_without_pictures_has_no_camera_panel() {
+        let mut journal = example::journal();
+        let camera = "<figure class=\"panel camera\">";
+        assert!(run_page(&journal).contains(camera));
+        journal.rounds.iter_mut().for_each(|round| round.picture = None);
+        let page = run_page(&journal);
+        assert!(!page.contains(camera) && !page.contains("No picture was kept"));
+        assert!(page.contains("<div class=\"run no-camera\">"));
     }
 
     #[test]

@@ -9,14 +9,14 @@ use crate::{
 /// The result and the length of the run.
 pub(super) fn about(journal: &Journal) -> String {
     let ending = journal.ending.trim_end_matches('.');
-    let pictures = match journal.rounds.len() {
-        1 => "1 picture".to_owned(),
-        count => format!("{count} pictures"),
+    let frames = match journal.rounds.len() {
+        1 => "1 frame".to_owned(),
+        count => format!("{count} frames"),
     };
     let Some(last) = journal.rounds.last() else {
-        return format!("{ending}. {pictures}.");
+        return format!("{ending}. {frames}.");
     };
-    format!("{ending}. {pictures}, {} min of simulated time.", clock(last.time))
+    format!("{ending}. {frames}, {} min of simulated time.", clock(last.time))
 }
 
 pub(super) fn state(state: PathState) -> &'static str {

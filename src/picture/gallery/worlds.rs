@@ -13,6 +13,7 @@ fn world(name: &str, graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWo
         about: String::new(),
         graph,
         start: Some(Dart(0)),
+        marker: None,
         vertex_names,
         edge_names: None,
         positions: None,

@@ -5,9 +5,12 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph, ListError},
     floor_plan::{FloorPlan, FloorPlanError},
     format::{
-        document::{Document, DocumentEntry, DocumentTable, DocumentValue, TextPosition},
+        document::{
+            Document, DocumentEntry, DocumentError, DocumentTable, DocumentValue, TextPosition,
+        },
         named_world::{NamedWorld, StartError},
     },
+    marker::{MARKERS, Marker},
 };
 
 /// The clockwise lists of a file: each vertex and its list, in the order of the file.
@@ -43,7 +46,11 @@ pub fn read(bytes: &[u8]) -> Result<NamedWorld, WorldFileError> {
     };
     name.clone_into(&mut world.name);
     about.clone_into(&mut world.about);
-    world.start = file.get("start").map(|value| start(&world, value)).transpose()?;
+    if let Some(value) = file.get("start") {
+        let table = value.table(&["at", "facing", "marker"])?;
+        world.start = Some(start(&world, &table)?);
+        world.marker = table.get("marker").map(marker).transpose()?;
+    }
     Ok(world)
 }
 
@@ -116,8 +123,7 @@ fn by_plan(file: &DocumentTable<'_>) -> Result<NamedWorld, WorldFileError> {
 }
 
 /// The dart that `[start]` gives.
-fn start(world: &NamedWorld, value: DocumentValue<'_>) -> Result<Dart, WorldFileError> {
-    let start = value.table(&["at", "facing"])?;
+fn start(world: &NamedWorld, start: &DocumentTable<'_>) -> Result<Dart, WorldFileError> {
     let (at, facing) = (start.need("at")?, start.need("facing")?);
     world.start_from_names(at.text()?, facing.text()?).map_err(|error| {
         let wrong = match error {
@@ -128,12 +134,18 @@ fn start(world: &NamedWorld, value: DocumentValue<'_>) -> Result<Dart, WorldFile
     })
 }
 
+/// The kind of marker with this name.
+fn marker(name: DocumentValue<'_>) -> Result<&'static dyn Marker, DocumentError> {
+    name.word(&MARKERS.map(|marker| (marker.name(), marker)))
+}
+
 fn unnamed(graph: EmbeddedGraph, vertex_names: Vec<String>) -> NamedWorld {
     NamedWorld {
         name: String::new(),
         about: String::new(),
         graph,
         start: None,
+        marker: None,
         vertex_names,
         edge_names: None,
         positions: None,

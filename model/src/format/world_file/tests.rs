@@ -6,6 +6,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
+    marker::{MARKERS, Marker},
 };
 
 fn message(text: &str) -> String {
@@ -401,6 +402,23 @@ fn deep_nesting_is_rejected() {
         assert!(read(format!("a = {deep}").as_bytes()).is_err());
     }
     assert!(read("a.".repeat(100_000).as_bytes()).is_err());
+}
+
+#[test]
+fn a_start_may_name_its_marker() {
+    let graph = EmbeddedGraph::from_neighbour_lists(&[("a", vec!["b"]), ("b", vec!["a"])]).unwrap();
+    for marker in MARKERS {
+        let world = NamedWorld {
+            marker: Some(marker),
+            ..NamedWorld::numbered("", "", graph.clone(), Some(Dart(0)))
+        };
+        assert!(to_toml(&world).ends_with(&format!("\nmarker = \"{}\"\n", marker.name())));
+        reads_back(&world);
+    }
+    let file = "[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\"\nfacing = \"b\"\n";
+    assert_eq!(read(file.as_bytes()).unwrap().marker, None);
+    let wrong = read(format!("{file}marker = \"two\"\n").as_bytes()).unwrap_err().to_string();
+    assert!(wrong.contains("two-identical"), "{wrong}");
 }
 
 #[test]

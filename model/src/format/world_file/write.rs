@@ -102,7 +102,13 @@ fn object(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
 }
 
 fn start(world: &NamedWorld, dart: Dart) -> Value {
-    json!({ "at": world.at_text(dart), "facing": world.facing_text(dart) })
+    let mut start = Map::new();
+    start.insert("at".to_owned(), json!(world.at_text(dart)));
+    start.insert("facing".to_owned(), json!(world.facing_text(dart)));
+    if let Some(marker) = world.marker {
+        start.insert("marker".to_owned(), json!(marker.name()));
+    }
+    Value::Object(start)
 }
 
 fn lists(world: &NamedWorld) -> Value {

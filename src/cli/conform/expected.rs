@@ -1,0 +1,34 @@
+//! The cases that a complete run has: Algorithm 1 with its default choices, in a known world from a known
+//! start.
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    mapping::{Exploration, Journey, MappingEvent, Nearest, Observer, map_world},
+    trace::AlgorithmCoverage,
+    world::GraphWorld,
+};
+
+/// The cases of one run, and the poses in which the robot stood.
+#[derive(Default)]
+pub(super) struct ExpectedRun {
+    pub(super) coverage: AlgorithmCoverage,
+    pub(super) poses: Vec<Dart>,
+}
+
+impl ExpectedRun {
+    pub(super) fn of(graph: &EmbeddedGraph, start: Dart) -> Self {
+        let mut expected = Self::default();
+        let mut world = GraphWorld::new(graph, start);
+        let mut exploration = Exploration::new(2 * graph.dart_count());
+        // In a world of this size the run ends.
+        let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut expected);
+        expected
+    }
+}
+
+impl Observer<GraphWorld<'_>> for ExpectedRun {
+    fn event(&mut self, world: &mut GraphWorld, journey: &Journey, event: MappingEvent) {
+        self.coverage.event(world, journey, event);
+        self.poses.push(world.state().pose);
+    }
+}

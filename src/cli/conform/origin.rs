@@ -1,0 +1,53 @@
+//! How a report was made: the version, the command, and the hashes of the files.
+
+use std::{env, fmt::Write as _, fs::File, io, path::Path};
+
+use sha2::{Digest, Sha256};
+use toposlam::report::{ReportOrigin, SourceFile};
+
+use super::Failure;
+use crate::cli::text::quoted;
+
+/// This version, and the command line of this process.
+pub(super) fn origin() -> ReportOrigin {
+    let words = env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    let command = [vec!["toposlam".to_owned()], words.collect()].concat().join(" ");
+    ReportOrigin { version: env!("CARGO_PKG_VERSION").to_owned(), command }
+}
+
+/// A log and the world in which it was checked, with their hashes.
+pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile>, Failure> {
+    let files = [("log", Some(log)), ("world", world)];
+    let files = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
+    files
+        .map(|(role, path)| {
+            let sha256 = sha256(path).map_err(|error| Failure::in_file(path, error))?;
+            Ok(SourceFile { role, path: path.display().to_string(), sha256 })
+        })
+        .collect()
+}
+
+/// The SHA-256 hash of a file, in hexadecimal.
+fn sha256(path: &Path) -> io::Result<String> {
+    let mut digest = HashWriter(Sha256::new());
+    io::copy(&mut File::open(path)?, &mut digest)?;
+    Ok(digest.0.finalize().iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// What is written is hashed.
+struct HashWriter(Sha256);
+
+impl io::Write for HashWriter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

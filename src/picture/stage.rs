@@ -1,0 +1,176 @@
+//! A picture of a step of sensing, with its legend and its scale below it. Section 3.
+
+use image::{Rgb, RgbImage, imageops};
+use toposlam_vision::annotate::{LegendSign, StageLegend};
+
+use super::{
+    png::{PictureError, pixels},
+    svg::{INK, short},
+    text::{FAMILY, escaped, width},
+};
+
+/// The font size of a legend, as a share of the picture's width, and its bounds.
+const SIZE: f64 = 1.0 / 50.0;
+const SIZES: [f64; 2] = [11.0, 26.0];
+/// Grey, so that white and black signs stand out.
+const PAPER: &str = "#bcbcb6";
+
+/// The picture with its legend and its scale below it.
+///
+/// # Errors
+/// Returns an error if the picture has no width.
+pub fn with_legend(picture: &RgbImage, legend: &StageLegend) -> Result<RgbImage, PictureError> {
+    let below = pixels(&strip(legend, picture.width()))?;
+    let mut whole = RgbImage::new(picture.width(), picture.height() + below.height());
+    imageops::replace(&mut whole, picture, 0, 0);
+    imageops::replace(&mut whole, &below, 0, i64::from(picture.height()));
+    Ok(whole)
+}
+
+/// The legend as an SVG document of a width. The entries stand in rows.
+fn strip(legend: &StageLegend, wide: u32) -> String {
+    let right = f64::from(wide);
+    let size = (SIZE * right).clamp(SIZES[0], SIZES[1]);
+    let (row, margin) = (1.7 * size, 0.8 * size);
+    let scale = legend.metre.map(|metre| (None, metre, "1 m"));
+    let entries = legend.entries.iter();
+    let entries = entries.map(|(sign, words)| (Some(sign), length(sign, size), &**words));
+    let (mut x, mut y) = (margin, margin + 0.5 * row);
+    let mut parts = String::new();
+    for (sign, long, words) in scale.into_iter().chain(entries) {
+        let wanted = long + 0.5 * size + width(words, size);
+        if x > margin && x + wanted > right - margin {
+            (x, y) = (margin, y + row);
+        }
+        parts += &sign.map_or_else(|| ruler([x, y], long, size), |sign| drawn(sign, [x, y], size));
+        parts += &format!(
+            "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{INK}\">{}</text>",
+            short(x + long + 0.5 * size),
+            short(y + 0.35 * size),
+            short(size),
+            escaped(words)
+        );
+        x += wanted + 1.4 * size;
+    }
+    let high = (y + 0.5 * row + margin).ceil();
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
+         viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}\"><rect width=\"100%\" \
+         height=\"100%\" fill=\"{PAPER}\"/>{parts}</svg>"
+    )
+}
+
+/// A metre.
+fn ruler([x, y]: [f64; 2], metre: f64, size: f64) -> String {
+    let [left, right, top, bottom] = [x, x + metre, y - 0.35 * size, y + 0.35 * size].map(short);
+    format!(
+        "<path d=\"M{left} {top}V{bottom}M{right} {top}V{bottom}M{left} {y}H{right}\" fill=\"none\" \
+         stroke=\"{INK}\" stroke-width=\"2\"/>",
+        y = short(y)
+    )
+}
+
+/// The length of a sign.
+fn length(sign: &LegendSign, size: f64) -> f64 {
+    match sign {
+        LegendSign::Areas(colours) => size * colours.len() as f64,
+        LegendSign::Dot(_) | LegendSign::Ring(_) => 0.8 * size,
+        LegendSign::Line(_) | LegendSign::Thick(_) => 1.8 * size,
+        LegendSign::Robot { .. } => 1.2 * size,
+    }
+}
+
+/// A sign as SVG. Its left end is at a point.
+fn drawn(sign: &LegendSign, [x, y]: [f64; 2], size: f64) -> String {
+    let long = length(sign, size);
+    let line = |colour, thick| {
+        let (from, to, y) = (short(x), short(x + long), short(y));
+        format!(
+            "<path d=\"M{from} {y}H{to}\" stroke=\"{}\" stroke-width=\"{thick}\"/>",
+            hex(colour)
+        )
+    };
+    let circle = |colours: &str| {
+        let [x, y, radius] = [x + long / 2.0, y, long / 2.0].map(short);
+        format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {colours}/>")
+    };
+    match sign {
+        LegendSign::Areas(colours) => (0_u32..)
+            .zip(colours)
+            .map(|(number, colour)| {
+                let [x, y, side] = [x + f64::from(number) * size, y - size / 2.0, size].map(short);
+                let fill = hex(*colour);
+                format!(
+                    "<rect x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" fill=\"{fill}\"/>"
+                )
+            })
+            .collect(),
+        LegendSign::Dot(colour) => circle(&format!("fill=\"{}\"", hex(*colour))),
+        LegendSign::Ring(colour) => {
+            circle(&format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2.5\"", hex(*colour)))
+        }
+        LegendSign::Line(colour) => line(*colour, 1.5),
+        LegendSign::Thick(colour) => line(*colour, 4.0),
+        LegendSign::Robot { body, outline } => {
+            let outline = hex(*outline);
+            let disc = circle(&format!(
+                "fill=\"{}\" stroke=\"{outline}\" stroke-width=\"1.5\"",
+                hex(*body)
+            ));
+            let [x, y, top] = [x + long / 2.0, y, y - long / 2.0].map(short);
+            format!("{disc}<path d=\"M{x} {y}V{top}\" stroke=\"{outline}\" stroke-width=\"1.5\"/>")
+        }
+    }
+}
+
+fn hex(Rgb([red, green, blue]): Rgb<u8>) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use toposlam_vision::annotate::{STAGES, legend};
+
+    use super::*;
+
+    #[test]
+    fn every_stage_shows_its_signs_below_an_unchanged_picture() {
+        for stage in STAGES {
+            let picture = RgbImage::from_pixel(800, 30, Rgb([1, 2, 3]));
+            let legend = legend(stage);
+            let whole = with_legend(&picture, &legend).unwrap();
+            assert_eq!(whole.width(), 800);
+            assert!(whole.rows().take(30).flatten().all(|&pixel| pixel == Rgb([1, 2, 3])));
+            let shown = |colour: Rgb<u8>| whole.rows().skip(30).flatten().any(|&it| it == colour);
+            for (sign, words) in &legend.entries {
+                let colours = match sign {
+                    LegendSign::Areas(colours) => colours.clone(),
+                    LegendSign::Dot(colour) | LegendSign::Thick(colour) => vec![*colour],
+                    LegendSign::Robot { body, .. } => vec![*body],
+                    // Thin lines may cover no whole pixel.
+                    LegendSign::Ring(_) | LegendSign::Line(_) => Vec::new(),
+                };
+                assert!(colours.into_iter().all(shown), "{stage}: {words}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_metre_is_as_long_below_the_picture_as_in_it() {
+        let legend = StageLegend { entries: Vec::new(), metre: Some(133.0) };
+        let whole = with_legend(&RgbImage::new(800, 1), &legend).unwrap();
+        let dark = |pixel: &Rgb<u8>| pixel.0[0] < 100;
+        let longest = whole.rows().skip(1).map(|row| row.filter(|pixel| dark(pixel)).count()).max();
+        assert!((130..=136).contains(&longest.unwrap()), "{longest:?}");
+    }
+
+    #[test]
+    fn no_entry_ends_outside_of_a_narrow_picture() {
+        let svg = strip(&legend("5-scene"), 640);
+        let last = svg.rsplit("<text ").next().unwrap();
+        assert!(svg.matches("<text ").count() > 7 && !last.is_empty());
+        let rows: std::collections::BTreeSet<_> =
+            svg.split("<text ").skip(1).map(|text| text.split('"').nth(3).unwrap()).collect();
+        assert!(rows.len() > 1, "{rows:?}");
+    }
+}

@@ -1,0 +1,118 @@
+//! The legends of the pictures of sensing: what each sign and colour means, and the scale.
+
+use image::Rgb;
+
+use super::{BLUE, BODY, CENTRE_LINE, CLUSTERS, CYAN, GREEN, ORANGE, RED, WHITE, shade};
+use crate::{colour::PixelClass, ground_view::GroundView};
+
+/// The legend of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageLegend {
+    /// Each sign, and what it means.
+    pub entries: Vec<(LegendSign, String)>,
+    /// The length of a metre, in pixels; `None` if the picture has no uniform scale.
+    pub metre: Option<f64>,
+}
+
+/// A sign of a legend.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LegendSign {
+    /// Areas, each of one colour.
+    Areas(Vec<Rgb<u8>>),
+    /// A point.
+    Dot(Rgb<u8>),
+    /// A circle.
+    Ring(Rgb<u8>),
+    /// A thin line.
+    Line(Rgb<u8>),
+    /// A thick line.
+    Thick(Rgb<u8>),
+    /// A disc with an outline, and a line ahead.
+    Robot {
+        /// Its colour.
+        body: Rgb<u8>,
+        /// The colour of the outline and of the line.
+        outline: Rgb<u8>,
+    },
+}
+
+/// The legend of the picture of a step, by the step's name; empty for any other name.
+#[must_use]
+pub fn legend(stage: &str) -> StageLegend {
+    use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
+    let area = |class| Areas(vec![shade(class)]);
+    let entered = (Thick(GREEN), "centre line of the hallway in which the robot is".to_owned());
+    let others = "centre lines of the other hallways";
+    let entries = match stage {
+        "1-classes" => vec![
+            (area(PixelClass::Floor), "floor".to_owned()),
+            (area(PixelClass::Stripe), "boundary stripe".to_owned()),
+            (area(PixelClass::Marker), "marker".to_owned()),
+            (area(PixelClass::Other), "something else".to_owned()),
+            (area(PixelClass::Unknown), "unknown colour".to_owned()),
+            (area(PixelClass::Unseen), "not seen".to_owned()),
+        ],
+        "2-boundary" => vec![
+            (Line(super::REACH), "floor, up to the farthest seen".to_owned()),
+            (Dot(WHITE), "end of the floor".to_owned()),
+            (Dot(ORANGE), "possible end of the floor".to_owned()),
+        ],
+        "3-clusters" => vec![(
+            Areas(CLUSTERS[..3].to_vec()),
+            "boundary points, each cluster in its own colour".to_owned(),
+        )],
+        "4-lines" => vec![
+            (Line(CLUSTERS[0]), "straight piece, in its cluster's colour".to_owned()),
+            (Thick(CLUSTERS[0]), "wall".to_owned()),
+            (Dot(WHITE), "end of a wall".to_owned()),
+        ],
+        "5-scene" => vec![
+            (Thick(super::WALL), "wall".to_owned()),
+            (Ring(CYAN), "corner that bends inwards".to_owned()),
+            (Ring(ORANGE), "corner that bends outwards".to_owned()),
+            entered,
+            (Thick(RED), others.to_owned()),
+            (Dot(WHITE), "turning point".to_owned()),
+            (Areas(vec![BLUE]), "marker".to_owned()),
+        ],
+        "6-image" => vec![
+            entered,
+            (Thick(RED), format!("{others}, {CENTRE_LINE} m from the turning point")),
+            (Line(BLUE), "marker".to_owned()),
+        ],
+        _ => Vec::new(),
+    };
+    let mut legend = StageLegend { entries, metre: None };
+    if !legend.entries.is_empty() && stage != "6-image" {
+        let robot = Robot { body: BODY, outline: WHITE };
+        legend.entries.push((robot, "robot, facing up".to_owned()));
+        legend.metre = Some(1.0 / GroundView::SCALE);
+    }
+    legend
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{annotate, sensing::SensingTrace};
+
+    #[test]
+    fn a_metre_is_as_long_as_the_legend_shows() {
+        let picture = annotate::boundary(&SensingTrace::default());
+        let metre = legend("2-boundary").metre.unwrap();
+        // The robot is a disc with a radius of 0.205 m.
+        let area = std::f64::consts::PI * (0.205 * metre).powi(2);
+        let robot = |pixel: &&Rgb<u8>| [BODY, WHITE].contains(pixel);
+        let drawn = picture.pixels().filter(robot).count() as f64;
+        assert!((drawn / area - 1.0).abs() < 0.05, "{drawn} of {area}");
+    }
+
+    #[test]
+    fn every_stage_has_a_legend_and_each_ground_view_a_scale() {
+        for stage in annotate::STAGES {
+            let legend = legend(stage);
+            assert!(legend.entries.len() > 1, "{stage}");
+            assert_eq!(legend.metre.is_some(), stage != "6-image", "{stage}");
+        }
+    }
+}
