@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, AllChoices, CostOrder, DEFAULT_STATE_BUDGET, Flaw, OpenChoices,
-        SearchLimit, Shard, Sweep, Tally, check_worlds, every_way,
+        Algorithm, Algorithm1, AllChoices, ChoicesLimit, CostOrder, DEFAULT_STATE_BUDGET, Flaw,
+        OpenChoices, Shard, Sweep, Tally, check_worlds, every_way,
     },
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, Enumeration, Watch},
@@ -69,7 +69,7 @@ fn a_start_with_more_states_than_the_budget_is_given_up() {
     let all = every_way(&Algorithm1, &graph, Dart(0), 1000, &()).unwrap();
     assert_eq!(all.limit, None);
     let some = every_way(&Algorithm1, &graph, Dart(0), all.states - 1, &()).unwrap();
-    assert_eq!(some.limit, Some(SearchLimit::States(all.states - 1)));
+    assert_eq!(some.limit, Some(ChoicesLimit::States(all.states - 1)));
     assert!(some.states < all.states);
     let is_complete = |edges, budget| {
         every_way(&Algorithm1, &chain(edges), Dart(0), budget, &()).unwrap().limit.is_none()

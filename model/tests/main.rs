@@ -12,6 +12,7 @@ mod costs;
 mod counts;
 mod explorers;
 mod figure_1;
+mod folding;
 mod markers;
 mod movable;
 mod perception;

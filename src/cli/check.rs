@@ -18,8 +18,10 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome, input,
-    mapping_marker::{MappingMarker, movable_not_sufficient},
+    ChoicesOption, Failure, Outcome,
+    ci_report::CiOptions,
+    input,
+    mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
     output,
     progress::Progress,
     use_threads,
@@ -43,6 +45,7 @@ Examples:
   toposlam check --edges 1..=4 --choices all  every open choice
   toposlam check --from worlds/petersen.toml  the worlds in a file
   toposlam check --marker movable             a marker that the robot carries
+  toposlam check --algorithm folding          the folding explorer
 
 Ctrl-C stops the check and prints the results so far.
 
@@ -61,6 +64,10 @@ pub(super) struct CheckArguments {
     /// The robot's marker: directional (Algorithm 1) or movable
     #[arg(long, default_value = "directional")]
     marker: MappingMarker,
+
+    /// The algorithm that maps with the directional marker: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
 
     /// Runs from each start: default, or all that the open choices of Algorithm 1 allow
     #[arg(long, default_value = "default", hide_possible_values = true)]
@@ -90,6 +97,9 @@ pub(super) struct CheckArguments {
     /// Print one JSON object for each number of edges
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// What is checked for one number of edges.
@@ -102,7 +112,8 @@ impl CheckArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
-        let algorithm = self.marker.algorithm(choice)?;
+        self.ci.check_places()?;
+        let algorithm = self.algorithm.with(self.marker, choice)?;
         let work = match &self.from {
             Some(path) => self.worlds_by_size(path)?,
             None => self.sweeps()?,
@@ -113,16 +124,20 @@ impl CheckArguments {
         let start = Instant::now();
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
         let mut worst: Option<WorstStart> = None;
+        let mut cases = Vec::new();
         for (edges, work) in work {
             let tally = work.check(edges, &algorithm)?;
             let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
-            report.size(&SizeResult { edges, class, from, shard, tally: &tally })?;
+            let result = SizeResult { edges, class, from, shard, tally: &tally };
+            report.size(&result)?;
+            cases.push(result.ci_case());
             keep_worse(&mut worst, tally.worst);
             if tally.interrupted {
                 break;
             }
         }
         let outcome = report.verdict(start.elapsed())?;
+        self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
             write_worst(path, worst)?;
         }

@@ -14,7 +14,10 @@ use std::{
 };
 
 use clap::{ValueEnum, builder::PossibleValue};
-use toposlam::{page, report::LogReport};
+use toposlam::{
+    page,
+    report::{DivergenceReport, LogReport},
+};
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Class, Watch},
@@ -29,7 +32,9 @@ use toposlam_robot::conform::{
 };
 
 use super::{
-    Failure, Outcome, input,
+    Failure, Outcome,
+    ci_report::{CiCase, CiOptions},
+    input,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
     output,
@@ -94,7 +99,7 @@ pub(super) struct ConformArguments {
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Follow Algorithm 1 until it knows more edge ends
+    /// Follow Algorithm 1 until more edge ends are known
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
@@ -113,6 +118,9 @@ pub(super) struct ConformArguments {
     /// Print one JSON object for each log, and one for all if there are several
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// What chose the doors.
@@ -183,6 +191,7 @@ impl SensingProgress for Progress {
 
 impl ConformArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        self.ci.check_places()?;
         self.check_places()?;
         self.check_marker()?;
         let quirks = match &self.quirks {
@@ -200,14 +209,20 @@ impl ConformArguments {
         let mut reports = Vec::new();
         let mut all = RunCoverage::default();
         let mut logs = SeveralInputs::new();
+        let mut cases = Vec::new();
         for path in &self.logs {
             let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
                 let outcome = outcome(judged.judgement.verdict());
                 (judged, outcome)
             });
-            let Some(judged) = logs.add(judged) else { continue };
+            let Some(judged) = logs.add(judged) else {
+                cases.push(unread_case(path));
+                continue;
+            };
             all.include(&judged.judgement.coverage);
-            reports.push(self.report(out, path, &judged, &quirks)?);
+            let report = self.report(out, path, &judged, &quirks)?;
+            cases.push(ci_case(path, &report));
+            reports.push(report);
         }
         if self.logs.len() > 1 {
             report_lines::together(out, self.logs.len(), &reports, self.json)?;
@@ -215,7 +230,9 @@ impl ConformArguments {
         if !self.require_coverage.is_empty() && !reports.is_empty() {
             let required = required::report(out, &self.require_coverage, &all, self.json)?;
             logs.add(Ok(((), required)));
+            cases.push(required_case(required));
         }
+        self.ci.write("conform", &cases)?;
         if let Some(path) = self.html.as_ref().filter(|_| !reports.is_empty()) {
             output::write_whole(path, page::conform_page(&reports, &origin::origin()).as_bytes())?;
         }
@@ -380,6 +397,37 @@ fn outcome(verdict: ConformVerdict) -> Outcome {
         ConformVerdict::Diverged => Outcome::Violated,
         ConformVerdict::Incomplete => Outcome::Incomplete,
     }
+}
+
+/// The result of a log, for CI systems.
+fn ci_case(path: &Path, report: &LogReport) -> CiCase {
+    let result = outcome(report.verdict);
+    let message = match (&report.divergence, report.remarks.first()) {
+        (Some(DivergenceReport { event, fault, what, why, .. }), _) => {
+            format!("diverges at event {event} ({fault}): {what}; {why}")
+        }
+        (None, Some(remark)) => remark.clone(),
+        (None, None) => report_lines::in_words(report.verdict).to_owned(),
+    };
+    let name = path.display().to_string();
+    CiCase { name, outcome: result, message, file: Some(path.to_owned()) }
+}
+
+/// The result of the required coverage, for CI systems.
+fn required_case(outcome: Outcome) -> CiCase {
+    let message = match outcome {
+        Outcome::Holds => "all required cases are covered",
+        _ => "a required case is not covered",
+    };
+    let name = "required coverage".to_owned();
+    CiCase { name, outcome, message: message.to_owned(), file: None }
+}
+
+/// The result of a log that cannot be read, for CI systems.
+fn unread_case(path: &Path) -> CiCase {
+    let message = "the log cannot be read".to_owned();
+    let name = path.display().to_string();
+    CiCase { name, outcome: Outcome::Incomplete, message, file: Some(path.to_owned()) }
 }
 
 impl From<Made> for Evidence {

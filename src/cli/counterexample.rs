@@ -8,12 +8,18 @@ use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use toposlam_model::{
-    ambiguity::AmbiguitySearch,
+    ambiguity::{AmbiguitySearch, Unfinished},
     enumerate::Class,
     marker::{MARKERS, Marker},
 };
 
-use super::{Failure, Outcome, marker_kinds, output, progress::Progress, use_threads, walk_page};
+use super::{
+    Failure, Outcome,
+    ci_report::{CiCase, CiOptions},
+    marker_kinds, output,
+    progress::Progress,
+    use_threads, walk_page,
+};
 use pairs::WorldPairs;
 use report::SearchReport;
 
@@ -81,6 +87,9 @@ pub(super) struct CounterexampleArguments {
     /// Print one JSON object for each number of edges, and one for the smallest pair
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// The expected result of a search.
@@ -93,6 +102,10 @@ enum Expectation {
 impl CounterexampleArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
+        if self.expect.is_none() {
+            self.ci.check_unused("this needs --expect none")?;
+        }
+        self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
             return atlas::write(folder, self.edges);
         }
@@ -121,13 +134,18 @@ impl CounterexampleArguments {
         }
         let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
         let mut outcome = Outcome::Holds;
+        let mut cases = Vec::new();
         for (search, &marker) in searches.iter().zip(&markers) {
             let progress = Progress::new(marker.name(), "placed worlds")?;
             let findings = search.run(&progress);
             progress.finish();
             let findings = match findings {
                 Ok(findings) => findings,
-                Err(unfinished) => return pairs::report_unfinished(&unfinished),
+                Err(unfinished) => {
+                    cases.push(self.ci_case(marker, edges, Err(&unfinished)));
+                    self.ci.write("counterexample", &cases)?;
+                    return pairs::report_unfinished(&unfinished);
+                }
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
@@ -140,9 +158,27 @@ impl CounterexampleArguments {
             if self.expect == Some(Expectation::None) && !found.pairs().is_empty() {
                 outcome = Outcome::Violated;
             }
+            cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
         }
         report.end()?;
+        self.ci.write("counterexample", &cases)?;
         Ok(outcome)
+    }
+
+    /// The result for a marker, for CI systems.
+    fn ci_case(
+        &self,
+        marker: &dyn Marker,
+        edges: usize,
+        pairs: Result<usize, &Unfinished>,
+    ) -> CiCase {
+        let (outcome, message) = match pairs {
+            Ok(0) => (Outcome::Holds, "no two worlds are indistinguishable".to_owned()),
+            Ok(_) => (Outcome::Violated, "there are worlds that no walk distinguishes".to_owned()),
+            Err(unfinished) => (Outcome::Incomplete, unfinished.to_string()),
+        };
+        let name = format!("{}, class {}, 1 to {edges} edges", marker.name(), self.class);
+        CiCase { name, outcome, message, file: None }
     }
 }
 

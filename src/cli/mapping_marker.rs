@@ -2,6 +2,7 @@
 
 use std::{fmt::Display, path::Path, str::FromStr};
 
+use clap::ValueEnum;
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, PlacedWorld},
     check::{Algorithm1, AllChoices, MappingAlgorithm},
@@ -70,6 +71,39 @@ impl MappingMarker {
                     Err(Failure::in_file(path, movable_not_sufficient(world)))
                 }
             },
+        }
+    }
+}
+
+/// An algorithm that maps with the directional marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum AlgorithmOption {
+    /// The paper's Algorithm 1
+    Algorithm1,
+    /// The folding explorer
+    Folding,
+}
+
+impl AlgorithmOption {
+    /// The algorithm, for a marker and a choice of runs.
+    pub(super) fn with(
+        self,
+        marker: MappingMarker,
+        choice: RunChoices,
+    ) -> Result<MappingAlgorithm, Failure> {
+        match (self, marker, choice) {
+            (Self::Algorithm1, ..) => marker.algorithm(choice),
+            (Self::Folding, MappingMarker::Movable, _) => {
+                let cause = "the folding explorer maps with --marker directional";
+                Err(Failure::at("--algorithm", cause))
+            }
+            (Self::Folding, MappingMarker::Directional, RunChoices::All { .. }) => {
+                let cause = "`all` needs --algorithm algorithm1: only it has open choices";
+                Err(Failure::at("--choices", cause))
+            }
+            (Self::Folding, MappingMarker::Directional, RunChoices::Default) => {
+                Ok(MappingAlgorithm::Folding)
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 mod appearance;
 mod calibrate;
 mod check;
+mod ci_report;
 mod compare;
 mod completions;
 mod conform;

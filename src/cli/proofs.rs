@@ -13,7 +13,12 @@ use std::{io::Write, num::ParseIntError, str::FromStr};
 use clap::ValueEnum;
 use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 
-use super::{Failure, Outcome, progress::Progress, text::grouped};
+use super::{
+    Failure, Outcome,
+    ci_report::{CiCase, CiOptions},
+    progress::Progress,
+    text::grouped,
+};
 use check::{CheckEnd, check_lemma};
 use lemma_case::LemmaCase;
 use report::ProofsReport;
@@ -53,6 +58,9 @@ pub(super) struct ProofsArguments {
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    ci: CiOptions,
 }
 
 /// The choices that make a case.
@@ -94,6 +102,10 @@ impl Engine {
 
 impl ProofsArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+        if self.run.is_empty() || self.choices.is_some() {
+            self.ci.check_unused("this needs --run, without --choices")?;
+        }
+        self.ci.check_places()?;
         let theorems: Vec<_> = theorems::all().collect();
         self.run_with(&lemmas::all().collect::<Vec<_>>(), &theorems, out)
     }
@@ -130,18 +142,33 @@ impl ProofsArguments {
     /// Checks lemmas, each in every case within its bound.
     fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
         let mut report = ProofsReport::new(out, self.json, lemmas);
+        let mut results = Vec::new();
         for &lemma in lemmas {
             let progress = Progress::new(lemma.name, "cases")?;
             let checked = check_lemma(lemma, &progress)?;
             progress.finish();
             let interrupted = matches!(checked.end, CheckEnd::Interrupted { .. });
+            results.push(ci_case(lemma, &checked.end));
             report.lemma(lemma, checked)?;
             if interrupted {
                 break;
             }
         }
-        report.verdict()
+        let outcome = report.verdict()?;
+        self.ci.write("proofs", &results)?;
+        Ok(outcome)
     }
+}
+
+/// The result of a lemma, for CI systems.
+fn ci_case(lemma: &Lemma, end: &CheckEnd) -> CiCase {
+    let (outcome, ended) = match end {
+        CheckEnd::Holds { .. } => (Outcome::Holds, "holds"),
+        CheckEnd::Interrupted { .. } => (Outcome::Incomplete, "interrupted"),
+        CheckEnd::Fails(_) | CheckEnd::Miscounted { .. } => (Outcome::Violated, "fails"),
+    };
+    let message = format!("{ended} after {}", cases(end.cases()));
+    CiCase { name: lemma.name.to_owned(), outcome, message, file: None }
 }
 
 /// The name for every lemma.

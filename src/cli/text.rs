@@ -133,7 +133,7 @@ pub(crate) fn duration_text(seconds: f64) -> String {
     }
 }
 
-/// A number of which two digits matter, as in "0.31", "8.4", "1,200", "57 million".
+/// A number to two digits, as in "0.31", "8.4", "1,200", "57 million".
 pub(crate) fn rough(number: f64) -> String {
     let places = if number < 1.0 { 2 } else { usize::from(number < 10.0) };
     if number < 100.0 {

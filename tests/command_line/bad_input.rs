@@ -40,7 +40,7 @@ fn a_file_that_is_not_a_world_is_an_error_with_its_place() {
         (
             "one-sided.toml",
             b"[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\"]\nc = [\"b\"]\n",
-            ": line 2, column 1: clockwise.a: vertex `a` lists the neighbour `c`, which does not list `a` back",
+            ": line 2, column 11: clockwise.a[1]: vertex `a` lists the neighbour `c`, which does not list `a` back",
         ),
         (
             "three.toml",

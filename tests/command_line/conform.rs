@@ -307,7 +307,7 @@ fn logs_without_evidence_are_an_error() {
     }
 }
 
-/// A robot in building 12, of which one knows only the log. The smallest world that explains it has 14 edges.
+/// The log of a robot in building 12, without its world. The smallest world that explains it has 14 edges.
 #[test]
 fn a_bound_that_is_reached_is_not_a_divergence() {
     let folder = folder("conform-bound");

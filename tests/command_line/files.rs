@@ -26,8 +26,10 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 29] = [
+const OUTPUTS: [OutputOption; 38] = [
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
+    output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
+    output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
     output("explore", "--map", &[("w.toml", "explore IN --map OUT")]),
     output("explore", "--svg", &[("w.svg", "explore IN --svg OUT")]),
     output(
@@ -41,6 +43,10 @@ const OUTPUTS: [OutputOption; 29] = [
     // These read no file.
     output("counterexample", "--out", &[]),
     output("counterexample", "--html", &[]),
+    output("counterexample", "--junit", &[]),
+    output("counterexample", "--sarif", &[]),
+    output("proofs", "--junit", &[]),
+    output("proofs", "--sarif", &[]),
     output("counterexample", "--atlas", &[]),
     output("draw", "--out", &[("w.svg", "draw IN --out OUT")]),
     output(
@@ -106,6 +112,9 @@ const OUTPUTS: [OutputOption; 29] = [
             ("w.mcap", "conform LOG --world IN --minimise OUT"),
         ],
     ),
+    output("conform", "--map", &[("l.toml", "conform IN --map OUT")]),
+    output("conform", "--junit", &[("l.xml", "conform IN --junit OUT")]),
+    output("conform", "--sarif", &[("l.sarif", "conform IN --sarif OUT")]),
     output(
         "replay",
         "--map",

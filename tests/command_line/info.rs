@@ -11,7 +11,7 @@ const RUN: &str = "fuzz/corpus/mcap/of-a-run";
 #[test]
 fn the_report_lists_the_topics_and_what_they_can_carry() {
     let text = "fuzz/corpus/mcap/of-a-run: MCAP, 847 bytes
-has an index, contents not verified
+has no index, contents not verified
 from 1.000 s, for 1.000 s
 7 messages
 

@@ -13,12 +13,12 @@ pub struct EveryWay {
     /// The numbers of moves that occur among the runs.
     pub costs: Costs,
     /// Why these are not all; `None` if they are.
-    pub limit: Option<SearchLimit>,
+    pub limit: Option<ChoicesLimit>,
 }
 
 /// A limit on the search for all runs of a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SearchLimit {
+pub enum ChoicesLimit {
     /// The budget of states, at line 4 and at line 8 together.
     States(u64),
     /// The memory for the states of one start: 1 GiB.
@@ -27,7 +27,7 @@ pub enum SearchLimit {
     Interrupted,
 }
 
-impl SearchLimit {
+impl ChoicesLimit {
     /// Its name, as in JSON.
     #[must_use]
     pub fn name(self) -> &'static str {

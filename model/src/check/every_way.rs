@@ -3,7 +3,7 @@
 
 use std::{collections::HashMap, vec};
 
-use super::{Algorithm, CostOrder, Costs, EveryWay, Flaw, OpenChoices, SearchLimit, judge};
+use super::{Algorithm, ChoicesLimit, CostOrder, Costs, EveryWay, Flaw, OpenChoices, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
@@ -169,7 +169,7 @@ struct Search<'g, 'w, A> {
     /// An estimate of the memory that the states take.
     bytes: usize,
     /// The first limit that was reached.
-    limit: Option<SearchLimit>,
+    limit: Option<ChoicesLimit>,
     /// For each state at line 4, what can follow it, and the robot's pose in the world.
     known: HashMap<(PartialMap, Vertex), (Futures, Dart)>,
     /// The rounds that have begun: one for each state at line 4 on the stack.
@@ -191,7 +191,7 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
                 }
             }
             let next =
-                frame.choices.next().filter(|_| self.limit != Some(SearchLimit::Interrupted));
+                frame.choices.next().filter(|_| self.limit != Some(ChoicesLimit::Interrupted));
             found = match next {
                 Some(choice) => self.after(choice)?,
                 None => self.leave(),
@@ -204,11 +204,11 @@ impl<'g, A: OpenChoices> Search<'g, '_, A> {
     fn begin(&mut self, line: usize) -> bool {
         if self.limit.is_none() {
             self.limit = if self.watch.stop() {
-                Some(SearchLimit::Interrupted)
+                Some(ChoicesLimit::Interrupted)
             } else if self.begun.iter().sum::<u64>() >= self.budget {
-                Some(SearchLimit::States(self.budget))
+                Some(ChoicesLimit::States(self.budget))
             } else {
-                (self.bytes > MAX_BYTES).then_some(SearchLimit::Memory)
+                (self.bytes > MAX_BYTES).then_some(ChoicesLimit::Memory)
             };
         }
         let may = self.limit.is_none();
@@ -352,13 +352,13 @@ mod tests {
             (ways.limit, ways.states + ways.within_rounds <= budget)
         };
         assert_eq!(limit(1000, &()), (None, true));
-        assert_eq!(limit(9, &()), (Some(SearchLimit::States(9)), true));
+        assert_eq!(limit(9, &()), (Some(ChoicesLimit::States(9)), true));
         struct Stopped;
         impl Watch for Stopped {
             fn stop(&self) -> bool {
                 true
             }
         }
-        assert_eq!(limit(1000, &Stopped), (Some(SearchLimit::Interrupted), true));
+        assert_eq!(limit(1000, &Stopped), (Some(ChoicesLimit::Interrupted), true));
     }
 }

@@ -15,6 +15,14 @@ pub struct FoldingExplorer {
     exploration: FoldingExploration,
 }
 
+impl FoldingExplorer {
+    /// One that only makes [strict tests](FoldingExploration::strict).
+    #[must_use]
+    pub fn strict() -> Self {
+        Self { exploration: FoldingExploration::strict() }
+    }
+}
+
 impl Explorer for FoldingExplorer {
     type Marker = Directional;
 

@@ -1,8 +1,8 @@
 //! The algorithms of this crate, to choose from at run time. Section 2.3.
 
 use super::{
-    Algorithm, Algorithm1, AllChoices, CostOrder, EveryWay, Flaw, MovableMarker, Sweep, Tally,
-    check_worlds,
+    Algorithm, Algorithm1, AllChoices, CostOrder, EveryWay, Flaw, FoldingExplorer, MovableMarker,
+    Sweep, Tally, check_worlds, check_worlds_with,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -22,37 +22,26 @@ pub enum MappingAlgorithm {
     AllChoices(AllChoices<Algorithm1>),
     /// The movable marker algorithm with the default choices.
     MovableMarker,
-}
-
-/// Evaluates an expression with the algorithm that was chosen.
-macro_rules! with_algorithm {
-    ($choice:expr, $algorithm:ident => $value:expr) => {
-        match $choice {
-            MappingAlgorithm::Algorithm1 => {
-                let $algorithm = &Algorithm1;
-                $value
-            }
-            MappingAlgorithm::AllChoices($algorithm) => $value,
-            MappingAlgorithm::MovableMarker => {
-                let $algorithm = &MovableMarker;
-                $value
-            }
-        }
-    };
+    /// The folding explorer.
+    Folding,
 }
 
 impl MappingAlgorithm {
     /// Its name in reports.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        with_algorithm!(self, algorithm => algorithm.name())
+        match self {
+            Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.name(),
+            Self::MovableMarker => MovableMarker.name(),
+            Self::Folding => "Folding explorer",
+        }
     }
 
     /// The marker with which it maps.
     #[must_use]
     pub fn marker(&self) -> &'static dyn Marker {
         match self {
-            Self::Algorithm1 | Self::AllChoices(_) => &Directional,
+            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding => &Directional,
             Self::MovableMarker => &Movable,
         }
     }
@@ -60,19 +49,33 @@ impl MappingAlgorithm {
     /// The order of its cost.
     #[must_use]
     pub fn order(&self) -> CostOrder {
-        with_algorithm!(self, algorithm => algorithm.order())
+        match self {
+            Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.order(),
+            Self::MovableMarker => MovableMarker.order(),
+            Self::Folding => CostOrder::EdgesSquaredVertices,
+        }
     }
 
     /// Checks every start of a sweep, as [`Sweep::run`].
     #[must_use]
     pub fn sweep(&self, sweep: &Sweep, watch: &dyn Watch) -> Tally {
-        with_algorithm!(self, algorithm => sweep.run(algorithm, watch))
+        match self {
+            Self::Algorithm1 => sweep.run(&Algorithm1, watch),
+            Self::AllChoices(algorithm) => sweep.run(algorithm, watch),
+            Self::MovableMarker => sweep.run(&MovableMarker, watch),
+            Self::Folding => sweep.run_explorers(FoldingExplorer::default, watch),
+        }
     }
 
     /// Checks every start of some worlds, as [`check_worlds`].
     #[must_use]
     pub fn check_worlds(&self, graphs: &[EmbeddedGraph], watch: &dyn Watch) -> Tally {
-        with_algorithm!(self, algorithm => check_worlds(graphs, algorithm, watch))
+        match self {
+            Self::Algorithm1 => check_worlds(graphs, &Algorithm1, watch),
+            Self::AllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
+            Self::MovableMarker => check_worlds(graphs, &MovableMarker, watch),
+            Self::Folding => check_worlds_with(graphs, FoldingExplorer::default, watch),
+        }
     }
 
     /// Makes and judges the runs with other than the default choices, as [`Algorithm::other_runs`].
@@ -85,6 +88,9 @@ impl MappingAlgorithm {
         facing: Dart,
         watch: &dyn Watch,
     ) -> Result<Option<EveryWay>, Flaw> {
-        with_algorithm!(self, algorithm => algorithm.other_runs(graph, facing, watch))
+        match self {
+            Self::AllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
+            Self::Algorithm1 | Self::MovableMarker | Self::Folding => Ok(None),
+        }
     }
 }

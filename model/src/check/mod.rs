@@ -12,14 +12,14 @@ mod sweep;
 mod tally;
 
 pub use algorithm::{Algorithm, Algorithm1, CostOrder, MovableMarker, OpenChoices, RunState};
-pub use costs::{Costs, EveryWay, SearchLimit};
+pub use costs::{ChoicesLimit, Costs, EveryWay};
 pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
 pub use judge::{ExploredMap, FalseStep, first_false_step, judge};
 pub use mapping_algorithm::MappingAlgorithm;
-pub use sweep::{Shard, ShardError, Sweep, check_worlds};
+pub use sweep::{Shard, ShardError, Sweep, check_worlds, check_worlds_with};
 pub use tally::{FailedStart, Tally, WorstStart};
 
 #[cfg(test)]

@@ -118,9 +118,29 @@ pub fn check_worlds(
     algorithm: &impl Algorithm,
     watch: &dyn Watch,
 ) -> Tally {
+    check_parts(graphs, watch, || AlgorithmChecker::new(algorithm, watch))
+}
+
+/// Runs explorers on every start of some worlds, each on one part of them.
+pub fn check_worlds_with<E: Explorer>(
+    graphs: &[EmbeddedGraph],
+    new: impl Fn() -> E + Sync,
+    watch: &dyn Watch,
+) -> Tally {
+    check_parts(graphs, watch, || ExplorerChecker {
+        explorer: new(),
+        candidate: Candidate::default(),
+    })
+}
+
+fn check_parts<C: StartChecker>(
+    graphs: &[EmbeddedGraph],
+    watch: &dyn Watch,
+    new: impl Fn() -> C + Sync,
+) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
-        let mut checker = AlgorithmChecker::new(algorithm, watch);
+        let mut checker = new();
         part.iter().try_for_each(|graph| {
             check_starts(&mut checker, graph, canonical(graph).automorphisms, watch, tally)
         })

@@ -1,6 +1,6 @@
 //! The counts of a check.
 
-use super::{CostOrder, EveryWay, FalseStep, Flaw, SearchLimit};
+use super::{ChoicesLimit, CostOrder, EveryWay, FalseStep, Flaw};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
 /// The start that took the most moves.
@@ -61,7 +61,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// With all choices: starts of which not all runs were tried.
+    /// With all choices: starts with runs that were not tried.
     #[must_use]
     pub fn gave_up(&self) -> u64 {
         self.over_budget + self.over_memory
@@ -101,9 +101,9 @@ impl Tally {
         self.runs = self.runs.saturating_add(ways.runs);
         match ways.limit {
             None => {}
-            Some(SearchLimit::States(_)) => self.over_budget += 1,
-            Some(SearchLimit::Memory) => self.over_memory += 1,
-            Some(SearchLimit::Interrupted) => self.interrupted = true,
+            Some(ChoicesLimit::States(_)) => self.over_budget += 1,
+            Some(ChoicesLimit::Memory) => self.over_memory += 1,
+            Some(ChoicesLimit::Interrupted) => self.interrupted = true,
         }
         self.count_extremes(ways.costs.min().zip(ways.costs.max()));
     }

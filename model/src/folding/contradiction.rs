@@ -7,7 +7,7 @@ use crate::percept::Sighting;
 /// The first event that no world of any size explains together with the events before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{reason}")]
-pub struct Contradiction {
+pub struct TrailContradiction {
     /// The index of the event: `2 i` is the percept after `i` moves, `2 i + 1` the door of the next move.
     pub event: usize,
     /// The reason.
@@ -19,7 +19,7 @@ pub struct Contradiction {
 pub enum FoldError {
     /// No world of any size explains the walk.
     #[error(transparent)]
-    Contradiction(#[from] Contradiction),
+    Contradiction(#[from] TrailContradiction),
     /// The trail is too large. Nothing is proved.
     #[error("the junctions on the walk have more than {MAX_DARTS} doors together")]
     TooManyDarts {
@@ -46,7 +46,7 @@ impl TrailError {
     /// The error with the event at which it occurred.
     pub(super) fn at(self, event: usize) -> FoldError {
         match self {
-            Self::Contradiction(reason) => Contradiction { event, reason }.into(),
+            Self::Contradiction(reason) => TrailContradiction { event, reason }.into(),
             Self::TooManyDarts => FoldError::TooManyDarts { event },
         }
     }

@@ -14,7 +14,7 @@
 //!
 //! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
 //! another marker that lies at a vertex is compared where vertices are identified for another reason,
-//! because the robot returned along edges that it knows. A mark on an edge is not compared. With these
+//! because the robot returned along known edges. A mark on an edge is not compared. With these
 //! markers a contradiction is still a proof, and its absence proves nothing.
 
 mod certificate;
@@ -22,7 +22,9 @@ mod contradiction;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
-pub use contradiction::{Contradiction, ContradictionReason, FoldError, MAX_DARTS, TrailError};
+pub use contradiction::{
+    ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
+};
 pub use trail::{ClosedTrail, FoldedTrail};
 
 use crate::percept::{Door, Percept};

@@ -167,7 +167,7 @@ fn percept(degree: u32, door: Option<u32>) -> Percept {
 fn reason(percepts: &[Percept], doors: &[u32]) -> (usize, ContradictionReason) {
     let doors: Vec<Door> = doors.iter().copied().map(Door).collect();
     match fold(percepts, &doors) {
-        Err(FoldError::Contradiction(Contradiction { event, reason })) => (event, reason),
+        Err(FoldError::Contradiction(TrailContradiction { event, reason })) => (event, reason),
         other => panic!("{other:?}"),
     }
 }

@@ -64,6 +64,9 @@ pub enum InvalidStep {
     /// An edge is chosen while another is being explored.
     #[error("dart {} of the map is still being explored", .0.0)]
     EdgeInProgress(Dart),
+    /// The folding explorer has nothing to do, and its trail is not complete.
+    #[error("there is nothing left to do, and the trail is not complete")]
+    NoPlan,
     /// No edge is being explored.
     #[error("no edge is being explored")]
     NoEdge,

@@ -8,7 +8,7 @@
 
 use std::{collections::VecDeque, mem};
 
-use super::{Contradiction, MappingError};
+use super::{Contradiction, InvalidStep, MappingError};
 use crate::{
     embedded_graph::Dart,
     folding::{FoldedTrail, MAX_DARTS, TrailError},
@@ -89,6 +89,8 @@ struct Core {
 /// The state of a run of the folding explorer. Memory is reused from run to run.
 #[derive(Clone, Debug, Default)]
 pub struct FoldingExploration {
+    /// Whether it only makes strict tests.
+    strict: bool,
     trail: FoldedTrail,
     core: Core,
     /// The core darts that do not lead to a core place.
@@ -150,7 +152,7 @@ pub fn map_by_folding<W: World>(
             Plan::Test(test) => exploration.test(test, world)?,
         }
     }
-    Ok(())
+    if exploration.trail.is_complete() { Ok(()) } else { Err(InvalidStep::NoPlan.into()) }
 }
 
 impl Core {
@@ -234,6 +236,13 @@ impl Core {
 }
 
 impl FoldingExploration {
+    /// An exploration that only makes strict tests: from the place itself, along the whole way to the
+    /// marker, as Algorithm 1 does. It needs more moves.
+    #[must_use]
+    pub fn strict() -> Self {
+        Self { strict: true, ..Self::default() }
+    }
+
     /// The folded trail.
     #[must_use]
     pub fn trail(&self) -> &FoldedTrail {
@@ -274,8 +283,14 @@ impl FoldingExploration {
             .iter()
             .filter_map(|&pending| Some((moves_to(pending.far)?, pending)))
             .min_by_key(|&(moves, _)| moves);
-        let test = nearest.and_then(|(_, pending)| self.cheapest_test(pending));
+        let late = self.strict || self.trail.moves() > self.patience();
+        let test = nearest.and_then(|(_, pending)| {
+            self.core.find_ways_to_marker(&self.trail);
+            let strict = if late { self.strict_test(pending) } else { None };
+            strict.or_else(|| self.cheapest_test(pending))
+        });
         match (open, test) {
+            (_, Some(test)) if late => Some(Plan::Test(test)),
             (Some((moves, open)), Some(test)) if EXPLORE_FACTOR * moves < test.cost => {
                 Some(Plan::Explore(open))
             }
@@ -283,6 +298,12 @@ impl FoldingExploration {
             (Some((_, open)), None) => Some(Plan::Explore(open)),
             (None, None) => None,
         }
+    }
+
+    /// The number of moves after which the robot only makes strict tests, `4 n m + 200` for `n` core places
+    /// and `m` edges. A strict test takes at most as many moves as a validation of Algorithm 1.
+    fn patience(&self) -> usize {
+        2 * self.core.first.len() * self.core.darts.len() + 200
     }
 
     /// Finds the pending places. Those without a living hypothesis join the core.
@@ -339,7 +360,6 @@ impl FoldingExploration {
     /// The cheapest walk that confirms a hypothesis about a place if it ends at the marker. Of walks of
     /// one cost it is that with the first hypothesis, and the first open dart of the trail.
     fn cheapest_test(&mut self, pending: Pending) -> Option<Test> {
-        self.core.find_ways_to_marker(&self.trail);
         let mut open = mem::take(&mut self.open);
         open.clear();
         open.resize(self.trail.dart_count(), None);
@@ -376,6 +396,28 @@ impl FoldingExploration {
         let found = tests.iter().find(|test| self.confirms(test)).copied();
         (self.open, self.tests, self.unresolved) = (open, tests, all);
         found
+    }
+
+    /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as
+    /// in Algorithm 1.
+    fn strict_test(&mut self, pending: Pending) -> Option<Test> {
+        let all = mem::take(&mut self.unresolved);
+        let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
+        self.unresolved = all;
+        let hypothesis = hypothesis?;
+        let (mut pose, mut believed) = (pending.far, hypothesis);
+        loop {
+            let (cost @ 1.., leaving) = self.core.to_marker[self.core.place(believed)]? else {
+                return None;
+            };
+            let entry = self.core.opposite(&self.trail, leaving)?;
+            let (from, to) = (self.core.dart(believed), self.core.dart(leaving));
+            let open = self.trail.behind(pose, self.trail.door(from, to));
+            match self.trail.opposite(open) {
+                None => return Some(Test { pending, hypothesis, open, entry, cost }),
+                Some(next) => (pose, believed) = (next, entry),
+            }
+        }
     }
 
     /// Whether the success of a test forces its hypothesis.

@@ -3,7 +3,7 @@
 use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
-    folding::{Contradiction, ContradictionReason, FoldError, fold},
+    folding::{ContradictionReason, FoldError, TrailContradiction, fold},
     marker::{Directional, Marker, NoMarker},
     percept::{Percept, Sighting},
     trace::Trace,
@@ -61,7 +61,7 @@ pub fn first_impossible(
     }
     let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
     let walk = match fold(trace.percepts(), trace.doors()) {
-        Err(FoldError::Contradiction(Contradiction { event, reason })) => {
+        Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
             Some((event, Impossibility::Walk(reason)))
         }
         Ok(_) | Err(FoldError::TooManyDarts { .. }) => None,

@@ -168,10 +168,10 @@ pub fn judge(
     if question.driver == RunDriver::Algorithm1 && question.marker.name() != Directional.name() {
         return Err(JudgeError::Algorithm(question.marker.name()));
     }
-    let mut tolerance = Tolerance::new(events, quirks);
+    let mut tolerance = Tolerance::new(events, quirks, question.world.as_ref(), question.marker);
     loop {
         let judgement = Judgement::new(tolerance.events(), question, tolerance.noted(), watch)?;
-        if !tolerance.grows(&judgement, question) {
+        if !tolerance.grows(judgement.divergence.as_ref()) {
             return Ok(Judgement { tolerated: tolerance.finish(), ..judgement });
         }
     }

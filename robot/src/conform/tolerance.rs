@@ -1,12 +1,13 @@
 //! Tolerated divergences: each tolerated event is replaced by the expected one.
 //!
-//! A run is judged anew after a divergence was tolerated. So that a run with many of them is not judged as
+//! A run is judged again after a divergence was tolerated. So that a run with many of them is not judged as
 //! often, the divergences that can be found without a judgement are tolerated together.
 
 use std::collections::BTreeSet;
 
 use toposlam_model::{
     mapping::Contradiction,
+    marker::Marker,
     percept::Percept,
     trace::{Departure, Misfit, MisfitReason, StepPurpose, poses_amended},
 };
@@ -14,13 +15,16 @@ use toposlam_model::{
 use super::{
     divergence::{Divergence, DivergenceCause},
     events::{CheckedEvent, CheckedKind, RunEvents},
-    judgement::{ConformConfig, Judgement},
+    known_world::KnownWorld,
     quirks::Quirks,
 };
 
 /// The divergences of a run that are tolerated so far.
 pub(super) struct Tolerance<'q> {
     quirks: &'q Quirks,
+    /// The known world, if there is one, and the marker.
+    world: Option<&'q KnownWorld<'q>>,
+    marker: &'static dyn Marker,
     recorded: RunEvents,
     /// With the expected events in place of the tolerated ones.
     amended: RunEvents,
@@ -30,9 +34,22 @@ pub(super) struct Tolerance<'q> {
 }
 
 impl<'q> Tolerance<'q> {
-    pub(super) fn new(recorded: RunEvents, quirks: &'q Quirks) -> Self {
+    pub(super) fn new(
+        recorded: RunEvents,
+        quirks: &'q Quirks,
+        world: Option<&'q KnownWorld<'q>>,
+        marker: &'static dyn Marker,
+    ) -> Self {
         let amended = recorded.clone();
-        Self { quirks, recorded, amended, tolerated: Vec::new(), noted: BTreeSet::new() }
+        Self {
+            quirks,
+            world,
+            marker,
+            recorded,
+            amended,
+            tolerated: Vec::new(),
+            noted: BTreeSet::new(),
+        }
     }
 
     pub(super) fn events(&self) -> &RunEvents {
@@ -48,26 +65,26 @@ impl<'q> Tolerance<'q> {
         self.tolerated
     }
 
-    /// Tolerates the divergence of a judgement of these events, and those after it that can be found
-    /// without another judgement. `false` if the judgement stands.
-    pub(super) fn grows(&mut self, judgement: &Judgement, question: &ConformConfig) -> bool {
+    /// Tolerates the first divergence of these events, and those after it that can be found without
+    /// another judgement. `false` if the judgement stands.
+    pub(super) fn grows(&mut self, first: Option<&Divergence>) -> bool {
         if self.tolerated.is_empty() && self.quirks.all().is_empty() {
             return false;
         }
         // What was tolerated ahead of a judgement and lies after its divergence is not tolerated.
-        let last = judgement.divergence.as_ref().map_or(usize::MAX, |first| first.event);
+        let last = first.map_or(usize::MAX, |first| first.event);
         let before = self.tolerated.len();
         self.tolerated.retain(|(divergence, _)| divergence.event <= last);
         let too_many = self.tolerated.len() < before;
         if too_many {
             self.amend();
         }
-        let Some(divergence) = &judgement.divergence else { return too_many };
+        let Some(divergence) = first else { return too_many };
         let Some(quirk) = self.quirk(divergence) else { return too_many };
         self.tolerated.push((divergence.clone(), quirk));
         self.amend();
         let limit = self.own_faults();
-        self.misfits(question, limit);
+        self.misfits(limit);
         self.tolerated.sort_by_key(|(divergence, _)| divergence.event);
         self.amend();
         true
@@ -122,8 +139,8 @@ impl<'q> Tolerance<'q> {
     }
 
     /// Tolerates the percepts before an event that do not fit the known world.
-    fn misfits(&mut self, question: &ConformConfig, limit: usize) {
-        let (Some(known), Ok(trace)) = (&question.world, self.amended.trace()) else { return };
+    fn misfits(&mut self, limit: usize) {
+        let (Some(known), Ok(trace)) = (self.world, self.amended.trace()) else { return };
         let mut tolerated = Vec::new();
         let amend = |misfit: &Misfit| {
             let event = misfit.event.id;
@@ -133,7 +150,7 @@ impl<'q> Tolerance<'q> {
             tolerated.push((divergence, quirk));
             expected_by(misfit)
         };
-        let _ = poses_amended(known.graph, &question.marker, &known.states, &trace, amend);
+        let _ = poses_amended(known.graph, &self.marker, &known.states, &trace, amend);
         self.tolerated.extend(tolerated);
     }
 }

@@ -1,10 +1,10 @@
 //! Errors in logs, with their offsets.
 
-use std::io;
+use std::{fmt, io};
 
 use thiserror::Error;
 
-use super::{container::CheckedPart, decode::DecodeError};
+use super::decode::DecodeError;
 
 /// Why a log cannot be read, or not further.
 #[derive(Debug, Error)]
@@ -22,6 +22,30 @@ fn place(offset: u64, cause: &LogErrorKind) -> String {
     match cause {
         LogErrorKind::Unreadable(_) => String::new(),
         _ => format!("byte {offset}: "),
+    }
+}
+
+/// A part of a log that has a checksum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckedPart {
+    /// The decompressed records of a chunk.
+    Chunk,
+    /// An attachment of an MCAP file.
+    Attachment,
+    /// The data section of an MCAP file: everything before its summary.
+    DataSection,
+    /// The summary section of an MCAP file, with most of the footer.
+    SummarySection,
+}
+
+impl fmt::Display for CheckedPart {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Chunk => "chunk",
+            Self::Attachment => "attachment",
+            Self::DataSection => "data section",
+            Self::SummarySection => "summary section",
+        })
     }
 }
 

@@ -23,7 +23,7 @@ pub mod verify;
 mod world_hash;
 pub mod writer;
 
-pub use container::{CheckedPart, Format, MOST_GROWTH};
+pub use container::{Format, MOST_GROWTH};
 pub use encode::{arrival as arrival_message, door as door_message, scene as scene_message};
 pub use merge::{RawMessage, RawMessages};
 pub use world_hash::world_hash;

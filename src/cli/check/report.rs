@@ -17,6 +17,7 @@ use toposlam_model::{
 
 use crate::cli::{
     Failure, Outcome, RunChoices,
+    ci_report::CiCase,
     text::{grouped, print_hanging, print_paragraph},
 };
 
@@ -48,6 +49,48 @@ pub(super) struct SizeResult<'a> {
     /// The share of the worlds.
     pub(super) shard: Shard,
     pub(super) tally: &'a Tally,
+}
+
+impl SizeResult<'_> {
+    /// The worlds, in words.
+    fn worlds(&self) -> String {
+        let worlds = match self.from {
+            Some(path) => format!("the worlds of {}", path.display()),
+            None => format!("class {}", self.class),
+        };
+        match self.shard {
+            Shard::WHOLE => worlds,
+            shard => format!("{worlds}, shard {shard}"),
+        }
+    }
+
+    /// The result for CI systems.
+    pub(super) fn ci_case(&self) -> CiCase {
+        let tally = self.tally;
+        let (mapped, starts) = (grouped(tally.mapped.into()), grouped(tally.starts.into()));
+        let mut message = format!("{mapped} of {starts} starts mapped correctly");
+        if let Some(failure) = &tally.failure {
+            let _ = write!(message, "; the first wrong one: {}", failure.flaw);
+        } else if tally.interrupted {
+            message += "; interrupted";
+        } else if tally.gave_up() > 0 {
+            message += "; the other runs of some starts reached a limit";
+        }
+        let name = format!("{} edges, {}", self.edges, self.worlds());
+        let file = self.from.map(Path::to_owned);
+        CiCase { name, outcome: verdict(tally).0, message, file }
+    }
+}
+
+/// The outcome of a check, and its name. A check does not hold if it is empty or interrupted.
+fn verdict(tally: &Tally) -> (Outcome, &'static str) {
+    match () {
+        () if tally.mapped < tally.starts => (Outcome::Violated, "violated"),
+        () if tally.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
+        () if tally.starts == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
+        () if tally.gave_up() > 0 => (Outcome::Incomplete, "incomplete"),
+        () => (Outcome::Holds, "holds"),
+    }
 }
 
 /// Prints each result when it is there.
@@ -85,16 +128,9 @@ impl<'o> CheckReport<'o> {
     }
 
     fn header(&mut self, size: &SizeResult) -> Result<(), Failure> {
-        let worlds = match size.from {
-            Some(path) => format!("the worlds of {}", path.display()),
-            None => format!("class {}", size.class),
-        };
-        let share = match size.shard {
-            Shard::WHOLE => String::new(),
-            shard => format!(", shard {shard}"),
-        };
         let AlgorithmInfo { algorithm, marker, order } = self.subject;
-        print_paragraph(self.out, &format!("{algorithm}, {marker} marker, {worlds}{share}"))?;
+        let head = format!("{algorithm}, {marker} marker, {}", size.worlds());
+        print_paragraph(self.out, &head)?;
         writeln!(
             self.out,
             "\n{:>5}  {:>11}  {:>13}  {:>6}  {:>10}  {:>9}  {:>12}",
@@ -151,16 +187,10 @@ impl<'o> CheckReport<'o> {
         Ok(())
     }
 
-    /// Prints the verdict and returns the outcome. A check does not hold if it is empty or interrupted.
+    /// Prints the verdict and returns the outcome.
     pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
-        let Tally { starts, mapped, over_budget, over_memory, interrupted, .. } = self.total;
-        let (outcome, verdict) = match () {
-            () if mapped < starts => (Outcome::Violated, "violated"),
-            () if interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
-            () if starts == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
-            () if over_budget + over_memory > 0 => (Outcome::Incomplete, "incomplete"),
-            () => (Outcome::Holds, "holds"),
-        };
+        let (outcome, verdict) = verdict(&self.total);
+        let Tally { starts, mapped, over_budget, over_memory, .. } = self.total;
         if self.json {
             return Ok(outcome);
         }
@@ -220,7 +250,7 @@ struct EveryWayLine {
     runs: u128,
     moves_least: Option<u64>,
     moves_most: Option<u64>,
-    /// Starts of which not all runs were tried.
+    /// Starts with runs that were not tried.
     gave_up: u64,
     /// Those with more states than `--max-states`, and those with more than fit in memory.
     limits: BTreeMap<&'static str, u64>,

@@ -165,7 +165,7 @@ pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), Failur
     Ok(())
 }
 
-fn in_words(verdict: ConformVerdict) -> &'static str {
+pub(super) fn in_words(verdict: ConformVerdict) -> &'static str {
     match verdict {
         ConformVerdict::Conforms => "conforms",
         ConformVerdict::Diverged => "diverges",

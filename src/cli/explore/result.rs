@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use toposlam_model::{
-    check::{EveryWay, Flaw, SearchLimit},
+    check::{ChoicesLimit, EveryWay, Flaw},
     embedded_graph::{Dart, EmbeddedGraph},
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
@@ -107,7 +107,7 @@ impl ExploreResult<'_> {
                 runs: ways.runs,
                 costs: ways.costs.iter().collect(),
                 complete: ways.limit.is_none(),
-                limit: ways.limit.map(SearchLimit::name),
+                limit: ways.limit.map(ChoicesLimit::name),
             }),
         };
         let rest = serde_json::to_string(&rest).map_err(io::Error::from)?;
@@ -195,15 +195,15 @@ fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
     print_paragraph(out, &text)?;
     let reached = match limit {
         None => None,
-        Some(SearchLimit::States(most)) => Some(format!(
+        Some(ChoicesLimit::States(most)) => Some(format!(
             "The search stopped at --max-states {most}. That counts the states between rounds, at line \
              4, and the {} states within rounds, at line 8.",
             grouped((*within_rounds).into()),
         )),
-        Some(SearchLimit::Memory) => {
+        Some(ChoicesLimit::Memory) => {
             Some("The search stopped because its states need more than 1 GiB of memory.".to_owned())
         }
-        Some(SearchLimit::Interrupted) => Some("The search was interrupted.".to_owned()),
+        Some(ChoicesLimit::Interrupted) => Some("The search was interrupted.".to_owned()),
     };
     if let Some(text) = reached {
         print_paragraph(out, &text)?;

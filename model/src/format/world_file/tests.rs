@@ -6,7 +6,7 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
-    marker::{MARKERS, Marker},
+    marker::MARKERS,
 };
 
 fn message(text: &str) -> String {

@@ -1,37 +1,13 @@
 //! The checksums that a log stores of its parts.
 
-use std::{fmt, io, ops::Range};
+use std::{io, ops::Range};
 
 use crc32fast::Hasher;
 
 use crate::log::{
-    error::{LogError, LogErrorKind},
+    error::{CheckedPart, LogError, LogErrorKind},
     source::Source,
 };
-
-/// A part of a log that has a checksum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CheckedPart {
-    /// The decompressed records of a chunk.
-    Chunk,
-    /// An attachment of an MCAP file.
-    Attachment,
-    /// The data section of an MCAP file: everything before its summary.
-    DataSection,
-    /// The summary section of an MCAP file, with most of the footer.
-    SummarySection,
-}
-
-impl fmt::Display for CheckedPart {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Chunk => "chunk",
-            Self::Attachment => "attachment",
-            Self::DataSection => "data section",
-            Self::SummarySection => "summary section",
-        })
-    }
-}
 
 /// A CRC-32 of bytes as they stand in the file.
 pub(in crate::log) struct StoredChecksum {

@@ -5,8 +5,7 @@ use std::io::Read;
 use lz4_flex::frame::FrameDecoder as Lz4Decoder;
 use ruzstd::decoding::FrameDecoder;
 
-use super::CheckedPart;
-use crate::log::error::LogErrorKind;
+use crate::log::error::{CheckedPart, LogErrorKind};
 
 /// The largest factor between the size of a chunk and its compressed size.
 pub const MOST_GROWTH: u64 = 1000;

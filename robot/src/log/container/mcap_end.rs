@@ -3,12 +3,12 @@
 use std::io;
 
 use super::{
-    checksum::{CheckedPart, StoredChecksum},
+    checksum::StoredChecksum,
     mcap::{DATA_END, FOOTER, HEAD, MAGIC, STATISTICS},
     u32_at, u64_at,
 };
 use crate::log::{
-    error::{LogError, LogErrorKind},
+    error::{CheckedPart, LogError, LogErrorKind},
     source::{Source, Window},
 };
 

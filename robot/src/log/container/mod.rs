@@ -13,7 +13,6 @@ mod mcap_end;
 use std::{collections::BTreeMap, io, ops::Range};
 
 pub(super) use bag::MAGIC as BAG_MAGIC;
-pub use checksum::CheckedPart;
 pub use compression::MOST_GROWTH;
 use compression::{Compression, decompress};
 pub(super) use mcap::MAGIC as MCAP_MAGIC;
