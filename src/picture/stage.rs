@@ -36,22 +36,24 @@ fn strip(legend: &StageLegend, wide: u32) -> String {
     let entries = legend.entries.iter();
     let entries = entries.map(|(sign, words)| (Some(sign), length(sign, size), &**words));
     let (mut x, mut y) = (margin, margin + 0.5 * row);
-    let mut parts = String::new();
+    let mut parts: Vec<String> = Vec::new();
     for (sign, long, words) in scale.into_iter().chain(entries) {
         let wanted = long + 0.5 * size + width(words, size);
         if x > margin && x + wanted > right - margin {
             (x, y) = (margin, y + row);
         }
-        parts += &sign.map_or_else(|| ruler([x, y], long, size), |sign| drawn(sign, [x, y], size));
-        parts += &format!(
+        parts
+            .push(sign.map_or_else(|| ruler([x, y], long, size), |sign| drawn(sign, [x, y], size)));
+        parts.push(format!(
             "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{INK}\">{}</text>",
             short(x + long + 0.5 * size),
             short(y + 0.35 * size),
             short(size),
             escaped(words)
-        );
+        ));
         x += wanted + 1.4 * size;
     }
+    let parts = parts.concat();
     let high = (y + 0.5 * row + margin).ceil();
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
@@ -104,7 +106,8 @@ fn drawn(sign: &LegendSign, [x, y]: [f64; 2], size: f64) -> String {
                     "<rect x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" fill=\"{fill}\"/>"
                 )
             })
-            .collect(),
+            .collect::<Vec<_>>()
+            .concat(),
         LegendSign::Dot(colour) => circle(&format!("fill=\"{}\"", hex(*colour))),
         LegendSign::Ring(colour) => {
             circle(&format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2.5\"", hex(*colour)))
