@@ -15,7 +15,9 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome, input, marker_kinds,
+    Failure, Outcome, input,
+    json::print_line,
+    marker_kinds,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
@@ -116,7 +118,7 @@ impl CompareArguments {
                     .map_or_else(robot_comparison::no_robots_json, RobotComparison::json),
             );
             line.extend(walk.as_ref().map(|walk| ("walked".to_owned(), walk.json())));
-            writeln!(out, "{}", serde_json::Value::Object(line))?;
+            print_line(out, "comparison", &line)?;
         } else {
             graphs.print(out)?;
             if let Some(robots) = &robots {
@@ -162,7 +164,6 @@ impl CompareArguments {
 impl GraphComparison<'_> {
     fn json(&self) -> serde_json::Map<String, serde_json::Value> {
         let line = json!({
-            "schema": 1,
             "isomorphic": self.same.is_ok(),
             "mirror": self.mirror,
             "bijection": self.same.as_ref().ok().map(|same| self.pairs(same).collect::<Vec<_>>()),

@@ -18,7 +18,7 @@ use toposlam_robot::log::{
 
 use super::{
     Failure, Outcome, input,
-    json::print_object,
+    json::print_line,
     outcome::SeveralInputs,
     output,
     progress::Progress,
@@ -64,7 +64,6 @@ pub(super) struct InfoArguments {
 /// What `--json` prints for a log.
 #[derive(Serialize)]
 struct Line<'l> {
-    schema: u32,
     log: String,
     format: &'static str,
     bytes: u64,
@@ -110,7 +109,6 @@ struct DamageLine {
 /// What `--json` prints for a log that is too damaged to be listed.
 #[derive(Serialize)]
 struct DamagedLine {
-    schema: u32,
     log: String,
     verification: VerificationLine,
 }
@@ -177,7 +175,7 @@ impl InfoArguments {
         }
         let verification = if self.verify { Some(verify(path, &log)?) } else { None };
         if self.json {
-            print_object(out, &line(path, &log, verification.as_ref(), carriers))?;
+            print_line(out, "log", &line(path, &log, verification.as_ref(), carriers))?;
         } else {
             print(out, path, &log, verification.as_ref(), &carriers)?;
         }
@@ -201,7 +199,7 @@ impl InfoArguments {
         let found = Verification { damage: vec![error], ..Verification::default() };
         if self.json {
             let (log, verification) = (path.display().to_string(), verification_line(&found));
-            return print_object(out, &DamagedLine { schema: 1, log, verification });
+            return print_line(out, "damaged-log", &DamagedLine { log, verification });
         }
         writeln!(out, "{}: damaged, and not read further", path.display())?;
         print_damage(out, &found)
@@ -307,7 +305,6 @@ fn line<'l>(
     carriers: Vec<(&'static str, Vec<&'l str>)>,
 ) -> Line<'l> {
     Line {
-        schema: 1,
         log: path.display().to_string(),
         format: format(log),
         bytes: log.size(),

@@ -11,7 +11,7 @@ use toposlam_robot::evaluation::traversals::{
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     progress::Progress,
     text::{counted, grouped},
     use_threads,
@@ -107,20 +107,20 @@ impl EvaluateControlArguments {
     ) -> Result<(), Failure> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
             let line = json!({
-                "schema": 1, "kind": "failure", "traversal": traversal.traversal.number,
+                "traversal": traversal.traversal.number,
                 "plan": traversal.traversal.plan_name, "what": traversal.outcome.to_string(),
             });
-            print_object(out, &line)?;
+            print_line(out, "failure", &line)?;
         }
         let (wrong, gave_up) = tally(judged);
-        print_object(out, &share_json("wrong", wrong, judged.len()))?;
-        print_object(out, &share_json("gave up", gave_up, judged.len()))?;
+        print_line(out, "rate", &share_json("wrong", wrong, judged.len()))?;
+        print_line(out, "rate", &share_json("gave up", gave_up, judged.len()))?;
         let line = json!({
-            "schema": 1, "kind": "control", "traversals": judged.len(), "doors": traversals.cases(),
+            "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
             "holds": outcome == Outcome::Holds,
         });
-        print_object(out, &line)
+        print_line(out, "control", &line)
     }
 }
 

@@ -16,7 +16,7 @@ use toposlam_robot::{
 
 use super::{Failure, Outcome};
 use crate::cli::{
-    json::print_object,
+    json::print_line,
     text::{print_paragraph, sentence},
 };
 
@@ -42,7 +42,6 @@ const SHOWN: f64 = 0.01;
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line {
-    schema: u32,
     plan: String,
     start: String,
     seed: u64,
@@ -135,7 +134,6 @@ impl SimulationResult<'_> {
         let run = self.run;
         let divergence = run.divergence().map(|divergence| divergence.to_string());
         let line = Line {
-            schema: 1,
             plan: self.world.name.clone(),
             start: self.world.start_text(self.facing),
             seed: self.seed,
@@ -153,6 +151,6 @@ impl SimulationResult<'_> {
             compute_seconds: self.compute_seconds,
             frames: run.pictures,
         };
-        print_object(out, &line)
+        print_line(out, "run", &line)
     }
 }

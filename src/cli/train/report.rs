@@ -8,7 +8,7 @@ use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, Strip
 
 use crate::cli::{
     Failure,
-    json::print_object,
+    json::print_line,
     text::{grouped, print_hanging, print_rows},
 };
 
@@ -104,10 +104,10 @@ impl TrainingReport<'_> {
         let left_out = self.left_out.iter().map(|LeftOut { image, cause }| {
             json!({ "image": image.display().to_string(), "reason": cause.to_string() })
         });
-        print_object(
+        print_line(
             out,
+            "training",
             &Line {
-                schema: 1,
                 images: self.training.images(),
                 left_out: left_out.collect(),
                 folds,
@@ -122,7 +122,6 @@ impl TrainingReport<'_> {
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line {
-    schema: u32,
     images: usize,
     left_out: Vec<Value>,
     folds: Option<usize>,
