@@ -1,5 +1,6 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
+mod fact_fields;
 mod known_world;
 mod minimise;
 mod report;

@@ -18,7 +18,7 @@ use toposlam_robot::log::{
 
 use super::{
     Failure, Outcome, input,
-    json::print_line,
+    json::{TruncatedLine, print_line},
     outcome::SeveralInputs,
     output,
     progress::Progress,
@@ -73,19 +73,13 @@ struct Line<'l> {
     /// Seconds.
     duration: Option<f64>,
     messages: u64,
-    truncated: Option<Truncated>,
+    truncated: Option<TruncatedLine>,
     /// Whether it has an index.
     indexed: bool,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
-}
-
-#[derive(Serialize)]
-struct Truncated {
-    offset: u64,
-    cause: String,
 }
 
 /// With `--verify`.
@@ -312,9 +306,7 @@ fn line<'l>(
         end: log.end(),
         duration: duration(log),
         messages: log.messages_total(),
-        truncated: log
-            .truncation()
-            .map(|found| Truncated { offset: found.offset, cause: found.cause.to_string() }),
+        truncated: log.truncation().map(TruncatedLine::from),
         indexed: log.is_indexed(),
         verification: verification.map(verification_line),
         topics: log

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::{Value, json};
 use toposlam_model::{percept::Percept, world::Action};
+use toposlam_robot::log::error::Truncation;
 
 use super::Failure;
 
@@ -38,6 +39,19 @@ pub(super) fn print_line(
 pub(super) fn begin_line(out: &mut dyn Write, kind: &'static str) -> io::Result<()> {
     let empty = line_text(kind, &())?;
     write!(out, "{},", empty.strip_suffix('}').unwrap_or(&empty))
+}
+
+/// Where a log ends before its end.
+#[derive(Serialize)]
+pub(super) struct TruncatedLine {
+    offset: u64,
+    cause: String,
+}
+
+impl From<&Truncation> for TruncatedLine {
+    fn from(found: &Truncation) -> Self {
+        Self { offset: found.offset, cause: found.cause.to_string() }
+    }
 }
 
 /// A door is a number, another action is a word.

@@ -11,7 +11,7 @@ use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, r
 
 use super::{
     Failure, Outcome,
-    json::print_line,
+    json::{TruncatedLine, print_line},
     open_log::{LogOptions, OpenLog},
     output,
     text::{counted, grouped, print_hanging, since_start, vertices},
@@ -63,6 +63,7 @@ struct Line {
     difference: Option<DifferenceJson>,
     compute_seconds: f64,
     recorded_seconds: f64,
+    truncated: Option<TruncatedLine>,
 }
 
 #[derive(Serialize)]
@@ -89,7 +90,7 @@ impl ReplayArguments {
             error => Failure::in_file(&self.log, error),
         })?;
         if self.json {
-            print_line(out, "replay", &self.line(&replay, seconds))?;
+            print_line(out, "replay", &self.line(&opened, &replay, seconds))?;
         } else {
             self.print(out, &replay, seconds)?;
             if let Some(truncation) = opened.log.truncation() {
@@ -109,7 +110,7 @@ impl ReplayArguments {
         Ok(outcome(&replay))
     }
 
-    fn line(&self, replay: &Replay, compute_seconds: f64) -> Line {
+    fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Line {
         let map = replay.exploration.map();
         let both = |agreement: Agreement| [agreement.agree, agreement.of];
         Line {
@@ -134,6 +135,7 @@ impl ReplayArguments {
             }),
             compute_seconds,
             recorded_seconds: replay.recorded_seconds,
+            truncated: opened.log.truncation().map(TruncatedLine::from),
         }
     }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 
-use super::{Failure, Judged};
+use super::{Failure, Judged, fact_fields::FactFields};
 use crate::cli::{
     json::print_line,
     text::{counted, print_command, print_hanging},
@@ -42,6 +42,8 @@ struct Line<'r> {
     tolerated: BTreeMap<&'r str, usize>,
     shorter: &'r [String],
     command: Option<&'r str>,
+    #[serde(flatten)]
+    fields: FactFields<'r>,
 }
 
 /// A limit that was reached, and the option that raises it.
@@ -106,6 +108,7 @@ pub(super) fn json(
             .collect(),
         shorter: &report.shorter,
         command: report.command.as_deref(),
+        fields: FactFields::of(judged),
     };
     print_line(out, "log", &line)
 }
