@@ -13,4 +13,5 @@ mod journal;
 mod oracle;
 mod paper;
 mod run_page;
+mod schema;
 mod walk_page;

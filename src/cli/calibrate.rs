@@ -17,7 +17,7 @@ use toposlam_vision::camera::{
     unchanging,
 };
 
-use super::{Failure, Outcome, input, json::print_object, output, picture_file};
+use super::{Failure, Outcome, input, json::print_line, output, picture_file};
 
 /// Find centre, rim and focal length of a spherical mirror in images
 ///
@@ -80,7 +80,6 @@ enum From {
 /// The JSON line.
 #[derive(Serialize)]
 struct Report {
-    schema: u32,
     images: usize,
     image: [u32; 2],
     centre: [f64; 2],
@@ -229,10 +228,10 @@ impl CalibrateArguments {
         let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return Ok(()) };
         let mask_seen = camera.mask.as_ref().map(|mask| share_seen(mask, rim));
         if self.json {
-            return print_object(
+            return print_line(
                 out,
+                "calibration",
                 &Report {
-                    schema: 1,
                     images: self.images.len(),
                     image: camera.image,
                     centre: mirror.centre,

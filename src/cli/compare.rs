@@ -6,7 +6,7 @@ mod robot_comparison;
 
 use std::{io::Write, path::PathBuf};
 
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
@@ -15,7 +15,9 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome, input, marker_kinds,
+    Failure, Outcome, input,
+    json::print_line,
+    marker_kinds,
     progress::Progress,
     text::{counted, print_columns, print_paragraph, vertices},
     walk_page,
@@ -116,7 +118,7 @@ impl CompareArguments {
                     .map_or_else(robot_comparison::no_robots_json, RobotComparison::json),
             );
             line.extend(walk.as_ref().map(|walk| ("walked".to_owned(), walk.json())));
-            writeln!(out, "{}", serde_json::Value::Object(line))?;
+            print_line(out, "comparison", &line)?;
         } else {
             graphs.print(out)?;
             if let Some(robots) = &robots {
@@ -159,14 +161,28 @@ impl CompareArguments {
     }
 }
 
+/// What differs first, and how much of it A and B have.
+fn differing(difference: &Difference) -> Value {
+    let (what, counts, degree) = match *difference {
+        Difference::Edges(a, b) => ("edges", Some([a, b]), None),
+        Difference::Vertices(a, b) => ("vertices", Some([a, b]), None),
+        Difference::Degrees { degree, vertices: (a, b) } => {
+            ("vertices-of-degree", Some([a, b]), Some(degree))
+        }
+        Difference::Genus(a, b) => ("genus", Some([a, b]), None),
+        Difference::Orders => ("orders", None, None),
+    };
+    json!({ "what": what, "degree": degree, "counts": counts })
+}
+
 impl GraphComparison<'_> {
-    fn json(&self) -> serde_json::Map<String, serde_json::Value> {
+    fn json(&self) -> Map<String, Value> {
         let line = json!({
-            "schema": 1,
             "isomorphic": self.same.is_ok(),
             "mirror": self.mirror,
             "bijection": self.same.as_ref().ok().map(|same| self.pairs(same).collect::<Vec<_>>()),
             "difference": self.same.as_ref().err().map(ToString::to_string),
+            "differing": self.same.as_ref().err().map(differing),
         });
         line.as_object().cloned().unwrap_or_default()
     }

@@ -1,6 +1,7 @@
 //! `toposlam conform LOG...`: checks logs against the specification. Sections 2 and 4 to 6.
 
 mod expected;
+mod fact_fields;
 mod known_world;
 mod minimise;
 mod origin;

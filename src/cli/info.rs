@@ -18,7 +18,7 @@ use toposlam_robot::log::{
 
 use super::{
     Failure, Outcome, input,
-    json::print_object,
+    json::{TruncatedLine, print_line},
     outcome::SeveralInputs,
     output,
     progress::Progress,
@@ -64,7 +64,6 @@ pub(super) struct InfoArguments {
 /// What `--json` prints for a log.
 #[derive(Serialize)]
 struct Line<'l> {
-    schema: u32,
     log: String,
     format: &'static str,
     bytes: u64,
@@ -74,19 +73,13 @@ struct Line<'l> {
     /// Seconds.
     duration: Option<f64>,
     messages: u64,
-    truncated: Option<Truncated>,
+    truncated: Option<TruncatedLine>,
     /// Whether it has an index.
     indexed: bool,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
-}
-
-#[derive(Serialize)]
-struct Truncated {
-    offset: u64,
-    cause: String,
 }
 
 /// With `--verify`.
@@ -110,7 +103,6 @@ struct DamageLine {
 /// What `--json` prints for a log that is too damaged to be listed.
 #[derive(Serialize)]
 struct DamagedLine {
-    schema: u32,
     log: String,
     verification: VerificationLine,
 }
@@ -177,7 +169,7 @@ impl InfoArguments {
         }
         let verification = if self.verify { Some(verify(path, &log)?) } else { None };
         if self.json {
-            print_object(out, &line(path, &log, verification.as_ref(), carriers))?;
+            print_line(out, "log", &line(path, &log, verification.as_ref(), carriers))?;
         } else {
             print(out, path, &log, verification.as_ref(), &carriers)?;
         }
@@ -201,7 +193,7 @@ impl InfoArguments {
         let found = Verification { damage: vec![error], ..Verification::default() };
         if self.json {
             let (log, verification) = (path.display().to_string(), verification_line(&found));
-            return print_object(out, &DamagedLine { schema: 1, log, verification });
+            return print_line(out, "damaged-log", &DamagedLine { log, verification });
         }
         writeln!(out, "{}: damaged, and not read further", path.display())?;
         print_damage(out, &found)
@@ -307,7 +299,6 @@ fn line<'l>(
     carriers: Vec<(&'static str, Vec<&'l str>)>,
 ) -> Line<'l> {
     Line {
-        schema: 1,
         log: path.display().to_string(),
         format: format(log),
         bytes: log.size(),
@@ -315,9 +306,7 @@ fn line<'l>(
         end: log.end(),
         duration: duration(log),
         messages: log.messages_total(),
-        truncated: log
-            .truncation()
-            .map(|found| Truncated { offset: found.offset, cause: found.cause.to_string() }),
+        truncated: log.truncation().map(TruncatedLine::from),
         indexed: log.is_indexed(),
         verification: verification.map(verification_line),
         topics: log

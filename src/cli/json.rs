@@ -1,17 +1,57 @@
-//! The output of `--json`: one object a line, with actions and percepts.
+//! The output of `--json`: one object a line, with actions and percepts. `docs/schema` describes each kind
+//! of line.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::{Value, json};
 use toposlam_model::{percept::Percept, world::Action};
+use toposlam_robot::log::error::Truncation;
 
 use super::Failure;
 
-/// Prints one object on a line of its own.
-pub(super) fn print_object(out: &mut dyn Write, object: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(object).map_err(io::Error::from)?;
-    Ok(writeln!(out, "{text}")?)
+/// The version of the lines.
+const SCHEMA: u32 = 1;
+
+/// A line: its version, its kind and its content.
+#[derive(Serialize)]
+struct Line<'c, C> {
+    schema: u32,
+    kind: &'static str,
+    #[serde(flatten)]
+    content: &'c C,
+}
+
+fn line_text(kind: &'static str, content: &impl Serialize) -> io::Result<String> {
+    Ok(serde_json::to_string(&Line { schema: SCHEMA, kind, content })?)
+}
+
+/// Prints an object on a line of its own, after its version and its kind.
+pub(super) fn print_line(
+    out: &mut dyn Write,
+    kind: &'static str,
+    content: &impl Serialize,
+) -> Result<(), Failure> {
+    Ok(writeln!(out, "{}", line_text(kind, content)?)?)
+}
+
+/// Prints the beginning of a line, up to the comma after its kind.
+pub(super) fn begin_line(out: &mut dyn Write, kind: &'static str) -> io::Result<()> {
+    let empty = line_text(kind, &())?;
+    write!(out, "{},", empty.strip_suffix('}').unwrap_or(&empty))
+}
+
+/// Where a log ends before its end.
+#[derive(Serialize)]
+pub(super) struct TruncatedLine {
+    offset: u64,
+    cause: String,
+}
+
+impl From<&Truncation> for TruncatedLine {
+    fn from(found: &Truncation) -> Self {
+        Self { offset: found.offset, cause: found.cause.to_string() }
+    }
 }
 
 /// A door is a number, another action is a word.

@@ -12,7 +12,7 @@ use toposlam::paper::{
 
 use super::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     text::{print_hanging, print_indented},
 };
 
@@ -63,7 +63,6 @@ impl PaperArguments {
 /// A line of `--json`.
 #[derive(Serialize)]
 struct RowLine<'a> {
-    schema: u32,
     id: &'a str,
     section: &'a str,
     line: Option<u32>,
@@ -78,7 +77,6 @@ struct RowLine<'a> {
 /// The last line of `--json`.
 #[derive(Serialize)]
 struct TotalsLine {
-    schema: u32,
     requirements: usize,
     done: usize,
     open: usize,
@@ -100,7 +98,6 @@ fn print_json(
             Status::Open { after } => ("open", Some(after.as_slice())),
         };
         let line = RowLine {
-            schema: 1,
             id: &requirement.id,
             section: &requirement.section,
             line: requirement.line,
@@ -111,18 +108,17 @@ fn print_json(
             code: row.code.iter().map(place).collect(),
             tests: row.tests.iter().map(place).collect(),
         };
-        print_object(out, &line)?;
+        print_line(out, "requirement", &line)?;
     }
     let done = done(rows);
     let totals = TotalsLine {
-        schema: 1,
         requirements: rows.len(),
         done,
         open: rows.len() - done,
         faults: trace.faults().collect(),
         holds: trace.holds(),
     };
-    print_object(out, &totals)
+    print_line(out, "requirements", &totals)
 }
 
 /// Prints the rows by section and then the totals.

@@ -11,7 +11,7 @@ use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, r
 
 use super::{
     Failure, Outcome,
-    json::print_object,
+    json::{TruncatedLine, print_line},
     open_log::{LogOptions, OpenLog},
     output,
     text::{counted, grouped, print_hanging, since_start, vertices},
@@ -48,7 +48,6 @@ pub(super) struct ReplayArguments {
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line {
-    schema: u32,
     log: String,
     pictures: u64,
     moves: u64,
@@ -64,6 +63,7 @@ struct Line {
     difference: Option<DifferenceJson>,
     compute_seconds: f64,
     recorded_seconds: f64,
+    truncated: Option<TruncatedLine>,
 }
 
 #[derive(Serialize)]
@@ -90,7 +90,7 @@ impl ReplayArguments {
             error => Failure::in_file(&self.log, error),
         })?;
         if self.json {
-            print_object(out, &self.line(&replay, seconds))?;
+            print_line(out, "replay", &self.line(&opened, &replay, seconds))?;
         } else {
             self.print(out, &replay, seconds)?;
             if let Some(truncation) = opened.log.truncation() {
@@ -110,11 +110,10 @@ impl ReplayArguments {
         Ok(outcome(&replay))
     }
 
-    fn line(&self, replay: &Replay, compute_seconds: f64) -> Line {
+    fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Line {
         let map = replay.exploration.map();
         let both = |agreement: Agreement| [agreement.agree, agreement.of];
         Line {
-            schema: 1,
             log: self.log.display().to_string(),
             pictures: replay.comparison.pictures,
             moves: replay.exploration.moves(),
@@ -136,6 +135,7 @@ impl ReplayArguments {
             }),
             compute_seconds,
             recorded_seconds: replay.recorded_seconds,
+            truncated: opened.log.truncation().map(TruncatedLine::from),
         }
     }
 

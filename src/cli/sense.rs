@@ -13,7 +13,7 @@ use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
     Failure, Outcome, input,
-    json::print_object,
+    json::print_line,
     outcome::SeveralInputs,
     output, picture_file,
     scene::{SceneLine, rows},
@@ -59,7 +59,6 @@ pub(super) struct SenseArguments {
 /// The JSON line of an image.
 #[derive(Serialize)]
 struct Line {
-    schema: u32,
     image: String,
     #[serde(flatten)]
     scene: SceneLine,
@@ -107,7 +106,7 @@ impl SenseArguments {
             let Some(scene) = inputs.add(sensed) else { continue };
             if self.json {
                 let image = path.display().to_string();
-                print_object(out, &Line { schema: 1, image, scene: SceneLine::from(&scene) })?;
+                print_line(out, "image", &Line { image, scene: SceneLine::from(&scene) })?;
             } else {
                 writeln!(out, "{}", path.display())?;
                 for (label, text) in rows(&scene) {

@@ -13,6 +13,7 @@ fn figure_1a_and_figure_1b_are_not_isomorphic_and_not_mirror_images() {
     let line = &objects(&stdout_of(["compare", "--json", files[0], files[1]]))[0];
     assert_eq!((&line["isomorphic"], &line["mirror"]), (&false.into(), &false.into()));
     assert_eq!(line["difference"], "genus 0 against 1");
+    assert_eq!(line["differing"], json!({"what": "genus", "degree": null, "counts": [0, 1]}));
     let text = stdout_of(["compare", files[0], files[1]]);
     assert!(text.contains("\nnot isomorphic: genus 0 against 1\nnot mirror images\n"), "{text}");
 }
@@ -202,6 +203,7 @@ fn a_walk_goes_as_far_as_both_robots_can() {
     let line = compared(files, &["--marker", "none", "--walk", "0,2,1"]);
     assert_eq!(line["walked"]["actions"], json!([0]));
     assert_eq!(line["walked"]["stopped"], "door 2 was taken at a vertex with 2 doors, in B");
+    assert_eq!(line["walked"]["stopped_in"], "B");
     let text = stdout_of(["compare", files[0], files[1], "--marker", "none", "--walk", "0,2,1"]);
     let end = "3 doors             2 doors             <- differs\n  \
                stopped: door 2 was taken at a vertex with 2 doors, in B\n";

@@ -7,7 +7,7 @@ use std::{
     process::Command,
 };
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use toposlam_model::driving;
 use toposlam_robot::log::{
     messages::{Door, Percept, ProjectMessage, Scene, Stamp},
@@ -448,7 +448,14 @@ fn another_world_is_a_remark_of_the_report() {
     assert!(fs::read_to_string(page).unwrap().contains("recorded in another world, shape-6"));
     let (_, report) = judged(&log, &["--world", SHAPE_8]);
     assert_eq!(report["remarks"][0], remark);
+    let start = &report["recorded"]["start"];
+    let recorded = json!({ "world": "shape-6", "start": start, "same_world": false });
+    assert_eq!((&report["recorded"], &report["world"]["name"]), (&recorded, &"shape-8".into()));
     let (_, report) = judged(&log, &["--world", SHAPE_6]);
+    assert_eq!(report["recorded"]["same_world"], true);
+    let map = json!({ "complete": true, "vertices": 6, "edges": 6, "unexplored": 0 });
+    assert_eq!((&report["map"], &report["ending"]["how"]), (&map, &"mapped".into()));
+    assert_eq!(report["doors"], json!({ "choices": "default", "from_event": null }));
     assert_eq!(report["remarks"], serde_json::json!([]));
 }
 

@@ -32,6 +32,8 @@ use std::{
 use serde_json::Value;
 use toposlam_model::format::{named_world::NamedWorld, world_file};
 
+use crate::schema::fits_a_schema;
+
 /// The program.
 fn toposlam() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toposlam"));
@@ -59,11 +61,11 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// The JSON objects of an output, one a line.
+/// The JSON objects of an output, one a line. Each fits a schema.
 fn objects(text: &str) -> Vec<Value> {
     let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
     let objects: Vec<Value> = lines.collect();
-    assert!(text.ends_with('\n') && objects.iter().all(|object| object["schema"] == 1), "{text}");
+    assert!(text.ends_with('\n') && objects.iter().all(fits_a_schema), "{text}");
     objects
 }
 

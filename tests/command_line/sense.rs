@@ -119,11 +119,11 @@ fn a_hallway_and_a_junction_are_reported_in_the_documented_form() {
     let lines: Vec<_> = text.lines().map(keys).collect();
     assert_eq!(
         lines[0].join(" "),
-        "schema image scene status reason heading left right confidence marker"
+        "schema kind image scene status reason heading left right confidence marker"
     );
     assert_eq!(
         lines[1].join(" "),
-        "schema image scene degree doors centre_lines turning_point confidence marker"
+        "schema kind image scene degree doors centre_lines turning_point confidence marker"
     );
 }
 

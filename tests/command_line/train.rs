@@ -133,7 +133,10 @@ fn every_class_of_a_rendered_building_is_recognized() {
         assert!((figures["recall"].as_f64().unwrap() - right).abs() < 1e-9, "{class}: {report}");
     }
     let keys: Vec<_> = report.as_object().unwrap().keys().cloned().collect();
-    assert_eq!(keys.join(" "), "schema images left_out folds confusion classes stripe");
+    assert_eq!(
+        keys.join(" "),
+        "schema kind images left_out folds not_validated confusion classes stripe"
+    );
     assert_eq!(names_in(&set.0), ["camera.toml", "colours.toml", "images", "labels"]);
 }
 
@@ -196,6 +199,8 @@ fn one_image_is_enough_but_is_not_cross_validated() {
         fs::remove_file(set.0.join("labels").join(labels)).unwrap();
     }
     let text = stdout_of(set.train(&[]));
+    let line = &objects(&stdout_of(set.train(&["--json"])))[0];
+    assert_eq!(line["not_validated"], "there is only one image to learn from");
     let why = "\nnot cross-validated: there is only one image to learn from\n";
     assert!(text.ends_with(why), "{text}");
     let report = set.report(&[]);

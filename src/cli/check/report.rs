@@ -1,12 +1,6 @@
 //! The report of a check: a row or a JSON object for each number of edges, and the verdict.
 
-use std::{
-    collections::BTreeMap,
-    fmt::Write as _,
-    io::{self, Write},
-    path::Path,
-    time::Duration,
-};
+use std::{collections::BTreeMap, fmt::Write as _, io::Write, path::Path, time::Duration};
 
 use serde::Serialize;
 use toposlam_model::{
@@ -18,6 +12,7 @@ use toposlam_model::{
 use crate::cli::{
     Failure, Outcome, RunChoices,
     ci_report::CiCase,
+    json::print_line,
     text::{grouped, print_hanging, print_paragraph},
 };
 
@@ -117,8 +112,7 @@ impl<'o> CheckReport<'o> {
     pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), Failure> {
         if self.json {
             let line = Line::new(size, self.subject, self.choice);
-            serde_json::to_writer(&mut self.out, &line).map_err(io::Error::from)?;
-            writeln!(self.out)?;
+            print_line(self.out, "size", &line)?;
         } else {
             self.row(size)?;
         }
@@ -218,7 +212,6 @@ impl<'o> CheckReport<'o> {
 /// A line of `--json`, for one number of edges.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     edges: usize,
     /// `None` if the worlds are from a file.
     class: Option<&'a str>,
@@ -269,7 +262,6 @@ impl<'a> Line<'a> {
     fn new(size: &SizeResult<'a>, subject: AlgorithmInfo, choice: RunChoices) -> Self {
         let &SizeResult { edges, class, from, shard, tally } = size;
         Self {
-            schema: 1,
             edges,
             class: from.is_none().then(|| class.name()),
             from: from.map(|path| path.display().to_string()),
@@ -333,8 +325,10 @@ mod tests {
         let (class, shard) = (Class::Simple, Shard::WHOLE);
         let size = SizeResult { edges: 1, class, from: None, shard, tally: &tally };
         let subject = AlgorithmInfo::of(&MappingAlgorithm::Algorithm1);
-        let line = Line::new(&size, subject, RunChoices::All { budget: 9 });
-        let line = serde_json::to_string(&line).unwrap();
+        let mut line = Vec::new();
+        print_line(&mut line, "size", &Line::new(&size, subject, RunChoices::All { budget: 9 }))
+            .unwrap();
+        let line = String::from_utf8(line).unwrap();
         assert!(line.contains(r#""runs":340282366920938463463374607431768211455,"#), "{line}");
     }
 }

@@ -1,12 +1,12 @@
 //! One walk in two worlds at once.
 
-use std::{io::Write, str::FromStr};
+use std::{fmt, io::Write, str::FromStr};
 
 use serde_json::{Value, json};
 use toposlam_model::{
     ambiguity::PlacedRobot,
     percept::Percept,
-    world::{Action, UnknownAction},
+    world::{Action, Refused, UnknownAction},
 };
 
 use super::{
@@ -39,7 +39,20 @@ pub(super) struct JointWalk<'w> {
     actions: Vec<Action>,
     percepts: Vec<[Percept; 2]>,
     /// Why they stopped, if only one of them could go on.
-    stopped: Option<String>,
+    stopped: Option<Stop>,
+}
+
+/// Why one of two robots cannot go on.
+struct Stop {
+    /// `A` or `B`.
+    world: &'static str,
+    cause: Refused,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        write!(out, "{}, in {}", self.cause, self.world)
+    }
 }
 
 impl<'w> RobotComparison<'w> {
@@ -63,8 +76,8 @@ impl<'w> RobotComparison<'w> {
                 [Err(error), Err(_)] => {
                     return Err(Failure::at(format!("--walk: action {number}"), error));
                 }
-                [Err(error), Ok(())] => walk.stopped = Some(format!("{error}, in A")),
-                [Ok(()), Err(error)] => walk.stopped = Some(format!("{error}, in B")),
+                [Err(cause), Ok(())] => walk.stopped = Some(Stop { world: "A", cause }),
+                [Ok(()), Err(cause)] => walk.stopped = Some(Stop { world: "B", cause }),
             }
             if walk.stopped.is_some() {
                 break;
@@ -83,7 +96,8 @@ impl JointWalk<'_> {
             "starts": self.starts,
             "actions": actions_json(&self.actions),
             "percepts": self.percepts.iter().map(pair).collect::<Vec<_>>(),
-            "stopped": self.stopped,
+            "stopped": self.stopped.as_ref().map(ToString::to_string),
+            "stopped_in": self.stopped.as_ref().map(|stop| stop.world),
         })
     }
 
@@ -106,7 +120,7 @@ impl JointWalk<'_> {
         writeln!(out)?;
         print_rows(out, ["action", &heads[0], &heads[1], ""], &rows)?;
         if let Some(why) = &self.stopped {
-            print_hanging(out, "  stopped: ", why)?;
+            print_hanging(out, "  stopped: ", &why.to_string())?;
         }
         Ok(())
     }

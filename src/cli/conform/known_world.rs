@@ -82,13 +82,17 @@ impl<'w> Known<'w> {
         KnownWorld { graph: &self.world.graph, states: self.states.clone() }
     }
 
-    /// A remark if the log was recorded in another world.
-    pub(super) fn other_world(&self, run: &Run) -> Option<String> {
+    /// Whether a log records another world.
+    pub(super) fn is_other_than_of(&self, run: &Run) -> bool {
         let graph = &self.world.graph;
         let recorded = &run.world_hash;
-        let other = graph.darts().all(|dart| world_hash(graph, dart) != *recorded);
+        !recorded.is_empty() && graph.darts().all(|dart| world_hash(graph, dart) != *recorded)
+    }
+
+    /// A remark if the log was recorded in another world.
+    pub(super) fn other_world(&self, run: &Run) -> Option<String> {
         let name = if run.world.is_empty() { "" } else { ", " };
-        (!recorded.is_empty() && other)
+        self.is_other_than_of(run)
             .then(|| format!("the log was recorded in another world{name}{}", run.world))
     }
 

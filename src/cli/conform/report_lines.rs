@@ -6,9 +6,9 @@ use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 
-use super::{Failure, Judged};
+use super::{Failure, Judged, fact_fields::FactFields};
 use crate::cli::{
-    json::print_object,
+    json::print_line,
     text::{counted, print_command, print_hanging},
 };
 
@@ -20,8 +20,6 @@ const SHORT: usize = 12;
 /// What `--json` prints for a log.
 #[derive(Serialize)]
 struct Line<'r> {
-    schema: u32,
-    kind: &'static str,
     log: &'r str,
     verdict: &'static str,
     event: Option<usize>,
@@ -44,6 +42,8 @@ struct Line<'r> {
     tolerated: BTreeMap<&'r str, usize>,
     shorter: &'r [String],
     command: Option<&'r str>,
+    #[serde(flatten)]
+    fields: FactFields<'r>,
 }
 
 /// A limit that was reached, and the option that raises it.
@@ -60,8 +60,6 @@ struct Limit {
 /// What `--json` prints for several logs together.
 #[derive(Serialize)]
 struct Together<'r> {
-    schema: u32,
-    kind: &'static str,
     logs: usize,
     conform: usize,
     diverged: usize,
@@ -80,8 +78,6 @@ pub(super) fn json(
     let divergence = report.divergence.as_ref();
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
     let line = Line {
-        schema: 1,
-        kind: "log",
         log: &report.log,
         verdict: report.verdict.name(),
         event: divergence.map(|divergence| divergence.event),
@@ -112,8 +108,9 @@ pub(super) fn json(
             .collect(),
         shorter: &report.shorter,
         command: report.command.as_deref(),
+        fields: FactFields::of(judged),
     };
-    print_object(out, &line)
+    print_line(out, "log", &line)
 }
 
 fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
@@ -262,8 +259,6 @@ pub(super) fn together(
             *classes.entry(fault.name()).or_default() += 1;
         }
         let line = Together {
-            schema: 1,
-            kind: "logs",
             logs,
             conform,
             diverged,
@@ -272,7 +267,7 @@ pub(super) fn together(
             coverage: counts(&coverage),
             classes,
         };
-        return print_object(out, &line);
+        return print_line(out, "logs", &line);
     }
     let unreadable = match unreadable {
         0 => String::new(),

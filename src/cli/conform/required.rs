@@ -9,15 +9,13 @@ use toposlam_robot::{conform::RunCoverage, evaluation::scene_class::FORMS};
 
 use super::{Failure, Outcome};
 use crate::cli::{
-    json::print_object,
+    json::print_line,
     text::{counted, print_hanging},
 };
 
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line<'r> {
-    schema: u32,
-    kind: &'static str,
     required: &'r [String],
     not_covered: Vec<&'r str>,
 }
@@ -40,7 +38,7 @@ pub(super) fn report(
         required.iter().map(String::as_str).filter(|case| !covers(coverage, case)).collect();
     let outcome = if not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete };
     if as_json {
-        print_object(out, &Line { schema: 1, kind: "required-coverage", required, not_covered })?;
+        print_line(out, "required-coverage", &Line { required, not_covered })?;
     } else {
         let cases = counted(required.len(), "required case");
         let text = match &not_covered[..] {

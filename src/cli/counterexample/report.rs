@@ -13,6 +13,7 @@ use toposlam_model::{
 use super::pairs::WorldPairs;
 use crate::cli::{
     Failure,
+    json::print_line,
     text::{grouped, print_command, print_hanging, print_indented, print_paragraph},
 };
 
@@ -66,14 +67,13 @@ impl<'o> SearchReport<'o> {
     ) -> Result<(), Failure> {
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
             let line = json!({
-                "schema": 1,
                 "edges": edges,
                 "class": self.class.name(),
                 "marker": marker.name(),
                 "placed_worlds": placed_worlds,
                 "ambiguous": ambiguous,
             });
-            writeln!(self.out, "{line}")?;
+            print_line(self.out, "size", &line)?;
         }
         let pair = |pair: &[&NamedWorld; 2]| {
             let edges = pair[1].graph.edge_count();
@@ -81,29 +81,27 @@ impl<'o> SearchReport<'o> {
         };
         let pairs = found.pairs();
         let line = json!({
-            "schema": 1,
             "smallest": pairs.first().map_or(Value::Null, pair),
             "searched_edges": self.edges,
             "class": self.class.name(),
             "marker": marker.name(),
         });
-        writeln!(self.out, "{line}")?;
+        print_line(self.out, "smallest", &line)?;
         if found.has_all() {
             for world in found.worlds() {
                 let world = world_file::to_json(world);
-                let line = json!({ "schema": 1, "world": world, "marker": marker.name() });
-                writeln!(self.out, "{line}")?;
+                let line = json!({ "world": world, "marker": marker.name() });
+                print_line(self.out, "world", &line)?;
             }
             for each in &pairs {
                 let line = json!({
-                    "schema": 1,
-                    "pair": {
+                        "pair": {
                         "edges": each[1].graph.edge_count(),
                         "worlds": each.map(|world| &world.name),
                     },
                     "marker": marker.name(),
                 });
-                writeln!(self.out, "{line}")?;
+                print_line(self.out, "pair", &line)?;
             }
         }
         Ok(())

@@ -11,7 +11,7 @@ use toposlam_robot::explorer::ExplorerError;
 
 use super::{Failure, Outcome};
 use crate::cli::{
-    json::print_object,
+    json::print_line,
     text::{print_paragraph, sentence},
 };
 
@@ -29,7 +29,6 @@ pub(super) struct DriveResult<'a> {
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     world: &'a str,
     ending: &'a str,
     error: Option<String>,
@@ -91,7 +90,6 @@ impl DriveResult<'_> {
             _ => "gave-up",
         };
         let line = Line {
-            schema: 1,
             world: self.world,
             ending,
             error: self.error.map(ToString::to_string),
@@ -101,6 +99,6 @@ impl DriveResult<'_> {
             seconds: (self.seconds * 1e3).round() / 1e3,
             frames: self.pictures,
         };
-        print_object(out, &line)
+        print_line(out, "run", &line)
     }
 }

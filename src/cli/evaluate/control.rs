@@ -5,13 +5,13 @@ use std::{io::Write, time::Instant};
 
 use serde_json::json;
 use toposlam_robot::evaluation::traversals::{
-    JudgedTraversal, TraversalOutcome as Made, TraversalSampler,
+    JudgedTraversal, Traversal, TraversalOutcome as Made, TraversalSampler,
 };
 
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     progress::Progress,
     text::{counted, grouped},
     use_threads,
@@ -106,21 +106,25 @@ impl EvaluateControlArguments {
         out: &mut dyn Write,
     ) -> Result<(), Failure> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
+            let [junction, from] = junctions(traversal);
             let line = json!({
-                "schema": 1, "kind": "failure", "traversal": traversal.traversal.number,
-                "plan": traversal.traversal.plan_name, "what": traversal.outcome.to_string(),
+                "traversal": traversal.traversal.number,
+                "plan": traversal.traversal.plan_name, "junction": junction, "from": from,
+                "door": traversal.traversal.door.0,
+                "gave_up": matches!(traversal.outcome, Made::GaveUp(_)),
+                "what": traversal.outcome.to_string(),
             });
-            print_object(out, &line)?;
+            print_line(out, "failure", &line)?;
         }
         let (wrong, gave_up) = tally(judged);
-        print_object(out, &share_json("wrong", wrong, judged.len()))?;
-        print_object(out, &share_json("gave up", gave_up, judged.len()))?;
+        print_line(out, "rate", &share_json("wrong", wrong, judged.len()))?;
+        print_line(out, "rate", &share_json("gave up", gave_up, judged.len()))?;
         let line = json!({
-            "schema": 1, "kind": "control", "traversals": judged.len(), "doors": traversals.cases(),
+            "traversals": judged.len(), "doors": traversals.cases(),
             "plans": traversals.plans(), "seed": self.robots.seed,
             "holds": outcome == Outcome::Holds,
         });
-        print_object(out, &line)
+        print_line(out, "control", &line)
     }
 }
 
@@ -130,17 +134,19 @@ fn tally(judged: &[JudgedTraversal]) -> (usize, usize) {
     (count(|made| matches!(made, Made::Wrong(_))), count(|made| matches!(made, Made::GaveUp(_))))
 }
 
+/// The names of the junction of a traversal, and of the one from which the robot came.
+fn junctions(judged: &JudgedTraversal) -> [&str; 2] {
+    let Traversal { entry, config, .. } = &judged.traversal;
+    let graph = config.plan.graph();
+    [*entry, graph.opposite(*entry)]
+        .map(|dart| config.plan.junction(graph.vertex(dart)).name.as_str())
+}
+
 fn named(judged: &JudgedTraversal) -> String {
     let traversal = &judged.traversal;
-    let plan = &traversal.config.plan;
-    let graph = plan.graph();
-    let junction = |dart| &plan.junction(graph.vertex(dart)).name;
+    let [junction, from] = junctions(judged);
     format!(
-        "traversal {} in {}, door {} of {}, entered from {}",
-        traversal.number,
-        traversal.plan_name,
-        traversal.door.0,
-        junction(traversal.entry),
-        junction(graph.opposite(traversal.entry))
+        "traversal {} in {}, door {} of {junction}, entered from {from}",
+        traversal.number, traversal.plan_name, traversal.door.0,
     )
 }

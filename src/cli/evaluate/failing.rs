@@ -18,7 +18,7 @@ use toposlam_robot::evaluation::{
 use toposlam_robot::truth::{JunctionTruth, Truth};
 
 use crate::cli::{
-    Failure, json::print_object, output, picture_file, progress::must_stop, scene::SceneLine,
+    Failure, json::print_line, output, picture_file, progress::must_stop, scene::SceneLine,
     text::counted,
 };
 
@@ -37,12 +37,12 @@ pub(super) fn write(
     let mut failed: Vec<_> = views.iter().filter(|judged| fails(judged)).collect();
     let mut lines = Vec::new();
     for judged in &failed {
-        print_line(&mut lines, judged, calibration, None)?;
+        print_view(&mut lines, judged, calibration, None)?;
     }
     let failed_visits: Vec<_> =
         visits.iter().filter(|visit| visit.decided != Some((visit.form, visit.percept))).collect();
     for judged in failed_visits.iter().flat_map(|visit| &visit.pictures) {
-        print_line(&mut lines, judged, calibration, Some(judged.view.number))?;
+        print_view(&mut lines, judged, calibration, Some(judged.view.number))?;
     }
     let name = match calibration {
         Calibration::Right => "failing.jsonl",
@@ -98,7 +98,7 @@ fn write_steps(
     let plan = world_file::to_toml(&plan_of(&judged.view));
     output::write_whole(&folder.join("plan.toml"), plan.as_bytes())?;
     let mut line = Vec::new();
-    print_line(&mut line, judged, calibration, None)?;
+    print_view(&mut line, judged, calibration, None)?;
     output::write_whole(&folder.join("view.json"), &line)
 }
 
@@ -124,22 +124,21 @@ pub(super) fn print(
     judged: &JudgedView,
     calibration: Calibration,
 ) -> Result<(), Failure> {
-    print_line(out, judged, calibration, None)
+    print_view(out, judged, calibration, None)
 }
 
-fn print_line(
+fn print_view(
     out: &mut dyn Write,
     judged: &JudgedView,
     calibration: Calibration,
     visit: Option<u64>,
 ) -> Result<(), Failure> {
-    print_object(out, &Line::new(judged, calibration, visit))
+    print_line(out, "view", &Line::new(judged, calibration, visit))
 }
 
 /// The JSON line of a view.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     view: u64,
     /// The number of the visit, if the view is part of one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -183,7 +182,6 @@ impl<'a> Line<'a> {
             (_, None) => "turned".to_owned(),
         };
         Self {
-            schema: 1,
             view: view.number,
             visit,
             calibration: match calibration {

@@ -15,7 +15,7 @@ use toposlam_robot::evaluation::{
 
 use crate::cli::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     text::{counted, grouped, print_hanging, print_rows},
 };
 
@@ -57,10 +57,11 @@ impl<'o> Printer<'o> {
         };
         let seed = source.seed;
         if self.json {
-            return print_object(
+            return print_line(
                 self.out,
+                "source",
                 &json!({
-                    "schema": 1, "kind": "source", "views": views, "visits": visits, "seed": seed,
+                    "views": views, "visits": visits, "seed": seed,
                     "sizes": sizes, "plans": plans, "looks": looks, "effects": effects,
                 }),
             );
@@ -108,8 +109,6 @@ impl<'o> Printer<'o> {
         let calibration = name(report.calibration);
         for rate in &report.rates {
             let line = RateLine {
-                schema: 1,
-                kind: "rate",
                 calibration,
                 of: rate.subject.name(),
                 what: rate.what,
@@ -121,7 +120,7 @@ impl<'o> Printer<'o> {
                 target: rate.limit.map(|_| rate.standing().name()),
                 cases_needed: rate.cases_needed(),
             };
-            print_object(self.out, &line)?;
+            print_line(self.out, "rate", &line)?;
         }
         for errors in &report.errors {
             let (unit, _) = unit(errors.unit);
@@ -130,8 +129,6 @@ impl<'o> Printer<'o> {
                 errors.limits.iter().map(|&(quantile, limit)| json!([quantile.part(), limit]));
             let target = (!errors.limits.is_empty()).then(|| errors.standing().name());
             let line = ErrorsLine {
-                schema: 1,
-                kind: "errors",
                 calibration,
                 of: errors.subject.name(),
                 what: errors.what,
@@ -145,16 +142,16 @@ impl<'o> Printer<'o> {
                 target,
                 cases_needed: errors.cases_needed(),
             };
-            print_object(self.out, &line)?;
+            print_line(self.out, "errors", &line)?;
         }
         for (is, said) in &report.confusion {
             let said: Map<String, Value> =
                 said.iter().map(|(class, &count)| (class.to_string(), json!(count))).collect();
             let is = is.to_string();
             let line = json!({
-                "schema": 1, "kind": "confusion", "calibration": calibration, "is": is, "said": said,
+                "calibration": calibration, "is": is, "said": said,
             });
-            print_object(self.out, &line)?;
+            print_line(self.out, "confusion", &line)?;
         }
         Ok(())
     }
@@ -163,9 +160,9 @@ impl<'o> Printer<'o> {
         if self.json {
             for FailureGroup { by, what, failed, of, .. } in groups {
                 let line = json!({
-                    "schema": 1, "kind": "failures", "by": by, "what": what, "failed": failed, "of": of,
+                    "by": by, "what": what, "failed": failed, "of": of,
                 });
-                print_object(self.out, &line)?;
+                print_line(self.out, "failures", &line)?;
             }
             return Ok(());
         }
@@ -191,10 +188,10 @@ impl<'o> Printer<'o> {
         if self.json {
             let holds = outcome == Outcome::Holds;
             let line = json!({
-                "schema": 1, "kind": "verdict", "missed": missed, "not_shown": not_shown,
+                "missed": missed, "not_shown": not_shown,
                 "interrupted": interrupted, "holds": holds,
             });
-            return print_object(self.out, &line);
+            return print_line(self.out, "verdict", &line);
         }
         let verdict = match outcome {
             Outcome::Holds => "holds: all targets are met".to_owned(),
@@ -212,8 +209,6 @@ impl<'o> Printer<'o> {
 
 #[derive(Serialize)]
 struct RateLine<'a> {
-    schema: u32,
-    kind: &'a str,
     calibration: &'a str,
     of: &'a str,
     what: &'a str,
@@ -229,8 +224,6 @@ struct RateLine<'a> {
 
 #[derive(Serialize)]
 struct ErrorsLine<'a> {
-    schema: u32,
-    kind: &'a str,
     calibration: &'a str,
     of: &'a str,
     what: &'a str,

@@ -130,9 +130,9 @@ pub(super) fn share(seen: usize, cases: usize) -> String {
 }
 
 /// The same as JSON.
-pub(super) fn share_json(kind: &str, seen: usize, cases: usize) -> serde_json::Value {
+pub(super) fn share_json(what: &str, seen: usize, cases: usize) -> serde_json::Value {
     json!({
-        "schema": 1, "kind": "rate", "what": kind, "seen": seen, "cases": cases,
+        "what": what, "seen": seen, "cases": cases,
         "rate": seen as f64 / cases.max(1) as f64, "upper_bound": upper_bound(seen, cases),
     })
 }

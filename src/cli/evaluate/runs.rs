@@ -12,7 +12,7 @@ use toposlam_robot::{
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     progress::Progress,
     text::{counted, grouped, print_rows},
     use_threads,
@@ -153,7 +153,7 @@ impl EvaluateRunsArguments {
         for run in judged {
             let fault = run.case.config.faults.first();
             let line = json!({
-                "schema": 1, "kind": "run", "run": run.case.number, "plan": run.case.plan_name,
+                "run": run.case.number, "plan": run.case.plan_name,
                 "fault": fault.map(|fault| fault.kind.name()),
                 "fault_picture": fault.map(|fault| fault.picture),
                 "moves": run.moves[0], "explore_moves": run.moves[1],
@@ -162,17 +162,17 @@ impl EvaluateRunsArguments {
                 "ending": run.ending.to_string(), "simulated_seconds": run.seconds,
                 "frames": run.pictures,
             });
-            print_object(out, &line)?;
+            print_line(out, "run", &line)?;
         }
         let [right, gave_up, wrong] = tally(judged.iter());
         for (what, seen) in [("right", right), ("gave up", gave_up), ("wrong", wrong)] {
-            print_object(out, &share_json(what, seen, judged.len()))?;
+            print_line(out, "rate", &share_json(what, seen, judged.len()))?;
         }
         let line = json!({
-            "schema": 1, "kind": "runs", "runs": judged.len(), "seed": self.robots.seed,
+            "runs": judged.len(), "seed": self.robots.seed,
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
-        print_object(out, &line)
+        print_line(out, "runs", &line)
     }
 }
 

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 
 use toposlam_model::mapping::{Journey, MappingEvent, Observer};
 
-use crate::cli::json::action_json;
+use crate::cli::json::{action_json, begin_line};
 
-/// Writes `{"schema":1,"doors":[...],`; the caller writes the rest of the object.
+/// Writes `{"schema":1,"kind":"run","doors":[...],`; the caller writes the rest of the object.
 pub(super) struct DoorsWriter<'o, W> {
     out: &'o mut W,
     taken: u64,
@@ -16,7 +16,7 @@ pub(super) struct DoorsWriter<'o, W> {
 
 impl<'o, W: Write> DoorsWriter<'o, W> {
     pub(super) fn new(out: &'o mut W) -> Self {
-        let result = write!(out, "{{\"schema\":1,\"doors\":[");
+        let result = begin_line(out, "run").and_then(|()| write!(out, "\"doors\":["));
         Self { out, taken: 0, result }
     }
 

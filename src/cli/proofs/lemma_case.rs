@@ -11,7 +11,7 @@ use super::{
 };
 use crate::cli::{
     Failure, Outcome,
-    json::print_object,
+    json::print_line,
     text::{print_command, print_hanging},
 };
 
@@ -61,7 +61,6 @@ impl<'a> LemmaCase<'a> {
         };
         if json {
             let line = Line {
-                schema: 1,
                 lemma: self.lemma.name,
                 engine: self.engine.name(),
                 choices: self.choices,
@@ -70,7 +69,7 @@ impl<'a> LemmaCase<'a> {
                 claim: self.claim(),
                 view: self.view.json(),
             };
-            print_object(out, &line)?;
+            print_line(out, "case", &line)?;
             return Ok(outcome);
         }
         print_head(out, self.lemma, self.engine, self.choices, self.claim())?;
@@ -117,7 +116,6 @@ fn command(lemma: &Lemma, engine: Engine, choices: &[u8]) -> String {
 /// The line of `--json` for a case.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     lemma: &'a str,
     engine: &'a str,
     choices: &'a [u8],

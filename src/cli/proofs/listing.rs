@@ -8,7 +8,7 @@ use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
 use super::cases;
 use crate::cli::{
     Failure,
-    json::print_object,
+    json::print_line,
     text::{counted, print_hanging, print_paragraph},
 };
 
@@ -89,7 +89,6 @@ fn print_entry(out: &mut dyn Write, label: &str, text: &str) -> io::Result<()> {
 /// The line of `--json` for a lemma.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     lemma: &'a str,
     sentence: &'a str,
     paper: &'a str,
@@ -120,7 +119,6 @@ struct KaniLine<'a> {
 /// The line of `--json` for a theorem.
 #[derive(Serialize)]
 struct TheoremLine<'a> {
-    schema: u32,
     theorem: &'a str,
     sentence: &'a str,
     paper: &'a str,
@@ -136,7 +134,6 @@ struct CoqLine<'a> {
 /// The last line of `--json`.
 #[derive(Serialize)]
 struct TotalsLine {
-    schema: u32,
     lemmas: usize,
     theorems: usize,
     cases: u64,
@@ -148,7 +145,6 @@ fn print_json(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> R
     for lemma in lemmas {
         let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
         let line = Line {
-            schema: 1,
             lemma: name,
             sentence,
             paper,
@@ -157,22 +153,21 @@ fn print_json(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> R
             sampled: sampled.map(|sampled| SampledLine { bound: sampled.bound }),
             kani: kani.map(|Kani { bound, unwind, harness }| KaniLine { bound, unwind, harness }),
         };
-        print_object(out, &line)?;
+        print_line(out, "lemma", &line)?;
     }
     for Theorem { name, sentence, paper } in theorems {
         let coq = CoqLine { bound: EVERY_WORLD };
-        let line = TheoremLine { schema: 1, theorem: name, sentence, paper, file: FILE, coq };
-        print_object(out, &line)?;
+        let line = TheoremLine { theorem: name, sentence, paper, file: FILE, coq };
+        print_line(out, "theorem", &line)?;
     }
     let totals = TotalsLine {
-        schema: 1,
         lemmas: lemmas.len(),
         theorems: theorems.len(),
         cases: total(lemmas),
         sampled: lemmas.iter().filter(|lemma| lemma.sampled.is_some()).count(),
         kani: lemmas.iter().filter(|lemma| lemma.kani.is_some()).count(),
     };
-    print_object(out, &totals)
+    print_line(out, "lemmas", &totals)
 }
 
 /// The number of cases within the exhaustive bounds.

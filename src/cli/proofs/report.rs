@@ -13,7 +13,7 @@ use super::{
     check::{CheckEnd, LemmaCheck},
     lemma_case::{LemmaCase, print_head},
 };
-use crate::cli::{Failure, Outcome, json::print_object, text::print_hanging};
+use crate::cli::{Failure, Outcome, json::print_line, text::print_hanging};
 
 /// Prints the result of each lemma when it is there.
 pub(super) struct ProofsReport<'o> {
@@ -51,7 +51,7 @@ impl<'o> ProofsReport<'o> {
     /// Prints the result of one lemma.
     pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), Failure> {
         if self.json {
-            print_line(self.out, lemma, &checked)?;
+            print_check(self.out, lemma, &checked)?;
         } else {
             self.row(lemma, &checked)?;
         }
@@ -95,7 +95,6 @@ impl<'o> ProofsReport<'o> {
         };
         if self.json {
             let totals = TotalsLine {
-                schema: 1,
                 lemmas,
                 held,
                 cases: self.cases,
@@ -103,7 +102,7 @@ impl<'o> ProofsReport<'o> {
                 interrupted: self.interrupted,
                 holds: outcome == Outcome::Holds,
             };
-            print_object(self.out, &totals)?;
+            print_line(self.out, "checks", &totals)?;
             return Ok(outcome);
         }
         for (lemma, end) in &self.failed {
@@ -154,7 +153,6 @@ fn failed_case<'a>(lemma: &'a Lemma, failed: &'a Counterexample) -> Option<Lemma
 /// The line of `--json` for a lemma.
 #[derive(Serialize)]
 struct Line<'a> {
-    schema: u32,
     lemma: &'a str,
     /// The number of cases before the first one in which it fails.
     cases: u64,
@@ -172,7 +170,7 @@ struct Line<'a> {
     interrupted: bool,
 }
 
-fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
+fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
     let LemmaCheck { end, seconds } = checked;
     let failed = match end {
         CheckEnd::Fails(failed) => Some(failed),
@@ -180,7 +178,6 @@ fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Resul
     };
     let again = failed.and_then(|failed| failed_case(lemma, failed));
     let line = Line {
-        schema: 1,
         lemma: lemma.name,
         cases: end.cases(),
         seconds: *seconds,
@@ -194,13 +191,12 @@ fn print_line(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Resul
         },
         interrupted: matches!(end, CheckEnd::Interrupted { .. }),
     };
-    print_object(out, &line)
+    print_line(out, "check", &line)
 }
 
 /// The last line of `--json`.
 #[derive(Serialize)]
 struct TotalsLine {
-    schema: u32,
     lemmas: usize,
     held: usize,
     /// The cases in which a lemma holds.

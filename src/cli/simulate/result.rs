@@ -16,7 +16,7 @@ use toposlam_robot::{
 
 use super::{Failure, Outcome};
 use crate::cli::{
-    json::print_object,
+    json::print_line,
     text::{print_paragraph, sentence},
 };
 
@@ -42,7 +42,6 @@ const SHOWN: f64 = 0.01;
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Line {
-    schema: u32,
     plan: String,
     start: String,
     seed: u64,
@@ -53,6 +52,8 @@ struct Line {
     pose_true: bool,
     conforms: bool,
     divergence: Option<String>,
+    /// The number of moves before the divergence.
+    divergence_move: Option<usize>,
     error: Option<String>,
     faults_missed: Vec<String>,
     simulated_seconds: f64,
@@ -133,9 +134,8 @@ impl SimulationResult<'_> {
 
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let run = self.run;
-        let divergence = run.divergence().map(|divergence| divergence.to_string());
+        let divergence = run.divergence();
         let line = Line {
-            schema: 1,
             plan: self.world.name.clone(),
             start: self.world.start_text(self.facing),
             seed: self.seed,
@@ -145,7 +145,8 @@ impl SimulationResult<'_> {
             isomorphic: run.isomorphic(),
             pose_true: run.pose_true(),
             conforms: divergence.is_none(),
-            divergence,
+            divergence: divergence.as_ref().map(ToString::to_string),
+            divergence_move: divergence.as_ref().map(|divergence| divergence.moves),
             error: run.error.as_ref().map(ToString::to_string),
             faults_missed: self.missed.iter().map(ToString::to_string).collect(),
             // The control loop counts in quarters of a second, a picture in tenths.
@@ -153,6 +154,6 @@ impl SimulationResult<'_> {
             compute_seconds: self.compute_seconds,
             frames: run.pictures,
         };
-        print_object(out, &line)
+        print_line(out, "run", &line)
     }
 }

@@ -8,7 +8,7 @@ use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, Strip
 
 use crate::cli::{
     Failure,
-    json::print_object,
+    json::print_line,
     text::{grouped, print_hanging, print_rows},
 };
 
@@ -87,9 +87,9 @@ impl TrainingReport<'_> {
     }
 
     pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        let (folds, confusion) = match &self.validation {
-            Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion)),
-            Validation::None { .. } => (None, None),
+        let (folds, confusion, not_validated) = match &self.validation {
+            Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion), None),
+            Validation::None { why } => (None, None, Some(why.as_str())),
         };
         let classes = PixelClass::LEARNED.map(|class| {
             let seen = self.training.seen(class);
@@ -104,13 +104,14 @@ impl TrainingReport<'_> {
         let left_out = self.left_out.iter().map(|LeftOut { image, cause }| {
             json!({ "image": image.display().to_string(), "reason": cause.to_string() })
         });
-        print_object(
+        print_line(
             out,
+            "training",
             &Line {
-                schema: 1,
                 images: self.training.images(),
                 left_out: left_out.collect(),
                 folds,
+                not_validated,
                 confusion: confusion.map(confusion_json),
                 classes,
                 stripe: json!({ "kind": self.stripe.kind.place(), "width": self.stripe.width }),
@@ -121,11 +122,12 @@ impl TrainingReport<'_> {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Line {
-    schema: u32,
+struct Line<'t> {
     images: usize,
     left_out: Vec<Value>,
     folds: Option<usize>,
+    /// Why there was no cross-validation.
+    not_validated: Option<&'t str>,
     /// For each true class, the number of pixels in each predicted class.
     confusion: Option<Value>,
     classes: [ClassFigures; 4],

@@ -1,0 +1,153 @@
+//! The facts of a report as fields of its JSON line.
+
+use serde::Serialize;
+use toposlam_model::{
+    format::named_world::NamedWorld,
+    trace::{AlgorithmMatch, MatchedChoices, SmallestWorld},
+};
+use toposlam_robot::{conform::Evidence, record::RunEnding};
+
+use super::Judged;
+use crate::cli::json::TruncatedLine;
+
+/// What the remarks and the facts of a report state in words.
+#[derive(Serialize)]
+pub(super) struct FactFields<'j> {
+    evidence: &'static str,
+    /// The number of images that were sensed.
+    images: u64,
+    unreadable_images: u64,
+    truncated: Option<TruncatedLine>,
+    recorded: Option<Recorded<'j>>,
+    ending: Option<Ending<'j>>,
+    world: Option<World<'j>>,
+    smallest: Option<Size>,
+    doors: Option<Doors>,
+    map: Option<Map>,
+}
+
+/// What the log records about its world.
+#[derive(Serialize)]
+struct Recorded<'j> {
+    world: &'j str,
+    start: &'j str,
+    /// Whether it is the world of `--world`.
+    same_world: Option<bool>,
+}
+
+/// The recorded end of the run.
+#[derive(Serialize)]
+struct Ending<'j> {
+    how: &'static str,
+    cause: Option<&'j str>,
+}
+
+/// The world of `--world`.
+#[derive(Serialize)]
+struct World<'j> {
+    name: &'j str,
+    /// `None` if any start is possible.
+    start: Option<String>,
+    /// The number of candidate poses at the first event.
+    candidates_at_start: usize,
+}
+
+/// The size of the smallest world that explains the log.
+#[derive(Serialize)]
+struct Size {
+    vertices: usize,
+    edges: usize,
+}
+
+/// The choices of Algorithm 1 that explain the doors.
+#[derive(Serialize)]
+struct Doors {
+    choices: &'static str,
+    /// The first event that the default choices would not have.
+    from_event: Option<usize>,
+}
+
+/// The map at the last event that Algorithm 1 explains.
+#[derive(Serialize)]
+struct Map {
+    complete: bool,
+    vertices: usize,
+    edges: usize,
+    /// The number of unexplored edge ends.
+    unexplored: usize,
+}
+
+impl<'j> FactFields<'j> {
+    pub(super) fn of(judged: &'j Judged) -> Self {
+        let Judged { opened, gathered, judgement, known, .. } = judged;
+        let run = opened.run.as_ref();
+        let smallest = match &judgement.smallest {
+            Some(SmallestWorld::World { graph, .. }) => {
+                Some(Size { vertices: graph.vertex_count(), edges: graph.edge_count() })
+            }
+            _ => None,
+        };
+        let candidates = judgement.poses.as_ref().and_then(|poses| poses.left.first());
+        Self {
+            evidence: match gathered.evidence {
+                Evidence::Recorded => "recorded",
+                Evidence::Scenes => "scenes",
+                Evidence::Pictures => "pictures",
+            },
+            images: gathered.pictures,
+            unreadable_images: gathered.unreadable,
+            truncated: opened.log.truncation().map(TruncatedLine::from),
+            recorded: run.filter(|run| !run.world_hash.is_empty()).map(|run| Recorded {
+                world: &run.world,
+                start: &run.start,
+                same_world: known.as_ref().map(|known| !known.is_other_than_of(run)),
+            }),
+            ending: judgement.events.end.as_ref().map(|end| Ending::of(&end.ending)),
+            world: known.as_ref().map(|known| {
+                let NamedWorld { name, .. } = known.world;
+                World {
+                    name,
+                    start: known.start.map(|start| known.world.start_text(start)),
+                    candidates_at_start: candidates.copied().unwrap_or(0),
+                }
+            }),
+            smallest,
+            doors: judgement.algorithm.as_ref().map(Doors::of),
+            map: judgement.algorithm.as_ref().map(Map::of),
+        }
+    }
+}
+
+impl<'j> Ending<'j> {
+    fn of(ending: &'j RunEnding) -> Self {
+        let (how, cause) = match ending {
+            RunEnding::Mapped => ("mapped", None),
+            RunEnding::Stopped => ("stopped", None),
+            RunEnding::GaveUp(cause) => ("gave-up", Some(cause.as_str())),
+        };
+        Self { how, cause }
+    }
+}
+
+impl Doors {
+    fn of(followed: &AlgorithmMatch) -> Self {
+        let (choices, from) = match followed.choices {
+            MatchedChoices::Default => ("default", None),
+            MatchedChoices::Other { from } => ("other", from),
+        };
+        Self { choices, from_event: from.map(|event| event + 1) }
+    }
+}
+
+impl Map {
+    fn of(followed: &AlgorithmMatch) -> Self {
+        let map = followed.exploration.map();
+        let unexplored = map.unexplored_count() as usize;
+        Self {
+            complete: map.complete().is_some(),
+            vertices: map.vertex_count(),
+            edges: (map.dart_count() - unexplored) / 2,
+            unexplored,
+        }
+    }
+}
