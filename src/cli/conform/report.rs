@@ -121,7 +121,7 @@ impl Judged<'_> {
             ReachedLimit::Darts { event } => {
                 let darts = counted(self.dart_bound, "edge end");
                 format!(
-                    "Algorithm 1 was followed up to event {}: more than {darts} are known there \
+                    "Algorithm 1 was followed up to event {}: its map has more than {darts} there \
                      (--max-darts)",
                     event + 1
                 )
