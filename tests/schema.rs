@@ -72,7 +72,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "info run.mcap --verify",
             "info fuzz/corpus/mcap/cut-in-a-chunk",
             "info fuzz/corpus/mcap/error-a-wrong-checksum --verify",
-            "info fuzz/corpus/bag/error-a-chunk-that-grows-without-end --verify",
+            "info damaged.mcap --verify",
         ],
     ),
     (
@@ -150,15 +150,20 @@ fn with_json(command: &str) -> String {
 fn folder() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("schema");
     let _ = fs::remove_dir_all(&folder);
-    for inside in ["worlds", "fuzz/corpus/mcap", "fuzz/corpus/bag", "images", "labels"] {
+    for inside in ["worlds", "fuzz/corpus/mcap", "images", "labels"] {
         fs::create_dir_all(folder.join(inside)).unwrap();
     }
-    for inside in ["worlds", "fuzz/corpus/mcap", "fuzz/corpus/bag"] {
+    for inside in ["worlds", "fuzz/corpus/mcap"] {
         let files = fs::read_dir(path(inside)).unwrap().map(|entry| entry.unwrap().path());
         for file in files.filter(|file| file.is_file()) {
             fs::copy(&file, folder.join(inside).join(file.file_name().unwrap())).unwrap();
         }
     }
+    // Without an index its chunk is read at once.
+    let mut log = fs::read(path("fuzz/corpus/mcap/of-a-run")).unwrap();
+    let in_the_chunk = log.len() - 200;
+    log[in_the_chunk] ^= 0x55;
+    fs::write(folder.join("damaged.mcap"), log).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
         let render = format!("render worlds/shape-8.toml --marker --size 640x480 --pose {pose}");
