@@ -276,9 +276,6 @@ impl ConformArguments {
             if path.is_some() && self.logs.len() > 1 {
                 return Err(Failure::at(option, "this needs exactly one log"));
             }
-            if path.as_ref().is_some_and(|path| self.logs.contains(path)) {
-                return Err(Failure::at(option, "this is the log itself"));
-            }
         }
         Ok(())
     }

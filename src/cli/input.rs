@@ -128,6 +128,11 @@ pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, Failure
     Ok(Log::open(path))
 }
 
+/// Opens a file that was read before, to read it in pieces.
+pub(crate) fn open_again(path: &Path) -> io::Result<fs::File> {
+    fs::File::open(path)
+}
+
 /// Reads a file. `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = if path == Path::new("-") {

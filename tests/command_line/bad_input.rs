@@ -45,7 +45,7 @@ fn a_file_that_is_not_a_world_is_an_error_with_its_place() {
         (
             "three.toml",
             b"[doors]\na = [\"e\", \"e\"]\nb = [\"e\"]\n",
-            ": line 1, column 2: doors: edge `e` occurs 3 times (a, a, b); an edge has two ends",
+            ": line 2, column 6: doors.a[0]: edge `e` occurs 3 times (a, a, b); an edge has two ends",
         ),
         (
             "pieces.toml",

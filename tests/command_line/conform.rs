@@ -187,7 +187,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--max-edges", "0"], "--max-edges"),
         (&[log, "--edges", "30"], "--edges"),
         (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
-        (&[log, "--minimise", log], "this is the log itself"),
+        (&[log, "--minimise", log], "this output would replace the input"),
         (&[log, "--marker", "movable"], "--marker"),
     ] {
         let output = run([&["conform"][..], arguments].concat());

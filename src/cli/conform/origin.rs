@@ -1,12 +1,12 @@
 //! How a report was made: the version, the command, and the hashes of the files.
 
-use std::{env, fmt::Write as _, fs::File, io, path::Path};
+use std::{env, fmt::Write as _, io, path::Path};
 
 use sha2::{Digest, Sha256};
 use toposlam::report::{ReportOrigin, SourceFile};
 
 use super::Failure;
-use crate::cli::text::quoted;
+use crate::cli::{input, text::quoted};
 
 /// This version, and the command line of this process.
 pub(super) fn origin() -> ReportOrigin {
@@ -30,7 +30,7 @@ pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile
 /// The SHA-256 hash of a file, in hexadecimal.
 fn sha256(path: &Path) -> io::Result<String> {
     let mut digest = HashWriter(Sha256::new());
-    io::copy(&mut File::open(path)?, &mut digest)?;
+    io::copy(&mut input::open_again(path)?, &mut digest)?;
     Ok(digest.0.finalize().iter().fold(String::new(), |mut text, byte| {
         // Writing to a string cannot fail.
         let _ = write!(text, "{byte:02x}");

@@ -159,8 +159,8 @@ fn in_lists(table: &DocumentTable<'_>, error: ListError) -> WorldFileError {
         | ListError::UnknownNeighbour { vertex, .. }
         | ListError::OneSided { vertex, .. }
         | ListError::RepeatedNeighbour { vertex, .. }
-        | ListError::OwnNeighbour { vertex } => Some(vertex.as_str()),
-        ListError::NotConnected { vertex, .. } => Some(vertex.as_str()),
+        | ListError::OwnNeighbour { vertex }
+        | ListError::NotConnected { vertex, .. } => Some(vertex.as_str()),
         ListError::NotTwoEnds { .. } | ListError::GraphError(_) => None,
     };
     // The first name of the list that is wrong.
