@@ -199,7 +199,10 @@ fn bad_arguments_are_reported_before_the_run() {
         (&[&narrow], "its hallways are 0.9 m wide; a robot 0.41 m across needs 1.21 m"),
         (&[&wide], "its hallways are 2.6 m wide; sensing sees up to 2.3 m"),
         (&[&close], "are 4.00 m apart; it must be two hallway widths, 4.20 m"),
-        (&["worlds/building-12.toml"], "the start, courtyard, is a dead end; a run starts at an L"),
+        (
+            &["worlds/building-12.toml", "--start", "courtyard:west"],
+            "the start, courtyard, is a dead end; a run starts at an L",
+        ),
         (&[SHAPE_6, "--start", "tee:sw"], "the start, tee, is a T; a run starts at an L"),
         (&["worlds/petersen.toml"], "this world is not a floor plan"),
         (&[SHAPE_6, "--calibration", "missing.toml"], "missing.toml: cannot be read"),

@@ -164,7 +164,7 @@ fn unknown_and_missing_keys_are_named() {
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
-        "line 5, column 1: start.from: unknown key; expected one of: at, facing"
+        "line 5, column 1: start.from: unknown key; expected one of: at, facing, marker"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nat = \"a\""),
