@@ -10,8 +10,10 @@ use toposlam_model::{
     isomorphism::Candidate,
 };
 
-/// The moves of all starts, and the most of one.
-const MOVES: [(Class, &[(usize, u64, u64, u64)]); 3] = [
+/// A number of edges, the starts, their moves, and the most moves of one.
+type Moves = (usize, u64, u64, u64);
+
+const MOVES: [(Class, &[Moves]); 3] = [
     (Class::Multigraph, &[(3, 74, 289, 10), (4, 706, 4055, 20), (5, 8162, 63936, 35)]),
     (Class::Simple, &[(5, 108, 766, 9), (6, 596, 5338, 14), (7, 3790, 42006, 27)]),
     (Class::Corridor, &[(6, 309, 2730, 14), (7, 1128, 12199, 27), (8, 4201, 54412, 34)]),

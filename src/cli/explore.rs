@@ -55,6 +55,7 @@ rule out. To test it, the robot follows the path that would lead from there to t
 
 Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts, \
 --max-states or 1 GiB of memory for the states was reached.")]
+#[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
     world: PathBuf,

@@ -345,6 +345,15 @@ mod tests {
         EmbeddedGraph::from_neighbour_lists(&(0..edges).map(list).collect::<Vec<_>>()).unwrap()
     }
 
+    /// Stops at once.
+    struct Stopped;
+
+    impl Watch for Stopped {
+        fn stop(&self) -> bool {
+            true
+        }
+    }
+
     #[test]
     fn the_limit_that_was_reached_is_named() {
         let limit = |budget, watch: &dyn Watch| {
@@ -353,12 +362,6 @@ mod tests {
         };
         assert_eq!(limit(1000, &()), (None, true));
         assert_eq!(limit(9, &()), (Some(ChoicesLimit::States(9)), true));
-        struct Stopped;
-        impl Watch for Stopped {
-            fn stop(&self) -> bool {
-                true
-            }
-        }
         assert_eq!(limit(1000, &Stopped), (Some(ChoicesLimit::Interrupted), true));
     }
 }

@@ -520,7 +520,7 @@ mod tests {
                     assert!(explains(&graph, marker, &trace));
                     graph.edge_count()
                 }
-                other => panic!("{other:?}"),
+                other @ SmallestWorld::NotFound { .. } => panic!("{other:?}"),
             };
             prop_assert_eq!(edges(Some(&known)), edges(None));
         }
@@ -559,7 +559,7 @@ mod tests {
                     Some(graph.edge_count())
                 }
                 SmallestWorld::NotFound { limit: SearchLimit::Edges, .. } => None,
-                other => panic!("{other:?}"),
+                other @ SmallestWorld::NotFound { .. } => panic!("{other:?}"),
             };
             prop_assert_eq!(edges, by_trying_all(&trace, class, 5));
         }

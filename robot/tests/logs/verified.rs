@@ -86,7 +86,7 @@ fn the_index_is_compared_with_the_messages() {
     let of_messages: Vec<_> = conn.map(|(at, _)| at + 5).collect();
     let message =
         of_messages.iter().copied().filter(|&at| bytes[at + 4..].starts_with(b"\x0d\0\0\0time="));
-    let last = message.last().unwrap();
+    let last = message.max().unwrap();
     bytes[last] = (bytes[last] + 1) % 3;
     let found = verified(bytes).unwrap();
     assert!(found.damage[0].to_string().contains("the index counts "), "{found:?}");

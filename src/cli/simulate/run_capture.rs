@@ -150,8 +150,10 @@ fn unwrapped(story: &str) -> Vec<String> {
             // A paragraph is not indented: each of its lines but the last ends within a sentence.
             Some(last)
                 if line.starts_with(CONTINUES)
-                    || !(last.is_empty() || line.is_empty() || last.ends_with(['.', ':']))
-                        && !line.starts_with(' ') =>
+                    || !(last.is_empty()
+                        || line.is_empty()
+                        || line.starts_with(' ')
+                        || last.ends_with(['.', ':'])) =>
             {
                 last.push(' ');
                 last.push_str(line.trim_start());

@@ -117,9 +117,8 @@ pub(super) fn witness(trace: &Trace) -> Option<(EmbeddedGraph, Option<Dart>, Dar
                 }
             }
         }
-        for dart in 0..count {
-            same.push([clockwise(dart), clockwise(label[dart])]);
-        }
+        let turned = label.iter().enumerate();
+        same.extend(turned.map(|(dart, &label)| [clockwise(dart), clockwise(label)]));
         for [near, far] in &links {
             let other = links.iter().find(|[other, _]| label[*other] == label[*near]);
             same.extend(other.map(|[_, other]| [*far, *other]));

@@ -91,7 +91,7 @@ impl Options {
                     }
                 }
                 CheckedKind::Door { number, off, .. } if self.bare => {
-                    (*number, *off) = (None, None)
+                    (*number, *off) = (None, None);
                 }
                 _ => {}
             }
@@ -277,16 +277,13 @@ proptest! {
             TraceEventKind::Door(door) => door.0 = change % 5,
         }
         let trace = Trace::new(kinds).unwrap();
-        match first_impossible(&trace, &Directional, Class::Multigraph) {
-            Some((event, _)) => {
-                prop_assert!(event >= at);
-                assert_impossible(&trace, event);
-            }
-            None => {
-                let (graph, marker, pose) = witness(&trace).expect("a world explains it");
-                let place = Place { graph: &graph, marker, pose };
-                prop_assert!(place.explains(&trace));
-            }
+        if let Some((event, _)) = first_impossible(&trace, &Directional, Class::Multigraph) {
+            prop_assert!(event >= at);
+            assert_impossible(&trace, event);
+        } else {
+            let (graph, marker, pose) = witness(&trace).expect("a world explains it");
+            let place = Place { graph: &graph, marker, pose };
+            prop_assert!(place.explains(&trace));
         }
     }
 }
