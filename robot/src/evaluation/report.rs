@@ -104,10 +104,10 @@ impl TargetStatus {
     /// The status of a greatest allowed rate.
     #[must_use]
     pub fn of(seen: usize, cases: usize, limit: f64) -> Self {
-        if upper_bound(seen, cases) <= shown_as(limit) {
-            Self::Met
-        } else if lower_bound(seen, cases) > limit {
+        if lower_bound(seen, cases) > limit {
             Self::Missed
+        } else if upper_bound(seen, cases) <= shown_as(limit) {
+            Self::Met
         } else {
             Self::NotShown
         }
