@@ -50,7 +50,7 @@ fn a_file_that_is_not_a_world_is_an_error_with_its_place() {
         (
             "pieces.toml",
             b"[clockwise]\na = [\"b\"]\nb = [\"a\"]\nc = [\"d\"]\nd = [\"c\"]\n",
-            ": line 1, column 2: clockwise: the world is not connected: vertex `c` cannot be reached from `a`",
+            ": line 4, column 1: clockwise.c: the world is not connected: vertex `c` cannot be reached from `a`",
         ),
         (
             "facing.toml",
