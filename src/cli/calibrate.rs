@@ -17,7 +17,9 @@ use toposlam_vision::camera::{
     unchanging,
 };
 
-use super::{Failure, Outcome, input, json::print_line, output, picture_file};
+use super::{
+    Failure, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
+};
 
 /// Find centre, rim and focal length of a spherical mirror in images
 ///
@@ -25,23 +27,29 @@ use super::{Failure, Outcome, input, json::print_line, output, picture_file};
 /// brighter than its surroundings. The border of the image may cut off parts of its rim. The focal
 /// length is computed from the rim and from the mirror's radius and distance, which you measure.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam calibrate view-*.png --out camera.toml --picture fit.png \\
     --mask-out mask.png
 
-Missing values are taken from --start. Without it they are the SuperScout's:
-radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.")]
+Missing values are taken from --initial. Without it they are the SuperScout's:
+radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
+    &[
+        (0, "the rim was found"),
+        (2, "bad usage or input, or no rim was found"),
+    ],
+))]
 pub(super) struct CalibrateArguments {
     /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
     /// Calibration file to write: .toml [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
-    start: Option<PathBuf>,
+    initial: Option<PathBuf>,
     /// Radius of the spherical mirror, in metres
     #[arg(long, value_name = "METRES")]
     mirror_radius: Option<f64>,
@@ -145,12 +153,12 @@ impl CalibrateArguments {
 
     /// The camera as far as it is known without the images.
     fn known(&self) -> Result<(Camera, SphericalMirror), Failure> {
-        let start = match &self.start {
+        let initial = match &self.initial {
             Some(path) => input::read_camera(path)?,
             None => Camera::superscout(),
         };
-        let OpticsModel::SphericalMirror(mirror) = start.optics else {
-            let path = self.start.as_deref().unwrap_or(Path::new("--start"));
+        let OpticsModel::SphericalMirror(mirror) = initial.optics else {
+            let path = self.initial.as_deref().unwrap_or(Path::new("--initial"));
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
             return Err(Failure::in_file(path, cause));
         };
@@ -160,11 +168,11 @@ impl CalibrateArguments {
             camera_height: self.camera_height.unwrap_or(mirror.camera_height),
             ..mirror
         };
-        let ahead = self.ahead.map_or(start.ahead, f64::to_radians);
+        let ahead = self.ahead.map_or(initial.ahead, f64::to_radians);
         let seen_from = match self.seen_from {
             Some(From::Below) => SeenFrom::Below,
             Some(From::Above) => SeenFrom::Above,
-            None => start.seen_from,
+            None => initial.seen_from,
         };
         let known = Camera {
             optics: OpticsModel::SphericalMirror(mirror),

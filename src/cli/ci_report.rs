@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-use super::{Failure, Outcome, output};
+use super::{Failure, Outcome, output, terminal, version};
 
 /// The options of a verb that gives verdicts.
 #[derive(clap::Args, Debug, Default)]
@@ -32,6 +32,14 @@ pub(super) struct CiCase {
     pub(super) message: String,
     /// The file that was checked, if there is one.
     pub(super) file: Option<PathBuf>,
+}
+
+impl CiCase {
+    /// What was not checked because something before it is violated.
+    pub(super) fn not_checked(name: String, file: Option<PathBuf>) -> Self {
+        let message = "not checked after a violation; --keep-going checks it".to_owned();
+        Self { name, outcome: Outcome::Incomplete, message, file }
+    }
 }
 
 impl CiOptions {
@@ -66,7 +74,7 @@ impl CiOptions {
             output::write_whole(path, text.as_bytes())?;
         }
         if env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
-            eprint!("{}", annotations(verb, cases));
+            terminal::print_message(&annotations(verb, cases));
         }
         Ok(())
     }
@@ -149,7 +157,7 @@ fn sarif(verb: &str, cases: &[CiCase]) -> Value {
         "runs": [{
             "tool": { "driver": {
                 "name": "toposlam",
-                "semanticVersion": env!("CARGO_PKG_VERSION"),
+                "semanticVersion": version::VERSION,
                 "rules": [{ "id": verb, "shortDescription": { "text": rule(verb) } }],
             } },
             "results": cases.iter().map(result).collect::<Vec<_>>(),

@@ -15,7 +15,9 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome, input,
+    Failure, Outcome,
+    exit_codes::help_end,
+    input,
     json::print_line,
     marker_kinds,
     progress::Progress,
@@ -34,7 +36,8 @@ use robot_comparison::RobotComparison;
 /// The start in each file places the marker. The robot in A begins there. The robot in B begins at each
 /// pose that the marker cannot distinguish from its start, unless --start is given twice.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --walk 0,1,1
@@ -43,7 +46,13 @@ Examples:
 If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
 be in. If there are more than 100,000 pairs, the proof is the classes of indistinguishable states. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
 in the file, and the robot in B is at w. With a movable marker, v:2@u has the marker at u, and in \
-v:2+marker the robot carries it.")]
+v:2+marker the robot carries it.",
+    &[
+        (0, "the worlds were compared, whatever the result"),
+        (2, "bad usage or input"),
+        (3, "interrupted"),
+    ],
+))]
 pub(super) struct CompareArguments {
     /// A world file
     a: PathBuf,

@@ -5,13 +5,14 @@ use std::io::Write;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, exit_codes::help_end};
 
 /// Print shell completions
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  toposlam completions bash > \\\n    ~/.local/share/bash-completion/completions/toposlam"
-)]
+#[command(after_help = help_end(
+    "Example:\n  toposlam completions bash > \\\n    ~/.local/share/bash-completion/completions/toposlam",
+    &[(0, "the script is printed"), (2, "bad usage")],
+))]
 pub(super) struct CompletionsArguments {
     /// The shell
     shell: Shell,

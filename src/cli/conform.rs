@@ -35,6 +35,7 @@ use toposlam_robot::conform::{
 use super::{
     Failure, Outcome,
     ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     input,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
@@ -55,15 +56,19 @@ use known_world::Known;
 /// for the smallest world that explains the log. The doors must be doors that Algorithm 1 takes, or may
 /// take.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam simulate worlds/shape-6.toml --by-scene --log run.mcap
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
-  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
-
-Exit codes: 0 all logs conform, 1 a log diverges, 2 bad usage or input, 3 a log is incomplete (it is \
-truncated, its run did not end, or a limit was reached) or a required case is not covered. With several \
-logs the worst one counts: 2 before 1 before 3 before 0.")]
+  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml",
+    &[
+        (0, "all logs conform"),
+        (1, "a log diverges"),
+        (2, "bad usage or input"),
+        (3, "not known: a log is truncated, its run did not end, a limit was reached, or a required case is not covered"),
+    ],
+))]
 pub(super) struct ConformArguments {
     /// The logs to check
     #[arg(required = true, value_name = "LOG")]
@@ -367,7 +372,7 @@ impl ConformArguments {
     fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), Failure> {
         let Some(path) = &self.map else { return Ok(()) };
         let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest else {
-            eprintln!("{}: not written: no world was found", path.display());
+            remark!("{}: not written: no world was found", path.display());
             return Ok(());
         };
         let about = format!("The smallest world that explains {}", log.display());

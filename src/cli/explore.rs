@@ -22,8 +22,8 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome, input, mapping_marker::MappingMarker, output,
-    text::print_paragraph,
+    ChoicesOption, Failure, Outcome, exit_codes::help_end, input, mapping_marker::MappingMarker,
+    output, text::print_paragraph,
 };
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
@@ -40,7 +40,8 @@ use summary::Summary;
 /// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
 /// loops and parallel edges.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam explore worlds/shape-6.toml
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
@@ -51,10 +52,14 @@ Examples:
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
 unexplored dart may be the other end of the same edge. A candidate is one that the percept does not \
-rule out. To test it, the robot follows the path that would lead from there to the marker.
-
-Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts, \
---max-states or 1 GiB of memory for the states was reached.")]
+rule out. To test it, the robot follows the path that would lead from there to the marker.",
+    &[
+        (0, "the map is right"),
+        (1, "the map is wrong"),
+        (2, "bad usage or input"),
+        (3, "not known: --max-darts, --max-states or 1 GiB of memory for the states was reached"),
+    ],
+))]
 #[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
@@ -191,7 +196,7 @@ impl ExploreArguments {
         match result.map() {
             Some(map) => self.write_map(&map, &result)?,
             None if self.map.is_some() || self.svg.is_some() => {
-                eprintln!("the map is not written: it is not complete");
+                remark!("the map is not written: it is not complete");
             }
             None => {}
         }

@@ -17,12 +17,14 @@ use toposlam_robot::log::{
 };
 
 use super::{
-    Failure, Outcome, input,
+    Failure, Outcome,
+    exit_codes::help_end,
+    input,
     json::{TruncatedLine, print_line},
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    text::{counted, grouped, moment, print_hanging, print_rows},
+    text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
 /// Show the contents of logs: times, completeness and topics
@@ -34,15 +36,20 @@ use super::{
 /// A log is listed from its index, if it has one. --verify reads all of it, and compares it with its
 /// checksums and its index.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam info run.mcap --write-mapping mapping.toml
   toposlam info run.mcap --verify
 
-A log that cannot be read is reported, and the others are shown.
-
-Exit codes: 0 done, 1 --verify found damage, 2 bad usage or input, 3 a log is truncated (its contents up \
-to there are shown), or --verify was interrupted.")]
+A log that cannot be read is reported, and the others are shown.",
+    &[
+        (0, "the logs are listed; with --verify, they are not damaged"),
+        (1, "--verify found damage"),
+        (2, "bad usage or input"),
+        (3, "a log is truncated (its contents up to there are listed), or --verify was interrupted"),
+    ],
+))]
 pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
@@ -354,7 +361,9 @@ fn print(
         print_damage(out, found)?;
     }
     if let (Some(start), Some(duration)) = (log.start(), duration(log)) {
-        writeln!(out, "from {}, for {duration:.3} s", moment(start))?;
+        let exact = format!("{duration:.3} s");
+        let duration = if duration < 60.0 { exact } else { duration_text(duration) };
+        writeln!(out, "from {}, for {duration}", moment(start))?;
     }
     writeln!(out, "{} messages\n", grouped(log.messages_total().into()))?;
     let rows: Vec<_> = log

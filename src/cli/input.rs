@@ -1,10 +1,12 @@
 //! Input files: worlds in any format, calibrations, colours, logs. All are registered: no output replaces
-//! them.
+//! them. The path `-` is standard input, which can be one of the inputs.
 
 use std::{
+    ffi::OsString,
     fs,
-    io::{self, Read},
+    io::{self, Cursor, Read},
     path::{Path, PathBuf},
+    sync::{Arc, OnceLock},
 };
 
 use toposlam_model::{
@@ -35,9 +37,13 @@ pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
         },
     };
     if world.name.is_empty() {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
-        world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
+        let stem = stem(path);
+        world.name = stem.to_string_lossy().into_owned();
+        if !world_file::is_name(&world.name) {
+            let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+            let letters = world.name.chars().map(|letter| if fits(letter) { letter } else { '_' });
+            world.name = letters.collect();
+        }
     }
     Ok(world)
 }
@@ -114,7 +120,15 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
 
 /// Registers files that are read later, so that an output among them is refused before the work.
 pub(crate) fn register(paths: &[PathBuf]) -> Result<(), Failure> {
-    Ok(paths.iter().try_for_each(|path| files().read(path))?)
+    let mut files_of_paths = paths.iter().filter(|path| !is_standard(path));
+    Ok(files_of_paths.try_for_each(|path| files().read(path))?)
+}
+
+/// The name of a file without its ending.
+pub(crate) fn stem(path: &Path) -> OsString {
+    let stem =
+        if is_standard(path) { "stdin".as_ref() } else { path.file_stem().unwrap_or_default() };
+    stem.to_owned()
 }
 
 /// Opens a log.
@@ -124,23 +138,54 @@ pub(crate) fn open_log(path: &Path) -> Result<Log, Failure> {
 
 /// Opens a log, or returns why it cannot be read.
 pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, Failure> {
+    if is_standard(path) {
+        return Ok(Log::new(Cursor::new(standard_input()?)));
+    }
     files().read(path)?;
     Ok(Log::open(path))
 }
 
 /// Opens a file that was read before, to read it in pieces.
-pub(crate) fn open_again(path: &Path) -> io::Result<fs::File> {
-    fs::File::open(path)
+pub(crate) fn open_again(path: &Path) -> io::Result<Box<dyn Read>> {
+    match STANDARD_INPUT.get().filter(|_| is_standard(path)) {
+        Some(bytes) => Ok(Box::new(Cursor::new(bytes.clone()))),
+        None => Ok(Box::new(fs::File::open(path)?)),
+    }
 }
 
-/// Reads a file. `-` is standard input.
+/// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        files().read(path)?;
-        fs::read(path)
-    };
-    bytes.map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))
+    if is_standard(path) {
+        return Ok(standard_input()?.to_vec());
+    }
+    files().read(path)?;
+    fs::read(path).map_err(|error| not_readable(path, &error))
+}
+
+/// The content of standard input, once it was read.
+static STANDARD_INPUT: OnceLock<Arc<[u8]>> = OnceLock::new();
+
+/// The path of standard input.
+const STANDARD: &str = "-";
+
+/// Whether a path is that of standard input.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// Reads standard input to its end. A log, too, is kept in memory.
+fn standard_input() -> Result<Arc<[u8]>, Failure> {
+    let mut bytes = Vec::new();
+    let read = io::stdin().lock().read_to_end(&mut bytes);
+    read.map_err(|error| not_readable(Path::new(STANDARD), &error))?;
+    let bytes: Arc<[u8]> = bytes.into();
+    STANDARD_INPUT.set(bytes.clone()).map_err(|_| {
+        let cause = "standard input is one input; give the path of a file for the others";
+        Failure::at(STANDARD, cause)
+    })?;
+    Ok(bytes)
+}
+
+fn not_readable(path: &Path, error: &io::Error) -> Failure {
+    Failure::in_file(path, format!("cannot be read: {error}"))
 }

@@ -4,7 +4,7 @@ use std::{fmt::Display, io, path::Path, process::ExitCode};
 
 use toposlam_model::enumerate::Interrupted;
 
-use super::{files::FileConflict, report_output};
+use super::{files::FileConflict, report_output, terminal};
 
 /// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,13 +53,13 @@ impl Failure {
     pub(crate) fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {
-                eprintln!("error: {message}");
+                terminal::error(message);
                 ExitCode::from(2)
             }
             Self::Reported => ExitCode::from(2),
             Self::Interrupted => {
                 if !report_output::is_useless() {
-                    eprintln!("{Interrupted}");
+                    terminal::print_message(&format!("{Interrupted}\n"));
                 }
                 Outcome::Incomplete.into()
             }

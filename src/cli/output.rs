@@ -11,7 +11,7 @@ use std::{
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
-use super::{Failure, files::files};
+use super::{Failure, files::files, input};
 
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
@@ -67,6 +67,9 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::in_file(path, "this is a folder, not a file"));
+    }
+    if input::is_standard(path) {
+        return Err(Failure::in_file(path, "an output is a file; only an input can be `-`"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {

@@ -12,15 +12,22 @@ use toposlam::paper::{
 
 use super::{
     Failure, Outcome,
+    exit_codes::help_end,
     json::print_line,
     text::{print_hanging, print_indented},
 };
 
 /// List every requirement of the paper: where it is implemented and tested, and what is open
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  toposlam paper --section 2.3\n\n\
-                  Exit code 1: a requirement is marked as done but no code or no test cites it, or a \
-                  citation names an unknown requirement.")]
+#[command(after_help = help_end(
+    "Example:\n  toposlam paper --section 2.3",
+    &[
+        (0, "the citations fit the requirements"),
+        (1, "a requirement is marked as done but no code or no test cites it, or a citation names \
+             an unknown requirement"),
+        (2, "bad usage"),
+    ],
+))]
 pub(super) struct PaperArguments {
     /// List only this section of the paper and its subsections
     #[arg(long, value_name = "N")]

@@ -16,6 +16,7 @@ use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 use super::{
     Failure, Outcome,
     ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     progress::Progress,
     text::grouped,
 };
@@ -28,7 +29,8 @@ use report::ProofsReport;
 /// The list shows each lemma, its place in the paper and the engines that check it. It also shows the
 /// theorems that Coq proves for every world; proofs/coq/check checks those.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam proofs            list the lemmas and how each one is checked
   toposlam proofs --run all  check every lemma in every case within its bound
@@ -38,10 +40,14 @@ The last one prints a single case: its worlds, as world files, and its walks, st
 v2:1 has entered v2 by the dart 1 place clockwise from the first one in the file. For a lemma that \
 fails, the report contains such a command.
 
-A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and prints the results so far.
-
-Exit codes: 0 everything holds, 1 a lemma fails, 2 bad usage or input, 3 not everything was checked, \
-or the lemma excludes the case of --choices.")]
+A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and prints the results so far.",
+    &[
+        (0, "everything holds, or the list is printed"),
+        (1, "a lemma fails"),
+        (2, "bad usage or input"),
+        (3, "not everything was checked, or the lemma excludes the case of --choices"),
+    ],
+))]
 pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all lemmas; may be repeated
     #[arg(long, value_name = "NAME")]
@@ -58,6 +64,10 @@ pub(super) struct ProofsArguments {
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
+
+    /// Check the other lemmas also after one fails
+    #[arg(long, requires = "run", conflicts_with = "choices")]
+    keep_going: bool,
 
     #[command(flatten)]
     ci: CiOptions,
@@ -143,18 +153,25 @@ impl ProofsArguments {
     fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
         let mut report = ProofsReport::new(out, self.json, lemmas);
         let mut results = Vec::new();
-        for &lemma in lemmas {
+        let mut left = lemmas.iter();
+        for &lemma in left.by_ref() {
             let progress = Progress::new(lemma.name, "cases")?;
             let checked = check_lemma(lemma, &progress)?;
             progress.finish();
             let interrupted = matches!(checked.end, CheckEnd::Interrupted { .. });
-            results.push(ci_case(lemma, &checked.end));
+            let result = ci_case(lemma, &checked.end);
+            let failed = result.outcome == Outcome::Violated;
+            results.push(result);
             report.lemma(lemma, checked)?;
-            if interrupted {
+            if interrupted || (failed && !self.keep_going) {
                 break;
             }
         }
         let outcome = report.verdict()?;
+        if outcome == Outcome::Violated {
+            let names = left.map(|lemma| lemma.name.to_owned());
+            results.extend(names.map(|name| CiCase::not_checked(name, None)));
+        }
         self.ci.write("proofs", &results)?;
         Ok(outcome)
     }

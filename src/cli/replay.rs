@@ -11,6 +11,7 @@ use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, r
 
 use super::{
     Failure, Outcome,
+    exit_codes::help_end,
     json::{TruncatedLine, print_line},
     open_log::{LogOptions, OpenLog},
     output,
@@ -23,12 +24,18 @@ use super::{
 /// percepts, doors and the map are compared with the recorded ones, and the computing time with the
 /// robot's time. If the log has no images, its scenes are used.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam simulate worlds/shape-6.toml --log run.mcap
-  toposlam replay run.mcap
-
-Exit codes: 0 all results are as recorded, 1 one differs, 2 bad usage or input, 3 the log is truncated, its run is incomplete, or --max-darts was reached.")]
+  toposlam replay run.mcap",
+    &[
+        (0, "all results are as recorded"),
+        (1, "a result differs"),
+        (2, "bad usage or input"),
+        (3, "not known: the log is truncated, its run is incomplete, or --max-darts was reached"),
+    ],
+))]
 pub(super) struct ReplayArguments {
     /// The log
     log: PathBuf,
@@ -99,7 +106,7 @@ impl ReplayArguments {
         }
         if let Some(path) = &self.map {
             match replay.exploration.map().complete() {
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
                 Some(graph) => {
                     let about = format!("The map from a replay of {}", self.log.display());
                     let map = NamedWorld::numbered("map", &about, graph.clone(), Some(FACING));

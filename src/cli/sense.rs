@@ -12,7 +12,9 @@ use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
-    Failure, Outcome, input,
+    Failure, Outcome,
+    exit_codes::help_end,
+    input,
     json::print_line,
     outcome::SeveralInputs,
     output, picture_file,
@@ -26,7 +28,8 @@ use super::{
 /// a hallway; a junction with its doors and centre lines; or unknown, with a reason. If the marker is
 /// in view, its position is reported too.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml \\
     --stages steps
@@ -34,7 +37,12 @@ Example:
 An image that cannot be used is reported, and the others are sensed.
 
 Angles are relative to the robot's heading, counter-clockwise. Doors are listed
-clockwise from the entry door.")]
+clockwise from the entry door.",
+    &[
+        (0, "all images were sensed, also if a scene is unknown"),
+        (2, "bad usage, or an input cannot be used"),
+    ],
+))]
 pub(super) struct SenseArguments {
     /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
@@ -52,7 +60,7 @@ pub(super) struct SenseArguments {
     #[arg(long)]
     json: bool,
     /// Output file: .txt, .json or .jsonl [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
@@ -142,7 +150,7 @@ impl SenseArguments {
 /// The names of the images without their endings. The pictures of their stages start with them.
 fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failure> {
     let mut names: BTreeMap<OsString, &Path> = BTreeMap::new();
-    let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_owned();
+    let name = |path: &PathBuf| input::stem(path);
     for path in images {
         if let Some(other) = names.insert(name(path), path)
             && wanted

@@ -32,6 +32,7 @@ use toposlam_vision::{camera::Camera, sensing::Sensor};
 use super::{
     Failure, Outcome,
     appearance::{Appearance, ImageSize},
+    exit_codes::help_end,
     explore::story::{Story, StoryDetail},
     input, noise, output,
     progress::{Progress, StopSignal},
@@ -180,7 +181,7 @@ impl SimulateArguments {
         let facing = input::start_of(world, self.start.as_deref())?;
         let nearest = feasible::nearest_start(plan, facing).filter(|_| self.start.is_none());
         let Some(nearest) = nearest else { return Ok(facing) };
-        eprintln!(
+        remark!(
             "the run starts at {}: the start of the plan, {}, is not an L, where a marker can lie",
             world.start_text(nearest),
             world.at_text(facing),
@@ -280,7 +281,7 @@ impl SimulateArguments {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
             }
         }
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
@@ -323,7 +324,8 @@ fn after_help() -> String {
         .iter()
         .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
     let head = "Faults, and for how many pictures or commands each lasts by default:\n".to_owned();
-    head + &faults.collect::<String>()
+    let notes = head
+        + &faults.collect::<String>()
         + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \
 /camera/annotated/compressed, /cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, \
 percept, hypothesis, map, end. If the program is killed, all but the last ten seconds can be read.
@@ -335,7 +337,14 @@ Examples:
   toposlam simulate worlds/shape-6.toml --seed 3 --json
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
-
-Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input, 3 ended by \
-Ctrl-C or at --max-darts, or a fault did not happen."
+";
+    help_end(
+        &notes,
+        &[
+            (0, "the map is right"),
+            (1, "the map is wrong, or the robot gave up"),
+            (2, "bad usage or input"),
+            (3, "ended by Ctrl-C or at --max-darts, or a fault did not happen"),
+        ],
+    )
 }

@@ -18,7 +18,10 @@ use toposlam_vision::{
     colour::{ExampleError, PixelClass, Stripe, StripeKind, Training, TrainingError},
 };
 
-use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
+use super::{
+    Failure, Outcome, exit_codes::help_end, input, output, picture_file, progress::Progress,
+    text::counted,
+};
 use report::{LeftOut, TrainingReport, Validation};
 
 /// Learn the colours of a building's floor, stripe and marker from labelled images
@@ -31,8 +34,8 @@ use report::{LeftOut, TrainingReport, Validation};
 #[command(
     override_usage = "\
 toposlam train [OPTIONS] --images <DIR> --labels <DIR>
-                      --calibration <FILE> --out <COLOURS>",
-    after_help = "\
+                      --calibration <FILE> --out <FILE>",
+    after_help = help_end("\
 Colours of labels:
   floor (0,255,0)   stripe (255,0,0)   marker (0,0,255)
   other (0,0,0)     ignore (255,255,255)
@@ -40,15 +43,17 @@ Colours of labels:
 Example, with rendered images and labels:
   mkdir -p images labels
   for n in 1 2 3 4 5 6 7; do
-    toposlam render worlds/shape-8.toml --marker --pose 0,$n,$((50 * n)) \\
+    toposlam render worlds/shape-8.toml --with-marker --pose 0,$n,$((50 * n)) \\
       --seed $n --out images/$n.png --labels labels/$n.png
   done
   toposlam calibrate images/*.png --out camera.toml
   toposlam train --images images --labels labels --calibration camera.toml \\
     --out colours.toml
-  toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 \\
+  toposlam render worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 --seed 8 \\
     --out view.png
-  toposlam sense view.png --calibration camera.toml --colours colours.toml"
+  toposlam sense view.png --calibration camera.toml --colours colours.toml",
+        &[(0, "the colours are learned"), (2, "bad usage or input"), (3, "interrupted")],
+    )
 )]
 pub(super) struct TrainArguments {
     /// Folder of the images: .png, .jpg and .jpeg
@@ -61,7 +66,7 @@ pub(super) struct TrainArguments {
     #[arg(long, value_name = "FILE")]
     calibration: PathBuf,
     /// Output file: .toml
-    #[arg(long, value_name = "COLOURS")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Place of the stripe between floor and wall
     #[arg(long, value_name = "WHERE", default_value = "floor")]
@@ -117,11 +122,11 @@ impl TrainArguments {
         }
         progress.finish();
         for LeftOut { image, cause } in &left_out {
-            eprintln!("left out: {}: {cause}", image.display());
+            remark!("left out: {}: {cause}", image.display());
         }
         self.check_classes(&training)?;
         if training.seen(PixelClass::Marker).images == 0 {
-            eprintln!("no marker is labelled: sensing with these colours sees no marker");
+            remark!("no marker is labelled: sensing with these colours sees no marker");
         }
         let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
         let progress = Progress::new("cross-validating", "parts")?;

@@ -71,9 +71,13 @@ impl SizeResult<'_> {
         } else if tally.gave_up() > 0 {
             message += "; the other runs of some starts reached a limit";
         }
-        let name = format!("{} edges, {}", self.edges, self.worlds());
         let file = self.from.map(Path::to_owned);
-        CiCase { name, outcome: verdict(tally).0, message, file }
+        CiCase { name: self.name(), outcome: verdict(tally).0, message, file }
+    }
+
+    /// What is checked.
+    pub(super) fn name(&self) -> String {
+        format!("{} edges, {}", self.edges, self.worlds())
     }
 }
 
@@ -204,7 +208,7 @@ impl<'o> CheckReport<'o> {
         }
         writeln!(self.out)?;
         print_paragraph(self.out, &verdict)?;
-        eprintln!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
+        remark!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
         Ok(outcome)
     }
 }

@@ -103,7 +103,7 @@ impl ConformArguments {
 }
 
 fn not_written(path: &Path, why: &str) {
-    eprintln!("{}: not written: {why}", path.display());
+    remark!("{}: not written: {why}", path.display());
 }
 
 fn is_marked(judged: &Judged) -> bool {

@@ -6,13 +6,13 @@ use sha2::{Digest, Sha256};
 use toposlam::report::{ReportOrigin, SourceFile};
 
 use super::Failure;
-use crate::cli::{input, text::quoted};
+use crate::cli::{input, text::quoted, version};
 
 /// This version, and the command line of this process.
 pub(super) fn origin() -> ReportOrigin {
     let words = env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     let command = [vec!["toposlam".to_owned()], words.collect()].concat().join(" ");
-    ReportOrigin { version: env!("CARGO_PKG_VERSION").to_owned(), command }
+    ReportOrigin { version: version::VERSION.to_owned(), command }
 }
 
 /// A log and the world in which it was checked, with their hashes.

@@ -9,7 +9,7 @@ use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 use super::{Failure, Judged, fact_fields::FactFields};
 use crate::cli::{
     json::print_line,
-    text::{counted, print_command, print_hanging},
+    text::{counted, print_command, print_hanging, since_start},
 };
 
 /// The number of steps shown before a divergence.
@@ -176,12 +176,8 @@ fn diverged(
     divergence: &DivergenceReport,
 ) -> Result<(), Failure> {
     let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = divergence;
-    writeln!(
-        out,
-        "{}: diverges at event {event} of {}, at {time:.1} s: {fault}",
-        report.log,
-        report.events.len()
-    )?;
+    let (events, time) = (report.events.len(), since_start(*time));
+    writeln!(out, "{}: diverges at event {event} of {events}, at {time}: {fault}", report.log)?;
     print_hanging(out, "  ", &format!("{what}: {why}"))?;
     if let Some((message, offset)) = message {
         writeln!(out, "  message {message} of the log, at byte {offset}")?;

@@ -41,7 +41,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
         let mut found = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let search = AmbiguitySearch::new(class, edges, marker)
-                .map_err(|error| Failure::at("--edges", error))?;
+                .map_err(|error| Failure::at("--max-edges", error))?;
             let work = format!("{}, {class}", marker.name());
             let progress = Progress::new(&work, "placed worlds")?;
             let findings = search.run(&progress);
@@ -63,7 +63,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             }
         }
     }
-    let limit = edges.map(|edges| format!(" --edges {edges}")).unwrap_or_default();
+    let limit = edges.map(|edges| format!(" --max-edges {edges}")).unwrap_or_default();
     output::write_whole(&folder.join("README.md"), readme(&rows, sizes, &limit).as_bytes())?;
     Ok(Outcome::Holds)
 }

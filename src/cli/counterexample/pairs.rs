@@ -9,7 +9,7 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{Failure, Outcome, output, walk_page};
+use crate::cli::{Failure, Outcome, output, terminal, walk_page};
 
 /// The reported pairs, and each of their worlds once.
 #[derive(Clone)]
@@ -75,7 +75,7 @@ impl WorldPairs {
     /// Writes the page of the smallest pair. Without a pair it prints a message and writes nothing.
     pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), Failure> {
         let Some(worlds @ [one, other]) = self.pairs().first().copied() else {
-            eprintln!("{} is not written: there is no pair", path.display());
+            remark!("{} is not written: there is no pair", path.display());
             return Ok(());
         };
         let start = PlacedWorld::FACING;
@@ -99,7 +99,7 @@ pub(super) fn report_unfinished(unfinished: &Unfinished) -> Result<Outcome, Fail
     match unfinished {
         Unfinished::Interrupted => Err(Failure::Interrupted),
         Unfinished::Unconfirmed(_) => {
-            eprintln!("{unfinished}");
+            terminal::print_message(&format!("{unfinished}\n"));
             Ok(Outcome::Violated)
         }
     }

@@ -186,7 +186,7 @@ impl<'o> SearchReport<'o> {
         self.print_world(one)?;
         self.print_world(other)?;
         let command = format!(
-            "toposlam counterexample --marker {} --class {} --edges {} --html walk.html",
+            "toposlam counterexample --marker {} --class {} --max-edges {} --html walk.html",
             marker.name(),
             self.class,
             self.edges

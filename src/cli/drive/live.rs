@@ -38,6 +38,7 @@ use crate::cli::{
     progress::Progress,
     story_lines::StoryLines,
     text::quoted,
+    version,
 };
 
 impl DriveArguments {
@@ -120,7 +121,7 @@ impl DriveArguments {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
             }
         }
         Ok(result.outcome())
@@ -141,7 +142,7 @@ impl DriveArguments {
         let (world, world_hash, start) = known.unwrap_or_default();
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: version::VERSION.to_owned(),
             world,
             world_hash,
             start,

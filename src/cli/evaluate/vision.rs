@@ -31,6 +31,7 @@ use super::{
 use crate::cli::{
     Failure, Outcome,
     appearance::{EffectsChoice, ImageSize, looks},
+    exit_codes::help_end,
     input, output,
     progress::Progress,
     use_threads,
@@ -46,19 +47,24 @@ use crate::cli::{
 /// In between, both the hallway and the right junction count as right. A visit is a series of images
 /// on one approach to a junction. It is decided when two images agree.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam evaluate vision                            takes one or two minutes
   toposlam evaluate vision --views 20000 --calibration-errors --json
-  toposlam evaluate vision --plan worlds/shape-8.toml --out failing
-  toposlam evaluate vision --view 17 --out seventeen  one view, stage by stage
+  toposlam evaluate vision --plan worlds/shape-8.toml --out-dir failing
+  toposlam evaluate vision --view 17 -o seventeen  one view, stage by stage
 
 A target is met if the 95 % interval of the rate is within it, missed if the
 interval is beyond it, and otherwise not shown: the sample is too small. A target
-of 0 is met if nothing was seen, and the rate is at most 0.1 %.
-
-Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 one is
-not shown, or not everything was measured.")]
+of 0 is met if nothing was seen, and the rate is at most 0.1 %.",
+    &[
+        (0, "all targets are met"),
+        (1, "a target is missed"),
+        (2, "bad usage or input"),
+        (3, "a target is not shown, or not everything was measured"),
+    ],
+))]
 pub(super) struct EvaluateVisionArguments {
     /// Number of views
     #[arg(long, default_value_t = 1000, value_name = "N")]
@@ -88,8 +94,8 @@ pub(super) struct EvaluateVisionArguments {
     #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits", "json"])]
     view: Option<u64>,
     /// Folder for a picture of each processing stage of the views that fail, or of the one view
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[arg(short, long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
     /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -101,7 +107,7 @@ pub(super) struct EvaluateVisionArguments {
 impl EvaluateVisionArguments {
     pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
         use_threads(self.threads)?;
-        if let Some(folder) = &self.out {
+        if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
         }
         let views = self.source()?;
@@ -131,9 +137,9 @@ impl EvaluateVisionArguments {
                 printer.groups(&groups(&judged))?;
             }
             standings.push(report.standing());
-            if let Some(folder) = &self.out {
+            if let Some(folder) = &self.out_dir {
                 let written = failing::write(folder, &judge, &judged, &judged_visits, calibration)?;
-                eprintln!("{written} in {}", folder.display());
+                remark!("{written} in {}", folder.display());
             }
         }
         let standing = standings.into_iter().max().unwrap_or(TargetStatus::NotShown);
@@ -144,7 +150,7 @@ impl EvaluateVisionArguments {
         };
         printer.verdict(outcome, interrupted)?;
         let threads = rayon::current_num_threads();
-        eprintln!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
@@ -189,7 +195,7 @@ impl EvaluateVisionArguments {
             if judged.verdict.is_wrong() {
                 outcome = Outcome::Violated;
             }
-            if let Some(folder) = &self.out {
+            if let Some(folder) = &self.out_dir {
                 failing::write_view(folder, &judge, &judged, calibration)?;
             }
         }

@@ -119,7 +119,7 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_repeats_it() {
 #[test]
 fn the_json_contains_the_same() {
     let lemmas = [false_lemma(), true_lemma()];
-    let (outcome, text) = run(&lemmas, &["--run", "all", "--json"]);
+    let (outcome, text) = run(&lemmas, &["--run", "all", "--json", "--keep-going"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
     let lines = objects(&text);
     let [failed, held, totals] = lines.as_slice() else { panic!("{text}") };
@@ -155,6 +155,22 @@ fn the_json_contains_the_same() {
         assert_eq!(again[key], failed[key], "{key}");
     }
     assert_eq!((&again["engine"], &again["verdict"]), (&"exhaustive".into(), &"fails".into()));
+}
+
+#[test]
+fn the_lemmas_after_one_that_fails_are_checked_if_the_check_is_to_keep_going() {
+    let lemmas = [false_lemma(), true_lemma()];
+    let (outcome, text) = run(&lemmas, &["--run", "all"]);
+    assert_eq!(outcome.unwrap(), Outcome::Violated);
+    assert!(!text.contains("low"), "{text}");
+    let verdict =
+        "violated: 0 of 2 lemmas hold, 0 cases; 1 not checked (--keep-going checks them)\n";
+    assert!(text.ends_with(verdict), "{text}");
+    let (_, text) = run(&lemmas, &["--run", "all", "--json"]);
+    assert_eq!(objects(&text).last().unwrap()["not_checked"], 1);
+    let (outcome, text) = run(&lemmas, &["--run", "all", "--keep-going"]);
+    assert_eq!(outcome.unwrap(), Outcome::Violated);
+    assert!(text.ends_with("violated: 1 of 2 lemmas hold, 4 cases\n"), "{text}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use toposlam_vision::{
 };
 
 use super::{Failure, SimulateArguments, Simulation};
-use crate::cli::{output, text::quoted};
+use crate::cli::{output, text::quoted, version};
 
 impl SimulateArguments {
     /// Opens the log, if one is wanted. Its head has the camera and the colours.
@@ -24,7 +24,7 @@ impl SimulateArguments {
         let Some(path) = &self.log else { return Ok(None) };
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: version::VERSION.to_owned(),
             world: simulation.world.name.clone(),
             world_hash: world_hash(&simulation.world.graph, simulation.facing),
             start: simulation.world.start_text(simulation.facing),

@@ -128,7 +128,7 @@ impl SimulationResult<'_> {
                 "  computation       {seconds:.2} s off-line, {ratio:.0} times real time"
             )?;
         }
-        eprintln!("{:.1} s", self.wall_seconds);
+        remark!("{:.1} s", self.wall_seconds);
         Ok(())
     }
 
