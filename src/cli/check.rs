@@ -18,7 +18,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome,
+    ChoicesOption, CliError, Outcome,
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     input,
@@ -119,7 +119,7 @@ enum Work {
 }
 
 impl CheckArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.ci.check_places()?;
@@ -181,20 +181,20 @@ impl CheckArguments {
     }
 
     /// A sweep for each number of edges.
-    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, CliError> {
         let class = self.class();
         if self.marker == MappingMarker::Movable && !class.is_simple() {
-            return Err(Failure::at("--class", movable_not_sufficient(format!("class {class}"))));
+            return Err(CliError::at("--class", movable_not_sufficient(format!("class {class}"))));
         }
         let sweep = |edges| {
             let sweep = Sweep::new(class, edges, self.shard);
-            Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
+            Ok((edges, Work::Sweep(sweep.map_err(|error| CliError::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
     }
 
     /// The worlds of a file, by their number of edges.
-    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
         let graphs = input::read_graphs(path)?;
         self.marker.check_worlds(path, &graphs)?;
         let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
@@ -206,7 +206,7 @@ impl CheckArguments {
 }
 
 impl Work {
-    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, Failure> {
+    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, CliError> {
         let progress = Progress::new(&format!("{edges} edges"), "starts")?;
         let tally = match self {
             Self::Sweep(sweep) => algorithm.sweep(sweep, &progress),
@@ -232,7 +232,7 @@ fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
     }
 }
 
-fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), Failure> {
+fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), CliError> {
     let Some(WorstStart { graph, facing, moves }) = worst else {
         remark!("{} is not written: no start was mapped", path.display());
         return Ok(());

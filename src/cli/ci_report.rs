@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-use super::{Failure, Outcome, output, terminal, version};
+use super::{CliError, Outcome, output, terminal, version};
 
 /// The options of a verb that gives verdicts.
 #[derive(clap::Args, Debug, Default)]
@@ -44,16 +44,16 @@ impl CiCase {
 
 impl CiOptions {
     /// Refuses the options where there is no verdict to write.
-    pub(super) fn check_unused(&self, cause: &str) -> Result<(), Failure> {
+    pub(super) fn check_unused(&self, cause: &str) -> Result<(), CliError> {
         match (&self.junit, &self.sarif) {
-            (Some(_), _) => Err(Failure::at("--junit", cause)),
-            (None, Some(_)) => Err(Failure::at("--sarif", cause)),
+            (Some(_), _) => Err(CliError::at("--junit", cause)),
+            (None, Some(_)) => Err(CliError::at("--sarif", cause)),
             (None, None) => Ok(()),
         }
     }
 
     /// Checks that the reports can be written, before long work begins.
-    pub(super) fn check_places(&self) -> Result<(), Failure> {
+    pub(super) fn check_places(&self) -> Result<(), CliError> {
         if let Some(path) = &self.junit {
             output::check_place(path, &["xml"])?;
         }
@@ -65,7 +65,7 @@ impl CiOptions {
 
     /// Writes the reports. In a workflow of GitHub Actions, each case that does not hold becomes an
     /// annotation, on standard error.
-    pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), Failure> {
+    pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), CliError> {
         if let Some(path) = &self.junit {
             output::write_whole(path, junit(verb, cases).as_bytes())?;
         }

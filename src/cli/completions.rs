@@ -5,7 +5,7 @@ use std::io::Write;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use super::{Failure, Outcome, exit_codes::help_end};
+use super::{CliError, Outcome, exit_codes::help_end};
 
 /// Print shell completions
 #[derive(clap::Args)]
@@ -19,7 +19,7 @@ pub(super) struct CompletionsArguments {
 }
 
 impl CompletionsArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut script = Vec::new();
         clap_complete::generate(
             self.shell,

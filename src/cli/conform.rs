@@ -33,7 +33,7 @@ use toposlam_robot::conform::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     input,
@@ -196,7 +196,7 @@ impl SensingProgress for Progress {
 }
 
 impl ConformArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.ci.check_places()?;
         self.check_places()?;
         self.check_marker()?;
@@ -204,8 +204,8 @@ impl ConformArguments {
             None => Quirks::default(),
             Some(path) => {
                 let text = String::from_utf8(input::read(path)?)
-                    .map_err(|error| Failure::in_file(path, error))?;
-                Quirks::read(&text).map_err(|error| Failure::in_file(path, error))?
+                    .map_err(|error| CliError::in_file(path, error))?;
+                Quirks::read(&text).map_err(|error| CliError::in_file(path, error))?
             }
         };
         let world = self.world.as_deref().map(input::read_world).transpose()?;
@@ -252,7 +252,7 @@ impl ConformArguments {
         path: &Path,
         judged: &Judged,
         quirks: &Quirks,
-    ) -> Result<LogReport, Failure> {
+    ) -> Result<LogReport, CliError> {
         let shorter = self.shorter(judged)?;
         let mut report = judged.report(path, quirks, shorter, self.html.is_some());
         if self.html.is_some() {
@@ -267,7 +267,7 @@ impl ConformArguments {
         Ok(report)
     }
 
-    fn check_places(&self) -> Result<(), Failure> {
+    fn check_places(&self) -> Result<(), CliError> {
         if let Some(path) = &self.html {
             output::check_place(path, &["html", "htm"])?;
         }
@@ -279,16 +279,16 @@ impl ConformArguments {
         }
         for (option, path) in [("--map", &self.map), ("--minimise", &self.minimise)] {
             if path.is_some() && self.logs.len() > 1 {
-                return Err(Failure::at(option, "this needs exactly one log"));
+                return Err(CliError::at(option, "this needs exactly one log"));
             }
         }
         Ok(())
     }
 
-    fn check_marker(&self) -> Result<(), Failure> {
+    fn check_marker(&self) -> Result<(), CliError> {
         if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm1 {
             let cause = "Algorithm 1 needs the directional marker; add --driver anyone";
-            return Err(Failure::at("--marker none", cause));
+            return Err(CliError::at("--marker none", cause));
         }
         Ok(())
     }
@@ -299,13 +299,13 @@ impl ConformArguments {
         path: &Path,
         world: Option<&'w NamedWorld>,
         quirks: &Quirks,
-    ) -> Result<Judged<'w>, Failure> {
+    ) -> Result<Judged<'w>, CliError> {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = match self.events {
             Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
             Some(_) => {
                 let cause = "the log does not have what this needs";
-                return Err(Failure::at("--events", format!("{cause} ({})", path.display())));
+                return Err(CliError::at("--events", format!("{cause} ({})", path.display())));
             }
             None => opened.evidence(path)?,
         };
@@ -323,26 +323,26 @@ impl ConformArguments {
             extract(&opened.log, &opened.mapping, evidence, sensor.as_ref(), marked, &progress);
         let gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
-            error => Failure::in_file(path, error),
+            error => CliError::in_file(path, error),
         })?;
         let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
         if assumed && self.driver == Who::Algorithm1 && !shows_marker(&gathered.events) {
             let cause = "no percept in it shows a marker, which Algorithm 1 needs";
-            return Err(Failure::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
+            return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
         let question = self.question(known.as_ref(), marker);
         let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
         progress.finish();
         let judgement = judgement.map_err(|error| match error {
-            JudgeError::Empty if gathered.pictures > 0 => Failure::in_file(
+            JudgeError::Empty if gathered.pictures > 0 => CliError::in_file(
                 path,
                 format!("no junction is visited in its {} images", gathered.pictures),
             ),
             error @ (JudgeError::Marker(_) | JudgeError::Algorithm(_)) => {
-                Failure::in_file(path, format!("{error}{WITHOUT_MARKER}"))
+                CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
             }
-            error => Failure::in_file(path, error),
+            error => CliError::in_file(path, error),
         })?;
         Ok(Judged { opened, gathered, judgement, known, marker, search, dart_bound })
     }
@@ -369,7 +369,7 @@ impl ConformArguments {
     }
 
     /// Writes the smallest world that explains a log to the file of `--map`.
-    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), Failure> {
+    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), CliError> {
         let Some(path) = &self.map else { return Ok(()) };
         let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest else {
             remark!("{}: not written: no world was found", path.display());

@@ -14,7 +14,7 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     marker_kinds, output,
@@ -112,7 +112,7 @@ enum Expectation {
 }
 
 impl CounterexampleArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
         if self.expect.is_none() {
             self.ci.check_unused("this needs --expect none")?;
@@ -128,14 +128,14 @@ impl CounterexampleArguments {
         let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
         let search = |marker| {
             let search = AmbiguitySearch::new(self.class, edges, marker);
-            search.map_err(|error| Failure::at("--max-edges", error))
+            search.map_err(|error| CliError::at("--max-edges", error))
         };
         let searches: Vec<_> =
             markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
         if let Some(path) = &self.html {
             walk_page::check_place(path)?;
             if searches.len() != 1 {
-                return Err(Failure::at(
+                return Err(CliError::at(
                     "--html",
                     "a page shows one marker; choose it with --marker",
                 ));

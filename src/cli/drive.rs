@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
 
-use super::{Failure, Outcome, exit_codes::help_end, simulate::MAX_DARTS};
+use super::{CliError, Outcome, exit_codes::help_end, simulate::MAX_DARTS};
 
 /// Let a live SuperScout map its building from camera images
 ///
@@ -87,7 +87,7 @@ fn patience(text: &str) -> Result<f64, String> {
 impl DriveArguments {
     #[cfg(not(feature = "ros1"))]
     #[expect(clippy::unused_self, reason = "with the feature it is used")]
-    pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, CliError> {
         Err(super::without_ros())
     }
 }

@@ -11,7 +11,7 @@ use std::io::Write;
 
 use clap::Subcommand;
 
-use super::{Failure, Outcome, exit_codes::help_end};
+use super::{CliError, Outcome, exit_codes::help_end};
 
 /// Measure sensing, driving or whole runs against the ground truth
 #[derive(clap::Args)]
@@ -41,7 +41,7 @@ enum What {
 }
 
 impl EvaluateArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         match self.what {
             What::Vision(vision) => vision.run(out),
             What::Control(control) => control.run(out),

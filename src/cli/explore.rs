@@ -22,7 +22,7 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome, exit_codes::help_end, input, mapping_marker::MappingMarker,
+    ChoicesOption, CliError, Outcome, exit_codes::help_end, input, mapping_marker::MappingMarker,
     output, text::print_paragraph,
 };
 use doors_writer::DoorsWriter;
@@ -125,7 +125,7 @@ impl ExploreArguments {
         self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)
     }
 
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
@@ -150,7 +150,7 @@ impl ExploreArguments {
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let mut out = io::BufWriter::new(out);
         let mut state = A::State::new(self.max_darts);
         let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
@@ -203,7 +203,7 @@ impl ExploreArguments {
         Ok(result.outcome())
     }
 
-    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), Failure> {
+    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }

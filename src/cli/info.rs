@@ -17,7 +17,7 @@ use toposlam_robot::log::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::help_end,
     input,
     json::{TruncatedLine, print_line},
@@ -126,18 +126,18 @@ struct TopicLine<'l> {
 }
 
 impl InfoArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(path) = &self.write_mapping {
             output::check_place(path, &["toml"])?;
             if self.logs.len() > 1 {
-                return Err(Failure::at("--write-mapping", "this needs exactly one log"));
+                return Err(CliError::at("--write-mapping", "this needs exactly one log"));
             }
         }
         let mapping = match &self.mapping {
             None => None,
             Some(path) => {
                 let read = TopicMap::read(&input::read(path)?);
-                Some((path, read.map_err(|error| Failure::in_file(path, error))?))
+                Some((path, read.map_err(|error| CliError::in_file(path, error))?))
             }
         };
         let mut inputs = SeveralInputs::new();
@@ -156,18 +156,18 @@ impl InfoArguments {
         out: &mut dyn Write,
         path: &Path,
         mapping: Option<&(&PathBuf, TopicMap)>,
-    ) -> Result<(ReadTo, Outcome), Failure> {
+    ) -> Result<(ReadTo, Outcome), CliError> {
         let log = match input::log_or_cause(path)? {
             Ok(log) => log,
             Err(error) if self.verify && error.cause.is_damage() => {
                 self.print_damaged(out, path, error)?;
                 return Ok((ReadTo::End, Outcome::Violated));
             }
-            Err(error) => return Err(Failure::in_file(path, error)),
+            Err(error) => return Err(CliError::in_file(path, error)),
         };
         if let Some((mapping_path, mapping)) = mapping {
             mapping.bind(&log).map_err(|error| {
-                Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
+                CliError::in_file(mapping_path, format!("{error} ({})", path.display()))
             })?;
         }
         let carriers = carriers(&log, mapping.map(|(_, mapping)| mapping));
@@ -196,7 +196,7 @@ impl InfoArguments {
         out: &mut dyn Write,
         path: &Path,
         error: LogError,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         let found = Verification { damage: vec![error], ..Verification::default() };
         if self.json {
             let (log, verification) = (path.display().to_string(), verification_line(&found));
@@ -228,9 +228,9 @@ fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static st
     guess(log.topics()).into_iter().map(names).collect()
 }
 
-fn verify(path: &Path, log: &Log) -> Result<Verification, Failure> {
+fn verify(path: &Path, log: &Log) -> Result<Verification, CliError> {
     let progress = Progress::new("reading", "chunks")?;
-    let found = log.verify(&progress).map_err(|error| Failure::in_file(path, error));
+    let found = log.verify(&progress).map_err(|error| CliError::in_file(path, error));
     progress.finish();
     found
 }
@@ -250,7 +250,7 @@ fn verification_line(found: &Verification) -> VerificationLine {
     }
 }
 
-fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), Failure> {
+fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliError> {
     for error in &found.damage {
         print_hanging(out, "  ", &error.to_string())?;
     }
@@ -347,7 +347,7 @@ fn print(
     log: &Log,
     verification: Option<&Verification>,
     carriers: &[(&str, Vec<&str>)],
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let format = match log.format() {
         Format::Bag => "ROS 1 bag",
         Format::Mcap => "MCAP",
@@ -400,10 +400,10 @@ fn print(
 }
 
 /// Writes the roles with one possible topic; those with several are comments.
-fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), Failure> {
+fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), CliError> {
     let mapping = TopicMap::unambiguous(log);
     if mapping.is_empty() {
-        return Err(Failure::in_file(path, "no role has exactly one possible topic"));
+        return Err(CliError::in_file(path, "no role has exactly one possible topic"));
     }
     let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
     let comments = several.map(|(role, topics)| {

@@ -9,9 +9,10 @@ use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::{self, help_end},
     output,
+    version::VERSION,
 };
 
 /// Print a manual page, or write the pages of all commands
@@ -34,7 +35,7 @@ pub(super) struct ManArguments {
 }
 
 impl ManArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut root = super::CommandLine::command().disable_help_subcommand(true);
         root.build();
         if let Some(folder) = &self.out_dir {
@@ -48,7 +49,7 @@ impl ManArguments {
                 let known: Vec<_> = parts(command).map(Command::get_name).collect();
                 let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
                 let cause = format!("there is no command `{name}`; there are: {known}");
-                Failure::at(page_name(command), cause)
+                CliError::at(page_name(command), cause)
             })?;
         }
         out.write_all(&page(command)?)?;
@@ -57,7 +58,7 @@ impl ManArguments {
 }
 
 /// Writes the pages of a command and of its subcommands.
-fn write_pages(folder: &Path, command: &Command) -> Result<(), Failure> {
+fn write_pages(folder: &Path, command: &Command) -> Result<(), CliError> {
     output::write_whole(&folder.join(format!("{}.1", page_name(command))), &page(command)?)?;
     parts(command).try_for_each(|command| write_pages(folder, command))
 }
@@ -73,14 +74,14 @@ fn page_name(command: &Command) -> &str {
 }
 
 /// A page in the language of `man`.
-fn page(command: &Command) -> Result<Vec<u8>, Failure> {
+fn page(command: &Command) -> Result<Vec<u8>, CliError> {
     let mut page = Vec::new();
-    render(command, &mut page).map_err(|error| Failure::at(page_name(command), error))?;
+    render(command, &mut page).map_err(|error| CliError::at(page_name(command), error))?;
     Ok(page)
 }
 
 fn render(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
-    let man = Man::new(command.clone()).manual("toposlam");
+    let man = Man::new(command.clone()).source(format!("toposlam {VERSION}")).manual("toposlam");
     man.render_title(page)?;
     man.render_name_section(page)?;
     man.render_synopsis_section(page)?;
@@ -94,7 +95,7 @@ fn render(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     for (title, text) in [("NOTES", notes), ("EXIT STATUS", codes)] {
         writeln!(page, ".SH \"{title}\"\n.nf\n{}\n.fi", verbatim(text.trim_matches('\n')))?;
     }
-    man.render_version_section(page)
+    Ok(())
 }
 
 /// A text that `man` shows as it is.

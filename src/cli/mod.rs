@@ -59,7 +59,7 @@ use toposlam_model::check::DEFAULT_STATE_BUDGET;
 use toposlam_model::marker::{self, MARKERS, Marker};
 use toposlam_robot::simulator::MotionNoise;
 
-use outcome::{Failure, Outcome};
+use outcome::{CliError, Outcome};
 use report_output::ReportOutput;
 use terminal::TerminalOptions;
 
@@ -138,11 +138,11 @@ impl ChoicesOption {
     ///
     /// # Errors
     /// Returns an error if there is a budget for the default choices.
-    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, Failure> {
+    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, CliError> {
         match (self, max_states) {
             (Self::Default, None) => Ok(RunChoices::Default),
             (Self::Default, Some(_)) => {
-                Err(Failure::at("--max-states", "this needs --choices all"))
+                Err(CliError::at("--max-states", "this needs --choices all"))
             }
             (Self::All, budget) => {
                 Ok(RunChoices::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
@@ -170,18 +170,18 @@ fn noise(text: &str) -> Result<f64, String> {
 }
 
 /// Sets the number of threads, if one is given.
-fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
+fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
     let Some(threads) = threads else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-    pool.build_global().map_err(|error| Failure::at("--threads", error))
+    pool.build_global().map_err(|error| CliError::at("--threads", error))
 }
 
 /// The error of `--ros` in a program without the feature `ros1`.
 #[cfg(not(feature = "ros1"))]
-fn without_ros() -> Failure {
+fn without_ros() -> CliError {
     let cause = "this program was built without ROS 1; to add it, run \
                  cargo build --release --features ros1";
-    Failure::at("--ros", cause)
+    CliError::at("--ros", cause)
 }
 
 /// Runs the verb on the command line.
@@ -211,7 +211,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Man(verb)) => verb.run(&mut out),
         None => print_help(&mut out),
     };
-    match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {
+    match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(CliError::from)) {
         Ok(outcome) => outcome.into(),
         Err(failure) => failure.report(),
     }
@@ -228,7 +228,7 @@ fn parse() -> CommandLine {
 }
 
 /// Prints the help of `toposlam` without a verb.
-fn print_help(out: &mut dyn Write) -> Result<Outcome, Failure> {
+fn print_help(out: &mut dyn Write) -> Result<Outcome, CliError> {
     write!(out, "{}", CommandLine::command().render_help())?;
     Ok(Outcome::Holds)
 }

@@ -16,7 +16,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
 use super::{
-    Failure, output, report_output, terminal,
+    CliError, output, report_output, terminal,
     text::{duration_text, grouped, rough},
 };
 
@@ -63,13 +63,13 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Shows a bar for work on cases.
-    pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, Failure> {
+    pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, CliError> {
         watch_for_interrupt()?;
         let bar = if terminal::has_colors() { "{bar:12.cyan/blue}" } else { "{bar:12}" };
         // The message is cut at the end of the line.
         let template = format!("{{prefix}} {bar} {{percent:>3}} %  {{wide_msg}}");
         let style = ProgressStyle::with_template(&template)
-            .map_err(|error| Failure::at("progress bar", error))?;
+            .map_err(|error| CliError::at("progress bar", error))?;
         // Without a length, no part is done; with length 0, all would be.
         let bar = ProgressBar::no_length().with_style(style).with_prefix(shortened(work));
         if terminal::is_quiet() {
@@ -80,10 +80,10 @@ impl Progress {
     }
 
     /// Shows a bar for work of unknown length.
-    pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, Failure> {
+    pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, CliError> {
         let progress = Self::new(work, unit)?;
         let style = ProgressStyle::with_template("{prefix} {spinner}  {wide_msg}")
-            .map_err(|error| Failure::at("progress bar", error))?;
+            .map_err(|error| CliError::at("progress bar", error))?;
         Ok(Self { bar: progress.bar.with_style(style), ..progress })
     }
 
@@ -162,7 +162,7 @@ fn message(seconds: f64, parts: [u64; 2], cases: u64, unit: &str) -> String {
 }
 
 /// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed.
-fn watch_for_interrupt() -> Result<(), Failure> {
+fn watch_for_interrupt() -> Result<(), CliError> {
     static SET: Once = Once::new();
     let mut result = Ok(());
     SET.call_once(|| {
@@ -185,7 +185,7 @@ fn watch_for_interrupt() -> Result<(), Failure> {
             });
         });
     });
-    result.map_err(|error| Failure::at("Ctrl-C", error))
+    result.map_err(|error| CliError::at("Ctrl-C", error))
 }
 
 #[cfg(test)]

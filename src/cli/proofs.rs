@@ -14,7 +14,7 @@ use clap::ValueEnum;
 use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     progress::Progress,
@@ -111,7 +111,7 @@ impl Engine {
 }
 
 impl ProofsArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if self.run.is_empty() || self.choices.is_some() {
             self.ci.check_unused("this needs --run, without --choices")?;
         }
@@ -125,11 +125,11 @@ impl ProofsArguments {
         lemmas: &[&Lemma],
         theorems: &[Theorem],
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let is_wanted = |theorem: &&Theorem| self.run.iter().any(|name| name == theorem.name);
         if let Some(Theorem { name, .. }) = theorems.iter().find(is_wanted) {
             let cause = "is proved in Coq, for every world; run proofs/coq/check to check it";
-            return Err(Failure::at("--run", format!("{name} {cause}")));
+            return Err(CliError::at("--run", format!("{name} {cause}")));
         }
         match (&self.choices, self.run.as_slice()) {
             (Some(choices), [name]) if name != ALL => {
@@ -139,7 +139,7 @@ impl ProofsArguments {
             }
             (Some(_), _) => {
                 let cause = "choices make a case of one lemma; choose it with one --run";
-                Err(Failure::at("--choices", cause))
+                Err(CliError::at("--choices", cause))
             }
             (None, []) => {
                 listing::list(lemmas, theorems, self.json, out)?;
@@ -150,7 +150,7 @@ impl ProofsArguments {
     }
 
     /// Checks lemmas, each in every case within its bound.
-    fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut report = ProofsReport::new(out, self.json, lemmas);
         let mut results = Vec::new();
         let mut left = lemmas.iter();
@@ -192,7 +192,7 @@ fn ci_case(lemma: &Lemma, end: &CheckEnd) -> CiCase {
 const ALL: &str = "all";
 
 /// The lemmas of these names or parts of names, each once.
-fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, Failure> {
+fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, CliError> {
     let mut selected: Vec<&Lemma> = Vec::new();
     for name in names {
         let found = if name == ALL { lemmas.to_vec() } else { vec![find_lemma(lemmas, name)?] };
@@ -206,12 +206,12 @@ fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lem
 }
 
 /// The lemma of this name, or else the only one whose name contains it.
-fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
+fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, CliError> {
     if let Some(lemma) = lemmas.iter().find(|lemma| lemma.name == name) {
         return Ok(lemma);
     }
     if name.is_empty() {
-        return Err(Failure::at("--run", "the name is empty"));
+        return Err(CliError::at("--run", "the name is empty"));
     }
     let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
@@ -220,7 +220,7 @@ fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure
         several => (format!("`{name}` is part of several names"), several),
     };
     let lines: Vec<_> = listed.iter().map(|lemma| lemma.name).collect();
-    Err(Failure::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
+    Err(CliError::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
 /// A number of cases.

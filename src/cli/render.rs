@@ -12,7 +12,7 @@ use toposlam_robot::simulator::{
 use toposlam_vision::camera::Camera;
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{Appearance, ImageSize},
     exit_codes::help_end,
     input, output,
@@ -54,7 +54,7 @@ pub(super) struct RenderArguments {
 }
 
 impl RenderArguments {
-    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, CliError> {
         output::check_place(&self.out, &["png", "jpg", "jpeg"])?;
         if let Some(path) = &self.labels {
             output::check_place(path, &["png"])?;
@@ -68,7 +68,7 @@ impl RenderArguments {
         let building = Building::new(plan, self.appearance.look, marker, &effects, self.seed);
         if !building.has_floor(pose.position) {
             let [x, y] = pose.position;
-            return Err(Failure::at("--pose", format!("there is no floor at {x},{y}")));
+            return Err(CliError::at("--pose", format!("there is no floor at {x},{y}")));
         }
         let rig = Rig::new(&camera);
         let picture = render(&rig, &building, pose, &effects, self.seed);
@@ -87,7 +87,7 @@ impl RenderArguments {
         Ok(Outcome::Holds)
     }
 
-    fn camera(&self) -> Result<Camera, Failure> {
+    fn camera(&self) -> Result<Camera, CliError> {
         let camera = match &self.calibration {
             Some(path) => input::read_camera(path)?,
             None => Camera::superscout(),
@@ -99,12 +99,12 @@ impl RenderArguments {
     }
 
     /// The dart along which the marker points.
-    fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, Failure> {
+    fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, CliError> {
         let graph = plan.graph();
         let at_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
         start
             .or_else(|| graph.darts().find(at_l))
-            .ok_or_else(|| Failure::in_file(&self.plan, "it has neither a start nor an L"))
+            .ok_or_else(|| CliError::in_file(&self.plan, "it has neither a start nor an L"))
     }
 }
 

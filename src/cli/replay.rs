@@ -10,7 +10,7 @@ use toposlam_model::{
 use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::help_end,
     json::{TruncatedLine, print_line},
     open_log::{LogOptions, OpenLog},
@@ -83,7 +83,7 @@ struct DifferenceJson {
 }
 
 impl ReplayArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
@@ -94,7 +94,7 @@ impl ReplayArguments {
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
             ReplayError::Calibration(error) => opened.wrong_calibration(&self.log, &error),
-            error => Failure::in_file(&self.log, error),
+            error => CliError::in_file(&self.log, error),
         })?;
         if self.json {
             print_line(out, "replay", &self.line(&opened, &replay, seconds))?;
@@ -146,7 +146,7 @@ impl ReplayArguments {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), CliError> {
         let map = replay.exploration.map();
         let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
         let comparison = &replay.comparison;

@@ -12,7 +12,7 @@ use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::help_end,
     input,
     json::print_line,
@@ -73,7 +73,7 @@ struct Line {
 }
 
 impl SenseArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;
         }
@@ -106,7 +106,7 @@ impl SenseArguments {
         sensor: &mut Sensor,
         names: &[OsString],
         out: &mut dyn Write,
-    ) -> Result<SeveralInputs, Failure> {
+    ) -> Result<SeveralInputs, CliError> {
         let mut inputs = SeveralInputs::new();
         for (path, name) in self.images.iter().zip(names) {
             let sensed = self.sense(camera, sensor, path, name);
@@ -133,9 +133,9 @@ impl SenseArguments {
         sensor: &mut Sensor,
         path: &Path,
         name: &OsString,
-    ) -> Result<Scene, Failure> {
+    ) -> Result<Scene, CliError> {
         let image = picture_file::read(path, camera.image)?;
-        let wrong = |error| Failure::in_file(path, error);
+        let wrong = |error| CliError::in_file(path, error);
         let Some(folder) = &self.stages else { return sensor.sense(&image).map_err(wrong) };
         let (scene, stages) = annotate::stages(sensor, &image).map_err(wrong)?;
         for (stage, picture) in &stages {
@@ -148,7 +148,7 @@ impl SenseArguments {
 }
 
 /// The names of the images without their endings. The pictures of their stages start with them.
-fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failure> {
+fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliError> {
     let mut names: BTreeMap<OsString, &Path> = BTreeMap::new();
     let name = |path: &PathBuf| input::stem(path);
     for path in images {
@@ -157,7 +157,7 @@ fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failur
         {
             let cause =
                 format!("its pictures would have the same names as those of {}", other.display());
-            return Err(Failure::in_file(path, cause));
+            return Err(CliError::in_file(path, cause));
         }
     }
     Ok(images.iter().map(name).collect())

@@ -30,7 +30,7 @@ use toposlam_robot::{
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{Appearance, ImageSize},
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
@@ -132,7 +132,7 @@ struct Simulation {
 }
 
 impl SimulateArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         #[cfg(not(feature = "ros1"))]
         if self.ros.is_some() {
             return Err(super::without_ros());
@@ -177,7 +177,7 @@ impl SimulateArguments {
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
-    fn start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, Failure> {
+    fn start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, CliError> {
         let facing = input::start_of(world, self.start.as_deref())?;
         let nearest = feasible::nearest_start(plan, facing).filter(|_| self.start.is_none());
         let Some(nearest) = nearest else { return Ok(facing) };
@@ -189,7 +189,7 @@ impl SimulateArguments {
         Ok(nearest)
     }
 
-    fn check_places(&self) -> Result<(), Failure> {
+    fn check_places(&self) -> Result<(), CliError> {
         let places: [(&Option<PathBuf>, &[&str]); 3] =
             [(&self.log, &["mcap"]), (&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
         for (path, endings) in places {
@@ -207,7 +207,7 @@ impl SimulateArguments {
         }
     }
 
-    fn camera(&self) -> Result<Camera, Failure> {
+    fn camera(&self) -> Result<Camera, CliError> {
         Ok(match (&self.calibration, self.size) {
             (Some(path), None) => input::read_camera(path)?,
             (Some(path), Some(size)) => input::read_camera(path)?.sized(size.pixels()),
@@ -215,7 +215,7 @@ impl SimulateArguments {
         })
     }
 
-    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, Failure> {
+    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, CliError> {
         let look = self.appearance.look;
         if let Some(path) = &self.colours {
             return Ok(LearnedSensors::with_colours(camera, look, input::read_colours(path)?));
@@ -225,7 +225,7 @@ impl SimulateArguments {
         progress.finish();
         eyes.map_err(|error| match error {
             LearningError::Interrupted(stopped) => stopped.into(),
-            error => Failure::at("--look", error),
+            error => CliError::at("--look", error),
         })
     }
 
@@ -238,7 +238,7 @@ impl SimulateArguments {
         pictures: Pictures,
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let Simulation { world, plan, facing, .. } = simulation;
         let progress = Progress::endless("exploring", "pictures")?;
         // On a terminal the story shows how far the run is.
@@ -277,7 +277,7 @@ impl SimulateArguments {
         Ok(result.outcome())
     }
 
-    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), Failure> {
+    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,

@@ -30,7 +30,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
-    sync::Mutex,
+    sync::{Mutex, PoisonError},
 };
 
 use serde_json::Value;
@@ -63,7 +63,7 @@ fn check_exit_code(arguments: &[OsString], output: &Output) {
     if code == 2 || verb.iter().any(|word| word.to_string_lossy().starts_with('-')) {
         return;
     }
-    let mut known = KNOWN.lock().unwrap();
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let codes = known.entry(verb.clone()).or_insert_with(|| {
         let help = toposlam().args(&verb).arg("--help").output().unwrap();
         exit_codes(&stdout(&help)).into_keys().collect()

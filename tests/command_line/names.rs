@@ -91,12 +91,12 @@ fn the_pages_and_reports_of_a_run_escape_names() {
     let [log, page, svg, walk, report] =
         ["東.mcap", "run.html", "run.svg", "walk.html", "conform.html"].map(file);
     let files = ["--log", &log, "--html", &page, "--svg", &svg];
-    stdout_of([&["simulate", &plan, "--by-scene", "--start", "a b:東口"], &files[..]].concat());
+    stdout_of([&["simulate", &plan, "--by-scene", "--start", "東口:a b"], &files[..]].concat());
     stdout_of(["compare", &plan, "worlds/shape-6.toml", "--html", &walk]);
     let [junit, sarif] = ["j.xml", "s.sarif"].map(file);
     let reports = ["--html", &report, "--junit", &junit, "--sarif", &sarif];
     let text = stdout_of([&["conform", &log, "--world", &plan], &reports[..]].concat());
-    assert!(text.contains("from a b:東口"), "{text}");
+    assert!(text.contains("from 東口:a b"), "{text}");
     for page in [&page, &walk, &report, &svg] {
         let text = fs::read_to_string(page).unwrap();
         assert!(!text.contains("<b>&") && !text.contains("<i>&"), "{page}");

@@ -10,7 +10,7 @@ use toposlam_model::{
 };
 
 use crate::cli::{
-    Failure, Outcome, RunChoices,
+    CliError, Outcome, RunChoices,
     ci_report::CiCase,
     json::print_line,
     text::{grouped, print_hanging, print_paragraph},
@@ -113,7 +113,7 @@ impl<'o> CheckReport<'o> {
     }
 
     /// Prints the result for one number of edges.
-    pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), Failure> {
+    pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), CliError> {
         if self.json {
             let line = Line::new(size, self.subject, self.choice);
             print_line(self.out, "size", &line)?;
@@ -125,7 +125,7 @@ impl<'o> CheckReport<'o> {
         Ok(())
     }
 
-    fn header(&mut self, size: &SizeResult) -> Result<(), Failure> {
+    fn header(&mut self, size: &SizeResult) -> Result<(), CliError> {
         let AlgorithmInfo { algorithm, marker, order } = self.subject;
         let head = format!("{algorithm}, {marker} marker, {}", size.worlds());
         print_paragraph(self.out, &head)?;
@@ -143,7 +143,7 @@ impl<'o> CheckReport<'o> {
         Ok(())
     }
 
-    fn row(&mut self, size: &SizeResult) -> Result<(), Failure> {
+    fn row(&mut self, size: &SizeResult) -> Result<(), CliError> {
         let &SizeResult { edges, tally, .. } = size;
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
@@ -186,7 +186,7 @@ impl<'o> CheckReport<'o> {
     }
 
     /// Prints the verdict and returns the outcome.
-    pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
+    pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, CliError> {
         let (outcome, verdict) = verdict(&self.total);
         let Tally { starts, mapped, over_budget, over_memory, .. } = self.total;
         if self.json {

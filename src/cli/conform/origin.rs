@@ -5,7 +5,7 @@ use std::{env, fmt::Write as _, io, path::Path};
 use sha2::{Digest, Sha256};
 use toposlam::report::{ReportOrigin, SourceFile};
 
-use super::Failure;
+use super::CliError;
 use crate::cli::{input, text::quoted, version};
 
 /// This version, and the command line of this process.
@@ -16,12 +16,12 @@ pub(super) fn origin() -> ReportOrigin {
 }
 
 /// A log and the world in which it was checked, with their hashes.
-pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile>, Failure> {
+pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile>, CliError> {
     let files = [("log", Some(log)), ("world", world)];
     let files = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
     files
         .map(|(role, path)| {
-            let sha256 = sha256(path).map_err(|error| Failure::in_file(path, error))?;
+            let sha256 = sha256(path).map_err(|error| CliError::in_file(path, error))?;
             Ok(SourceFile { role, path: path.display().to_string(), sha256 })
         })
         .collect()

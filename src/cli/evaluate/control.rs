@@ -10,7 +10,7 @@ use toposlam_robot::evaluation::traversals::{
 
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
     progress::Progress,
@@ -49,7 +49,7 @@ pub(super) struct EvaluateControlArguments {
 }
 
 impl EvaluateControlArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.robots.threads)?;
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
@@ -80,7 +80,7 @@ impl EvaluateControlArguments {
         traversals: &TraversalSampler,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         let doors = grouped(traversals.cases() as u128);
         let plans = counted(traversals.plans(), "floor plan");
         writeln!(out, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
@@ -110,7 +110,7 @@ impl EvaluateControlArguments {
         traversals: &TraversalSampler,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
             let [junction, from] = junctions(traversal);
             let line = json!({

@@ -11,7 +11,7 @@ use toposlam_robot::{
 
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
     progress::Progress,
@@ -64,7 +64,7 @@ pub(super) struct EvaluateRunsArguments {
 const MOST_WITH_IMAGES: usize = 12;
 
 impl EvaluateRunsArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.robots.threads)?;
         let sensors = self.robots.sensors()?;
         let (random, most) = match sensors {
@@ -112,7 +112,7 @@ impl EvaluateRunsArguments {
         judged: &[JudgedRun],
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for run in
             judged.iter().filter(|run| !self.faults || matches!(run.ending, RunOutcome::Wrong(_)))
         {
@@ -155,7 +155,7 @@ impl EvaluateRunsArguments {
         violations: usize,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for run in judged {
             let fault = run.case.config.faults.first();
             let line = json!({

@@ -29,7 +29,7 @@ use super::{
     report::{EvaluationHeader, Printer},
 };
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{EffectsChoice, ImageSize, looks},
     exit_codes::help_end,
     input, output,
@@ -105,7 +105,7 @@ pub(super) struct EvaluateVisionArguments {
 }
 
 impl EvaluateVisionArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
         if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
@@ -117,7 +117,7 @@ impl EvaluateVisionArguments {
         }
     }
 
-    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let begun = Instant::now();
         let calibrations = self.calibrations();
         let judge = judge(views, calibrations)?;
@@ -160,7 +160,7 @@ impl EvaluateVisionArguments {
         views: &ViewSampler,
         visits: u64,
         calibration: Calibration,
-    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), Failure> {
+    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), CliError> {
         let calibrated = match calibration {
             Calibration::Right => "",
             Calibration::Wrong => ", badly calibrated",
@@ -181,7 +181,7 @@ impl EvaluateVisionArguments {
         views: &ViewSampler,
         number: u64,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let view = views.view(number).map_err(unmeasured)?;
         // Learn only the colours that this view needs.
         let views =
@@ -211,7 +211,7 @@ impl EvaluateVisionArguments {
     }
 
     /// The sampler of the views.
-    fn source(&self) -> Result<ViewSampler, Failure> {
+    fn source(&self) -> Result<ViewSampler, CliError> {
         let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
         Ok(ViewSampler {
             seed: self.seed,
@@ -230,7 +230,7 @@ impl EvaluateVisionArguments {
     }
 }
 
-fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Failure> {
+fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, CliError> {
     let progress = Progress::new("learning colours", "looks")?;
     let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
     progress.finish();
@@ -241,20 +241,20 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Fai
 }
 
 /// The failure if the colours were not learned.
-pub(super) fn unlearned(error: LearningError) -> Failure {
+pub(super) fn unlearned(error: LearningError) -> CliError {
     match error {
         LearningError::Interrupted(stopped) => stopped.into(),
         error => unmeasured(error),
     }
 }
 
-pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {
+pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), CliError> {
     let world = input::read_world(path)?;
     let plan = input::floor_plan(path, &world)?.clone();
     Ok((world.name, Arc::new(plan)))
 }
 
 /// A failure that is not the user's.
-pub(super) fn unmeasured(error: impl std::fmt::Display) -> Failure {
-    Failure::at("evaluate", error)
+pub(super) fn unmeasured(error: impl std::fmt::Display) -> CliError {
+    CliError::at("evaluate", error)
 }

@@ -11,7 +11,7 @@ use toposlam_model::{
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{Failure, MappingMarker, Outcome};
+use super::{CliError, MappingMarker, Outcome};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
@@ -90,7 +90,7 @@ impl ExploreResult<'_> {
     }
 
     /// Prints the rest of the object that the run began with its doors.
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let map = self.journey.map();
         let rest = Rest {
             moves: self.journey.moves(),
@@ -116,7 +116,7 @@ impl ExploreResult<'_> {
     }
 
     /// Prints the result with the names of at most so many vertices.
-    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), CliError> {
         writeln!(out)?;
         match &self.result {
             Err(flaw) => {

@@ -13,7 +13,7 @@ use super::{
     check::{CheckEnd, LemmaCheck},
     lemma_case::{LemmaCase, print_head},
 };
-use crate::cli::{Failure, Outcome, json::print_line, text::print_hanging};
+use crate::cli::{CliError, Outcome, json::print_line, text::print_hanging};
 
 /// Prints the result of each lemma when it is there.
 pub(super) struct ProofsReport<'o> {
@@ -51,7 +51,7 @@ impl<'o> ProofsReport<'o> {
     }
 
     /// Prints the result of one lemma.
-    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), Failure> {
+    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), CliError> {
         if self.json {
             print_check(self.out, lemma, &checked)?;
         } else {
@@ -88,7 +88,7 @@ impl<'o> ProofsReport<'o> {
 
     /// Prints the lemmas that fail and the verdict, and returns the outcome. A check does not hold if it is
     /// empty or interrupted.
-    pub(super) fn verdict(self) -> Result<Outcome, Failure> {
+    pub(super) fn verdict(self) -> Result<Outcome, CliError> {
         let Self { lemmas, held, .. } = self;
         let not_checked = lemmas - self.checked;
         let (outcome, verdict) = match () {
@@ -181,7 +181,7 @@ struct Line<'a> {
     interrupted: bool,
 }
 
-fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
+fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), CliError> {
     let LemmaCheck { end, seconds } = checked;
     let failed = match end {
         CheckEnd::Fails(failed) => Some(failed),

@@ -19,7 +19,7 @@ use toposlam_proofs::{
 use super::*;
 
 /// Runs the verb on these lemmas.
-fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, Failure>, String) {
+fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, CliError>, String) {
     let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
     let matches = command.try_get_matches_from(arguments).unwrap();
     let arguments = ProofsArguments::from_arg_matches(&matches).unwrap();
@@ -293,11 +293,13 @@ fn a_unique_part_of_a_name_is_enough() {
         ("lo", "`lo` is part of several names:\n  low\n  lowest"),
         ("law", "there is no lemma `law`; there are:\n  low\n  lowest\n  high"),
     ] {
-        let (Err(Failure::Input(message)), text) = run(&lemmas, &["--run", part]) else { panic!() };
+        let (Err(CliError::Input(message)), text) = run(&lemmas, &["--run", part]) else {
+            panic!()
+        };
         assert_eq!((message, text), (format!("--run: {cause}"), String::new()));
     }
     let sampled = ["--run", "high", "--choices", "0", "--engine", "sampled"];
-    let (Err(Failure::Input(message)), _) = run(&lemmas, &sampled) else { panic!() };
+    let (Err(CliError::Input(message)), _) = run(&lemmas, &sampled) else { panic!() };
     assert_eq!(message, "--engine: high is not sampled");
 }
 
@@ -354,7 +356,7 @@ fn a_theorem_is_listed_but_not_checked() {
     let last = "\n1 lemma, 4 cases within bounds; 1 theorem for every world\n";
     assert!(text.ends_with(last), "{text}");
     for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
-        let (Err(Failure::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
+        let (Err(CliError::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
         let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
         assert_eq!((message, text), (format!("--run: round {how}"), String::new()));
     }

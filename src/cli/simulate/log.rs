@@ -11,7 +11,7 @@ use toposlam_vision::{
     colour::ColourModel,
 };
 
-use super::{Failure, SimulateArguments, Simulation};
+use super::{CliError, SimulateArguments, Simulation};
 use crate::cli::{output, text::quoted, version};
 
 impl SimulateArguments {
@@ -20,7 +20,7 @@ impl SimulateArguments {
         &self,
         simulation: &Simulation,
         eyes: Option<(&Camera, &ColourModel)>,
-    ) -> Result<Option<Recorder<File>>, Failure> {
+    ) -> Result<Option<Recorder<File>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let run = messages::Run {
             stamp: messages::Stamp::default(),
@@ -40,9 +40,9 @@ impl SimulateArguments {
     }
 
     /// The failure if the log cannot be written.
-    pub(super) fn unwritten(&self, error: &LogWriteError) -> Failure {
+    pub(super) fn unwritten(&self, error: &LogWriteError) -> CliError {
         let path = self.log.clone().unwrap_or_default();
-        Failure::in_file(&path, format!("cannot be written: {error}"))
+        CliError::in_file(&path, format!("cannot be written: {error}"))
     }
 
     /// The command that repeats this run, without the options for its outputs.
