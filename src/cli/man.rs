@@ -92,8 +92,8 @@ fn render(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     }
     let end = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let (notes, codes) = end.split_once(exit_codes::TITLE).unwrap_or((&end, ""));
-    for (title, text) in [("NOTES", notes), ("EXIT STATUS", codes)] {
-        writeln!(page, ".SH \"{title}\"\n.nf\n{}\n.fi", verbatim(text.trim_matches('\n')))?;
+    for (title, text) in [("NOTES", notes), ("\"EXIT STATUS\"", codes)] {
+        writeln!(page, ".SH {title}\n.nf\n{}\n.fi", verbatim(text.trim_matches('\n')))?;
     }
     Ok(())
 }
