@@ -89,7 +89,7 @@ enum Total {
 
 /// The search for the least total.
 #[derive(Default)]
-pub struct OptimumSearch {
+pub(crate) struct OptimumSearch {
     starts: Vec<PossibleStart>,
     known: HashMap<Vec<u32>, Total>,
 }
@@ -99,7 +99,7 @@ impl OptimumSearch {
     ///
     /// # Errors
     /// Returns an error if they cannot be enumerated.
-    pub fn new(class: Class, edges: usize) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(class: Class, edges: usize) -> Result<Self, Box<dyn Error>> {
         let mut starts = Vec::new();
         let mut visit = |found: EnumeratedGraph| {
             starts.push(PossibleStart::new(found.graph));
@@ -110,14 +110,12 @@ impl OptimumSearch {
     }
 
     /// The number of starts.
-    #[must_use]
-    pub fn start_count(&self) -> usize {
+    pub(crate) fn start_count(&self) -> usize {
         self.starts.len()
     }
 
     /// The number of folded trails and poses for which a result was kept.
-    #[must_use]
-    pub fn belief_count(&self) -> usize {
+    pub(crate) fn belief_count(&self) -> usize {
         self.known.len()
     }
 
@@ -125,7 +123,7 @@ impl OptimumSearch {
     ///
     /// # Errors
     /// Returns an error if a walk in a world contradicts itself, which would be a fault of the folding.
-    pub fn least_total(&mut self) -> Result<u64, Box<dyn Error>> {
+    pub(crate) fn least_total(&mut self) -> Result<u64, Box<dyn Error>> {
         let everywhere = (0..self.starts.len())
             .map(|start| Candidate { start, pose: FACING, traversed: 0 })
             .collect();

@@ -229,7 +229,25 @@ fn without_a_flaw_every_start_is_mapped_right() {
 fn every_broken_variant_is_caught_on_a_small_start() {
     let caught =
         BROKEN.map(|broken| of_explorer(|| Folding::broken(broken), Class::Multigraph, 4));
-    let expected: [(usize, Vec<u32>, String); 5] =
-        std::array::from_fn(|_| (0, vec![new(1)], String::new()));
+    let out_of_moves = |moves: u64| {
+        format!("after {moves} moves: no more than {moves} moves are allowed")
+    };
+    let expected = [
+        (1, vec![new(2), 1], out_of_moves(408)),
+        (
+            2,
+            vec![new(3), new(1), 2],
+            "after 1 moves: the explorer gave up: the marker is here".to_owned(),
+        ),
+        (3, vec![new(1), new(5), 3, 5], out_of_moves(496)),
+        (
+            3,
+            vec![new(1), new(5), 5, 4],
+            "after 3 moves: the explorer gave up: the junction after 2 moves would be turned onto \
+             itself"
+                .to_owned(),
+        ),
+        (2, vec![new(1), new(3), 3], out_of_moves(448)),
+    ];
     assert_eq!(caught, expected);
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{fs, path::Path};
+use std::{fs, ops::RangeInclusive, path::Path};
 
 use toposlam_model::{
     check::{
@@ -173,27 +173,26 @@ fn folded(class: Class, edges: usize) -> String {
     )
 }
 
-/// The rows of the table on folding for these sizes, as printed and as computed, are the same.
-fn check_folded(sizes: impl Fn(Class, [usize; 3]) -> std::ops::RangeInclusive<usize>) {
+/// The rows of the table on folding for these sizes are printed as they are computed.
+fn check_folded(sizes: impl Fn([usize; 3]) -> RangeInclusive<usize>) {
     let printed = printed("docs/folding.md", "What every small start costs");
     let count: usize = FOLDED.iter().map(|(_, [first, _, last])| last + 1 - first).sum();
     assert_eq!(printed.len(), count);
-    for (class, bounds) in FOLDED {
-        for edges in sizes(class, bounds) {
-            let row = folded(class, edges);
-            assert!(printed.contains(&row), "{row}");
-        }
-    }
+    let rows = FOLDED.iter().flat_map(|&(class, bounds)| {
+        sizes(bounds).map(move |edges| folded(class, edges))
+    });
+    let wrong: Vec<String> = rows.filter(|row| !printed.contains(row)).collect();
+    assert!(wrong.is_empty(), "these rows are right:\n{}", wrong.join("\n"));
 }
 
 #[test]
 fn the_table_on_folding_is_true() {
-    check_folded(|_, [first, middle, _]| first..=middle);
+    check_folded(|[first, middle, _]| first..=middle);
 }
 
 /// `docs/folding.md` has the command that runs it.
 #[test]
 #[ignore = "it takes a minute"]
 fn the_largest_sizes_in_the_table_on_folding_are_true() {
-    check_folded(|_, [_, middle, last]| middle + 1..=last);
+    check_folded(|[_, middle, last]| middle + 1..=last);
 }

@@ -41,7 +41,8 @@ impl<'g> CertificateWalk<'g> {
             None => Vec::new(),
         };
         for &dart in &last_way {
-            self.on_last_way[self.behind(dart).at()] = true;
+            let vertex = self.behind(dart);
+            self.on_last_way[vertex.at()] = true;
         }
         self.visit(self.tree.root());
         for (one, other) in self.graph.edges() {

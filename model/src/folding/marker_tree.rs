@@ -64,7 +64,8 @@ impl MarkerTree {
                 self.hanging[parent.at()] += 1;
             }
         }
-        self.hanging[self.root().at()] = 0;
+        let root = self.root();
+        self.hanging[root.at()] = 0;
         for next in 1..self.order.len() {
             let vertex = self.order[next];
             let above = self.hanging[self.parent(graph, vertex).at()];
