@@ -17,7 +17,7 @@ use std::{
 };
 
 use toposlam_model::{
-    check::{FoldingExplorer, Shard, Sweep},
+    check::{MappingAlgorithm, Shard, Sweep},
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::{Class, Each, EnumeratedGraph, Enumeration},
     folding::FoldedTrail,
@@ -166,9 +166,13 @@ impl OptimumSearch {
             best = best.min(total);
             bound = bound.min(total);
         }
-        let total = if best < limit { Total::Exactly(best) } else { Total::AtLeast(bound) };
+        let (total, found) = if best < limit {
+            (Total::Exactly(best), best)
+        } else {
+            (Total::AtLeast(bound), bound)
+        };
         self.known.insert(belief.form.clone(), total);
-        Ok(best.max(if best < limit { 0 } else { bound }))
+        Ok(found)
     }
 
     /// For each open dart, a bound of the total if it is taken next, and what the robot may know then.
@@ -314,15 +318,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     for edges in 1..=most {
         let mut search = OptimumSearch::new(class, edges)?;
         let best = search.least_total()?;
-        let folding = Sweep::new(class, edges, Shard::WHOLE)?.run_explorers(FoldingExplorer::default, &());
+        let sweep = Sweep::new(class, edges, Shard::WHOLE)?;
+        let folding = MappingAlgorithm::Folding.sweep(&sweep, &());
         let mean = |total: u64| total as f64 / search.start_count() as f64;
+        let means = [best, folding.certificate_total, folding.moves_total].map(mean);
         println!(
             "{edges} edges, {} starts: at least {:.3} ({best} in all), certificate {:.3}, folding \
              explorer {:.3}; {} beliefs",
             search.start_count(),
-            mean(best),
-            mean(folding.certificate_total),
-            mean(folding.moves_total),
+            means[0],
+            means[1],
+            means[2],
             search.belief_count(),
         );
     }
