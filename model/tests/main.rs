@@ -4,6 +4,7 @@
 
 mod ambiguity;
 mod broken;
+mod broken_folding;
 mod broken_movable;
 mod check;
 mod contradictions;
@@ -15,6 +16,8 @@ mod figure_1;
 mod folding;
 mod markers;
 mod movable;
+mod optimum;
 mod perception;
+mod smallest_failure;
 mod verdicts;
 mod worlds;

@@ -1,5 +1,6 @@
 //! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
+mod certificate;
 mod doors_writer;
 mod result;
 pub(super) mod story;
@@ -25,6 +26,7 @@ use super::{
     ChoicesOption, CliError, Outcome, exit_codes::help_end, input, mapping_marker::MappingMarker,
     output, text::print_paragraph,
 };
+use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
 use story::{Story, StoryDetail, head};
@@ -48,6 +50,7 @@ Examples:
   toposlam explore worlds/shape-8.toml --choices all
   toposlam explore worlds/shape-8.toml --marker movable
   toposlam explore worlds/building-25.toml --summary
+  toposlam explore worlds/shape-6.toml --certificate
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
@@ -102,6 +105,10 @@ pub(super) struct ExploreArguments {
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
+    /// Print a shortest walk that proves the map of the world, and compare the run with it
+    #[arg(long)]
+    certificate: bool,
+
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
@@ -134,6 +141,9 @@ impl ExploreArguments {
         }
         if let Some(svg) = &self.svg {
             output::check_place(svg, &["svg"])?;
+        }
+        if self.certificate && self.marker != MappingMarker::Directional {
+            return Err(CliError::at("--certificate", "needs --marker directional"));
         }
         let choice = self.choices.with_budget(self.max_states)?;
         let chosen = self.marker.algorithm(choice)?;
@@ -176,6 +186,8 @@ impl ExploreArguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
+        let moves = result.is_ok().then(|| state.journey().moves());
+        let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
         let result = ExploreResult {
             world,
             facing,
@@ -184,6 +196,7 @@ impl ExploreArguments {
             move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
             carries: robot.carries(),
             result,
+            certificate,
             ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
         };
         if self.json {

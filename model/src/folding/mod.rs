@@ -19,12 +19,14 @@
 
 mod certificate;
 mod contradiction;
+mod marker_tree;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
 pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
+pub(crate) use marker_tree::MarkerTree;
 pub use trail::{ClosedTrail, FoldedTrail};
 
 use crate::percept::{Door, Percept};
