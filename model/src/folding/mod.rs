@@ -18,14 +18,17 @@
 //! markers a contradiction is still a proof, and its absence proves nothing.
 
 mod certificate;
+mod classes;
+mod closed;
 mod contradiction;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
+pub use closed::ClosedTrail;
 pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
-pub use trail::{ClosedTrail, FoldedTrail};
+pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept};
 

@@ -11,7 +11,7 @@ use toposlam_model::{
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{Failure, MappingMarker, Outcome};
+use super::{AlgorithmOption, Failure, MappingMarker, Outcome};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
@@ -26,6 +26,9 @@ struct Rest {
     /// The marker, unless it is the directional one.
     #[serde(skip_serializing_if = "Option::is_none")]
     marker: Option<&'static str>,
+    /// The algorithm that maps with the directional marker, unless it is Algorithm 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    algorithm: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(flatten)]
@@ -50,6 +53,7 @@ pub(super) struct ExploreResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) marker: MappingMarker,
+    pub(super) algorithm: AlgorithmOption,
     pub(super) journey: &'a Journey,
     /// The most moves that the algorithm may make in this world.
     pub(super) move_bound: u64,
@@ -100,6 +104,8 @@ impl ExploreResult<'_> {
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
             marker: (self.marker != MappingMarker::Directional).then(|| self.marker.name()),
+            algorithm: (self.algorithm != AlgorithmOption::Algorithm1)
+                .then(|| self.algorithm.directional().name()),
             error: self.error().map(ToString::to_string),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
@@ -195,6 +201,9 @@ fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
     print_paragraph(out, &text)?;
     let reached = match limit {
         None => None,
+        Some(ChoicesLimit::States(most)) if *within_rounds == 0 => {
+            Some(format!("The search stopped at --max-states {most}."))
+        }
         Some(ChoicesLimit::States(most)) => Some(format!(
             "The search stopped at --max-states {most}. That counts the states between rounds, at line \
              4, and the {} states within rounds, at line 8.",
