@@ -271,13 +271,18 @@ impl DartClasses {
         }
     }
 
-    /// The trail vertices that the latest union merged. Some occur more than once.
-    pub(super) fn merged(&self) -> impl Iterator<Item = u32> + '_ {
-        let merged = self.changes[self.before_union..].iter().filter_map(|change| match change {
-            Change::Child { child, root } => Some([*child, *root]),
-            _ => None,
-        });
-        merged.flatten()
+    /// The open darts of roots that the latest union identified with other darts, as they were numbered
+    /// before it, if they are not open any more or were identified with a dart of a larger class.
+    pub(super) fn identified(&self) -> impl Iterator<Item = u32> + '_ {
+        self.changes[self.before_union..].iter().flat_map(|change| {
+            let darts = match *change {
+                Change::Child { child, .. } => self.darts_of(child),
+                Change::Opposite { dart } => dart..dart + 1,
+                Change::Numbers { .. } | Change::Open { .. } => 0..0,
+            };
+            let is_child = matches!(change, Change::Child { .. });
+            darts.filter(move |&dart| !is_child || self.opposite[dart as usize] == OPEN)
+        })
     }
 
     /// Makes each trail vertex a root or the child of one. The unions so far cannot be undone any more.

@@ -115,10 +115,11 @@ impl FoldedTrail {
         computed
     }
 
-    /// The darts of all vertices that the latest [union](Self::unite) merged, as they were numbered before
-    /// it. Some occur more than once.
-    pub fn merged_darts(&self) -> impl Iterator<Item = Dart> + '_ {
-        self.classes.merged().flat_map(|vertex| self.classes.darts_of(vertex)).map(Dart)
+    /// The darts that were open before the latest [union](Self::unite) and are not open after it, with
+    /// their [opposites](Self::opposite) after it.
+    pub fn closed_darts(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
+        let identified = self.classes.identified().map(Dart);
+        identified.filter_map(|dart| Some((dart, self.opposite(dart)?)))
     }
 
     /// Gives numbers to the darts of a vertex, clockwise from a pose. Later unions keep them. Two

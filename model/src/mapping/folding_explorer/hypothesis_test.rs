@@ -1,6 +1,6 @@
 //! Tests of hypotheses: walks whose success confirms one.
 
-use std::mem;
+use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
 
 use super::{FoldingExploration, HypothesisTest, Pending};
 use crate::{embedded_graph::Dart, mapping::partial_map::START};
@@ -10,11 +10,11 @@ impl FoldingExploration {
     /// one cost it is that with the first hypothesis, and the first open dart of the trail.
     pub(super) fn cheapest_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
         self.list_tests(pending);
-        let mut tests = mem::take(&mut self.tests);
-        tests.sort_unstable_by_key(|test| (test.cost, test.hypothesis, test.open));
-        let found = tests.iter().find(|test| self.confirms(pending, test)).copied();
-        self.tests = tests;
-        found
+        let mut tests = BinaryHeap::from(mem::take(&mut self.tests));
+        let found =
+            iter::from_fn(|| tests.pop()).find(|Reverse(test)| self.confirms(pending, test));
+        self.tests = tests.into_vec();
+        found.map(|Reverse(test)| test)
     }
 
     /// Lists the walks that lead to the marker if a hypothesis about a place is true: to an open dart
@@ -31,20 +31,17 @@ impl FoldingExploration {
             let target = self.in_trail[hypothesis.at()];
             identified.clear();
             let united = self.trail.with_united(far, target, |united| {
-                let entry = |open| united.opposite(open).and_then(|far| united.number(far));
-                let with_entry = |open| entry(open).map(|entry| (open, Dart(entry)));
-                identified.extend(united.merged_darts().filter_map(with_entry));
+                let entry = |(open, far)| Some((open, Dart(united.number(far)?)));
+                identified.extend(united.closed_darts().filter_map(entry));
             });
             if united.is_err() {
                 self.hypotheses.refute(edge, hypothesis);
                 continue;
             }
             for &(open, entry) in &identified {
-                if self.trail.opposite(open).is_none() {
-                    let rest = self.to_marker.hops(self.map().vertex(entry)) as usize;
-                    let cost = self.from_robot.moves_to(&self.trail, open) + 1 + rest;
-                    tests.push(HypothesisTest { edge, hypothesis, cost, open, entry });
-                }
+                let rest = self.to_marker.hops(self.map().vertex(entry)) as usize;
+                let cost = self.from_robot.moves_to(&self.trail, open) + 1 + rest;
+                tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
             }
         }
         (self.tests, self.unexplored, self.identified) = (tests, all, identified);

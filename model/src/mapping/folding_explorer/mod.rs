@@ -17,6 +17,8 @@ mod steps;
 mod walk;
 mod ways;
 
+use std::cmp::Reverse;
+
 use super::{
     Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingError, Observer, PartialMap,
     tree::BreadthFirstTree,
@@ -39,17 +41,17 @@ pub enum FoldingStep {
     Test(HypothesisTest),
 }
 
-/// A walk that confirms a hypothesis if it ends at the marker as expected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A walk that confirms a hypothesis if it ends at the marker as expected. Less is made first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct HypothesisTest {
-    /// The dart of the map that leads to the pending place.
-    pub edge: Dart,
-    /// The dart of the map by which that is entered, if the hypothesis is true.
-    pub hypothesis: Dart,
     /// The moves to the marker.
     pub cost: usize,
+    /// The dart of the map by which the pending place is entered, if the hypothesis is true.
+    pub hypothesis: Dart,
     /// The open dart of the trail that is taken.
     open: Dart,
+    /// The dart of the map that leads to the pending place.
+    pub edge: Dart,
     /// The dart of the map by which the robot then comes in, if the hypothesis is true.
     entry: Dart,
 }
@@ -84,8 +86,8 @@ pub struct FoldingExploration {
     to_marker_is_current: bool,
     from_robot: Ways,
     /// Scratch: the tests of one pending place.
-    tests: Vec<HypothesisTest>,
-    /// Scratch: darts that a union identified with darts of the map.
+    tests: Vec<Reverse<HypothesisTest>>,
+    /// Scratch: open darts that a union closed, and the darts of the map at their other ends.
     identified: Vec<(Dart, Dart)>,
     /// Scratch: the darts on the way to somewhere known.
     way: Vec<Dart>,

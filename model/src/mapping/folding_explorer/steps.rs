@@ -1,6 +1,8 @@
 //! The choice of the next step.
 
-use super::{FoldingExploration, FoldingStep, Pending};
+use std::cmp::Reverse;
+
+use super::{FoldingExploration, FoldingStep, HypothesisTest, Pending};
 use crate::embedded_graph::Dart;
 
 /// How many times nearer an open dart of the map must be than the marker is by the cheapest test, to be
@@ -47,9 +49,10 @@ impl FoldingExploration {
                 match self.step_for(edge, place) {
                     Some(FoldingStep::Test(test)) => {
                         steps.push(FoldingStep::Test(test));
-                        let tied = self.tests.iter().filter(|tied| tied.cost == test.cost).copied();
-                        let tied: Vec<_> = tied.collect();
-                        for test in tied {
+                        let same = |tied: &&Reverse<HypothesisTest>| tied.0.cost == test.cost;
+                        let mut tied: Vec<_> = self.tests.iter().filter(same).copied().collect();
+                        tied.sort_unstable_by_key(|&Reverse(test)| test);
+                        for Reverse(test) in tied {
                             if place.is_some_and(|place| self.confirms(place, &test)) {
                                 steps.push(FoldingStep::Test(test));
                             }
