@@ -14,6 +14,7 @@ mod counts;
 mod explorers;
 mod figure_1;
 mod folding;
+mod folding_explorer;
 mod markers;
 mod movable;
 mod optimum;

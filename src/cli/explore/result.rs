@@ -12,7 +12,7 @@ use toposlam_model::{
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{CliError, MappingMarker, Outcome, certificate::CertificateOfStart};
+use super::{AlgorithmOption, CliError, MappingMarker, Outcome, certificate::CertificateOfStart};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
@@ -27,6 +27,9 @@ struct Rest<'a> {
     /// The marker, unless it is the directional one.
     #[serde(skip_serializing_if = "Option::is_none")]
     marker: Option<&'static str>,
+    /// The algorithm that maps with the directional marker, unless it is Algorithm 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    algorithm: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,6 +56,7 @@ pub(super) struct ExploreResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) marker: MappingMarker,
+    pub(super) algorithm: AlgorithmOption,
     pub(super) journey: &'a Journey,
     /// The most moves that the algorithm may make in this world.
     pub(super) move_bound: u64,
@@ -105,6 +109,8 @@ impl ExploreResult<'_> {
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
             marker: (self.marker != MappingMarker::Directional).then(|| self.marker.name()),
+            algorithm: (self.algorithm != AlgorithmOption::Algorithm1)
+                .then(|| self.algorithm.directional().name()),
             error: self.error().map(ToString::to_string),
             certificate: self.certificate.as_ref(),
             every_way: self.ways().map(|ways| EveryWayRest {
@@ -208,6 +214,9 @@ fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
     print_paragraph(out, &text)?;
     let reached = match limit {
         None => None,
+        Some(ChoicesLimit::States(most)) if *within_rounds == 0 => {
+            Some(format!("The search stopped at --max-states {most}."))
+        }
         Some(ChoicesLimit::States(most)) => Some(format!(
             "The search stopped at --max-states {most}. That counts the states between rounds, at line \
              4, and the {} states within rounds, at line 8.",
