@@ -7,12 +7,12 @@
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
+    folding::{WorldSearch, fold, smallest_world},
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
     trace::{
-        Trace, TraceClaim, TraceEvent, TraceEventKind, WorldSearch, anywhere, match_algorithm,
-        smallest,
+        Trace, TraceEvent, TraceEventKind, anywhere,
     },
     world::GraphWorld,
 };
@@ -72,8 +72,7 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
         },
     };
     let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     let world = Some(KnownWorld { graph: plan.graph(), states });
     let question = ConformConfig {
@@ -107,8 +106,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         }
     }
     let bytes = log.finish().unwrap();
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     let world = Some(KnownWorld { graph: plan.graph(), states });
     let question = ConformConfig {
@@ -133,8 +131,7 @@ fn smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let known = match_algorithm(&half, TraceClaim::Part, 1000).exploration.map().clone();
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
-    bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
+    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
+    let trail = fold(half.percepts(), half.doors()).unwrap();
+    bencher.bench_local(|| smallest_world(&trail, search, &()));
 }

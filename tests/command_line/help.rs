@@ -53,7 +53,6 @@ const VERBS: [(&str, &[&str]); 18] = [
             "--world",
             "--start",
             "--driver",
-            "--max-edges",
             "--max-steps",
             "--quirks",
             "--require-coverage",

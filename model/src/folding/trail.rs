@@ -200,6 +200,12 @@ impl FoldedTrail {
         self.moves
     }
 
+    /// The robot's pose at the start, as a dart of a root. There is one if anything was perceived.
+    #[must_use]
+    pub fn start(&self) -> Dart {
+        Dart(self.find(0))
+    }
+
     /// The robot's pose: the dart by which it came in, as a dart of a root.
     #[must_use]
     pub fn pose(&self) -> Dart {
@@ -234,6 +240,44 @@ impl FoldedTrail {
     #[must_use]
     pub fn open_count(&self) -> usize {
         self.open
+    }
+
+    /// For each vertex, in the order of the first visits, the dart by which the robot first came in. The doors
+    /// are those of the walk.
+    #[must_use]
+    pub fn first_entries(&self, doors: &[Door]) -> Vec<Dart> {
+        let mut entries = Vec::new();
+        let mut seen = vec![false; self.parent.len()];
+        let mut next = (self.classes > 0).then(|| self.start());
+        let mut doors = doors.iter();
+        while let Some(pose) = next {
+            if !std::mem::replace(&mut seen[self.vertex(pose)], true) {
+                entries.push(pose);
+            }
+            next = doors.next().and_then(|&door| self.opposite(self.behind(pose, door)));
+        }
+        entries
+    }
+
+    /// The open darts, as darts of roots.
+    pub fn open_darts(&self) -> impl Iterator<Item = Dart> + '_ {
+        let darts = self.vertices().flat_map(|first| self.darts_around(first));
+        darts.filter(|&dart| self.opposite(dart).is_none())
+    }
+
+    /// Whether no edge is a loop and no two edges join the same vertices.
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        let mut seen_from = vec![OPEN; self.parent.len()];
+        self.vertices().all(|first| {
+            let here = self.vertex(first);
+            seen_from[here] = first.0;
+            let mut far = self.darts_around(first).filter_map(|dart| self.opposite(dart));
+            far.all(|dart| {
+                let there = self.vertex(dart);
+                std::mem::replace(&mut seen_from[there], first.0) != first.0
+            })
+        })
     }
 
     /// Whether the walk determines its world: no dart is open, and the marker was seen.
@@ -301,8 +345,15 @@ impl FoldedTrail {
     /// perceived.
     #[must_use]
     pub fn closed(&self) -> Option<ClosedTrail> {
-        if self.classes == 0 {
-            return None;
+        (self.classes > 0).then(|| self.closed_by(&[]).0)
+    }
+
+    /// The folded trail as a world in which these pairs of open darts are edges, with a dead end behind each
+    /// other open dart; and the robot's pose in it at the start. At least one thing was perceived.
+    pub(super) fn closed_by(&self, edges: &[(Dart, Dart)]) -> (ClosedTrail, Dart) {
+        let mut joined = vec![OPEN; self.owner.len()];
+        for &(one, other) in edges {
+            (joined[one.at()], joined[other.at()]) = (other.0, one.0);
         }
         let mut graph = EmbeddedGraph::unfinished();
         let mut number = vec![OPEN; self.owner.len()];
@@ -314,12 +365,13 @@ impl FoldedTrail {
         for first in self.vertices() {
             let _: Vertex = graph.add_vertex(self.degree_at(first.0));
         }
-        for _ in 0..self.open {
+        for _ in 2 * edges.len()..self.open {
             let _: Vertex = graph.add_vertex(1);
         }
         for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
             let one = Dart(number[dart.at()]);
-            match self.opposite(dart) {
+            let new = Some(Dart(joined[dart.at()])).filter(|new| new.0 != OPEN);
+            match self.opposite(dart).or(new) {
                 None => {
                     graph.join(one, Dart(next));
                     next += 1;
@@ -329,8 +381,8 @@ impl FoldedTrail {
             }
         }
         let numbered = |dart: Dart| Dart(number[dart.at()]);
-        let marker = self.marker().map(numbered);
-        Some(ClosedTrail { graph, marker, pose: numbered(self.pose()) })
+        let [start, pose] = [self.start(), self.pose()].map(numbered);
+        (ClosedTrail { graph, marker: self.marker().map(numbered), pose }, start)
     }
 
     /// A new vertex with open darts, a class of its own.
@@ -451,8 +503,13 @@ impl FoldedTrail {
         Ok(())
     }
 
+    /// The number of changes by unions that can be undone.
+    pub(super) fn change_count(&self) -> usize {
+        self.changes.len()
+    }
+
     /// Undoes the latest changes, so that this many are left.
-    fn undo_to(&mut self, count: usize) {
+    pub(super) fn undo_to(&mut self, count: usize) {
         for change in self.changes.drain(count..).rev() {
             match change {
                 Change::Child { child, root } => {

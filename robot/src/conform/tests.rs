@@ -11,7 +11,7 @@ use toposlam_model::{
     floor_plan::FloorPlan,
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    trace::{WorldSearch, anywhere},
+    trace::anywhere,
     world::GraphWorld,
 };
 
@@ -106,7 +106,7 @@ fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
 }
 
 fn without_world() -> ConformConfig<'static> {
-    let search = WorldSearch { class: Class::Multigraph, max_edges: 12, steps: 1_000_000 };
+    let search = WorldSearch { class: Class::Multigraph, steps: 100_000 };
     ConformConfig {
         world: None,
         marker: &Directional,
