@@ -10,8 +10,8 @@ use crate::model::{
 };
 
 use super::{
-    OpenGraph, Placement, WorldPicture, curves::Curve, drawing::Drawing, geometry::Extent,
-    size::DrawingSize, svg,
+    OpenGraph, Placement, WorldPicture, curves::Curve, drawing::Drawing,
+    geometry::{Extent, Point}, size::DrawingSize, svg,
 };
 
 /// The radius of the circle in which an unexplored edge ends.
@@ -51,6 +51,42 @@ pub fn open_svg(map: &OpenGraph) -> Option<String> {
     Some(svg::document(&picture, &drawing, svg::Legend::Elsewhere))
 }
 
+/// Where the parts of a graph with open darts are drawn.
+pub(crate) struct OpenLayout {
+    /// Of each vertex: the centre of its disc, and the radius.
+    pub(crate) discs: Vec<([f64; 2], f64)>,
+    /// Points along the edge of each dart, from the dart to its other end.
+    pub(crate) curves: Vec<Vec<[f64; 2]>>,
+    /// The ends of each dart's edge as it is drawn if the dart is open.
+    pub(crate) stubs: Vec<[[f64; 2]; 2]>,
+    /// The radius of the circle in which it ends.
+    pub(crate) open: f64,
+    /// The corners of the drawing.
+    pub(crate) corners: [[f64; 2]; 2],
+}
+
+/// The layout of a graph with open darts; `None` of an empty one.
+pub(crate) fn open_layout(map: &OpenGraph) -> Option<OpenLayout> {
+    let whole = Whole::new(map)?;
+    let (_, drawing) = stage(map, Some(&whole))?;
+    let pair = |point: Point| [point.x, point.y];
+    let discs = drawing.centres.iter().zip(&drawing.size.discs).take(map.vertex_count());
+    let curves = (0..map.dart_count()).map(|dart| whole.curve(Dart(dart as u32)));
+    let stub = |curve: &Curve| {
+        let trace = whole.beginning(curve).trace;
+        [trace.first(), trace.last()].map(|end| end.map_or([0.0; 2], |&end| pair(end)))
+    };
+    let curves: Vec<Curve> = curves.collect();
+    let extent = drawing.extent();
+    Some(OpenLayout {
+        discs: discs.map(|(&centre, &radius)| (pair(centre), radius)).collect(),
+        stubs: curves.iter().map(stub).collect(),
+        curves: curves.into_iter().map(|it| it.trace.into_iter().map(pair).collect()).collect(),
+        open: OPEN,
+        corners: [extent.least, extent.least + extent.size()].map(pair),
+    })
+}
+
 /// A graph with a vertex for each open dart, and its drawing.
 struct Whole<'a> {
     map: &'a OpenGraph,
@@ -79,6 +115,11 @@ impl<'a> Whole<'a> {
         let (one, _, curve) = &self.drawing.edges[self.edge[dart.at()]];
         if *one == dart { curve.clone() } else { curve.reversed() }
     }
+
+    /// What is drawn of the curve of an open dart.
+    fn beginning(&self, curve: &Curve) -> Curve {
+        curve.beginning((STUB[0] * self.drawing.size.base).min(STUB[1] * curve.length()))
+    }
 }
 
 /// A map with its open ends, drawn as a stage of the last one, or alone if it is not one.
@@ -100,7 +141,7 @@ fn stage(map: &OpenGraph, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawin
     for (dart, other) in graph.edges() {
         let mut curve = whole.curve(dart);
         if other.at() >= map.dart_count() {
-            curve = curve.beginning((STUB[0] * size.base).min(STUB[1] * curve.length()));
+            curve = whole.beginning(&curve);
             let end = |back: usize| curve.trace[curve.trace.len() - back];
             let onwards = (end(1) - end(2)).direction();
             centres.push(end(1) + onwards * OPEN);

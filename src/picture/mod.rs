@@ -42,8 +42,8 @@ use crate::model::{
     marker::{Directional, Marker, MarkerLook, MarkerPart},
 };
 
-pub(crate) use growth::growth;
 pub use growth::open_svg;
+pub(crate) use growth::{growth, open_layout};
 pub use open_graph::OpenGraph;
 pub use png::{PictureError, png};
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::model::{
     embedded_graph::{Dart, EmbeddedGraph},
     folding::FoldedTrail,
     mapping::{FACING, PartialMap},
+    percept::Door,
 };
 
 /// An embedded graph with open darts. The darts of a vertex have successive numbers, clockwise.
@@ -24,13 +25,11 @@ impl OpenGraph {
     pub fn of_trail(trail: &FoldedTrail, entries: &[Dart]) -> Self {
         let degree = |entry: &Dart| trail.degree(*entry) as usize;
         let mut number = vec![None; trail.dart_count()];
-        let mut darts = Vec::new();
-        for &entry in entries {
-            for door in 0..trail.degree(entry) {
-                let dart = trail.behind(entry, crate::model::percept::Door(door));
-                number[dart.at()] = Some(Dart(darts.len() as u32));
-                darts.push(dart);
-            }
+        let doors = |&entry: &Dart| (0..trail.degree(entry)).map(move |door| (entry, Door(door)));
+        let darts: Vec<Dart> =
+            entries.iter().flat_map(doors).map(|(entry, door)| trail.behind(entry, door)).collect();
+        for (place, dart) in darts.iter().enumerate() {
+            number[dart.at()] = Some(Dart(place as u32));
         }
         let numbered = |dart: Dart| number[dart.at()];
         Self {
@@ -38,6 +37,11 @@ impl OpenGraph {
             opposite: darts.iter().map(|&dart| trail.opposite(dart).and_then(numbered)).collect(),
             marker: trail.marker().and_then(numbered),
         }
+    }
+
+    /// The number of a dart: that of a vertex's first dart and of the door, counted from it.
+    pub(crate) fn dart(&self, vertex: usize, door: Door) -> Dart {
+        Dart(self.firsts[vertex] as u32 + door.0)
     }
 
     pub(super) fn vertex_count(&self) -> usize {

@@ -9,6 +9,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
+    folding::WorldSearch,
     marker::Directional,
     percept::{Door, Percept, Sighting},
     trace::anywhere,
