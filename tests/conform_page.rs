@@ -14,8 +14,7 @@ use toposlam::{
     page::conform_page,
     picture::{OpenGraph, WorldPicture, open_svg, svg},
     report::{
-        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, ReportOrigin,
-        SourceFile,
+        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, ReportOrigin, SourceFile,
     },
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};

@@ -11,9 +11,7 @@ use toposlam_model::{
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
-    trace::{
-        Trace, TraceEvent, TraceEventKind, anywhere,
-    },
+    trace::{Trace, TraceEvent, TraceEventKind, anywhere},
     world::GraphWorld,
 };
 use toposlam_robot::{

@@ -10,8 +10,12 @@ use crate::model::{
 };
 
 use super::{
-    OpenGraph, Placement, WorldPicture, curves::Curve, drawing::Drawing,
-    geometry::{Extent, Point}, size::DrawingSize, svg,
+    OpenGraph, Placement, WorldPicture,
+    curves::Curve,
+    drawing::Drawing,
+    geometry::{Extent, Point},
+    size::DrawingSize,
+    svg,
 };
 
 /// The radius of the circle in which an unexplored edge ends.

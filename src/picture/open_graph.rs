@@ -56,10 +56,6 @@ impl OpenGraph {
         self.marker
     }
 
-    pub(super) fn opposite(&self, dart: Dart) -> Option<Dart> {
-        self.opposite[dart.at()]
-    }
-
     /// Whether it is an earlier stage of another one.
     pub(super) fn grew_into(&self, other: &Self) -> bool {
         let mut pairs = self.opposite.iter().zip(&other.opposite);

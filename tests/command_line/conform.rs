@@ -350,7 +350,8 @@ fn doors_that_were_never_followed_are_listed() {
     assert_eq!(report["smallest"], json!({ "vertices": 2, "edges": 2, "least": true }));
     let door = |door| json!({ "vertex": "v0", "door": door, "toward": null });
     assert_eq!(report["never_followed"], json!([door(0), door(2)]));
-    let words = "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
+    let words =
+        "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
     assert_eq!(report["facts"]["unique"], words);
     let written = fs::read_to_string(page).unwrap();
     assert!(written.contains(&format!("<p>{words}</p>")));

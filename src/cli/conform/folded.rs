@@ -122,8 +122,7 @@ impl Judged<'_> {
         }
         let entries = trail.first_entries(judgement.trace.doors());
         let drawn = trail.vertex_count() <= DRAWN;
-        let drawing =
-            if drawn { open_svg(&OpenGraph::of_trail(trail, &entries)) } else { None };
+        let drawing = if drawn { open_svg(&OpenGraph::of_trail(trail, &entries)) } else { None };
         Some(FoldedReport {
             vertices: trail.vertex_count(),
             open_doors: trail.open_count(),

@@ -15,8 +15,7 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     let beneath = level.beneath();
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
-    let seen =
-        [picture(report, beneath), folded(report, beneath), world(report, beneath)].concat();
+    let seen = [picture(report, beneath), folded(report, beneath), world(report, beneath)].concat();
     // Without a divergence there is room on the left.
     let (left, right) = if report.divergence.is_some() {
         let led =

@@ -90,14 +90,17 @@ pub(super) fn json(journal: &Journal) -> Value {
     let seen = vertices.iter().position(|vertex| {
         last.marker().is_some_and(|marker| last.vertex(marker) == last.vertex(vertex.entry))
     });
+    let stubs: Vec<Value> =
+        layout.stubs.iter().map(|ends| Value::from(ends.map(point).to_vec())).collect();
+    let corner_and_size = [left, top - room, right - left + room, bottom - top + room].map(rounded);
     json!({
-        "box": [left, top - room, right - left + room, bottom - top + room].map(rounded),
+        "box": corner_and_size,
         "radius": rounded(radius),
         "open": layout.open,
         "aside": [rounded(aside), rounded(-aside)],
         "places": layout.discs.iter().map(|(at, _)| point(*at)).collect::<Vec<_>>(),
         "curves": layout.curves.iter().map(curve).collect::<Vec<_>>(),
-        "stubs": layout.stubs.iter().map(|ends| ends.map(point)).collect::<Vec<_>>(),
+        "stubs": stubs,
         "marker": seen.zip(last.marker().map(number)),
         "vertices": vertices.iter().map(vertex).collect::<Vec<_>>(),
         "stages": stages.iter().map(stage).collect::<Vec<_>>(),

@@ -39,7 +39,12 @@ fn for_each_place(
 ) -> ControlFlow<()> {
     let all = Enumeration::new(Each::Start, class, edges).unwrap();
     let mut each = |found: EnumeratedGraph| {
-        found.graph.darts().map(Some).chain([None]).try_for_each(|marker| visit(found.graph, marker))
+        found
+            .graph
+            .darts()
+            .map(Some)
+            .chain([None])
+            .try_for_each(|marker| visit(found.graph, marker))
     };
     all.for_each(&mut each)
 }
@@ -145,8 +150,7 @@ fn a_long_walk_without_a_marker_does_not_exhaust_the_stack() {
     });
     let trace = Trace::new(events).unwrap();
     let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
-    let SmallestWorld::World { graph, marker, .. } =
-        smallest_world(&folded(&trace), search, &())
+    let SmallestWorld::World { graph, marker, .. } = smallest_world(&folded(&trace), search, &())
     else {
         panic!()
     };

@@ -39,26 +39,16 @@ fn options() -> impl Strategy<Value = Options> {
     let limits = (prop::sample::select(vec![0, 30, 2_000]), 3_usize..40);
     let class = prop::sample::select(Class::ALL.to_vec());
     (0_u64..1000, 2_usize..9, world, class, limits, drivers, any::<[bool; 2]>()).prop_map(
-        |(
+        |(seed, junctions, world, class, (steps, dart_bound), driver, [bare, unmarked])| Options {
             seed,
             junctions,
             world,
             class,
-            (steps, dart_bound),
-            driver,
-            [bare, unmarked],
-        )| {
-            Options {
-                seed,
-                junctions,
-                world,
-                class,
-                steps,
-                driver: if unmarked { RunDriver::Anyone } else { driver },
-                dart_bound,
-                bare,
-                unmarked,
-            }
+            steps,
+            driver: if unmarked { RunDriver::Anyone } else { driver },
+            dart_bound,
+            bare,
+            unmarked,
         },
     )
 }
@@ -333,10 +323,9 @@ fn a_limit_is_not_a_divergence() {
 /// The robot leaves by a door and comes back to the marker by another one.
 #[test]
 fn a_loop_is_a_divergence_in_a_class_without_loops() {
-    let marked = |door| TraceEventKind::Percept(Percept {
-        degree: 3,
-        sighting: Sighting::Pointing(Door(door)),
-    });
+    let marked = |door| {
+        TraceEventKind::Percept(Percept { degree: 3, sighting: Sighting::Pointing(Door(door)) })
+    };
     let events = [marked(0), TraceEventKind::Door(Door(1)), marked(1)];
     let trace = Trace::new(events).unwrap();
     let impossible = |class| FoldedTrace::new(&trace, &Directional, class).impossible;
