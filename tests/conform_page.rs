@@ -116,8 +116,9 @@ fn folded() -> FoldedReport {
     let world = world_file::read(&fs::read(file).unwrap()).unwrap();
     let (mut percepts, mut doors) = (Vec::new(), Vec::new());
     let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
-    for door in [1, 1, 1, 2, 1, 1, 1, 0, 1].map(Door) {
+    for door in [1, 1, 1, 2, 1, 1, 1, 0, 1] {
         percepts.push(robot.sensed());
+        let door = Door(door % robot.sensed().degree);
         robot.traverse(door).unwrap();
         doors.push(door);
     }

@@ -132,6 +132,9 @@ pub(super) struct ConformArguments {
     ci: CiOptions,
 }
 
+/// The largest number of candidates or doors that are listed.
+const LISTED: usize = 8;
+
 /// What chose the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Who {

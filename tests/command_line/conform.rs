@@ -424,7 +424,7 @@ fn a_shorter_log_of_an_impossible_walk_diverges_for_the_same_reason() {
     let there = (3, -1, Some(0));
     let log = walked(&folder, &[(3, 0, Some(1)), there, (3, 2, Some(0)), there, (2, -1, None)]);
     let short = folder.join("short.mcap");
-    let arguments = ["--driver", "anyone", "--max-edges", "1", "--minimise"];
+    let arguments = ["--driver", "anyone", "--minimise"];
     let (code, report) = judged(&log, &[&arguments[..], &[short.to_str().unwrap()]].concat());
     assert_eq!((code, &report["cause"]), (Some(1), &"no-world".into()), "{report}");
     assert_eq!((&report["event"], &report["class"]), (&9.into(), &"perception".into()));

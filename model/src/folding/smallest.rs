@@ -362,7 +362,8 @@ impl Search<'_> {
     fn edges_without_joins(&self) -> usize {
         let darts: usize =
             self.trail.vertices().map(|first| self.trail.degree(first) as usize).sum();
-        (darts + self.trail.open_count()) / 2
+        let open = self.trail.open_count();
+        (darts - open) / 2 + open
     }
 
     /// The world in which these pairs of open darts are edges becomes the best one if it has fewer edges.

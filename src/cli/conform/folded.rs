@@ -11,7 +11,7 @@ use toposlam_model::{
 };
 use toposlam_robot::conform::Judgement;
 
-use super::{Judged, known_world::Known, report::LISTED};
+use super::{Judged, LISTED, known_world::Known};
 use crate::cli::text::{counted, vertices};
 
 /// The largest folded trail that is drawn, in vertices.

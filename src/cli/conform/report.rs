@@ -23,11 +23,8 @@ use toposlam_robot::{
     record::{Arrival, RunEnding},
 };
 
-use super::{Judged, folded, minimise::Minimised};
+use super::{Judged, LISTED, folded, minimise::Minimised};
 use crate::cli::text::{counted, grouped, moment, vertices};
-
-/// The largest number of candidates or doors that are listed.
-pub(super) const LISTED: usize = 8;
 
 impl Judged<'_> {
     /// The report of a log; with pictures if it is `shown` on a page.

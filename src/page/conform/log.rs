@@ -196,12 +196,13 @@ fn folded(report: &LogReport, level: Level) -> String {
     };
     let doors = wording::counted(*open_doors, "door");
     let were = if *open_doors == 1 { "was" } else { "were" };
+    let places = match vertices {
+        1 => String::new(),
+        count => format!(" Of the {count} places, some may be one."),
+    };
     let legend = format!(
-        "<p class=\"legend\"><span class=\"open-door\"></span> {doors} that {were} never followed, at {}</p>\n",
-        match vertices {
-            1 => "the only junction".to_owned(),
-            count => format!("{count} different junctions"),
-        },
+        "<p class=\"legend\"><span class=\"open-door\"></span> {doors} that {were} never followed.{places}\
+         </p>\n"
     );
     let name = match report.divergence {
         Some(_) => "What the log proves before it diverges",

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
-use super::{folding, words};
+use super::{folding, rounded, words};
 use crate::{
     journal::{FrameEntry, Journal, JunctionCall},
     moment::clock,
@@ -76,9 +76,4 @@ fn call(call: &JunctionCall) -> Value {
         "percept": call.percept.to_string(),
         "conforms": call.conforms,
     })
-}
-
-/// Rounded to tenths.
-pub(super) fn rounded(number: f64) -> f64 {
-    (number * 10.0).round() / 10.0 + 0.0
 }

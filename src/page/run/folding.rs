@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use super::data::rounded;
+use super::rounded;
 use crate::{
     journal::Journal,
     model::{
@@ -19,8 +19,8 @@ use crate::{
     picture::{OpenGraph, open_layout},
 };
 
-/// How far a layer is beside the one before, in radii of a disc.
-const LAYER: f64 = 0.85;
+/// How far a layer is to the right of the one before, and above it, in radii of a disc.
+const LAYER: [f64; 2] = [1.0, 1.7];
 
 /// A vertex of the trail.
 struct TrailVertex {
@@ -64,9 +64,9 @@ pub(super) fn json(journal: &Journal) -> Value {
     };
     let layers = stages.iter().flat_map(|stage| &stage.layers).max().copied().unwrap_or(0);
     let radius = layout.discs.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
-    let aside = LAYER * radius;
+    let aside = LAYER.map(|share| share * radius);
     let [[left, top], [right, bottom]] = layout.corners;
-    let room = aside * layers as f64;
+    let [across, up] = aside.map(|aside| aside * layers as f64);
     let point = |[x, y]: [f64; 2]| json!([rounded(x), rounded(y)]);
     let curve = |points: &Vec<[f64; 2]>| {
         // Every other point is enough; the number of points is odd.
@@ -92,12 +92,12 @@ pub(super) fn json(journal: &Journal) -> Value {
     });
     let stubs: Vec<Value> =
         layout.stubs.iter().map(|ends| Value::from(ends.map(point).to_vec())).collect();
-    let corner_and_size = [left, top - room, right - left + room, bottom - top + room].map(rounded);
+    let corner_and_size = [left, top - up, right - left + across, bottom - top + up].map(rounded);
     json!({
         "box": corner_and_size,
         "radius": rounded(radius),
         "open": layout.open,
-        "aside": [rounded(aside), rounded(-aside)],
+        "aside": [rounded(aside[0]), rounded(-aside[1])],
         "places": layout.discs.iter().map(|(at, _)| point(*at)).collect::<Vec<_>>(),
         "curves": layout.curves.iter().map(curve).collect::<Vec<_>>(),
         "stubs": stubs,

@@ -51,6 +51,11 @@ fn maps(journal: &Journal) -> String {
     growth(&journal.maps).iter().map(of).collect()
 }
 
+/// Rounded to tenths.
+fn rounded(number: f64) -> f64 {
+    (number * 10.0).round() / 10.0 + 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use std::{cell::RefCell, collections::BTreeSet};
