@@ -55,6 +55,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "explore worlds/shape-6.toml --choices all",
             "explore worlds/shape-8.toml --marker movable",
             "explore worlds/shape-6.toml --max-darts 4",
+            "explore worlds/shape-6.toml --certificate",
         ],
     ),
     (

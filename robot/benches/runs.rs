@@ -5,7 +5,11 @@
 use std::sync::Arc;
 
 use divan::Bencher;
-use toposlam_model::{embedded_graph::Dart, floor_plan::FloorPlan};
+use toposlam_model::{
+    embedded_graph::Dart,
+    floor_plan::FloorPlan,
+    mapping::DirectionalAlgorithm::{self, Algorithm1, Folding},
+};
 use toposlam_robot::{
     evaluation::{LearnedSensors, plans, random_plan::random_plan_with, run_sampler::starts_of},
     record::NoSensor,
@@ -41,12 +45,12 @@ fn right(run: &Run) {
 }
 
 /// A whole run without images.
-#[divan::bench(args = [25, 100], sample_count = 10)]
-fn by_scene(bencher: Bencher, junctions: usize) {
-    let (plan, facing) = random(junctions);
+#[divan::bench(consts = [25, 100], args = [Algorithm1, Folding], sample_count = 10)]
+fn by_scene<const JUNCTIONS: usize>(bencher: Bencher, algorithm: DirectionalAlgorithm) {
+    let (plan, facing) = random(JUNCTIONS);
     bencher.bench(|| {
         let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-        right(&run(&plan, facing, robot, NoSensor, (), DARTS));
+        right(&run(&plan, facing, robot, NoSensor, (), algorithm, DARTS));
     });
 }
 
@@ -61,7 +65,7 @@ fn shape_6_with_images(bencher: Bencher) {
             look,
             &Effects::plain(),
         );
-        right(&run(&plan, facing, robot, eyes.sensor(look), (), DARTS));
+        right(&run(&plan, facing, robot, eyes.sensor(look), (), Algorithm1, DARTS));
     });
 }
 
@@ -74,10 +78,10 @@ fn shape_6_off_line(bencher: Bencher) {
     let robot =
         SimulationConfig::at_start(plan.clone(), facing, 1).with_images(eyes.rig(), look, &effects);
     let mut recording = Recording::default();
-    right(&run(&plan, facing, robot, eyes.sensor(look), &mut recording, DARTS));
+    right(&run(&plan, facing, robot, eyes.sensor(look), &mut recording, Algorithm1, DARTS));
     bencher
         .with_inputs(|| eyes.sensor(look))
-        .bench_local_values(|sensor| offline(&recording, sensor, (), DARTS).unwrap());
+        .bench_local_values(|sensor| offline(&recording, sensor, (), Algorithm1, DARTS).unwrap());
 }
 
 fn eyes() -> (LearnedSensors, &'static BuildingLook) {

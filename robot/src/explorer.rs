@@ -1,4 +1,4 @@
-//! A robot as a world: Algorithm 1 chooses doors, and Algorithm 2 drives the robot through them.
+//! A robot as a world: a mapping algorithm chooses doors, and Algorithm 2 drives the robot through them.
 //! Sections 4.3 and 5.
 
 use thiserror::Error;
@@ -7,7 +7,7 @@ use toposlam_model::{
         algorithm2::{Lost, PathExecution, Standing, Step},
         scene::Scene,
     },
-    mapping::{Exploration, Journey, MappingError, MappingEvent, Nearest, map_world},
+    mapping::{Journey, MappingError, MappingEvent, MappingRun},
     percept::{Door, Percept},
     world::World,
 };
@@ -140,24 +140,21 @@ impl<R: Robot, S: FrameSensor, O: RunObserver> RobotExplorer<R, S, O> {
         (self.robot, self.observer)
     }
 
-    /// Maps the building by Algorithm 1.
+    /// Maps the building by the algorithm of the run.
     ///
     /// # Errors
     /// Returns an error if the run ended before the map was complete.
-    pub fn map(
-        &mut self,
-        exploration: &mut Exploration,
-    ) -> Result<(), MappingError<ExplorerError>> {
+    pub fn map(&mut self, mapping: &mut MappingRun) -> Result<(), MappingError<ExplorerError>> {
         let mut observer = |explorer: &mut Self, journey: &Journey, event: MappingEvent| {
             explorer.mapping_event(journey, event);
         };
-        let result = map_world(self, &mut Nearest, exploration, &mut observer);
+        let result = mapping.map_world(self, &mut observer);
         let ending = match &result {
             Ok(()) => RunEnding::Mapped,
             Err(MappingError::World(ExplorerError::Stopped { .. })) => RunEnding::Stopped,
             Err(error) => RunEnding::GaveUp(error.to_string()),
         };
-        self.emit(EventKind::End(RunEnd { moves: exploration.moves(), ending }));
+        self.emit(EventKind::End(RunEnd { moves: mapping.moves(), ending }));
         result
     }
 

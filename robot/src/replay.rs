@@ -1,4 +1,4 @@
-//! The off-line version on a log: sensing, Algorithm 2 and Algorithm 1 run on the recorded frames,
+//! The off-line version on a log: sensing, Algorithm 2 and the mapping algorithm run on the recorded frames,
 //! without a robot that moves, and their results are compared with the recorded ones. Section 6.
 
 use std::{collections::HashMap, fmt};
@@ -6,7 +6,7 @@ use std::{collections::HashMap, fmt};
 use thiserror::Error;
 use toposlam_model::{
     driving::{algorithm2::Command, scene::Scene},
-    mapping::{Exploration, MappingError},
+    mapping::{DirectionalAlgorithm, MappingError, MappingRun},
     percept::{Door, Percept},
 };
 use toposlam_vision::sensing::{Sensor, WrongSize};
@@ -55,7 +55,7 @@ impl fmt::Display for Agreement {
 #[derive(Debug)]
 pub struct Replay {
     /// The map, and the robot's pose in it.
-    pub exploration: Exploration,
+    pub mapping: MappingRun,
     /// Why the run ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// How it compares with the recorded run.
@@ -130,18 +130,19 @@ pub enum ReplayError {
 // paper: exp.off-line
 pub fn replay(
     log: &Log,
-    mapping: &TopicMap,
+    topics: &TopicMap,
     sensor: Option<Sensor>,
+    algorithm: DirectionalAlgorithm,
     dart_bound: usize,
 ) -> Result<Replay, ReplayError> {
-    let has = |role| mapping.carrier(role).is_some();
+    let has = |role| topics.carrier(role).is_some();
     let frames = if has(Role::Image) { Role::Image } else { Role::Scene };
     if !has(frames) || !has(Role::Odometry) || !has(Role::Command) {
         return Err(ReplayError::Nothing);
     }
     let roles =
         [frames, Role::Scene, Role::Odometry, Role::Command, Role::Percept, Role::Door, Role::Map];
-    let bound = mapping.only(&roles).bind(log)?;
+    let bound = topics.only(&roles).bind(log)?;
     let start = log.start().unwrap_or(0);
     let mut robot = ReplayedRobot {
         entries: log.entries(&bound),
@@ -155,8 +156,8 @@ pub fn replay(
         check_size(sensor.as_ref().ok_or(ReplayError::NoSensor)?, image)?;
     }
     let mut explorer = RobotExplorer::new(robot, sensor, Results::default());
-    let mut exploration = Exploration::new(dart_bound);
-    let error = explorer.map(&mut exploration).err();
+    let mut mapping = MappingRun::new(algorithm, dart_bound);
+    let error = explorer.map(&mut mapping).err();
     let (mut robot, results) = explorer.into_parts();
     // The results after the last frame that was used are compared, too.
     while robot.failure.is_none() && robot.next.is_some() {
@@ -166,13 +167,13 @@ pub fn replay(
         return Err(failure);
     }
     let mut comparison = robot.recorded.compare(&results.0);
-    let map = MapRecord::of(exploration.journey());
+    let map = MapRecord::of(mapping.journey());
     // A map that may not grow any more is not compared with the recorded one.
     let ended = !matches!(error, Some(MappingError::Bound { .. }));
     let recorded = robot.recorded.map.filter(|_| ended);
     comparison.map = recorded.map(|recorded| recorded.same_map(&map));
     let length = log.end().unwrap_or(0).saturating_sub(start);
-    Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, exploration })
+    Ok(Replay { error, comparison, recorded_seconds: length as f64 / 1e9, mapping })
 }
 
 /// Checks that a picture has the size of the calibrated camera's. A damaged picture has none.
@@ -359,7 +360,7 @@ mod tests {
         simulator::SimulationConfig,
     };
 
-    fn recorded(seed: u64) -> (Log, Exploration) {
+    fn recorded(seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
@@ -367,23 +368,25 @@ mod tests {
         let mut log = Vec::new();
         let mut recorder =
             Recorder::new(&mut log, &crate::log::messages::Run::default(), None).unwrap();
-        let run = run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200);
+        let robot = setting.by_scene();
+        let run = run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200);
         recorder.finish().unwrap();
-        (Log::of_bytes(log).unwrap(), run.exploration)
+        (Log::of_bytes(log).unwrap(), run.mapping)
     }
 
     // paper: exp.off-line
     #[test]
     fn a_replay_reproduces_the_map_and_all_results() {
         for seed in 0..4 {
-            let (log, exploration) = recorded(seed);
-            let mapping = TopicMap::unambiguous(&log);
-            let replay = replay(&log, &mapping, None, 200).unwrap();
+            let algorithm = DirectionalAlgorithm::ALL[seed as usize % 2];
+            let (log, mapping) = recorded(seed, algorithm);
+            let topics = TopicMap::unambiguous(&log);
+            let replay = replay(&log, &topics, None, algorithm, 200).unwrap();
             let to = replay.comparison;
             assert_eq!((replay.error, to.difference), (None, None));
-            assert_eq!(replay.exploration.map(), exploration.map());
+            assert_eq!(replay.mapping.map(), mapping.map());
             assert_eq!(to.map, Some(true));
-            let moves = exploration.moves();
+            let moves = mapping.moves();
             assert_eq!(to.doors, Agreement { agree: moves, of: moves });
             assert_eq!(to.percepts, Agreement { agree: moves + 1, of: moves + 1 });
             assert!(to.commands.is_whole() && to.commands.of > 20, "{:?}", to.commands);
@@ -391,10 +394,18 @@ mod tests {
     }
 
     #[test]
+    fn another_algorithm_than_the_recorded_one_takes_another_door() {
+        let [algorithm1, folding] = DirectionalAlgorithm::ALL;
+        let (log, _) = recorded(0, algorithm1);
+        let replay = replay(&log, &TopicMap::unambiguous(&log), None, folding, 200).unwrap();
+        assert_eq!(replay.comparison.difference.unwrap().what, "door");
+    }
+
+    #[test]
     fn a_map_at_the_dart_bound_is_not_compared_with_the_recorded_one() {
-        let (log, _) = recorded(0);
+        let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
         let mapping = TopicMap::unambiguous(&log);
-        let replay = replay(&log, &mapping, None, 4).unwrap();
+        let replay = replay(&log, &mapping, None, DirectionalAlgorithm::Algorithm1, 4).unwrap();
         assert!(matches!(replay.error, Some(MappingError::Bound { .. })));
         let to = replay.comparison;
         assert!(!to.doors.is_whole());
@@ -403,8 +414,9 @@ mod tests {
 
     #[test]
     fn a_log_without_commands_is_not_replayed() {
-        let (log, _) = recorded(0);
+        let (log, _) = recorded(0, DirectionalAlgorithm::Algorithm1);
         let mapping = TopicMap::unambiguous(&log).only(&[Role::Scene, Role::Odometry]);
-        assert!(matches!(replay(&log, &mapping, None, 200), Err(ReplayError::Nothing)));
+        let replay = replay(&log, &mapping, None, DirectionalAlgorithm::Algorithm1, 200);
+        assert!(matches!(replay, Err(ReplayError::Nothing)));
     }
 }

@@ -1,13 +1,13 @@
-//! A whole run: a simulated robot maps its building by Algorithm 1, and the result is checked against the
-//! specification. Section 6.
+//! A whole run: a simulated robot maps its building, and the result is checked against the specification.
+//! Section 6.
 
 use thiserror::Error;
 use toposlam_model::{
-    check::{Algorithm1, Flaw, judge},
+    check::{Algorithm1, Flaw, Folding, judge},
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     isomorphism::Candidate,
-    mapping::{Exploration, MappingError, Nearest, map_world},
+    mapping::{DirectionalAlgorithm, MappingError, MappingRun},
     world::{GraphWorld, State},
 };
 
@@ -23,14 +23,14 @@ use crate::{
 #[derive(Debug)]
 pub struct Run<'p> {
     /// The robot's map and its pose in it.
-    pub exploration: Exploration,
+    pub mapping: MappingRun,
     /// Why it ended early, if it did.
     pub error: Option<MappingError<ExplorerError>>,
     /// What is wrong with the map or the pose of a complete run.
     pub flaw: Option<Flaw>,
     /// Every arrival, checked.
     pub monitor: GroundTruthMonitor<'p>,
-    /// The number of moves that Algorithm 1 makes in the plan's embedded graph.
+    /// The number of moves that the algorithm makes in the plan's embedded graph.
     pub explore_moves: u64,
     /// The simulated time, in seconds.
     pub seconds: f64,
@@ -82,8 +82,8 @@ impl Run<'_> {
             }
             (None, Some(flaw), None) => RunOutcome::Wrong(flaw.to_string()),
             (None, None, Some(divergence)) => RunOutcome::Wrong(divergence.to_string()),
-            (None, None, None) if self.exploration.moves() != self.explore_moves => {
-                let (moves, explore) = (self.exploration.moves(), self.explore_moves);
+            (None, None, None) if self.mapping.moves() != self.explore_moves => {
+                let (moves, explore) = (self.mapping.moves(), self.explore_moves);
                 RunOutcome::Wrong(format!("it took {moves} moves instead of {explore}"))
             }
             (None, None, None) => RunOutcome::Right,
@@ -99,27 +99,28 @@ pub fn run(
     robot: SimulatedRobot,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
+    algorithm: DirectionalAlgorithm,
     dart_bound: usize,
 ) -> Run<'_> {
     let monitor = GroundTruthMonitor::new(plan, facing);
     let mut explorer = RobotExplorer::new(robot, sensor, (monitor, observer));
-    let mut exploration = Exploration::new(dart_bound);
-    let error = explorer.map(&mut exploration).err();
+    let mut mapping = MappingRun::new(algorithm, dart_bound);
+    let error = explorer.map(&mut mapping).err();
     let (robot, (monitor, _)) = explorer.into_parts();
     let flaw = match error {
         Some(_) => None,
-        None => flaw(plan, facing, &exploration, monitor.reached()),
+        None => flaw(plan, facing, &mapping, monitor.reached()),
     };
-    let explore_moves = explored(plan, facing, dart_bound);
+    let explore_moves = explored(plan, facing, algorithm, dart_bound);
     let (seconds, pictures) = (robot.time(), robot.pictures());
-    Run { exploration, error, flaw, monitor, explore_moves, seconds, pictures }
+    Run { mapping, error, flaw, monitor, explore_moves, seconds, pictures }
 }
 
 /// What is wrong with the map or the pose.
 fn flaw(
     plan: &FloorPlan,
     facing: Dart,
-    exploration: &Exploration,
+    mapping: &MappingRun,
     reached: Option<Dart>,
 ) -> Option<Flaw> {
     let world = GraphWorld::new(plan.graph(), facing);
@@ -127,20 +128,29 @@ fn flaw(
     // A robot at no junction is not at its pose in the map.
     let nowhere = Dart(u32::MAX);
     let world = world.at(State { pose: reached.unwrap_or(nowhere), placed });
-    judge(&Algorithm1, exploration, facing, &world, &mut Candidate::default()).err()
+    let mut candidate = Candidate::default();
+    match mapping {
+        MappingRun::Algorithm1(state) => judge(&Algorithm1, state, facing, &world, &mut candidate),
+        MappingRun::Folding(state) => judge(&Folding, state, facing, &world, &mut candidate),
+    }
+    .err()
 }
 
-/// The number of moves that Algorithm 1 makes in the plan's embedded graph.
+/// The number of moves that an algorithm makes in the plan's embedded graph.
 #[must_use]
-pub fn explored(plan: &FloorPlan, facing: Dart, dart_bound: usize) -> u64 {
-    let mut world = GraphWorld::new(plan.graph(), facing);
-    let mut exploration = Exploration::new(dart_bound);
+pub fn explored(
+    plan: &FloorPlan,
+    facing: Dart,
+    algorithm: DirectionalAlgorithm,
+    dart_bound: usize,
+) -> u64 {
+    let mut mapping = MappingRun::new(algorithm, dart_bound);
     // An error here is also an error of the robot's run.
-    let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut ());
-    exploration.moves()
+    let _ = mapping.map_world(&mut GraphWorld::new(plan.graph(), facing), &mut ());
+    mapping.moves()
 }
 
-/// The off-line version: Algorithm 1 on a recording, without a robot that moves.
+/// The off-line version: the mapping algorithm on a recording, without a robot that moves.
 ///
 /// # Errors
 /// Returns an error if the recorded run ended early, if a command is not the recorded one, or if the
@@ -150,12 +160,13 @@ pub fn offline(
     recording: &Recording,
     sensor: impl FrameSensor,
     observer: impl RunObserver,
+    algorithm: DirectionalAlgorithm,
     dart_bound: usize,
-) -> Result<Exploration, MappingError<ExplorerError>> {
+) -> Result<MappingRun, MappingError<ExplorerError>> {
     let mut explorer = RobotExplorer::new(recording.robot(), sensor, observer);
-    let mut exploration = Exploration::new(dart_bound);
-    explorer.map(&mut exploration)?;
-    Ok(exploration)
+    let mut mapping = MappingRun::new(algorithm, dart_bound);
+    explorer.map(&mut mapping)?;
+    Ok(mapping)
 }
 
 #[cfg(test)]
@@ -177,13 +188,16 @@ mod tests {
     fn each_plan_is_mapped_with_the_moves_of_the_specification() {
         for (name, plan) in plans().unwrap() {
             for (seed, facing) in starts_of(&plan).into_iter().enumerate().step_by(3) {
-                let robot =
-                    SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
-                let run = run(&plan, facing, robot, NoSensor, (), DARTS);
-                assert_eq!(run.outcome(), RunOutcome::Right, "{name} from {facing:?}");
-                assert!(run.isomorphic() && run.pose_true());
-                let arrivals = run.monitor.arrivals().len() as u64;
-                assert_eq!(arrivals, run.explore_moves + 1, "{name} from {facing:?}");
+                for algorithm in DirectionalAlgorithm::ALL {
+                    let robot =
+                        SimulationConfig::at_start(plan.clone(), facing, seed as u64).by_scene();
+                    let run = run(&plan, facing, robot, NoSensor, (), algorithm, DARTS);
+                    let what = format!("{name} from {facing:?} by {algorithm}");
+                    assert_eq!(run.outcome(), RunOutcome::Right, "{what}");
+                    assert!(run.isomorphic() && run.pose_true());
+                    let arrivals = run.monitor.arrivals().len() as u64;
+                    assert_eq!(arrivals, run.explore_moves + 1, "{what}");
+                }
             }
         }
     }
@@ -194,12 +208,15 @@ mod tests {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
         let robot = SimulationConfig::at_start(plan.clone(), facing, 5).by_scene();
-        let mut recording = Recording::default();
-        let run = run(&plan, facing, robot, NoSensor, &mut recording, DARTS);
-        assert_eq!(recording.len() as u64, run.pictures);
-        let again = offline(&recording, NoSensor, (), DARTS).unwrap();
-        assert_eq!(again.map(), run.exploration.map());
-        assert_eq!(again.moves(), run.exploration.moves());
+        for algorithm in DirectionalAlgorithm::ALL {
+            let mut recording = Recording::default();
+            let robot = robot.clone();
+            let run = run(&plan, facing, robot, NoSensor, &mut recording, algorithm, DARTS);
+            assert_eq!(recording.len() as u64, run.pictures);
+            let again = offline(&recording, NoSensor, (), algorithm, DARTS).unwrap();
+            assert_eq!(again.map(), run.mapping.map());
+            assert_eq!(again.moves(), run.mapping.moves());
+        }
     }
 
     #[test]
@@ -209,7 +226,8 @@ mod tests {
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         let outcome = |setting: &SimulationConfig| {
             let robot = setting.by_scene();
-            run(&plan, facing, robot, NoSensor, (), DARTS).outcome().to_string()
+            let algorithm = DirectionalAlgorithm::Algorithm1;
+            run(&plan, facing, robot, NoSensor, (), algorithm, DARTS).outcome().to_string()
         };
         for (kind, why) in [
             (FaultKind::LightsOut, "7 pictures in a row do not show where the robot is"),

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
 
-use super::{CliError, Outcome, exit_codes::help_end, simulate::MAX_DARTS};
+use super::{CliError, Outcome, exit_codes::help_end, mapping_marker::AlgorithmOption, simulate::MAX_DARTS};
 
 /// Let a live SuperScout map its building from camera images
 ///
@@ -46,6 +46,9 @@ pub(super) struct DriveArguments {
     /// The colours of the building, as `toposlam train` writes them
     #[arg(long, value_name = "FILE")]
     colours: PathBuf,
+    /// The algorithm that makes the map: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
     /// The topic of images: sensor_msgs/CompressedImage
     #[arg(long, value_name = "TOPIC", default_value = IMAGE)]
     image_topic: String,

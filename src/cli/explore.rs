@@ -1,5 +1,6 @@
 //! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
+mod certificate;
 mod doors_writer;
 mod result;
 pub(super) mod story;
@@ -13,7 +14,9 @@ use std::{
 
 use toposlam::picture::{self, WorldPicture};
 use toposlam_model::{
-    check::{Algorithm, Algorithm1, Flaw, MappingAlgorithm, MovableMarker, RunState, judge},
+    check::{
+        Algorithm, Algorithm1, Flaw, Folding, MappingAlgorithm, MovableMarker, RunState, judge,
+    },
     embedded_graph::Dart,
     format::named_world::NamedWorld,
     isomorphism::Candidate,
@@ -22,20 +25,25 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome, exit_codes::help_end, input, mapping_marker::MappingMarker,
-    output, text::print_paragraph,
+    ChoicesOption, CliError, Outcome, exit_codes::help_end, input,
+    mapping_marker::{AlgorithmOption, MappingMarker},
+    output,
+    text::print_paragraph,
 };
+use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
 use story::{Story, StoryDetail, head};
 use summary::Summary;
 
-/// Run Algorithm 1 on one world and print its story: each door, percept and hypothesis, and the map
+/// Map one world and print the story: each door, percept and hypothesis, and the map
 ///
 /// The run in a world with more than 25 vertices is summarised on one screen; --story prints it all.
 ///
 /// The robot gets only percepts from the world. At the end a bijection proves that the map is
 /// isomorphic to the world.
+///
+/// Algorithm 1 runs, or with --algorithm folding the folding explorer, which needs fewer moves.
 ///
 /// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
 /// loops and parallel edges.
@@ -46,8 +54,10 @@ Examples:
   toposlam explore worlds/shape-6.toml
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
   toposlam explore worlds/shape-8.toml --choices all
+  toposlam explore worlds/shape-8.toml --algorithm folding
   toposlam explore worlds/shape-8.toml --marker movable
   toposlam explore worlds/building-25.toml --summary
+  toposlam explore worlds/shape-6.toml --certificate
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
@@ -69,7 +79,11 @@ pub(super) struct ExploreArguments {
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
 
-    /// The robot's marker: directional (Algorithm 1) or movable
+    /// The algorithm that maps with the directional marker: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
+
+    /// The robot's marker: directional or movable
     #[arg(long, default_value = "directional")]
     marker: MappingMarker,
 
@@ -101,6 +115,10 @@ pub(super) struct ExploreArguments {
     /// Print the doors taken, and each pick-up and drop of the marker
     #[arg(long, conflicts_with = "json")]
     doors: bool,
+
+    /// Print a shortest walk that proves the map of the world, and compare the run with it
+    #[arg(long)]
+    certificate: bool,
 
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
@@ -135,11 +153,21 @@ impl ExploreArguments {
         if let Some(svg) = &self.svg {
             output::check_place(svg, &["svg"])?;
         }
+        if self.certificate && self.marker != MappingMarker::Directional {
+            return Err(CliError::at("--certificate", "needs --marker directional"));
+        }
         let choice = self.choices.with_budget(self.max_states)?;
-        let chosen = self.marker.algorithm(choice)?;
-        match self.marker {
-            MappingMarker::Directional => self.explore(&Algorithm1, chosen, &world, facing, out),
-            MappingMarker::Movable => self.explore(&MovableMarker, chosen, &world, facing, out),
+        let chosen = self.algorithm.with(self.marker, choice)?;
+        match (self.marker, self.algorithm) {
+            (MappingMarker::Movable, _) => {
+                self.explore(&MovableMarker, chosen, &world, facing, out)
+            }
+            (MappingMarker::Directional, AlgorithmOption::Algorithm1) => {
+                self.explore(&Algorithm1, chosen, &world, facing, out)
+            }
+            (MappingMarker::Directional, AlgorithmOption::Folding) => {
+                self.explore(&Folding, chosen, &world, facing, out)
+            }
         }
     }
 
@@ -176,14 +204,18 @@ impl ExploreArguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
+        let moves = result.is_ok().then(|| state.journey().moves());
+        let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
         let result = ExploreResult {
             world,
             facing,
             marker: self.marker,
+            algorithm: self.algorithm,
             journey: state.journey(),
             move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
             carries: robot.carries(),
             result,
+            certificate,
             ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
         };
         if self.json {

@@ -5,10 +5,11 @@ use std::{fmt::Display, path::Path, str::FromStr};
 use clap::ValueEnum;
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, PlacedWorld},
-    check::{Algorithm1, AllChoices, MappingAlgorithm},
+    check::{Algorithm1, AllChoices, AllTies, MappingAlgorithm},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
     marker::{Directional, Marker, Movable},
 };
 
@@ -51,7 +52,7 @@ impl MappingMarker {
             }
             (Self::Movable, RunChoices::Default) => Ok(MappingAlgorithm::MovableMarker),
             (Self::Movable, RunChoices::All { .. }) => {
-                let cause = "`all` needs --marker directional: only Algorithm 1 has open choices";
+                let cause = "`all` needs --marker directional";
                 Err(CliError::at("--choices", cause))
             }
         }
@@ -89,6 +90,14 @@ pub(super) enum AlgorithmOption {
 }
 
 impl AlgorithmOption {
+    /// The algorithm of a run.
+    pub(super) fn directional(self) -> DirectionalAlgorithm {
+        match self {
+            Self::Algorithm1 => DirectionalAlgorithm::Algorithm1,
+            Self::Folding => DirectionalAlgorithm::Folding,
+        }
+    }
+
     /// The algorithm, for a marker and a choice of runs.
     pub(super) fn with(
         self,
@@ -101,9 +110,8 @@ impl AlgorithmOption {
                 let cause = "the folding explorer maps with --marker directional";
                 Err(CliError::at("--algorithm", cause))
             }
-            (Self::Folding, MappingMarker::Directional, RunChoices::All { .. }) => {
-                let cause = "`all` needs --algorithm algorithm1: only it has open choices";
-                Err(CliError::at("--choices", cause))
+            (Self::Folding, MappingMarker::Directional, RunChoices::All { budget }) => {
+                Ok(MappingAlgorithm::AllTies(AllTies { budget }))
             }
             (Self::Folding, MappingMarker::Directional, RunChoices::Default) => {
                 Ok(MappingAlgorithm::Folding)

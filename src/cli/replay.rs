@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf, time::Instant};
 use serde::Serialize;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{FACING, MappingError},
+    mapping::{DirectionalAlgorithm, FACING, MappingError},
 };
 use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
@@ -13,6 +13,7 @@ use super::{
     CliError, Outcome,
     exit_codes::help_end,
     json::{TruncatedLine, print_line},
+    mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
     output,
     text::{counted, grouped, print_hanging, since_start, vertices},
@@ -20,7 +21,7 @@ use super::{
 
 /// Run sensing and mapping again on the images of a log, without a robot
 ///
-/// Each recorded image is sensed again, and Algorithm 2 and Algorithm 1 run again. Scenes, commands,
+/// Each recorded image is sensed again, and Algorithm 2 and the mapping algorithm run again. Scenes, commands,
 /// percepts, doors and the map are compared with the recorded ones, and the computing time with the
 /// robot's time. If the log has no images, its scenes are used.
 #[derive(clap::Args)]
@@ -41,6 +42,9 @@ pub(super) struct ReplayArguments {
     log: PathBuf,
     #[command(flatten)]
     sources: LogOptions,
+    /// The algorithm that makes the map: algorithm1 or folding [default: the one in the log]
+    #[arg(long, hide_possible_values = true)]
+    algorithm: Option<AlgorithmOption>,
     /// Stop if the map has more darts
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
@@ -89,7 +93,9 @@ impl ReplayArguments {
         }
         let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
-        let replay = replay(&opened.log, &opened.mapping, opened.sensor(), self.max_darts);
+        let algorithm = self.algorithm(&opened)?;
+        let (log, topics) = (&opened.log, &opened.mapping);
+        let replay = replay(log, topics, opened.sensor(), algorithm, self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
@@ -105,7 +111,7 @@ impl ReplayArguments {
             }
         }
         if let Some(path) = &self.map {
-            match replay.exploration.map().complete() {
+            match replay.mapping.map().complete() {
                 None => remark!("the map is not complete, and is not written"),
                 Some(graph) => {
                     let about = format!("The map from a replay of {}", self.log.display());
@@ -117,13 +123,26 @@ impl ReplayArguments {
         Ok(outcome(&replay))
     }
 
+    /// The algorithm that was asked for, or that of the log; without either Algorithm 1.
+    fn algorithm(&self, opened: &OpenLog) -> Result<DirectionalAlgorithm, CliError> {
+        let recorded = opened.run.as_ref().map_or("", |run| &run.algorithm);
+        match (self.algorithm, recorded) {
+            (Some(option), _) => Ok(option.directional()),
+            (None, "") => Ok(DirectionalAlgorithm::Algorithm1),
+            (None, name) => name.parse().map_err(|_| {
+                let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
+                CliError::in_file(&self.log, cause)
+            }),
+        }
+    }
+
     fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Line {
-        let map = replay.exploration.map();
+        let map = replay.mapping.map();
         let both = |agreement: Agreement| [agreement.agree, agreement.of];
         Line {
             log: self.log.display().to_string(),
             pictures: replay.comparison.pictures,
-            moves: replay.exploration.moves(),
+            moves: replay.mapping.moves(),
             vertices: map.vertex_count(),
             edges: edges(replay),
             complete: map.complete().is_some(),
@@ -147,12 +166,12 @@ impl ReplayArguments {
     }
 
     fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), CliError> {
-        let map = replay.exploration.map();
+        let map = replay.mapping.map();
         let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
         let comparison = &replay.comparison;
         writeln!(out, "{}: the map is {whole}", self.log.display())?;
         writeln!(out, "  pictures    {}", comparison.pictures)?;
-        writeln!(out, "  moves       {}", replay.exploration.moves())?;
+        writeln!(out, "  moves       {}", replay.mapping.moves())?;
         let (vertices, edges) = (vertices(map.vertex_count()), counted(edges(replay), "edge"));
         writeln!(out, "  map         {vertices}, {edges}")?;
         if let Some(error) = &replay.error {
@@ -193,7 +212,7 @@ impl ReplayArguments {
 
 /// The number of edges whose both ends are known.
 fn edges(replay: &Replay) -> usize {
-    let map = replay.exploration.map();
+    let map = replay.mapping.map();
     (map.dart_count() - map.unexplored_count() as usize) / 2
 }
 

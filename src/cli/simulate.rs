@@ -34,7 +34,9 @@ use super::{
     appearance::{Appearance, ImageSize},
     exit_codes::help_end,
     explore::story::{Story, StoryDetail},
-    input, noise, output,
+    input,
+    mapping_marker::AlgorithmOption,
+    noise, output,
     progress::{Progress, StopSignal},
     story_lines::StoryLines,
     text::capital,
@@ -48,7 +50,7 @@ pub(super) use log::MAX_DARTS;
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
 /// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L. Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1
-/// makes the map. Each move, each percept and the map are checked against the floor plan's embedded
+/// or the folding explorer makes the map. Each move, each percept and the map are checked against the floor plan's embedded
 /// graph.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
@@ -58,6 +60,9 @@ pub(super) struct SimulateArguments {
     /// Where the robot starts, and the door behind it [default: the plan's own start, or the nearest L]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Option<String>,
+    /// The algorithm that makes the map: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
     /// Random seed
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
@@ -118,8 +123,8 @@ const OF_IMAGES: [&str; 7] =
     ["calibration", "size", "colours", "frames", "look", "effects", "effect"];
 
 /// Options that need a run; --ros serves the robot instead.
-const NOT_DRIVEN: [&str; 8] =
-    ["by_scene", "log", "svg", "html", "frames", "map", "json", "max_darts"];
+const NOT_DRIVEN: [&str; 9] =
+    ["algorithm", "by_scene", "log", "svg", "html", "frames", "map", "json", "max_darts"];
 
 /// A simulation that is ready to run.
 struct Simulation {
@@ -250,17 +255,20 @@ impl SimulateArguments {
         let mut capture = RunCapture::new(story, progress, pictures);
         let mut recording = Recording::default();
         let observer = (&mut log, (&mut recording, &mut capture));
-        let run = run(plan, *facing, robot, sensor.clone(), observer, self.max_darts);
+        let algorithm = self.algorithm.directional();
+        let run = run(plan, *facing, robot, sensor.clone(), observer, algorithm, self.max_darts);
         let logged = log.map_or(Ok(()), Recorder::finish);
         let mut journal = capture.finish(&world.name, plan, *facing, &run)?;
         logged.map_err(|error| self.unwritten(&error))?;
         let computed = Instant::now();
-        let replayed = offline(&recording, sensor, StoppedBy(&StopSignal), self.max_darts);
+        let stop = StoppedBy(&StopSignal);
+        let replayed = offline(&recording, sensor, stop, algorithm, self.max_darts);
         let compute_seconds = computed.elapsed().as_secs_f64();
         let result = SimulationResult {
             world,
             facing: *facing,
             seed: self.seed,
+            algorithm,
             run: &run,
             missed: self.fault.iter().filter(|fault| fault.picture > run.pictures).collect(),
             replayed: replayed.ok(),
@@ -335,6 +343,7 @@ Examples:
   toposlam simulate worlds/shape-8.toml --html run.html --svg run.svg
   toposlam simulate worlds/shape-6.toml --log shape-6.mcap
   toposlam simulate worlds/shape-6.toml --seed 3 --json
+  toposlam simulate worlds/building-12.toml --by-scene --algorithm folding
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
 ";

@@ -12,6 +12,7 @@ mod draw;
 mod evaluate;
 mod explore;
 mod files;
+mod folding;
 mod help;
 mod info;
 mod log;

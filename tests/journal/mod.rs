@@ -103,7 +103,8 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
     let mut keeper = Keeper { journal, moves: 0, pictures };
-    let run = run(&plan, facing, robot, NoSensor, &mut keeper, DEFAULT_DART_BOUND);
+    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let run = run(&plan, facing, robot, NoSensor, &mut keeper, algorithm, DEFAULT_DART_BOUND);
     let mut journal = keeper.journal;
     journal.ending = run.outcome().to_string();
     for (call, arrival) in journal.calls.iter_mut().zip(run.monitor.arrivals()) {

@@ -87,7 +87,8 @@ def summary(messages):
     run, end, world = first["/toposlam/run"], last["/toposlam/end"], last["/toposlam/map"]
     line["run"] = {
         name: getattr(run, name)
-        for name in ["version", "world", "world_hash", "start", "marker", "seed", "calibration", "colours", "command"]
+        for name in ["version", "world", "world_hash", "start", "marker", "seed", "calibration", "colours", "command",
+                     "algorithm"]
     }
     line["end"] = {name: getattr(end, name) for name in ["moves", "ending", "cause"]}
     line["map"] = {name: [int(n) for n in getattr(world, name)] for name in ["degrees", "opposite"]}

@@ -7,8 +7,8 @@ use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     mapping::{
-        Exploration, Journey, MappingChoice, MappingError, MarkerSearch, Nearest, Observer,
-        map_with_movable_marker, map_world, step,
+        Exploration, FoldingExploration, Journey, MappingChoice, MappingError, MarkerSearch,
+        Nearest, Observer, map_by_folding, map_with_movable_marker, map_world, step,
     },
     marker::{Directional, Marker, Movable},
     world::{GraphWorld, Refused},
@@ -44,7 +44,8 @@ pub trait Algorithm: Sync {
         observer: &mut impl Observer<GraphWorld<'g, Self::Marker>>,
     ) -> Result<(), MappingError<Refused>>;
 
-    /// Makes and judges the other runs of a start. There are some with [`AllChoices`](super::AllChoices) only.
+    /// Makes and judges the other runs of a start. There are some with [`AllChoices`](super::AllChoices)
+    /// and [`AllTies`](super::AllTies) only.
     ///
     /// # Errors
     /// Returns the first [`Flaw`].
@@ -96,6 +97,7 @@ macro_rules! run_state {
 }
 run_state!(Exploration);
 run_state!(MarkerSearch);
+run_state!(FoldingExploration);
 
 /// The order of a cost in the numbers of edges, `m`, and vertices, `n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,5 +230,39 @@ impl Algorithm for MovableMarker {
         observer: &mut impl Observer<GraphWorld<'g, Movable>>,
     ) -> Result<(), MappingError<Refused>> {
         map_with_movable_marker(world, &mut Nearest, search, observer)
+    }
+}
+
+/// The folding explorer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Folding;
+
+impl Algorithm for Folding {
+    type Marker = Directional;
+    type State = FoldingExploration;
+
+    fn name(&self) -> &'static str {
+        "Folding explorer"
+    }
+
+    fn order(&self) -> CostOrder {
+        CostOrder::EdgesSquaredVertices
+    }
+
+    /// `4 n m^2 + 4 n m + 400`.
+    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
+        let (m, n) = (edges as u64, vertices as u64);
+        let nm = n.saturating_mul(m);
+        nm.saturating_mul(m).saturating_add(nm).saturating_mul(4).saturating_add(400)
+    }
+
+    #[inline]
+    fn run<'g>(
+        &self,
+        world: &mut GraphWorld<'g>,
+        exploration: &mut FoldingExploration,
+        observer: &mut impl Observer<GraphWorld<'g>>,
+    ) -> Result<(), MappingError<Refused>> {
+        map_by_folding(world, exploration, observer)
     }
 }

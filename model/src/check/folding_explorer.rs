@@ -1,10 +1,7 @@
-//! The folding explorer, to be judged on every start.
+//! The folding explorer, to be judged on every start with all or only strict tests.
 
-use std::borrow::Cow;
-
-use super::{ExploredMap, Explorer, ExplorerWorld, Flaw};
+use super::{Algorithm, ExploredMap, Explorer, ExplorerWorld, Flaw, Folding, judge::explored};
 use crate::{
-    folding::ClosedTrail,
     mapping::{FoldingExploration, map_by_folding},
     marker::Directional,
 };
@@ -31,18 +28,11 @@ impl Explorer for FoldingExplorer {
     }
 
     fn explore(&mut self, world: &mut ExplorerWorld) -> Result<ExploredMap<'_>, Flaw> {
-        map_by_folding(world, &mut self.exploration)?;
-        let trail = self.exploration.trail();
-        let Some(ClosedTrail { graph, marker: Some(facing), pose }) = trail.closed() else {
-            return Err(Flaw::GaveUp("the marker was not seen".to_owned()));
-        };
-        Ok(ExploredMap { graph: Cow::Owned(graph), facing, pose })
+        map_by_folding(world, &mut self.exploration, &mut ())?;
+        explored(&self.exploration)
     }
 
-    /// `4 n m^2 + 4 n m + 400`.
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        let (m, n) = (edges as u64, vertices as u64);
-        let nm = n.saturating_mul(m);
-        nm.saturating_mul(m).saturating_add(nm).saturating_mul(4).saturating_add(400)
+        Folding.move_bound(edges, vertices)
     }
 }

@@ -1,8 +1,8 @@
 //! The algorithms of this crate, to choose from at run time. Section 2.3.
 
 use super::{
-    Algorithm, Algorithm1, AllChoices, CostOrder, EveryWay, Flaw, FoldingExplorer, MovableMarker,
-    Sweep, Tally, check_worlds, check_worlds_with,
+    Algorithm, Algorithm1, AllChoices, AllTies, CostOrder, EveryWay, Flaw, Folding, MovableMarker,
+    Sweep, Tally, check_worlds,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -24,6 +24,8 @@ pub enum MappingAlgorithm {
     MovableMarker,
     /// The folding explorer.
     Folding,
+    /// The folding explorer with every way to break its ties.
+    AllTies(AllTies),
 }
 
 impl MappingAlgorithm {
@@ -33,7 +35,7 @@ impl MappingAlgorithm {
         match self {
             Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.name(),
             Self::MovableMarker => MovableMarker.name(),
-            Self::Folding => "Folding explorer",
+            Self::Folding | Self::AllTies(_) => Folding.name(),
         }
     }
 
@@ -41,7 +43,9 @@ impl MappingAlgorithm {
     #[must_use]
     pub fn marker(&self) -> &'static dyn Marker {
         match self {
-            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding => &Directional,
+            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding | Self::AllTies(_) => {
+                &Directional
+            }
             Self::MovableMarker => &Movable,
         }
     }
@@ -52,7 +56,7 @@ impl MappingAlgorithm {
         match self {
             Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.order(),
             Self::MovableMarker => MovableMarker.order(),
-            Self::Folding => CostOrder::EdgesSquaredVertices,
+            Self::Folding | Self::AllTies(_) => Folding.order(),
         }
     }
 
@@ -63,7 +67,8 @@ impl MappingAlgorithm {
             Self::Algorithm1 => sweep.run(&Algorithm1, watch),
             Self::AllChoices(algorithm) => sweep.run(algorithm, watch),
             Self::MovableMarker => sweep.run(&MovableMarker, watch),
-            Self::Folding => sweep.run_explorers(FoldingExplorer::default, watch),
+            Self::Folding => sweep.run(&Folding, watch),
+            Self::AllTies(algorithm) => sweep.run(algorithm, watch),
         }
     }
 
@@ -74,7 +79,8 @@ impl MappingAlgorithm {
             Self::Algorithm1 => check_worlds(graphs, &Algorithm1, watch),
             Self::AllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
             Self::MovableMarker => check_worlds(graphs, &MovableMarker, watch),
-            Self::Folding => check_worlds_with(graphs, FoldingExplorer::default, watch),
+            Self::Folding => check_worlds(graphs, &Folding, watch),
+            Self::AllTies(algorithm) => check_worlds(graphs, algorithm, watch),
         }
     }
 
@@ -90,6 +96,7 @@ impl MappingAlgorithm {
     ) -> Result<Option<EveryWay>, Flaw> {
         match self {
             Self::AllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
+            Self::AllTies(algorithm) => algorithm.other_runs(graph, facing, watch),
             Self::Algorithm1 | Self::MovableMarker | Self::Folding => Ok(None),
         }
     }

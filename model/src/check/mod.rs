@@ -2,6 +2,7 @@
 
 mod algorithm;
 mod costs;
+mod every_tie;
 mod every_way;
 mod explorer;
 mod flaw;
@@ -11,8 +12,11 @@ mod mapping_algorithm;
 mod sweep;
 mod tally;
 
-pub use algorithm::{Algorithm, Algorithm1, CostOrder, MovableMarker, OpenChoices, RunState};
+pub use algorithm::{
+    Algorithm, Algorithm1, CostOrder, Folding, MovableMarker, OpenChoices, RunState,
+};
 pub use costs::{ChoicesLimit, Costs, EveryWay};
+pub use every_tie::{AllTies, every_tie};
 pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;

@@ -102,6 +102,12 @@ pub enum ContradictionReason {
         /// A visit of the vertex.
         visit: usize,
     },
+    /// Two visits are visits of one vertex, and of two that are proved to be distinct.
+    #[error("the junctions after {} and {} moves are the same one and distinct", visits[0], visits[1])]
+    Distinct {
+        /// The visits.
+        visits: [usize; 2],
+    },
     /// A dart is identified with its opposite.
     #[error("an edge at the junction after {visit} moves would have one end only")]
     OwnOpposite {

@@ -18,14 +18,19 @@
 //! markers a contradiction is still a proof, and its absence proves nothing.
 
 mod certificate;
+mod classes;
+mod closed;
 mod contradiction;
+mod marker_tree;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
+pub use closed::ClosedTrail;
 pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
-pub use trail::{ClosedTrail, FoldedTrail};
+pub(crate) use marker_tree::MarkerTree;
+pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept};
 

@@ -1,75 +1,27 @@
-//! A trail with undoable unions: the vertices that a walk has visited, folded as far as is proved.
+//! The folded trail of a walk: the vertices that the robot has visited, folded as far as is proved.
 
-use super::{ContradictionReason, MAX_DARTS, TrailError};
+use super::{
+    ContradictionReason, MAX_DARTS, TrailError,
+    classes::{DartClasses, OPEN},
+};
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::Dart,
     percept::{Door, Percept, Sighting},
 };
-
-/// A dart whose opposite is not known.
-const OPEN: u32 = u32::MAX;
 
 /// The folded trail of a walk.
 ///
 /// The darts of all trail vertices are numbered in the order of the walk, those of a vertex clockwise
 /// from the one by which the robot first came in. Trail vertices that are proved to be one vertex form
-/// a class, a tree of a union-find structure that also keeps by how much one vertex is turned against
-/// the other. A class is represented by the darts of its root.
+/// a class, which is represented by the darts of one of them, its root.
 #[derive(Clone, Debug, Default)]
 pub struct FoldedTrail {
-    /// The first dart of each trail vertex.
-    first: Vec<u32>,
-    /// The number of moves before the first visit of each trail vertex.
-    visit: Vec<usize>,
-    /// What was seen at each trail vertex, for a robot that came in by its first dart.
-    percept: Vec<Percept>,
-    /// The parent of each trail vertex; a root is its own parent.
-    parent: Vec<u32>,
-    /// The index, at the parent, of the first dart of each trail vertex.
-    turn: Vec<u32>,
-    /// The number of trail vertices of each root's class.
-    size: Vec<u32>,
-    /// The trail vertex of each dart.
-    owner: Vec<u32>,
-    /// The opposite of each dart of a root, as any dart of its class; or [`OPEN`].
-    opposite: Vec<u32>,
+    classes: DartClasses,
     /// The dart along which the marker points.
     marker: Option<Dart>,
     /// The dart by which the robot has come in.
     pose: u32,
     moves: usize,
-    /// The number of classes.
-    classes: usize,
-    /// The number of open darts of roots.
-    open: usize,
-    /// What to undo.
-    changes: Vec<Change>,
-    /// The number of changes before the latest union.
-    before_union: usize,
-    /// Scratch: darts that have to be identified next.
-    pairs: Vec<(u32, u32)>,
-}
-
-/// A folded trail as a world.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ClosedTrail {
-    /// The world.
-    pub graph: EmbeddedGraph,
-    /// The dart along which the marker points, if it was seen.
-    pub marker: Option<Dart>,
-    /// The dart by which the robot has come in.
-    pub pose: Dart,
-}
-
-/// A change by a union.
-#[derive(Clone, Copy, Debug)]
-enum Change {
-    /// A root became the child of another root.
-    Child { child: u32, root: u32 },
-    /// The opposite of a dart was open.
-    Opposite { dart: u32 },
-    /// The number of open darts was another.
-    Open { before: usize },
 }
 
 impl FoldedTrail {
@@ -78,16 +30,8 @@ impl FoldedTrail {
     /// # Errors
     /// Returns an error if no vertex has the percept, or if it has too many darts.
     pub fn restart(&mut self, percept: Percept) -> Result<(), TrailError> {
-        let Self { first, visit, percept: percepts, parent, turn, size, owner, .. } = self;
-        for numbers in [first, parent, turn, size, owner] {
-            numbers.clear();
-        }
-        visit.clear();
-        percepts.clear();
-        self.opposite.clear();
-        self.changes.clear();
-        self.before_union = 0;
-        (self.marker, self.pose, self.moves, self.classes, self.open) = (None, 0, 0, 0, 0);
+        self.classes.clear();
+        (self.marker, self.pose, self.moves) = (None, 0, 0);
         self.add_vertex(percept).map(|_| ())
     }
 
@@ -103,7 +47,7 @@ impl FoldedTrail {
 
     /// Whether the robot's vertex has a door.
     pub(super) fn check_door(&self, door: Door) -> Result<(), ContradictionReason> {
-        let degree = self.degree_at(self.pose);
+        let degree = self.classes.degree(self.pose);
         if door.0 < degree {
             Ok(())
         } else {
@@ -119,36 +63,27 @@ impl FoldedTrail {
     pub fn step(&mut self, door: Door, percept: Percept) -> Result<(), TrailError> {
         self.check_door(door)?;
         self.moves += 1;
-        let leaving = self.find(self.turned(self.pose, door.0));
-        if self.opposite[leaving as usize] == OPEN {
-            let vertex = self.add_vertex(percept)?;
-            let entry = self.first[vertex as usize];
-            self.opposite[leaving as usize] = entry;
-            self.opposite[entry as usize] = leaving;
-            self.open -= 2;
-            self.pose = entry;
-            self.identify_marker(vertex)?;
-        } else {
-            self.pose = self.find(self.opposite[leaving as usize]);
-            self.compare(self.pose, percept)?;
+        let leaving = self.classes.find(self.classes.turned(self.pose, door.0));
+        match self.classes.opposite(leaving) {
+            OPEN => {
+                let entry = self.add_vertex(percept)?;
+                self.classes.join(leaving, entry);
+                self.pose = entry;
+                // All sightings of the marker are one pose.
+                if let (Sighting::Pointing(Door(door)), Some(marker)) =
+                    (percept.sighting, self.marker)
+                    && marker.0 != entry + door
+                {
+                    self.classes.unite(marker.0, entry + door)?;
+                    self.classes.flatten();
+                }
+            }
+            pose => {
+                self.pose = pose;
+                self.classes.compare(pose, percept, self.moves)?;
+            }
         }
-        self.flatten();
         Ok(())
-    }
-
-    /// Makes each trail vertex a root or the child of one. The unions so far cannot be undone any more.
-    fn flatten(&mut self) {
-        self.before_union = 0;
-        if self.changes.is_empty() {
-            return;
-        }
-        self.changes.clear();
-        for vertex in 0..self.parent.len() {
-            let first = self.find(self.first[vertex]);
-            let root = self.owner[first as usize];
-            self.parent[vertex] = root;
-            self.turn[vertex] = first - self.first[root as usize];
-        }
     }
 
     /// Identifies two darts, and all that follows.
@@ -156,16 +91,15 @@ impl FoldedTrail {
     /// # Errors
     /// Returns an error if no world of any size has them as one dart. Nothing is then changed.
     pub fn unite(&mut self, one: Dart, other: Dart) -> Result<(), ContradictionReason> {
-        self.before_union = self.changes.len();
-        self.changes.push(Change::Open { before: self.open });
-        let united = self.close(one.0, other.0);
+        let united = self.classes.unite(one.0, other.0);
         if united.is_err() {
-            self.undo_to(self.before_union);
+            self.classes.undo();
         }
         united
     }
 
-    /// Identifies two darts, computes something, and undoes the identification.
+    /// Identifies two darts, computes something, and undoes the identification. Vertices with
+    /// [numbers](Self::set_numbers) are distinct.
     ///
     /// # Errors
     /// Returns an error if no world of any size has them as one dart.
@@ -175,165 +109,140 @@ impl FoldedTrail {
         other: Dart,
         compute: impl FnOnce(&Self) -> T,
     ) -> Result<T, ContradictionReason> {
-        self.unite(one, other)?;
-        let computed = compute(&*self);
-        self.undo_to(self.before_union);
-        Ok(computed)
+        let united = self.classes.suppose(one.0, other.0);
+        let computed = united.map(|()| compute(&*self));
+        self.classes.undo();
+        computed
     }
 
-    /// The darts of all vertices that the latest [union](Self::unite) merged, as they were numbered before
-    /// it. Some occur more than once.
-    pub fn merged_darts(&self) -> impl Iterator<Item = Dart> + '_ {
-        let merged = self.changes[self.before_union..].iter().filter_map(|change| match change {
-            Change::Child { child, root } => Some([*child, *root]),
-            _ => None,
-        });
-        merged.flatten().flat_map(|vertex| {
-            let first = self.first[vertex as usize];
-            (first..first + self.percept[vertex as usize].degree).map(Dart)
-        })
+    /// The darts that were open before the latest [union](Self::unite) and are not open after it, with
+    /// their [opposites](Self::opposite) after it.
+    pub fn closed_darts(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
+        let identified = self.classes.identified().map(Dart);
+        identified.filter_map(|dart| Some((dart, self.opposite(dart)?)))
+    }
+
+    /// Gives numbers to the darts of a vertex, clockwise from a pose. Later unions keep them. Two
+    /// vertices with numbers must be proved to be distinct.
+    pub fn set_numbers(&mut self, pose: Dart, first: u32) {
+        self.classes.set_numbers(self.classes.find(pose.0), first);
+    }
+
+    /// The number of a dart, if its vertex has [numbers](Self::set_numbers).
+    #[inline]
+    #[must_use]
+    pub fn number(&self, dart: Dart) -> Option<u32> {
+        self.classes.number(dart.0)
     }
 
     /// The number of moves.
+    #[inline]
     #[must_use]
     pub fn moves(&self) -> usize {
         self.moves
     }
 
     /// The robot's pose: the dart by which it came in, as a dart of a root.
+    #[inline]
     #[must_use]
     pub fn pose(&self) -> Dart {
-        Dart(self.find(self.pose))
+        Dart(self.classes.find(self.pose))
     }
 
     /// The dart along which the marker points, as a dart of a root, if it was seen.
     #[must_use]
     pub fn marker(&self) -> Option<Dart> {
-        self.marker.map(|dart| Dart(self.find(dart.0)))
+        self.marker.map(|dart| self.root_of(dart))
     }
 
     /// The number of trail vertices, folded or not.
     #[must_use]
     pub fn trail_vertex_count(&self) -> usize {
-        self.parent.len()
+        self.classes.trail_vertex_count()
     }
 
     /// The number of vertices: places that are not proved to be one.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
-        self.classes
+        self.classes.count()
     }
 
     /// The number of darts of all trail vertices, folded or not.
     #[must_use]
     pub fn dart_count(&self) -> usize {
-        self.owner.len()
+        self.classes.dart_count()
     }
 
     /// The number of open darts: ends of edges that were never traversed.
+    #[inline]
     #[must_use]
     pub fn open_count(&self) -> usize {
-        self.open
+        self.classes.open_count()
     }
 
     /// Whether the walk determines its world: no dart is open, and the marker was seen.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.open == 0 && self.marker.is_some()
+        self.open_count() == 0 && self.marker.is_some()
     }
 
     /// The dart of a root that stands for a dart.
+    #[inline]
     #[must_use]
     pub fn root_of(&self, dart: Dart) -> Dart {
-        Dart(self.find(dart.0))
+        Dart(self.classes.find(dart.0))
     }
 
     /// The other end of a dart's edge, as a dart of a root; `None` if the dart is open.
+    #[inline]
     #[must_use]
     pub fn opposite(&self, dart: Dart) -> Option<Dart> {
-        match self.opposite[self.find(dart.0) as usize] {
+        match self.classes.opposite(self.classes.find(dart.0)) {
             OPEN => None,
-            opposite => Some(Dart(self.find(opposite))),
+            opposite => Some(Dart(opposite)),
         }
     }
 
     /// The darts of a dart's vertex, clockwise from the first of the root.
+    #[inline]
     pub fn darts_around(&self, dart: Dart) -> impl Iterator<Item = Dart> + use<> {
-        let root = self.owner[self.find(dart.0) as usize] as usize;
-        let first = self.first[root];
-        (first..first + self.percept[root].degree).map(Dart)
+        self.classes.darts_of(self.classes.owner(self.classes.find(dart.0))).map(Dart)
     }
 
     /// The dart behind a door, for a robot with this pose; doors are counted modulo the degree.
+    #[inline]
     #[must_use]
     pub fn behind(&self, pose: Dart, door: Door) -> Dart {
-        Dart(self.turned(self.find(pose.0), door.0))
+        Dart(self.classes.turned(self.classes.find(pose.0), door.0))
     }
 
     /// The door that leads to a dart, for a robot with this pose at the same vertex.
+    #[inline]
     #[must_use]
     pub fn door(&self, pose: Dart, dart: Dart) -> Door {
-        let (pose, dart) = (self.find(pose.0), self.find(dart.0));
-        let first = self.first[self.owner[pose as usize] as usize];
-        Door::between(pose - first, dart.wrapping_sub(first), self.degree_at(pose))
+        self.classes.door(self.classes.find(pose.0), self.classes.find(dart.0))
     }
 
     /// The number of the root of a dart's vertex, below [`trail_vertex_count`](Self::trail_vertex_count).
+    #[inline]
     #[must_use]
     pub fn vertex(&self, dart: Dart) -> usize {
-        self.owner[self.find(dart.0) as usize] as usize
+        self.classes.owner(self.classes.find(dart.0)) as usize
     }
 
     /// The degree of a dart's vertex.
+    #[inline]
     #[must_use]
     pub fn degree(&self, dart: Dart) -> u32 {
-        self.degree_at(dart.0)
+        self.classes.degree(dart.0)
     }
 
     /// The roots' first darts, one for each vertex, in the order of the first visits of the roots.
     pub fn vertices(&self) -> impl Iterator<Item = Dart> + '_ {
-        let roots = (0..self.parent.len()).filter(|&vertex| self.parent[vertex] == vertex as u32);
-        roots.map(|root| Dart(self.first[root]))
+        self.classes.roots().map(|root| Dart(self.classes.first(root)))
     }
 
-    /// The folded trail as a world with a dead end behind each open dart. It explains the walk. If the
-    /// trail [is complete](Self::is_complete) it is the only world that does. `None` if nothing was
-    /// perceived.
-    #[must_use]
-    pub fn closed(&self) -> Option<ClosedTrail> {
-        if self.classes == 0 {
-            return None;
-        }
-        let mut graph = EmbeddedGraph::unfinished();
-        let mut number = vec![OPEN; self.owner.len()];
-        let mut next = 0;
-        for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
-            number[dart.at()] = next;
-            next += 1;
-        }
-        for first in self.vertices() {
-            let _: Vertex = graph.add_vertex(self.degree_at(first.0));
-        }
-        for _ in 0..self.open {
-            let _: Vertex = graph.add_vertex(1);
-        }
-        for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
-            let one = Dart(number[dart.at()]);
-            match self.opposite(dart) {
-                None => {
-                    graph.join(one, Dart(next));
-                    next += 1;
-                }
-                Some(other) if dart < other => graph.join(one, Dart(number[other.at()])),
-                Some(_) => {}
-            }
-        }
-        let numbered = |dart: Dart| Dart(number[dart.at()]);
-        let marker = self.marker().map(numbered);
-        Some(ClosedTrail { graph, marker, pose: numbered(self.pose()) })
-    }
-
-    /// A new vertex with open darts, a class of its own.
+    /// Adds a vertex with open darts, a class of its own, and returns its first dart.
     fn add_vertex(&mut self, percept: Percept) -> Result<u32, TrailError> {
         let Percept { degree, sighting } = percept;
         if degree == 0 {
@@ -344,167 +253,15 @@ impl FoldedTrail {
         {
             return Err(ContradictionReason::MarkerDoor { door, degree }.into());
         }
-        if degree as usize > MAX_DARTS - self.owner.len() {
+        if degree as usize > MAX_DARTS - self.classes.dart_count() {
             return Err(TrailError::TooManyDarts);
         }
-        let vertex = self.first.len() as u32;
-        let first = self.owner.len() as u32;
-        self.first.push(first);
-        self.visit.push(self.moves);
-        self.percept.push(percept);
-        self.parent.push(vertex);
-        self.turn.push(0);
-        self.size.push(1);
-        self.owner.resize(self.owner.len() + degree as usize, vertex);
-        self.opposite.resize(self.owner.len(), OPEN);
-        self.classes += 1;
-        self.open += degree as usize;
+        let first = self.classes.add_vertex(percept, self.moves);
         if self.marker.is_none()
             && let Sighting::Pointing(Door(door)) = sighting
         {
             self.marker = Some(Dart(first + door));
         }
-        Ok(vertex)
+        Ok(first)
     }
-
-    /// All sightings of the marker are one pose.
-    fn identify_marker(&mut self, vertex: u32) -> Result<(), ContradictionReason> {
-        let here = self.first[vertex as usize];
-        match (self.percept[vertex as usize].sighting, self.marker) {
-            (Sighting::Pointing(Door(door)), Some(marker)) => self.close(marker.0, here + door),
-            _ => Ok(()),
-        }
-    }
-
-    /// Compares a percept with what was perceived at a vertex before, for a robot with this pose.
-    fn compare(&self, pose: u32, percept: Percept) -> Result<(), ContradictionReason> {
-        let root = self.owner[pose as usize] as usize;
-        let index = pose - self.first[root];
-        let visits = [self.visit[root], self.moves];
-        let before = self.percept[root];
-        if before.degree != percept.degree {
-            let degrees = [before.degree, percept.degree];
-            return Err(ContradictionReason::Degree { visits, degrees });
-        }
-        compare_sightings(before.seen_from(Door(index)), percept, visits)
-    }
-
-    /// Identifies two darts, and all that follows.
-    fn close(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
-        self.pairs.clear();
-        self.pairs.push((one, other));
-        while let Some((one, other)) = self.pairs.pop() {
-            let (one, other) = (self.find(one), self.find(other));
-            if one != other {
-                self.merge(one, other)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Makes one class of two.
-    fn merge(&mut self, one: u32, other: u32) -> Result<(), ContradictionReason> {
-        let (mut root, mut child) = (self.owner[one as usize], self.owner[other as usize]);
-        let (mut at_root, mut at_child) = (one, other);
-        if root == child {
-            return Err(ContradictionReason::Rotation { visit: self.visit[root as usize] });
-        }
-        if self.size[root as usize] < self.size[child as usize] {
-            (root, child, at_root, at_child) = (child, root, at_child, at_root);
-        }
-        let degree = self.percept[root as usize].degree;
-        let visits = [root, child].map(|vertex| self.visit[vertex as usize]);
-        let degrees = [root, child].map(|vertex| self.percept[vertex as usize].degree);
-        if degrees[0] != degrees[1] {
-            return Err(ContradictionReason::Degree { visits, degrees });
-        }
-        // The child's first dart, at the root.
-        let turn = Door::between(
-            at_child - self.first[child as usize],
-            at_root - self.first[root as usize],
-            degree,
-        );
-        let expected = self.percept[root as usize].seen_from(turn);
-        compare_sightings(expected, self.percept[child as usize], visits)?;
-        self.parent[child as usize] = root;
-        self.turn[child as usize] = turn.0;
-        self.size[root as usize] += self.size[child as usize];
-        self.classes -= 1;
-        self.changes.push(Change::Child { child, root });
-        for index in 0..degree {
-            let from = self.first[child as usize] + index;
-            let to = self.find(from);
-            match [from, to].map(|dart| self.opposite[dart as usize]) {
-                [OPEN, _] => self.open -= 1,
-                [far, OPEN] => {
-                    self.opposite[to as usize] = far;
-                    self.open -= 1;
-                    self.changes.push(Change::Opposite { dart: to });
-                }
-                [far, near] => self.pairs.push((far, near)),
-            }
-            let opposite = self.opposite[to as usize];
-            if opposite != OPEN && self.find(opposite) == to {
-                return Err(ContradictionReason::OwnOpposite { visit: visits[0] });
-            }
-        }
-        Ok(())
-    }
-
-    /// Undoes the latest changes, so that this many are left.
-    fn undo_to(&mut self, count: usize) {
-        for change in self.changes.drain(count..).rev() {
-            match change {
-                Change::Child { child, root } => {
-                    self.parent[child as usize] = child;
-                    self.turn[child as usize] = 0;
-                    self.size[root as usize] -= self.size[child as usize];
-                    self.classes += 1;
-                }
-                Change::Opposite { dart } => self.opposite[dart as usize] = OPEN,
-                Change::Open { before } => self.open = before,
-            }
-        }
-    }
-
-    /// The dart of a root that stands for a dart.
-    #[inline]
-    fn find(&self, dart: u32) -> u32 {
-        let mut vertex = self.owner[dart as usize] as usize;
-        let mut index = dart - self.first[vertex];
-        let degree = self.percept[vertex].degree;
-        while self.parent[vertex] as usize != vertex {
-            index += self.turn[vertex];
-            index -= if index >= degree { degree } else { 0 };
-            vertex = self.parent[vertex] as usize;
-        }
-        self.first[vertex] + index
-    }
-
-    /// The dart at the same trail vertex that stands some places further clockwise.
-    fn turned(&self, dart: u32, places: u32) -> u32 {
-        let vertex = self.owner[dart as usize] as usize;
-        let (first, degree) = (self.first[vertex], self.percept[vertex].degree);
-        // A door is below 2^32, so the sum of 64 bits does not overflow.
-        first + ((u64::from(dart - first) + u64::from(places)) % u64::from(degree)) as u32
-    }
-
-    fn degree_at(&self, dart: u32) -> u32 {
-        self.percept[self.owner[dart as usize] as usize].degree
-    }
-}
-
-/// Compares what is seen at one vertex, for one pose. A mark on an edge is not at a vertex.
-fn compare_sightings(
-    before: Percept,
-    now: Percept,
-    visits: [usize; 2],
-) -> Result<(), ContradictionReason> {
-    use Sighting::{Nothing, Passed, PassedAgainst, PassedAlong};
-    let [before, now] = [before.sighting, now.sighting].map(|sighting| match sighting {
-        Passed | PassedAlong | PassedAgainst => Nothing,
-        at_vertex => at_vertex,
-    });
-    let sightings = [before, now];
-    if before == now { Ok(()) } else { Err(ContradictionReason::Marker { visits, sightings }) }
 }

@@ -289,7 +289,7 @@ impl Journey {
         Ok(vertex)
     }
 
-    fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {
+    pub(super) fn check_bound<E>(&self, degree: u32) -> Result<(), MappingError<E>> {
         let bound = self.bound;
         if self.map.dart_count().saturating_add(degree as usize) > bound {
             return Err(MappingError::Bound { bound });

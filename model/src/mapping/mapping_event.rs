@@ -66,6 +66,8 @@ pub enum MappingEvent {
     },
     /// An event of the movable marker algorithm.
     Movable(MovableEvent),
+    /// An event of the folding explorer.
+    Folding(FoldingEvent),
 }
 
 impl MappingEvent {
@@ -126,5 +128,51 @@ pub enum MovableEvent {
     Behind {
         /// The dart.
         dart: Dart,
+    },
+}
+
+/// An event that only runs of the folding explorer have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldingEvent {
+    /// The robot has gone to an unexplored dart and taken it.
+    Explored {
+        /// The dart.
+        edge: Dart,
+        /// The percept behind it.
+        percept: Percept,
+    },
+    /// The robot is going to test a hypothesis.
+    Testing {
+        /// The dart that leads to the place that the hypothesis is about.
+        edge: Dart,
+        /// The dart by which the place is entered, if the hypothesis is true.
+        hypothesis: Dart,
+        /// The number of moves to the marker, if it is true.
+        cost: usize,
+    },
+    /// The test refuted its hypothesis. The robot goes on from where it is.
+    Refuted {
+        /// The dart that leads to the place.
+        edge: Dart,
+        /// The hypothesis.
+        hypothesis: Dart,
+        /// The expected percept.
+        expected: Percept,
+        /// The percept.
+        perceived: Percept,
+    },
+    /// The test ended at the marker as expected.
+    Confirmed {
+        /// The dart that leads to the place.
+        edge: Dart,
+        /// The hypothesis.
+        hypothesis: Dart,
+    },
+    /// The robot has seen the marker, and the trail was folded.
+    Folded {
+        /// The number of vertices of the trail before.
+        before: usize,
+        /// The number of vertices afterwards.
+        after: usize,
     },
 }

@@ -8,6 +8,7 @@ mod exploration;
 mod folding_explorer;
 mod journey;
 mod mapping_event;
+mod mapping_run;
 mod marker_search;
 mod movable_marker;
 mod partial_map;
@@ -17,9 +18,10 @@ pub use algorithm1::{ValidationResult, map_world, step, step_with, try_path};
 pub use choices::{Choices, MappingChoice, Nearest};
 pub use contradiction::{Contradiction, InvalidStep, MappingError};
 pub use exploration::{DEFAULT_DART_BOUND, Exploration};
-pub use folding_explorer::{FoldingExploration, map_by_folding};
+pub use folding_explorer::{FoldingExploration, FoldingStep, HypothesisTest, map_by_folding};
 pub use journey::{Journey, Observer};
-pub use mapping_event::{MappingEvent, MovableEvent};
+pub use mapping_event::{FoldingEvent, MappingEvent, MovableEvent};
+pub use mapping_run::{DirectionalAlgorithm, MappingRun};
 pub use marker_search::MarkerSearch;
 pub use movable_marker::{
     ReachedPlace, explore_edge, map_with_movable_marker, validate_back_link, validate_place,

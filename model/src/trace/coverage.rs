@@ -118,7 +118,8 @@ impl<W: ?Sized> Observer<W> for AlgorithmCoverage {
             MappingEvent::VertexAdded { .. } => self.add(AlgorithmCase::NewVertex, 1),
             MappingEvent::Started { .. }
             | MappingEvent::Confirmed { .. }
-            | MappingEvent::Movable(_) => {}
+            | MappingEvent::Movable(_)
+            | MappingEvent::Folding(_) => {}
         }
     }
 }

@@ -8,7 +8,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     floor_plan::{FloorPlan, JunctionKind},
-    mapping::{DEFAULT_DART_BOUND, MappingError},
+    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, MappingError},
 };
 
 use super::{LearnedSensors, parallel::made_in_turn};
@@ -28,6 +28,7 @@ pub struct RunSampler {
     seed: u64,
     noise: f64,
     faults: Faults,
+    algorithm: DirectionalAlgorithm,
 }
 
 /// Whether faults are injected.
@@ -57,7 +58,7 @@ pub struct JudgedRun {
     pub case: RunCase,
     /// Its outcome.
     pub ending: RunOutcome,
-    /// The robot's moves, and the moves of Algorithm 1 in the plan's embedded graph.
+    /// The robot's moves, and the moves of the algorithm in the plan's embedded graph.
     pub moves: [u64; 2],
     /// Simulated time, in seconds.
     pub seconds: f64,
@@ -95,6 +96,7 @@ impl RunSampler {
         faults: Faults,
         seed: u64,
         noise: f64,
+        algorithm: DirectionalAlgorithm,
     ) -> Self {
         let some = |(number, (_, plan)): (usize, &(String, Arc<FloorPlan>))| {
             let all = starts_of(plan);
@@ -104,7 +106,7 @@ impl RunSampler {
             (0..wanted).map(nth).collect::<Vec<_>>()
         };
         let starts = plans.iter().enumerate().flat_map(some).collect();
-        Self { plans, starts, seed, noise, faults }
+        Self { plans, starts, seed, noise, faults, algorithm }
     }
 
     /// The number of starts.
@@ -124,7 +126,7 @@ impl RunSampler {
         config.noise = self.noise;
         if self.faults == Faults::Each {
             let (kind, ..) = FAULTS[(number % FAULTS.len() as u64) as usize];
-            let moves = explored(&config.plan, facing, DEFAULT_DART_BOUND);
+            let moves = explored(&config.plan, facing, self.algorithm, DEFAULT_DART_BOUND);
             let picture = chance.random_range(2..=PICTURES_A_MOVE * moves.max(1));
             config.faults.push(RobotFault::at(kind, picture));
         }
@@ -140,12 +142,22 @@ impl RunSampler {
         eyes: Option<&LearnedSensors>,
         watch: &dyn Watch,
     ) -> Vec<JudgedRun> {
-        made_in_turn(numbers, watch, |number| self.case(number), |case| judged(case, eyes, watch))
+        made_in_turn(
+            numbers,
+            watch,
+            |number| self.case(number),
+            |case| judged(case, eyes, self.algorithm, watch),
+        )
     }
 }
 
 /// Makes a run. Returns `None` if the watch stops.
-fn judged(case: RunCase, eyes: Option<&LearnedSensors>, watch: &dyn Watch) -> Option<JudgedRun> {
+fn judged(
+    case: RunCase,
+    eyes: Option<&LearnedSensors>,
+    algorithm: DirectionalAlgorithm,
+    watch: &dyn Watch,
+) -> Option<JudgedRun> {
     let SimulationConfig { plan, marker, seed, .. } = case.config.clone();
     // The bound stops a robot that maps places that do not exist.
     let bound = 2 * plan.graph().dart_count() + SPARE_DARTS;
@@ -158,14 +170,14 @@ fn judged(case: RunCase, eyes: Option<&LearnedSensors>, watch: &dyn Watch) -> Op
             (robot, Some(eyes.sensor(look)))
         }
     };
-    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), bound);
+    let run = run(&plan, marker, robot, sensor, StoppedBy(watch), algorithm, bound);
     if matches!(run.error, Some(MappingError::World(ExplorerError::Stopped { .. }))) {
         return None;
     }
     Some(JudgedRun {
         case,
         ending: run.outcome(),
-        moves: [run.exploration.moves(), run.explore_moves],
+        moves: [run.mapping.moves(), run.explore_moves],
         seconds: run.seconds,
         pictures: run.pictures,
     })

@@ -215,6 +215,8 @@ fn about(pose: Pose, chance: &mut impl Rng) -> Pose {
 
 #[cfg(test)]
 mod tests {
+    use toposlam_model::mapping::DirectionalAlgorithm;
+
     use super::*;
     use crate::evaluation::{
         impatient::Impatient,
@@ -229,7 +231,8 @@ mod tests {
     fn a_traversal_and_a_run_that_are_stopped_on_the_way_are_not_judged() {
         let plans = plans().unwrap();
         let traversals = TraversalSampler::new(plans.clone(), 1, 1.0);
-        let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0);
+        let algorithm = DirectionalAlgorithm::Algorithm1;
+        let runs = RunSampler::new(plans, 1, Faults::None, 1, 1.0, algorithm);
         let counts: [Count<'_>; 2] =
             [&|watch| traversals.judged(0..1, None, watch).len(), &|watch| {
                 runs.judged(0..1, None, watch).len()

@@ -12,7 +12,7 @@ use toposlam_model::{
         visit::JunctionShape,
     },
     embedded_graph::{Dart, Vertex},
-    mapping::MappingEvent,
+    mapping::{FoldingEvent, MappingEvent},
     percept::{self, Sighting},
 };
 
@@ -183,7 +183,7 @@ fn known(number: u32) -> Option<u32> {
     (number != UNKNOWN).then_some(number)
 }
 
-/// A step of Algorithm 1 after so many moves; a move has its [`Percept`] instead.
+/// A step of the mapping algorithm after so many moves; a move has its [`Percept`] instead.
 pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Option<Hypothesis> {
     let step = |step: &str, dart: Option<Dart>| Hypothesis {
         stamp,
@@ -192,6 +192,10 @@ pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Optio
         dart: dart.map_or(NONE, |Dart(dart)| number(dart)),
         other: NONE,
         ..Hypothesis::default()
+    };
+    let about = |name: &str, edge: Dart, hypothesis| Hypothesis {
+        other: number(edge.0),
+        ..step(name, Some(hypothesis))
     };
     Some(match event {
         MappingEvent::Started { .. } => step("started", None),
@@ -212,6 +216,17 @@ pub(super) fn hypothesis(stamp: Stamp, moves: u64, event: MappingEvent) -> Optio
         MappingEvent::VertexAdded { edge, vertex: Vertex(vertex) } => {
             Hypothesis { other: number(vertex), ..step("vertex-added", Some(edge)) }
         }
+        MappingEvent::Folding(event) => match event {
+            FoldingEvent::Explored { edge, .. } => step("explored", Some(edge)),
+            FoldingEvent::Testing { edge, hypothesis, cost } => {
+                Hypothesis { followed: count(cost as u64), ..about("testing", edge, hypothesis) }
+            }
+            FoldingEvent::Refuted { edge, hypothesis, .. } => about("refuted", edge, hypothesis),
+            FoldingEvent::Confirmed { edge, hypothesis } => about("confirmed", edge, hypothesis),
+            FoldingEvent::Folded { after, .. } => {
+                Hypothesis { other: i32::try_from(after).unwrap_or(NONE), ..step("folded", None) }
+            }
+        },
         MappingEvent::Moved { .. } | MappingEvent::Movable(_) => return None,
     })
 }

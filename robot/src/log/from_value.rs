@@ -54,7 +54,7 @@ pub(super) trait FromValue: Sized {
 }
 
 macro_rules! read {
-    ($($name:ident { $($field:ident)* })*) => {$(
+    ($($name:ident { $($field:ident)* $(/ $($new:ident)*)? })*) => {$(
         impl FromValue for $name {
             fn from_value(value: &Value<'_>) -> Result<Self, &'static str> {
                 let Value::Struct(made, values) = value else { return Err("") };
@@ -63,14 +63,20 @@ macro_rules! read {
                     let found = made.field(name).and_then(|(index, _)| values.get(index));
                     let $field = found.and_then(Field::of).ok_or(name)?;
                 )*
-                Ok(Self { $($field),* })
+                // Older logs do not have these.
+                $($(
+                    let found = made.field(stringify!($new));
+                    let $new = found.and_then(|(index, _)| Field::of(values.get(index)?));
+                    let $new = $new.unwrap_or_default();
+                )*)?
+                Ok(Self { $($field,)* $($($new,)*)? })
             }
         }
     )*};
 }
 
 read! {
-    Run { stamp version world world_hash start marker seed calibration colours command }
+    Run { stamp version world world_hash start marker seed calibration colours command / algorithm }
     Scene {
         stamp place status reason heading left right doors turning_point confidence marker
         marker_position marker_axis marker_door

@@ -78,6 +78,8 @@ own! {
         colours: String,
         /// The command, if one made it.
         command: String,
+        /// The algorithm that made the map, if known.
+        algorithm: String,
     }
     /// The scene of an image.
     Scene "/toposlam/scene" {
@@ -137,7 +139,7 @@ own! {
         /// The direction of the entry door in the frame of odometry.
         entry: f64,
     }
-    /// A step of Algorithm 1.
+    /// A step of the mapping algorithm.
     Hypothesis "/toposlam/hypothesis" {
         /// The number of moves before it.
         r#move: u32,
@@ -145,7 +147,8 @@ own! {
         step: String,
         /// The dart that it is about; -1: none.
         dart: i32,
-        /// The other end, or the new vertex; -1: none.
+        /// The other end, the new vertex, the dart that leads to the place of the hypothesis, or how many
+        /// vertices are left; -1: none.
         other: i32,
         /// The number of hypotheses that were rejected at once.
         contradicted: u32,

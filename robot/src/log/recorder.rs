@@ -161,6 +161,7 @@ fn entries(run: &messages::Run) -> BTreeMap<String, String> {
         ("calibration", run.calibration.clone()),
         ("colours", run.colours.clone()),
         ("command", run.command.clone()),
+        ("algorithm", run.algorithm.clone()),
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
@@ -173,7 +174,7 @@ mod tests {
     use mcap::MessageStream;
     use toposlam_model::{
         driving::scene::Scene,
-        mapping::{Exploration, MappingError},
+        mapping::{DirectionalAlgorithm, MappingError, MappingRun},
     };
 
     use super::*;
@@ -195,7 +196,8 @@ mod tests {
         let mut log = Vec::new();
         let head = messages::Run { world: "shape-6".to_owned(), ..messages::Run::default() };
         let mut recorder = Recorder::new(&mut log, &head, None).unwrap();
-        check(&run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200));
+        let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
+        check(&run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200));
         recorder.finish().unwrap();
         log
     }
@@ -214,7 +216,7 @@ mod tests {
     fn a_log_has_the_run_from_head_to_end_in_the_order_of_time() {
         let pictures = std::cell::Cell::new(0);
         let log = messages(&logged(None, |run| {
-            assert_eq!((run.exploration.moves(), run.explore_moves), (8, 8));
+            assert_eq!((run.mapping.moves(), run.explore_moves), (8, 8));
             pictures.set(run.pictures as usize);
         }));
         let count = |topic: &str| log.iter().filter(|(found, ..)| found == topic).count();
@@ -317,7 +319,7 @@ mod tests {
         let mut page = Pixels::default();
         let decoded = DECODED.get();
         let mut explorer = RobotExplorer::new(robot, Pixels::default(), (&mut recorder, &mut page));
-        explorer.map(&mut Exploration::new(200)).unwrap();
+        explorer.map(&mut MappingRun::new(DirectionalAlgorithm::Algorithm1, 200)).unwrap();
         assert!(page.0 > 60, "{}", page.0);
         assert_eq!(DECODED.get() - decoded, page.0);
         recorder.finish().unwrap();
@@ -347,7 +349,8 @@ mod tests {
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, 5);
         setting.keeps_track = true;
         let mut recorder = Recorder::new(Full, &messages::Run::default(), None).unwrap();
-        let run = run(&plan, facing, setting.by_scene(), NoSensor, &mut recorder, 200);
+        let (robot, algorithm) = (setting.by_scene(), DirectionalAlgorithm::Algorithm1);
+        let run = run(&plan, facing, robot, NoSensor, &mut recorder, algorithm, 200);
         assert!(recorder.stop());
         let stopped = Some(MappingError::World(ExplorerError::Stopped { moves: 1 }));
         assert_eq!(run.error, stopped);

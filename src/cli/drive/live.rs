@@ -11,7 +11,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Watch,
     format::named_world::NamedWorld,
-    mapping::{Exploration, Journey, MappingEvent, Observer},
+    mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun, Observer},
 };
 use toposlam_robot::{
     explorer::RobotExplorer,
@@ -99,8 +99,8 @@ impl DriveArguments {
         };
         let mut narrator = Narrator { story, progress };
         let mut explorer = RobotExplorer::new(robot, sensor, (&mut log, &mut narrator));
-        let mut exploration = Exploration::new(self.max_darts);
-        let error = explorer.map(&mut exploration).err();
+        let mut mapping = MappingRun::new(self.algorithm.directional(), self.max_darts);
+        let error = explorer.map(&mut mapping).err();
         let (robot, _) = explorer.into_parts();
         let logged = log.map_or(Ok(()), Recorder::finish);
         let (seconds, pictures) = (robot.odometry().time, robot.pictures());
@@ -111,8 +111,7 @@ impl DriveArguments {
         logged.map_err(|error| self.unwritten(&error))?;
         let name = world.map_or("", |(world, _)| &world.name);
         let error = error.as_ref();
-        let result =
-            DriveResult { world: name, exploration: &exploration, error, seconds, pictures };
+        let result = DriveResult { world: name, mapping: &mapping, error, seconds, pictures };
         if self.json {
             result.print_json(out)?;
         } else {
@@ -151,6 +150,7 @@ impl DriveArguments {
             calibration: calibration::to_toml(camera),
             colours: colours.to_toml(),
             command: self.command(),
+            algorithm: self.algorithm.directional().name().to_owned(),
         };
         let recorder = Recorder::new(output::create_growing(path)?, &run, Some(camera.clone()));
         recorder.map(Some).map_err(|error| self.unwritten(&error))
@@ -165,10 +165,13 @@ impl DriveArguments {
     fn command(&self) -> String {
         let path = |path: &std::path::PathBuf| path.display().to_string();
         let unless = |value: &String, usual: &str| (value != usual).then(|| value.clone());
+        let algorithm = self.algorithm.directional();
+        let is_default = algorithm == DirectionalAlgorithm::default();
         let options = [
             ("--ros", Some(self.ros.clone())),
             ("--calibration", Some(path(&self.calibration))),
             ("--colours", Some(path(&self.colours))),
+            ("--algorithm", (!is_default).then(|| algorithm.name().to_owned())),
             ("--image-topic", unless(&self.image_topic, recorder::IMAGE)),
             ("--odom-topic", unless(&self.odom_topic, recorder::ODOM)),
             ("--cmd-vel-topic", unless(&self.cmd_vel_topic, recorder::CMD_VEL)),
@@ -184,7 +187,7 @@ impl DriveArguments {
     }
 }
 
-/// Prints the story of Algorithm 1 and the progress.
+/// Prints the story of the mapping algorithm and the progress.
 struct Narrator<'o, 'p> {
     story: Story<StoryLines<'o>>,
     progress: &'p Progress,

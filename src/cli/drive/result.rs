@@ -5,7 +5,7 @@ use std::io::Write;
 use serde::Serialize;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{Exploration, FACING, MappingError},
+    mapping::{FACING, MappingError, MappingRun},
 };
 use toposlam_robot::explorer::ExplorerError;
 
@@ -19,7 +19,7 @@ use crate::cli::{
 pub(super) struct DriveResult<'a> {
     /// The name of the world, or an empty string.
     pub(super) world: &'a str,
-    pub(super) exploration: &'a Exploration,
+    pub(super) mapping: &'a MappingRun,
     pub(super) error: Option<&'a MappingError<ExplorerError>>,
     /// The duration by the robot's clock, in seconds.
     pub(super) seconds: f64,
@@ -52,8 +52,8 @@ impl DriveResult<'_> {
 
     /// The map as a world, if it is complete.
     pub(super) fn map(&self) -> Option<NamedWorld> {
-        let graph = self.exploration.map().complete()?;
-        let moves = self.exploration.moves();
+        let graph = self.mapping.map().complete()?;
+        let moves = self.mapping.moves();
         let (name, of) = match self.world {
             "" => ("map".to_owned(), "an unknown world"),
             world => (format!("{world}-map"), world),
@@ -64,12 +64,12 @@ impl DriveResult<'_> {
 
     /// The number of edges whose both ends are known.
     fn edges(&self) -> usize {
-        let map = self.exploration.map();
+        let map = self.mapping.map();
         (map.dart_count() - map.unexplored_count() as usize) / 2
     }
 
     pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
-        let (moves, vertices) = (self.exploration.moves(), self.exploration.map().vertex_count());
+        let (moves, vertices) = (self.mapping.moves(), self.mapping.map().vertex_count());
         let ended = match self.error {
             None => format!("the map is complete, after {moves} moves"),
             Some(error) => format!("the robot gave up: {error}"),
@@ -93,8 +93,8 @@ impl DriveResult<'_> {
             world: self.world,
             ending,
             error: self.error.map(ToString::to_string),
-            moves: self.exploration.moves(),
-            vertices: self.exploration.map().vertex_count(),
+            moves: self.mapping.moves(),
+            vertices: self.mapping.map().vertex_count(),
             edges: self.edges(),
             seconds: (self.seconds * 1e3).round() / 1e3,
             frames: self.pictures,

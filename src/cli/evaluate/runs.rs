@@ -3,6 +3,7 @@
 use std::{io::Write, time::Instant};
 
 use serde_json::json;
+use toposlam_model::mapping::DirectionalAlgorithm;
 use toposlam_robot::{
     evaluation::run_sampler::{Faults, JudgedRun, RunSampler},
     run::RunOutcome,
@@ -14,6 +15,7 @@ use crate::cli::{
     CliError, Outcome,
     exit_codes::help_end,
     json::print_line,
+    mapping_marker::AlgorithmOption,
     progress::Progress,
     text::{counted, grouped, print_rows},
     use_threads,
@@ -32,6 +34,7 @@ Examples:
   toposlam evaluate runs --images --plans 10 --starts 3  with rendered images,
                                                          takes 15 minutes
   toposlam evaluate runs --faults --plans 100            one fault in each run
+  toposlam evaluate runs --algorithm folding             fewer moves
 
 With --faults, a run may also be given up if the robot reports a contradiction.
 A wrong map is no violation if the robot was carried to a place that it cannot
@@ -53,6 +56,9 @@ pub(super) struct EvaluateRunsArguments {
     /// Number of runs [default: one from each start]
     #[arg(long, value_name = "N")]
     runs: Option<u64>,
+    /// The algorithm that makes the map: algorithm1 or folding
+    #[arg(long, default_value = "algorithm1", hide_possible_values = true)]
+    algorithm: AlgorithmOption,
     /// Inject one fault into each run
     #[arg(long)]
     faults: bool,
@@ -74,8 +80,9 @@ impl EvaluateRunsArguments {
         let plans = self.robots.plans(random, most)?;
         let count = plans.len();
         let faults = if self.faults { Faults::Each } else { Faults::None };
+        let algorithm = self.algorithm.directional();
         let RobotArguments { seed, noise, json, .. } = self.robots;
-        let runs = RunSampler::new(plans, self.starts, faults, seed, noise);
+        let runs = RunSampler::new(plans, self.starts, faults, seed, noise, algorithm);
         let wanted = self.runs.unwrap_or(runs.starts() as u64);
         let begun = Instant::now();
         let progress = Progress::new("runs", "runs")?;
@@ -93,7 +100,11 @@ impl EvaluateRunsArguments {
             self.print_json(&judged, violations, outcome, out)?;
         } else {
             let sensing = self.robots.sensing();
-            writeln!(out, "Whole runs by {sensing}, seed {seed}")?;
+            let by = match algorithm {
+                DirectionalAlgorithm::Algorithm1 => "",
+                DirectionalAlgorithm::Folding => ", folding explorer",
+            };
+            writeln!(out, "Whole runs by {sensing}{by}, seed {seed}")?;
             let plans = counted(count, "floor plan");
             writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
             self.print(&judged, outcome, out)?;
@@ -176,6 +187,7 @@ impl EvaluateRunsArguments {
         }
         let line = json!({
             "runs": judged.len(), "seed": self.robots.seed,
+            "algorithm": self.algorithm.directional().name(),
             "violations": violations, "holds": outcome == Outcome::Holds,
         });
         print_line(out, "runs", &line)

@@ -6,17 +6,18 @@ use serde::Serialize;
 use toposlam_model::{
     check::{ChoicesLimit, EveryWay, Flaw},
     embedded_graph::{Dart, EmbeddedGraph},
+    folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{CliError, MappingMarker, Outcome};
+use super::{AlgorithmOption, CliError, MappingMarker, Outcome, certificate::CertificateOfStart};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
-struct Rest {
+struct Rest<'a> {
     moves: u64,
     edges: Option<usize>,
     vertices: usize,
@@ -26,8 +27,13 @@ struct Rest {
     /// The marker, unless it is the directional one.
     #[serde(skip_serializing_if = "Option::is_none")]
     marker: Option<&'static str>,
+    /// The algorithm that maps with the directional marker, unless it is Algorithm 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    algorithm: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<&'a CertificateOfStart>,
     #[serde(flatten)]
     every_way: Option<EveryWayRest>,
 }
@@ -50,6 +56,7 @@ pub(super) struct ExploreResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) marker: MappingMarker,
+    pub(super) algorithm: AlgorithmOption,
     pub(super) journey: &'a Journey,
     /// The most moves that the algorithm may make in this world.
     pub(super) move_bound: u64,
@@ -57,6 +64,8 @@ pub(super) struct ExploreResult<'a> {
     pub(super) carries: bool,
     /// The bijection from the map to the world, or what is wrong.
     pub(super) result: Result<&'a Bijection, Flaw>,
+    /// With `--certificate`.
+    pub(super) certificate: Option<CertificateOfStart>,
     /// All runs, with `--choices all`.
     pub(super) ways: Option<Result<EveryWay, Flaw>>,
 }
@@ -100,7 +109,10 @@ impl ExploreResult<'_> {
             map: self.map().as_ref().map(world_file::to_json),
             start: self.world.start_text(self.facing),
             marker: (self.marker != MappingMarker::Directional).then(|| self.marker.name()),
+            algorithm: (self.algorithm != AlgorithmOption::Algorithm1)
+                .then(|| self.algorithm.directional().name()),
             error: self.error().map(ToString::to_string),
+            certificate: self.certificate.as_ref(),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
                 states_within_rounds: ways.within_rounds,
@@ -128,6 +140,9 @@ impl ExploreResult<'_> {
             }
             Ok(bijection) => self.print_map(bijection, listed, out)?,
         }
+        if let Some(certificate) = &self.certificate {
+            certificate.print(out)?;
+        }
         match &self.ways {
             None => Ok(()),
             Some(Err(flaw)) => {
@@ -148,7 +163,11 @@ impl ExploreResult<'_> {
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
         let moves = counted(journey.moves() as usize, "move");
-        let [least, most] = [edges as u128, (*move_bound).into()].map(grouped);
+        let least = match self.marker {
+            MappingMarker::Directional => certificate_length(&world.graph, self.facing),
+            MappingMarker::Movable => edges,
+        };
+        let [least, most] = [least as u128, (*move_bound).into()].map(grouped);
         let complete = format!(
             "The map is complete after {moves}: {size}. A run in this world takes at least {least} \
              and at most {most} moves."
@@ -195,6 +214,9 @@ fn print_ways(ways: &EveryWay, out: &mut dyn Write) -> io::Result<()> {
     print_paragraph(out, &text)?;
     let reached = match limit {
         None => None,
+        Some(ChoicesLimit::States(most)) if *within_rounds == 0 => {
+            Some(format!("The search stopped at --max-states {most}."))
+        }
         Some(ChoicesLimit::States(most)) => Some(format!(
             "The search stopped at --max-states {most}. That counts the states between rounds, at line \
              4, and the {} states within rounds, at line 8.",

@@ -1,5 +1,6 @@
 //! The story of a mapping run, round by round.
 
+mod folding;
 mod movable;
 
 use std::{
@@ -115,6 +116,7 @@ impl<W: Write> Story<W> {
                 self.print_map(map)
             }
             MappingEvent::Movable(event) => self.print_movable(journey, event),
+            MappingEvent::Folding(event) => self.print_folding(journey, event),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use toposlam_model::mapping::{Journey, MappingEvent, MovableEvent, Observer};
+use toposlam_model::mapping::{FoldingEvent, Journey, MappingEvent, MovableEvent, Observer};
 
 use crate::cli::text::grouped;
 
@@ -16,12 +16,14 @@ pub(super) struct Summary {
     ruled_out: u64,
     rejected: u64,
     confirmed: u64,
+    /// Of the folding explorer: how often the trail was folded.
+    folded: u64,
 }
 
 impl Summary {
     pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out)?;
-        let Self { rounds, vertices, loops, ruled_out, rejected, confirmed } = *self;
+        let Self { rounds, vertices, loops, ruled_out, rejected, confirmed, folded } = *self;
         for (name, count) in [
             ("rounds", rounds),
             ("that found a new vertex", vertices),
@@ -29,7 +31,12 @@ impl Summary {
             ("candidates ruled out by the percept", ruled_out),
             ("candidates rejected by their path", rejected),
             ("candidates confirmed", confirmed),
+            ("times that the trail was folded", folded),
         ] {
+            // Only the folding explorer has a trail.
+            if name.contains("trail") && count == 0 {
+                continue;
+            }
             let indent = if name.starts_with("that") { "    " } else { "  " };
             let name = format!("{indent}{name}");
             writeln!(out, "{name:<40}{:>12}", grouped(count.into()))?;
@@ -45,12 +52,20 @@ impl<W: ?Sized> Observer<W> for Summary {
                 self.rounds += 1;
                 self.ruled_out += contradicted as u64;
             }
-            MappingEvent::Movable(MovableEvent::Arrived { .. }) => self.rounds += 1,
+            MappingEvent::Movable(MovableEvent::Arrived { .. })
+            | MappingEvent::Folding(FoldingEvent::Explored { .. } | FoldingEvent::Testing { .. }) =>
+            {
+                self.rounds += 1;
+            }
+            MappingEvent::Folding(FoldingEvent::Folded { .. }) => self.folded += 1,
             MappingEvent::Rejected { .. }
+            | MappingEvent::Folding(FoldingEvent::Refuted { .. })
             | MappingEvent::Movable(MovableEvent::NotAt { .. } | MovableEvent::NotBehind { .. }) => {
                 self.rejected += 1;
             }
-            MappingEvent::Confirmed { .. } | MappingEvent::Movable(MovableEvent::Behind { .. }) => {
+            MappingEvent::Confirmed { .. }
+            | MappingEvent::Folding(FoldingEvent::Confirmed { .. })
+            | MappingEvent::Movable(MovableEvent::Behind { .. }) => {
                 self.confirmed += 1;
             }
             MappingEvent::LoopClosed { .. } => self.loops += 1,

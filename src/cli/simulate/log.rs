@@ -2,6 +2,7 @@
 
 use std::fs::File;
 
+use toposlam_model::mapping::DirectionalAlgorithm;
 use toposlam_robot::{
     log::{messages, recorder::Recorder, world_hash, writer::LogWriteError},
     simulator::PICTURE_TIME,
@@ -33,6 +34,7 @@ impl SimulateArguments {
             calibration: eyes.map(|(camera, _)| calibration::to_toml(camera)).unwrap_or_default(),
             colours: eyes.map(|(_, colours)| colours.to_toml()).unwrap_or_default(),
             command: self.command(),
+            algorithm: self.algorithm.directional().name().to_owned(),
         };
         let file = output::create_growing(path)?;
         let recorder = Recorder::new(file, &run, eyes.map(|(camera, _)| camera.clone()));
@@ -56,6 +58,9 @@ impl SimulateArguments {
         };
         let path = |path: &std::path::PathBuf| path.display().to_string();
         option("--start", self.start.clone());
+        let algorithm = self.algorithm.directional();
+        let is_default = algorithm == DirectionalAlgorithm::default();
+        option("--algorithm", (!is_default).then(|| algorithm.name().to_owned()));
         option("--seed", Some(self.seed.to_string()));
         option("--calibration", self.calibration.as_ref().map(path));
         option("--size", self.size.map(|size| size.name().to_owned()));
@@ -112,7 +117,7 @@ mod tests {
             ]),
             "toposlam simulate 'a b.toml' --seed 0 --noise 0.5 --by-scene"
         );
-        let line = "it's.toml --start a:b --seed 7 --calibration c.toml --size 1280x960 \
+        let line = "it's.toml --start a:b --algorithm folding --seed 7 --calibration c.toml --size 1280x960 \
                     --colours d.toml --look tiles --effects none --effect noise=0.25 \
                     --picture-time 0.5 --fault carried@40 --fault dropped@3:9 --max-darts 20";
         let words: Vec<_> = line.split_whitespace().collect();

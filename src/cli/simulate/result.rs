@@ -6,7 +6,7 @@ use serde::Serialize;
 use toposlam_model::{
     embedded_graph::Dart,
     format::named_world::NamedWorld,
-    mapping::{Exploration, FACING, MappingError},
+    mapping::{DirectionalAlgorithm, FACING, MappingError, MappingRun},
 };
 use toposlam_robot::{
     explorer::ExplorerError,
@@ -25,11 +25,12 @@ pub(super) struct SimulationResult<'a> {
     pub(super) world: &'a NamedWorld,
     pub(super) facing: Dart,
     pub(super) seed: u64,
+    pub(super) algorithm: DirectionalAlgorithm,
     pub(super) run: &'a Run<'a>,
     /// The faults that did not happen: the run ended before their pictures.
     pub(super) missed: Vec<&'a RobotFault>,
     /// The result of the off-line version on the same pictures, if it is complete.
-    pub(super) replayed: Option<Exploration>,
+    pub(super) replayed: Option<MappingRun>,
     /// How long the off-line version took, in seconds.
     pub(super) compute_seconds: f64,
     /// How long all of it took, in seconds.
@@ -45,6 +46,7 @@ struct Line {
     plan: String,
     start: String,
     seed: u64,
+    algorithm: &'static str,
     moves: u64,
     edges: usize,
     explore_moves: u64,
@@ -78,15 +80,15 @@ impl SimulationResult<'_> {
     /// The map as a world, if it is complete.
     // paper: exp.maps
     pub(super) fn map(&self) -> Option<NamedWorld> {
-        let (name, moves) = (&self.world.name, self.run.exploration.moves());
+        let (name, moves) = (&self.world.name, self.run.mapping.moves());
         let about = format!("The map of {name}, made by a simulated robot in {moves} moves");
-        let graph = self.run.exploration.map().complete()?;
+        let graph = self.run.mapping.map().complete()?;
         Some(NamedWorld::numbered(&format!("{name}-map"), &about, graph.clone(), Some(FACING)))
     }
 
     /// The result in words.
     pub(super) fn in_words(&self) -> String {
-        let moves = self.run.exploration.moves();
+        let moves = self.run.mapping.moves();
         match self.run.outcome() {
             RunOutcome::Right => {
                 format!("the map is right, after {moves} moves, all as specified")
@@ -111,9 +113,9 @@ impl SimulationResult<'_> {
             );
             print_paragraph(out, &text)?;
         }
-        let map = run.exploration.map();
+        let map = run.mapping.map();
         let known = (map.dart_count() - map.unexplored_count() as usize) / 2;
-        let (moves, expected) = (run.exploration.moves(), run.explore_moves);
+        let (moves, expected) = (run.mapping.moves(), run.explore_moves);
         writeln!(out, "  moves             {moves} ({expected} in the plan's embedded graph)")?;
         writeln!(out, "  edges             {edges}")?;
         writeln!(out, "  map               {} vertices, {known} edges", map.vertex_count())?;
@@ -139,7 +141,8 @@ impl SimulationResult<'_> {
             plan: self.world.name.clone(),
             start: self.world.start_text(self.facing),
             seed: self.seed,
-            moves: run.exploration.moves(),
+            algorithm: self.algorithm.name(),
+            moves: run.mapping.moves(),
             edges: self.world.graph.edge_count(),
             explore_moves: run.explore_moves,
             isomorphic: run.isomorphic(),

@@ -1,0 +1,131 @@
+//! Moves in random buildings: of the folding explorer, of Algorithm 1, and of the shortest certificate.
+//!
+//! `cargo run --release -p toposlam-model --example random_buildings`
+//!
+//! A building has its junctions on a square grid. Its hallways join neighbours on the grid, at most three
+//! at a junction: a random tree, and a quarter as many more as there are junctions. With seed 7 these are
+//! the buildings of the table in `worlds/README.md`.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "an example may panic, and prints")]
+
+use std::time::{Duration, Instant};
+
+use toposlam_model::{
+    embedded_graph::{Dart, EmbeddedGraph},
+    folding::certificate_length,
+    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, MappingRun},
+    world::GraphWorld,
+};
+
+/// The number of buildings of each size.
+const BUILDINGS: usize = 10;
+/// The most hallways at a junction.
+const DOORS: usize = 3;
+
+/// A linear congruential generator, with Knuth's constants.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % n
+    }
+}
+
+/// The representative of a junction's part of the building.
+fn part(parents: &[usize], junction: usize) -> usize {
+    let parent = parents[junction];
+    if parent == junction { junction } else { part(parents, parent) }
+}
+
+/// A building with at most this number of junctions: those that the tree has reached from the first.
+fn building(junctions: usize, random: &mut Random) -> EmbeddedGraph {
+    let width = (1..).find(|width| width * width >= junctions).unwrap();
+    let right = |at: usize| (at % width + 1 < width).then_some(at + 1);
+    let below = |at: usize| Some(at + width);
+    let neighbours = |at| [right(at), below(at)].into_iter().flatten().map(move |to| (at, to));
+    let mut hallways: Vec<_> =
+        (0..junctions).flat_map(neighbours).filter(|&(_, to)| to < junctions).collect();
+    for last in (1..hallways.len()).rev() {
+        hallways.swap(last, random.below(last + 1));
+    }
+    let mut parents: Vec<usize> = (0..junctions).collect();
+    let mut around = vec![Vec::new(); junctions];
+    let mut more = Vec::new();
+    for (from, to) in hallways {
+        let parts = [from, to].map(|at| part(&parents, at));
+        if parts[0] != parts[1] && [from, to].iter().all(|&at| around[at].len() < DOORS) {
+            parents[parts[0]] = parts[1];
+            around[from].push(to);
+            around[to].push(from);
+        } else {
+            more.push((from, to));
+        }
+    }
+    let mut left = junctions / 4;
+    for (from, to) in more {
+        if left > 0 && [from, to].iter().all(|&at| around[at].len() < DOORS) {
+            around[from].push(to);
+            around[to].push(from);
+            left -= 1;
+        }
+    }
+    let whole = part(&parents, 0);
+    let lists: Vec<(String, Vec<String>)> = (0..junctions)
+        .filter(|&at| part(&parents, at) == whole)
+        .map(|at| {
+            // Clockwise: up, right, down, left.
+            let side = |to: usize| match to {
+                to if to + width == at => 0,
+                to if to == at + 1 => 1,
+                to if to == at + width => 2,
+                _ => 3,
+            };
+            let mut around = around[at].clone();
+            around.sort_unstable_by_key(|&to| side(to));
+            (at.to_string(), around.iter().map(ToString::to_string).collect())
+        })
+        .collect();
+    let lists: Vec<(&str, Vec<&str>)> = lists
+        .iter()
+        .map(|(at, around)| (at.as_str(), around.iter().map(String::as_str).collect()))
+        .collect();
+    EmbeddedGraph::from_neighbour_lists(&lists).unwrap()
+}
+
+/// The moves of an algorithm, and how long it computes.
+fn moves(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph) -> (u64, Duration) {
+    let begun = Instant::now();
+    let mut run = MappingRun::new(algorithm, DEFAULT_DART_BOUND);
+    run.map_world(&mut GraphWorld::new(graph, Dart(0)), &mut ()).unwrap();
+    (run.moves(), begun.elapsed())
+}
+
+fn main() {
+    println!("junctions  edges  certificate  folding  ratio  Algorithm 1  ratio  computation");
+    for junctions in [25, 50, 100, 200] {
+        let mut random = Random(7);
+        let (mut edges, mut certificate) = (0, 0);
+        let ([mut folding, mut algorithm1], mut time) = ([0; 2], Duration::ZERO);
+        for _ in 0..BUILDINGS {
+            let graph = building(junctions, &mut random);
+            edges += graph.edge_count();
+            certificate += certificate_length(&graph, Dart(0));
+            let (moved, computed) = moves(DirectionalAlgorithm::Folding, &graph);
+            (folding, time) = (folding + moved, time + computed);
+            algorithm1 += moves(DirectionalAlgorithm::Algorithm1, &graph).0;
+        }
+        let mean = |sum: f64| sum / BUILDINGS as f64;
+        println!(
+            "{junctions:>9} {:>6.1} {:>12.1} {:>8.1} {:>6.2} {:>12.1} {:>6.2} {:>9.1} ms",
+            mean(edges as f64),
+            mean(certificate as f64),
+            mean(folding as f64),
+            folding as f64 / certificate as f64,
+            mean(algorithm1 as f64),
+            algorithm1 as f64 / folding as f64,
+            mean(time.as_secs_f64() * 1e3),
+        );
+    }
+}

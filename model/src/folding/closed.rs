@@ -1,0 +1,54 @@
+//! A folded trail as a world.
+
+use super::FoldedTrail;
+use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
+
+/// A folded trail as a world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClosedTrail {
+    /// The world.
+    pub graph: EmbeddedGraph,
+    /// The dart along which the marker points, if it was seen.
+    pub marker: Option<Dart>,
+    /// The dart by which the robot has come in.
+    pub pose: Dart,
+}
+
+impl FoldedTrail {
+    /// The folded trail as a world with a dead end behind each open dart. It explains the walk. If the
+    /// trail [is complete](Self::is_complete) it is the only world that does. `None` if nothing was
+    /// perceived.
+    #[must_use]
+    pub fn closed(&self) -> Option<ClosedTrail> {
+        if self.vertex_count() == 0 {
+            return None;
+        }
+        let mut graph = EmbeddedGraph::unfinished();
+        let mut number = vec![0; self.dart_count()];
+        let mut next = 0;
+        for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
+            number[dart.at()] = next;
+            next += 1;
+        }
+        for first in self.vertices() {
+            let _: Vertex = graph.add_vertex(self.degree(first));
+        }
+        for _ in 0..self.open_count() {
+            let _: Vertex = graph.add_vertex(1);
+        }
+        for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
+            let one = Dart(number[dart.at()]);
+            match self.opposite(dart) {
+                None => {
+                    graph.join(one, Dart(next));
+                    next += 1;
+                }
+                Some(other) if dart < other => graph.join(one, Dart(number[other.at()])),
+                Some(_) => {}
+            }
+        }
+        let numbered = |dart: Dart| Dart(number[dart.at()]);
+        let marker = self.marker().map(numbered);
+        Some(ClosedTrail { graph, marker, pose: numbered(self.pose()) })
+    }
+}

@@ -1,0 +1,89 @@
+//! Tests of hypotheses: walks whose success confirms one.
+
+use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
+
+use super::{FoldingExploration, HypothesisTest, Pending};
+use crate::{embedded_graph::Dart, mapping::partial_map::START};
+
+impl FoldingExploration {
+    /// The cheapest walk that confirms a hypothesis about a place if it ends at the marker. Of walks of
+    /// one cost it is that with the first hypothesis, and the first open dart of the trail.
+    pub(super) fn cheapest_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
+        self.list_tests(pending);
+        let mut tests = BinaryHeap::from(mem::take(&mut self.tests));
+        let found =
+            iter::from_fn(|| tests.pop()).find(|Reverse(test)| self.confirms(pending, test));
+        self.tests = tests.into_vec();
+        found.map(|Reverse(test)| test)
+    }
+
+    /// Lists the walks that lead to the marker if a hypothesis about a place is true: to an open dart
+    /// that would then lead to a place of the map, over it, and through the map to the marker.
+    fn list_tests(&mut self, pending: Pending) {
+        let Pending { edge, far } = pending;
+        let (mut tests, all) = (mem::take(&mut self.tests), mem::take(&mut self.unexplored));
+        let mut identified = mem::take(&mut self.identified);
+        tests.clear();
+        for &hypothesis in &all {
+            if self.hypotheses.is_refuted(edge, hypothesis) {
+                continue;
+            }
+            let target = self.in_trail[hypothesis.at()];
+            identified.clear();
+            let united = self.trail.with_united(far, target, |united| {
+                let entry = |(open, far)| Some((open, Dart(united.number(far)?)));
+                identified.extend(united.closed_darts().filter_map(entry));
+            });
+            if united.is_err() {
+                self.hypotheses.refute(edge, hypothesis);
+                continue;
+            }
+            for &(open, entry) in &identified {
+                let rest = self.to_marker.hops(self.map().vertex(entry)) as usize;
+                let cost = self.from_robot.moves_to(&self.trail, open) + 1 + rest;
+                tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+            }
+        }
+        (self.tests, self.unexplored, self.identified) = (tests, all, identified);
+    }
+
+    /// Whether the success of a test forces its hypothesis.
+    pub(super) fn confirms(&mut self, pending: Pending, test: &HypothesisTest) -> bool {
+        let Some(leaving) = self.trail.opposite(self.in_trail[test.entry.at()]) else {
+            return false;
+        };
+        let hypothesis = Some(test.hypothesis.0);
+        let forced = self
+            .trail
+            .with_united(test.open, leaving, |united| united.number(pending.far) == hypothesis);
+        forced == Ok(true)
+    }
+
+    /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as
+    /// in Algorithm 1.
+    pub(super) fn strict_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
+        let Pending { edge, far } = pending;
+        let all = mem::take(&mut self.unexplored);
+        let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
+        self.unexplored = all;
+        let hypothesis = hypothesis?;
+        let (mut pose, mut believed) = (far, hypothesis);
+        loop {
+            let cost = self.to_marker.hops(self.map().vertex(believed)) as usize;
+            let (door, entry) = self.to_marker.toward_root(self.map(), believed)?;
+            let open = self.trail.behind(pose, door);
+            match self.trail.opposite(open) {
+                None => return Some(HypothesisTest { edge, hypothesis, cost, open, entry }),
+                Some(next) => (pose, believed) = (next, entry),
+            }
+        }
+    }
+
+    /// Finds the ways to the marker through the map, if it has grown.
+    pub(super) fn find_ways_to_marker(&mut self) {
+        if !mem::replace(&mut self.to_marker_is_current, true) {
+            self.to_marker.plant(&self.journey.map, START);
+            self.to_marker.grow_whole(&self.journey.map);
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! The folding explorer: mapping with a directional marker, in fewer moves than Algorithm 1.
+//!
+//! It ends when no dart of the [folded trail](crate::folding) is open, and the folded trail is then the
+//! world. So two places are only ever proved to be *one*; that they are two follows at the end. The map
+//! is the *core*: places that are pairwise distinct. A *pending* place is behind an unexplored dart of
+//! the map. A *hypothesis* is that a pending place is entered by a certain unexplored dart. It is alive
+//! as long as the trail with the two poses united does not contradict itself.
+//!
+//! Ties are broken by the order in which darts were numbered: of open darts and pending places equally
+//! near, the one of the lowest dart of the map; of tests of equal cost, the one with the lowest
+//! hypothesis, then with the open dart that was seen first.
+
+mod hypotheses;
+mod hypothesis_test;
+mod settle;
+mod steps;
+mod walk;
+mod ways;
+
+use std::cmp::Reverse;
+
+use super::{
+    Contradiction, DEFAULT_DART_BOUND, InvalidStep, Journey, MappingError, Observer, PartialMap,
+    tree::BreadthFirstTree,
+};
+use crate::{
+    embedded_graph::Dart,
+    folding::{FoldedTrail, MAX_DARTS, TrailError},
+    percept::{Door, Sighting},
+    world::World,
+};
+use hypotheses::Hypotheses;
+use ways::Ways;
+
+/// What the robot does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldingStep {
+    /// It goes to an unexplored dart of the map that is open, and takes it.
+    Explore(Dart),
+    /// It tests a hypothesis.
+    Test(HypothesisTest),
+}
+
+/// A walk that confirms a hypothesis if it ends at the marker as expected. Less is made first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct HypothesisTest {
+    /// The moves to the marker.
+    pub cost: usize,
+    /// The dart of the map by which the pending place is entered, if the hypothesis is true.
+    pub hypothesis: Dart,
+    /// The open dart of the trail that is taken.
+    open: Dart,
+    /// The dart of the map that leads to the pending place.
+    pub edge: Dart,
+    /// The dart of the map by which the robot then comes in, if the hypothesis is true.
+    entry: Dart,
+}
+
+/// A pending place: the far end of an edge of the map that is not known to be a place of the map.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    /// The dart of the map that leads there.
+    edge: Dart,
+    /// The pose behind it, a dart of the trail.
+    far: Dart,
+}
+
+/// The state of a run of the folding explorer. Memory is reused from run to run.
+///
+/// It is a plain value. To try every choice, clone it together with the world between two steps.
+#[derive(Clone, Debug)]
+pub struct FoldingExploration {
+    /// Whether it only makes strict tests.
+    strict: bool,
+    journey: Journey,
+    trail: FoldedTrail,
+    /// Each dart of the map, as a dart of the trail.
+    in_trail: Vec<Dart>,
+    /// The unexplored darts of the map.
+    unexplored: Vec<Dart>,
+    pending: Vec<Pending>,
+    hypotheses: Hypotheses,
+    /// Shortest ways to the marker through the map.
+    to_marker: BreadthFirstTree,
+    /// Whether `to_marker` fits the present map.
+    to_marker_is_current: bool,
+    from_robot: Ways,
+    /// Scratch: the tests of one pending place.
+    tests: Vec<Reverse<HypothesisTest>>,
+    /// Scratch: open darts that a union closed, and the darts of the map at their other ends.
+    identified: Vec<(Dart, Dart)>,
+    /// Scratch: the darts on the way to somewhere known.
+    way: Vec<Dart>,
+}
+
+impl Default for FoldingExploration {
+    fn default() -> Self {
+        Self::new(DEFAULT_DART_BOUND)
+    }
+}
+
+/// Maps a world with the folding explorer. At its start the robot stands at the marked vertex, with its
+/// back to the facing door. Afterwards `exploration` holds the map, the robot's pose in it and the
+/// number of moves, and its trail is [complete](FoldedTrail::is_complete).
+///
+/// # Errors
+/// Returns an error if the world does, if it contradicts itself, or if the map has more darts than the
+/// exploration's bound, or the trail more than [`MAX_DARTS`].
+pub fn map_by_folding<W: World>(
+    world: &mut W,
+    exploration: &mut FoldingExploration,
+    observer: &mut impl Observer<W>,
+) -> Result<(), MappingError<W::Error>> {
+    exploration.begin(world, observer)?;
+    while let Some(step) = exploration.next_step() {
+        exploration.make_step(step, world, observer)?;
+    }
+    if exploration.is_complete() { Ok(()) } else { Err(InvalidStep::NoPlan.into()) }
+}
+
+impl FoldingExploration {
+    /// A state ready for a run whose map may have at most `bound` darts.
+    #[must_use]
+    pub fn new(bound: usize) -> Self {
+        Self {
+            strict: false,
+            journey: Journey::new(bound),
+            trail: FoldedTrail::default(),
+            in_trail: Vec::new(),
+            unexplored: Vec::new(),
+            pending: Vec::new(),
+            hypotheses: Hypotheses::default(),
+            to_marker: BreadthFirstTree::default(),
+            to_marker_is_current: false,
+            from_robot: Ways::default(),
+            tests: Vec::new(),
+            identified: Vec::new(),
+            way: Vec::new(),
+        }
+    }
+
+    /// An exploration that only makes strict tests: from the place itself, along the whole way to the
+    /// marker, as Algorithm 1 does. It needs more moves.
+    #[must_use]
+    pub fn strict() -> Self {
+        Self { strict: true, ..Self::default() }
+    }
+
+    /// Sets the bound on the darts of the map for later runs.
+    pub fn set_bound(&mut self, bound: usize) {
+        self.journey.set_bound(bound);
+    }
+
+    /// The robot's journey: its map, its pose in the map and its moves.
+    #[must_use]
+    pub fn journey(&self) -> &Journey {
+        &self.journey
+    }
+
+    /// The map: places that are pairwise distinct, and the edges between them.
+    #[must_use]
+    pub fn map(&self) -> &PartialMap {
+        self.journey.map()
+    }
+
+    /// The robot's pose in the map: the dart by which it came in. If its place is not known, the last
+    /// known pose.
+    #[must_use]
+    pub fn robot(&self) -> Dart {
+        self.journey.robot()
+    }
+
+    /// The moves made so far.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.journey.moves()
+    }
+
+    /// The folded trail.
+    #[must_use]
+    pub fn trail(&self) -> &FoldedTrail {
+        &self.trail
+    }
+
+    /// Whether the map is the world.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.trail.is_complete() && self.map().complete().is_some()
+    }
+
+    /// Forgets an earlier run.
+    pub(crate) fn clear(&mut self) {
+        self.journey.clear();
+        self.in_trail.clear();
+        self.unexplored.clear();
+        self.pending.clear();
+        self.hypotheses.clear();
+        self.to_marker_is_current = false;
+    }
+
+    /// The marker lies at the first place of the map.
+    ///
+    /// # Errors
+    /// Returns an error if the world does, if the marker is not seen as required, or at the bound.
+    pub fn begin<W: World>(
+        &mut self,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        self.clear();
+        let percept = world.percept().map_err(MappingError::World)?;
+        if percept.degree == 0 || percept.sighting != Sighting::Pointing(Door::BACK) {
+            return Err(Contradiction::Start { perceived: percept }.into());
+        }
+        self.journey.begin(percept, world, observer)?;
+        self.trail.restart(percept)?;
+        self.put_in_map(self.trail.pose());
+        self.settle(world, observer)
+    }
+
+    /// Makes a step, and draws all conclusions.
+    ///
+    /// # Errors
+    /// See [`map_by_folding`].
+    pub fn make_step<W: World>(
+        &mut self,
+        step: FoldingStep,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        match step {
+            FoldingStep::Explore(edge) => self.explore(edge, world, observer)?,
+            FoldingStep::Test(test) => self.test(test, world, observer)?,
+        }
+        self.settle(world, observer)
+    }
+}
+
+impl<E> From<TrailError> for MappingError<E> {
+    fn from(error: TrailError) -> Self {
+        match error {
+            TrailError::Contradiction(reason) => Contradiction::Trail(reason).into(),
+            TrailError::TooManyDarts => Self::Bound { bound: MAX_DARTS },
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Walks of the robot: to an open dart and over it, and to the marker as a hypothesis predicts.
+
+use std::mem;
+
+use super::{FoldingExploration, HypothesisTest};
+use crate::{
+    embedded_graph::Dart,
+    mapping::{FoldingEvent, MappingError, MappingEvent, Observer},
+    percept::{Door, Percept},
+    world::World,
+};
+
+impl FoldingExploration {
+    /// Goes to an open dart of the map and takes it.
+    pub(super) fn explore<W: World>(
+        &mut self,
+        edge: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let before = self.trail.vertex_count() + 1;
+        let percept = self.take_open(self.in_trail[edge.at()], world, observer)?;
+        self.report(FoldingEvent::Explored { edge, percept }, world, observer);
+        self.report_folding(before, world, observer);
+        Ok(())
+    }
+
+    /// Walks to the marker as if a hypothesis were true, until it is confirmed or refuted.
+    pub(super) fn test<W: World>(
+        &mut self,
+        test: HypothesisTest,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<(), MappingError<W::Error>> {
+        let HypothesisTest { edge, hypothesis, cost, open, entry } = test;
+        self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world, observer);
+        let mut before = self.trail.vertex_count() + 1;
+        let mut perceived = self.take_open(open, world, observer)?;
+        let mut believed = entry;
+        loop {
+            let expected = self.map().expected(believed);
+            if perceived != expected {
+                self.hypotheses.refute(edge, hypothesis);
+                let event = FoldingEvent::Refuted { edge, hypothesis, expected, perceived };
+                self.report(event, world, observer);
+                break;
+            }
+            let Some((door, next)) = self.to_marker.toward_root(self.map(), believed) else {
+                self.report(FoldingEvent::Confirmed { edge, hypothesis }, world, observer);
+                break;
+            };
+            let open = self.trail.opposite(self.trail.behind(self.trail.pose(), door)).is_none();
+            before = self.trail.vertex_count() + usize::from(open);
+            perceived = self.take(door, world, observer)?;
+            believed = next;
+        }
+        self.report_folding(before, world, observer);
+        Ok(())
+    }
+
+    /// Goes to an open dart of the trail, takes it, and returns the percept behind it.
+    fn take_open<W: World>(
+        &mut self,
+        open: Dart,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        let mut way = mem::take(&mut self.way);
+        self.from_robot.darts_to(&self.trail, open, &mut way);
+        for &dart in &way {
+            let door = self.trail.door(self.trail.pose(), dart);
+            self.take(door, world, observer)?;
+        }
+        self.way = way;
+        self.take(self.trail.door(self.trail.pose(), open), world, observer)
+    }
+
+    /// Makes one move, and returns the percept after it.
+    fn take<W: World>(
+        &mut self,
+        door: Door,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) -> Result<Percept, MappingError<W::Error>> {
+        let percept = self.journey.go(door, world, observer)?;
+        self.trail.step(door, percept)?;
+        self.find_robot();
+        Ok(percept)
+    }
+
+    /// Reports that the trail has fewer vertices, if it has: the robot has seen the marker.
+    fn report_folding<W: World>(
+        &self,
+        before: usize,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) {
+        let after = self.trail.vertex_count();
+        if after < before {
+            self.report(FoldingEvent::Folded { before, after }, world, observer);
+        }
+    }
+
+    fn report<W: World>(
+        &self,
+        event: FoldingEvent,
+        world: &mut W,
+        observer: &mut impl Observer<W>,
+    ) {
+        observer.event(world, &self.journey, MappingEvent::Folding(event));
+    }
+}
