@@ -8,7 +8,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     mapping::PartialMap,
-    percept::Percept,
+    percept::{Door, Percept},
 };
 use toposlam_robot::pose::Pose;
 
@@ -63,6 +63,8 @@ pub struct JunctionCall {
     pub rounds: usize,
     /// The robot's true pose.
     pub pose: Pose,
+    /// The door by which it left the junction before; `None` at the start.
+    pub door: Option<Door>,
     /// The percept.
     pub percept: Percept,
     /// Whether the robot was where it should be and perceived what it should.

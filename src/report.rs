@@ -52,11 +52,30 @@ pub struct LogReport {
     pub command: Option<String>,
     /// The camera image at the divergence, or the last one before it, as a JPEG or PNG file.
     pub picture: Option<Vec<u8>>,
+    /// What the events before the divergence, or all events, prove about the world; `None` if this is not
+    /// known, or if the log determines its world.
+    pub folded: Option<FoldedReport>,
     /// The known world, or the smallest one that explains the log, as an SVG document.
     pub world: Option<String>,
 }
 
+/// A folded trail with open doors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoldedReport {
+    /// The number of vertices.
+    pub vertices: usize,
+    /// The number of doors that were never followed.
+    pub open_doors: usize,
+    /// The folded trail as an SVG document; `None` if it is too large.
+    pub drawing: Option<String>,
+}
+
 impl LogReport {
+    /// The text of a fact.
+    pub(crate) fn fact(&self, name: &str) -> Option<&str> {
+        self.facts.iter().find(|(known, _)| *known == name).map(|(_, fact)| &**fact)
+    }
+
     /// The coverage of several logs together. A case is reachable if it is in the world of any log.
     #[must_use]
     pub fn coverage_of(reports: &[Self]) -> Vec<CoveredCase> {

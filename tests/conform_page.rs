@@ -5,10 +5,17 @@
 use std::{fs, io::Cursor, path::Path};
 
 use toposlam::{
-    model::format::world_file,
+    model::{
+        folding::fold,
+        format::world_file,
+        percept::Door,
+        world::{GraphWorld, World},
+    },
     page::conform_page,
-    picture::{WorldPicture, svg},
-    report::{CoveredCase, DivergenceReport, EventLine, LogReport, ReportOrigin, SourceFile},
+    picture::{OpenGraph, WorldPicture, open_svg, svg},
+    report::{
+        CoveredCase, DivergenceReport, EventLine, FoldedReport, LogReport, ReportOrigin, SourceFile,
+    },
 };
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
@@ -92,6 +99,7 @@ fn conforming(log: &str, events: usize) -> LogReport {
         shorter: Vec::new(),
         command: None,
         picture: None,
+        folded: None,
         world: Some(world()),
     }
 }
@@ -100,6 +108,27 @@ fn world() -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/shape-6.toml");
     let world = world_file::read(&fs::read(file).unwrap()).unwrap();
     svg(&WorldPicture::from(&world))
+}
+
+/// The folded trail of half of a run.
+fn folded() -> FoldedReport {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/worlds/building-12.toml");
+    let world = world_file::read(&fs::read(file).unwrap()).unwrap();
+    let (mut percepts, mut doors) = (Vec::new(), Vec::new());
+    let mut robot = GraphWorld::new(&world.graph, world.start.unwrap());
+    for door in [1, 1, 1, 2, 1, 1, 1, 0, 1].map(Door) {
+        percepts.push(robot.sensed());
+        robot.traverse(door).unwrap();
+        doors.push(door);
+    }
+    percepts.push(robot.sensed());
+    let trail = fold(&percepts, &doors).unwrap();
+    let entries = trail.first_entries(&doors);
+    FoldedReport {
+        vertices: trail.vertex_count(),
+        open_doors: trail.open_count(),
+        drawing: open_svg(&OpenGraph::of_trail(&trail, &entries)),
+    }
 }
 
 fn diverged(log: &str, events: usize, at: usize) -> LogReport {
@@ -138,6 +167,7 @@ fn incomplete(log: &str) -> LogReport {
         verdict: ConformVerdict::Incomplete,
         remarks: vec!["the log ends before the map is complete: its recorder stopped".to_owned()],
         tolerated: Vec::new(),
+        folded: Some(folded()),
         ..conforming(log, 31)
     }
 }
@@ -155,6 +185,7 @@ fn the_page_of_a_report_opens_and_leads_to_its_events() {
     let pages = [
         ("conforms", vec![right.clone()]),
         ("diverged", vec![wrong.clone()]),
+        ("open", vec![cut.clone()]),
         ("several", vec![right, wrong, cut]),
     ];
     let pages = pages.map(|(name, reports)| {

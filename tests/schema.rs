@@ -82,7 +82,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "conform run.mcap --world worlds/shape-6.toml",
             "conform run.mcap --world worlds/shape-8.toml --minimise short.mcap",
             "conform run.mcap carried.mcap --require-coverage confirmed",
-            "conform run.mcap --max-edges 2",
+            "conform run.mcap --max-darts 4 --max-steps 1",
         ],
     ),
     ("replay", &["replay run.mcap"]),

@@ -8,13 +8,11 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
+    folding::{WorldSearch, fold, smallest_world},
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
-    trace::{
-        Trace, TraceClaim, TraceEvent, TraceEventKind, WorldSearch, anywhere, match_algorithm,
-        smallest,
-    },
+    trace::{Trace, TraceEvent, TraceEventKind, anywhere},
     world::GraphWorld,
 };
 use toposlam_robot::{
@@ -60,8 +58,7 @@ fn trace(plan: &FloorPlan) -> Trace {
 
 /// A run of Algorithm 1 in a known world, from any start.
 fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
+    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     ConformConfig {
         world: Some(KnownWorld { graph: plan.graph(), states }),
@@ -124,12 +121,11 @@ fn ten_thousand_events(bencher: divan::Bencher) {
 
 /// Searches the smallest world for half of a run, with the default limits.
 #[divan::bench(args = [12, 50, 100], sample_count = 3)]
-fn smallest_world(bencher: divan::Bencher, junctions: usize) {
+fn the_smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let known = match_algorithm(&half, TraceClaim::Part, 1000).exploration.map().clone();
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
-    bencher.bench_local(|| smallest(&half, Some(&known), search, &()));
+    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
+    let trail = fold(half.percepts(), half.doors()).unwrap();
+    bencher.bench_local(|| smallest_world(&trail, search, &()));
 }

@@ -2,6 +2,7 @@
 
 mod expected;
 mod fact_fields;
+mod folded;
 mod known_world;
 mod minimise;
 mod origin;
@@ -22,10 +23,10 @@ use toposlam::{
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::{Class, Watch},
+    folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
-    trace::{SmallestWorld, WorldSearch},
 };
 use toposlam_robot::conform::{
     CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError,
@@ -55,6 +56,9 @@ use known_world::Known;
 /// one, a log diverges at the first event that no world of any size explains, and the command searches
 /// for the smallest world that explains the log. The doors must be doors that Algorithm 1 takes, or may
 /// take.
+///
+/// The command also reports whether the log determines its world. If it does not, some doors were never
+/// followed, and different worlds explain the log.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
@@ -89,11 +93,7 @@ pub(super) struct ConformArguments {
     /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
-    /// Without --world: search worlds with up to this many edges
-    #[arg(long, default_value_t = 12, value_name = "N", conflicts_with = "world",
-        value_parser = clap::value_parser!(u16).range(1..=WorldSearch::MOST_EDGES as i64))]
-    max_edges: u16,
-    /// Without --world: end the search after this many steps
+    /// Without --world: end the search for the smallest world after this many steps
     #[arg(long, default_value_t = WorldSearch::STEPS, value_name = "N", conflicts_with = "world",
         value_parser = clap::value_parser!(u64).range(1..))]
     max_steps: u64,
@@ -359,11 +359,7 @@ impl ConformArguments {
                 Who::Algorithm1 => RunDriver::Algorithm1,
                 Who::Anyone => RunDriver::Anyone,
             },
-            search: WorldSearch {
-                class: self.class,
-                max_edges: self.max_edges.into(),
-                steps: self.max_steps,
-            },
+            search: WorldSearch { class: self.class, steps: self.max_steps },
             dart_bound: self.max_darts,
         }
     }
@@ -371,7 +367,7 @@ impl ConformArguments {
     /// Writes the smallest world that explains a log to the file of `--map`.
     fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), CliError> {
         let Some(path) = &self.map else { return Ok(()) };
-        let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest else {
+        let Some(SmallestWorld::World { graph, marker, .. }) = &judgement.smallest else {
             remark!("{}: not written: no world was found", path.display());
             return Ok(());
         };

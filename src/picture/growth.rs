@@ -1,16 +1,20 @@
 //! The map as it grows. Section 2.3, Algorithm 1.
 //!
 //! Every stage has the layout of the last one, so that the map grows in its place.
-//! An unexplored dart is the beginning of an edge that ends in a small open circle.
+//! An unexplored or open dart is the beginning of an edge that ends in a small dashed circle.
 
 use crate::model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{FACING, PartialMap},
+    mapping::PartialMap,
     marker::Directional,
 };
 
 use super::{
-    Placement, WorldPicture, curves::Curve, drawing::Drawing, geometry::Extent, size::DrawingSize,
+    OpenGraph, Placement, WorldPicture,
+    curves::Curve,
+    drawing::Drawing,
+    geometry::{Extent, Point},
+    size::DrawingSize,
     svg,
 };
 
@@ -21,41 +25,87 @@ const STUB: [f64; 2] = [1.3, 0.36];
 
 /// A picture of each of these maps, which are stages of one map; none of an empty map.
 pub(crate) fn growth(maps: &[PartialMap]) -> Vec<String> {
+    let maps: Vec<OpenGraph> = maps.iter().map(OpenGraph::from).collect();
     let last = maps.last().and_then(Whole::new);
     let mut stages: Vec<_> = maps.iter().map(|map| stage(map, last.as_ref())).collect();
     let mut room = Extent::EMPTY;
     for (_, drawing) in stages.iter().flatten() {
         room.join(drawing.extent());
     }
-    let svg = |stage: &mut Option<(EmbeddedGraph, Drawing)>| {
+    let svg = |(stage, map): (&mut Option<(EmbeddedGraph, Drawing)>, &OpenGraph)| {
         let Some((graph, drawing)) = stage else {
             return String::new();
         };
         drawing.room = room;
         svg::document(
-            &picture(graph, &names(graph, drawing.known)),
+            &picture(graph, &names(graph, drawing.known), map.marker()),
             drawing,
             svg::Legend::Elsewhere,
         )
     };
-    stages.iter_mut().map(svg).collect()
+    stages.iter_mut().zip(&maps).map(svg).collect()
 }
 
-/// A map with a vertex for each unexplored dart, and its drawing.
+/// A picture of a graph with its open darts; `None` of an empty one.
+#[must_use]
+pub fn open_svg(map: &OpenGraph) -> Option<String> {
+    let (graph, drawing) = stage(map, None)?;
+    let names = names(&graph, drawing.known);
+    let picture = picture(&graph, &names, map.marker());
+    Some(svg::document(&picture, &drawing, svg::Legend::Elsewhere))
+}
+
+/// Where the parts of a graph with open darts are drawn.
+pub(crate) struct OpenLayout {
+    /// Of each vertex: the centre of its disc, and the radius.
+    pub(crate) discs: Vec<([f64; 2], f64)>,
+    /// Points along the edge of each dart, from the dart to its other end.
+    pub(crate) curves: Vec<Vec<[f64; 2]>>,
+    /// The ends of each dart's edge as it is drawn if the dart is open.
+    pub(crate) stubs: Vec<[[f64; 2]; 2]>,
+    /// The radius of the circle in which it ends.
+    pub(crate) open: f64,
+    /// The corners of the drawing.
+    pub(crate) corners: [[f64; 2]; 2],
+}
+
+/// The layout of a graph with open darts; `None` of an empty one.
+pub(crate) fn open_layout(map: &OpenGraph) -> Option<OpenLayout> {
+    let whole = Whole::new(map)?;
+    let (_, drawing) = stage(map, Some(&whole))?;
+    let pair = |point: Point| [point.x, point.y];
+    let discs = drawing.centres.iter().zip(&drawing.size.discs).take(map.vertex_count());
+    let curves = (0..map.dart_count()).map(|dart| whole.curve(Dart(dart as u32)));
+    let stub = |curve: &Curve| {
+        let trace = whole.beginning(curve).trace;
+        [trace.first(), trace.last()].map(|end| end.map_or([0.0; 2], |&end| pair(end)))
+    };
+    let curves: Vec<Curve> = curves.collect();
+    let extent = drawing.extent();
+    Some(OpenLayout {
+        discs: discs.map(|(&centre, &radius)| (pair(centre), radius)).collect(),
+        stubs: curves.iter().map(stub).collect(),
+        curves: curves.into_iter().map(|it| it.trace.into_iter().map(pair).collect()).collect(),
+        open: OPEN,
+        corners: [extent.least, extent.least + extent.size()].map(pair),
+    })
+}
+
+/// A graph with a vertex for each open dart, and its drawing.
 struct Whole<'a> {
-    map: &'a PartialMap,
+    map: &'a OpenGraph,
     drawing: Drawing,
     /// The place of each dart's edge in the drawing.
     edge: Vec<usize>,
 }
 
 impl<'a> Whole<'a> {
-    fn new(map: &'a PartialMap) -> Option<Self> {
-        let graph = with_open_ends(map)?;
+    fn new(map: &'a OpenGraph) -> Option<Self> {
+        let graph = map.with_ends()?;
         let names = names(&graph, map.vertex_count());
         let mut size = DrawingSize::of(&graph, &names);
         size.discs[map.vertex_count()..].fill(OPEN);
-        let drawing = Drawing::sized(&picture(&graph, &names), size);
+        let drawing = Drawing::sized(&picture(&graph, &names, map.marker()), size);
         let mut edge = vec![0; graph.dart_count()];
         for (number, &(one, other, _)) in drawing.edges.iter().enumerate() {
             edge[one.at()] = number;
@@ -64,34 +114,28 @@ impl<'a> Whole<'a> {
         Some(Self { map, drawing, edge })
     }
 
-    /// Whether the map is an earlier stage of this one.
-    fn grew_from(&self, map: &PartialMap) -> bool {
-        map.vertex_count() <= self.map.vertex_count()
-            && map.vertices().all(|vertex| {
-                map.degree(vertex) == self.map.degree(vertex)
-                    && map.darts_of(vertex).all(|dart| {
-                        map.is_unexplored(dart) || map.opposite(dart) == self.map.opposite(dart)
-                    })
-            })
-    }
-
     /// The curve of a dart's edge, from that dart.
     fn curve(&self, dart: Dart) -> Curve {
         let (one, _, curve) = &self.drawing.edges[self.edge[dart.at()]];
         if *one == dart { curve.clone() } else { curve.reversed() }
     }
+
+    /// What is drawn of the curve of an open dart.
+    fn beginning(&self, curve: &Curve) -> Curve {
+        curve.beginning((STUB[0] * self.drawing.size.base).min(STUB[1] * curve.length()))
+    }
 }
 
 /// A map with its open ends, drawn as a stage of the last one, or alone if it is not one.
-fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
+fn stage(map: &OpenGraph, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawing)> {
     let alone;
-    let whole = if let Some(last) = last.filter(|last| last.grew_from(map)) {
+    let whole = if let Some(last) = last.filter(|last| map.grew_into(last.map)) {
         last
     } else {
         alone = Whole::new(map)?;
         &alone
     };
-    let graph = with_open_ends(map)?;
+    let graph = map.with_ends()?;
     let known = map.vertex_count();
     let mut size = whole.drawing.size.clone();
     let mut centres = whole.drawing.centres[..known].to_vec();
@@ -101,7 +145,7 @@ fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawi
     for (dart, other) in graph.edges() {
         let mut curve = whole.curve(dart);
         if other.at() >= map.dart_count() {
-            curve = curve.beginning((STUB[0] * size.base).min(STUB[1] * curve.length()));
+            curve = whole.beginning(&curve);
             let end = |back: usize| curve.trace[curve.trace.len() - back];
             let onwards = (end(1) - end(2)).direction();
             centres.push(end(1) + onwards * OPEN);
@@ -126,41 +170,22 @@ fn stage(map: &PartialMap, last: Option<&Whole>) -> Option<(EmbeddedGraph, Drawi
     Some((graph, drawing))
 }
 
-/// The map with a vertex for each unexplored dart. Known vertices and darts keep their numbers, the others
-/// follow in the order of their darts.
-fn with_open_ends(map: &PartialMap) -> Option<EmbeddedGraph> {
-    let mut opposite = Vec::new();
-    let mut clockwise = Vec::new();
-    for vertex in map.vertices() {
-        let first = map.dart(vertex, 0).map(|dart| dart.0);
-        clockwise.extend(map.darts_of(vertex).skip(1).map(|dart| dart.0).chain(first));
-        opposite.extend(map.darts_of(vertex).map(|dart| map.opposite(dart)));
-    }
-    let mut joined = Vec::new();
-    let mut ends = Vec::new();
-    for (dart, other) in opposite.iter().enumerate() {
-        joined.push(other.map_or((map.dart_count() + ends.len()) as u32, |other| other.0));
-        if other.is_none() {
-            ends.push(dart as u32);
-        }
-    }
-    clockwise.extend((0..ends.len()).map(|end| (map.dart_count() + end) as u32));
-    joined.extend(ends);
-    EmbeddedGraph::from_permutations(&joined, &clockwise).ok().map(|(graph, _)| graph)
-}
-
 /// The names of the known vertices, and empty names for the others.
 fn names(graph: &EmbeddedGraph, known: usize) -> Vec<String> {
     let name = |vertex| if vertex < known { format!("v{vertex}") } else { String::new() };
     (0..graph.vertex_count()).map(name).collect()
 }
 
-fn picture<'a>(graph: &'a EmbeddedGraph, vertex_names: &'a [String]) -> WorldPicture<'a> {
+fn picture<'a>(
+    graph: &'a EmbeddedGraph,
+    vertex_names: &'a [String],
+    marker: Option<Dart>,
+) -> WorldPicture<'a> {
     WorldPicture {
         graph,
         vertex_names,
         edge_names: None,
-        start: Some(FACING),
+        start: marker,
         marker: &Directional,
         placement: Placement::Free,
         title: "",

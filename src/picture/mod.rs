@@ -5,7 +5,7 @@
 //! picture, even if edges have to cross. Bottom up: `geometry`, `text`, `doors` and `size`; the `layout` of
 //! the vertices and its `scale`; the `curves`, the `ways` that an edge may take and the chosen `routes`;
 //! `labels`; the `drawing` combines them, `signs` adds the marker, and `svg` and `png` write it. `growth`
-//! draws a map while it is built, `run` a robot's way through a floor plan, `stage` the legend of a picture of
+//! draws a map while it is built, which is an `open_graph`, `run` a robot's way through a floor plan, `stage` the legend of a picture of
 //! sensing.
 
 #![expect(
@@ -20,6 +20,7 @@ mod geometry;
 mod growth;
 mod labels;
 mod layout;
+mod open_graph;
 mod outlines;
 mod png;
 mod routes;
@@ -41,7 +42,9 @@ use crate::model::{
     marker::{Directional, Marker, MarkerLook, MarkerPart},
 };
 
-pub(crate) use growth::growth;
+pub use growth::open_svg;
+pub(crate) use growth::{growth, open_layout};
+pub use open_graph::OpenGraph;
 pub use png::{PictureError, png};
 #[cfg(test)]
 pub(crate) use run::example;

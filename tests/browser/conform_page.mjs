@@ -1,8 +1,8 @@
 // Tests the pages of conformance reports.
 //
-//   node conform_page.mjs CHROMIUM conforms=FILE diverged=FILE several=FILE
+//   node conform_page.mjs CHROMIUM conforms=FILE diverged=FILE open=FILE several=FILE
 //
-// conforms, diverged: of one log; several: of three.
+// conforms, diverged, open: of one log; several: of three. In the log of open, some doors were never followed.
 
 import assert from "node:assert/strict";
 import { DESK, PHONE, assertFitsPhone, photograph, visitAll } from "./visits.mjs";
@@ -10,6 +10,7 @@ import { DESK, PHONE, assertFitsPhone, photograph, visitAll } from "./visits.mjs
 const VERDICTS = {
   conforms: ["Conforms"],
   diverged: ["Diverged"],
+  open: ["Incomplete"],
   several: ["3 logs: 1 diverged, 1 incomplete, 1 conforms", "Conforms", "Diverged", "Incomplete"],
 };
 
@@ -55,7 +56,10 @@ async function visit(page, kind, file) {
     assert.ok(wide > 0, "an image is not shown");
   }
   await photographAll(page, file);
-  if (kind === "conforms") return {};
+  const folded = kind === "open" || kind === "several" ? 1 : 0;
+  assert.equal(await page.locator(".folded img.world").count(), folded);
+  assert.equal(await page.locator(".folded .open-door").count(), folded);
+  if (kind === "conforms" || kind === "open") return {};
   if (kind === "several") {
     const logs = await page.locator(".logs a").allTextContents();
     for (const log of logs) {
@@ -75,4 +79,4 @@ async function visit(page, kind, file) {
   return { events: await page.locator(".leaf tbody tr").count() };
 }
 
-await visitAll(["conforms", "diverged", "several"], visit);
+await visitAll(["conforms", "diverged", "open", "several"], visit);

@@ -171,6 +171,63 @@ async function assertOneScreen(page, kind) {
   await page.setViewportSize(DESK);
 }
 
+/** What the panel of the trail shows now. */
+function shownTrail(page) {
+  return page.evaluate(() => {
+    const visible = (selector) =>
+      [...document.querySelectorAll(`.trail ${selector}`)].filter((element) => element.checkVisibility());
+    const centre = (disc) => `${disc.getAttribute("cx")} ${disc.getAttribute("cy")}`;
+    return {
+      places: visible(".place").length,
+      further: visible(".place.further").length,
+      discs: new Set(visible(".discs circle").map(centre)).size,
+      open: visible(".open").length,
+      robots: visible(".robot").length,
+      words: document.querySelector(".grown").textContent,
+      maps: [...document.querySelectorAll(".stage")].filter((stage) => stage.checkVisibility()).length,
+    };
+  });
+}
+
+/** The trail grows and folds: what is shown is the data. */
+async function followTrail(page, data, file) {
+  const button = page.getByRole("button", { name: "Trail" });
+  await page.locator("#round").fill("0");
+  await button.click();
+  assert.equal(await button.getAttribute("aria-pressed"), "true");
+  const { stages } = data.trail;
+  assert.equal(stages.length, data.calls.length);
+  const most = Math.max(...stages.map(({ layers }) => Math.max(...layers)));
+  let pictured = false;
+  for (const [number, stage] of stages.entries()) {
+    await page.locator("#round").fill(String(data.calls[number].rounds - 1));
+    const now = await shownTrail(page);
+    const keys = new Set(stage.layers.map((layer, vertex) => `${data.trail.vertices[vertex].place} ${layer}`));
+    assert.deepEqual(
+      [now.places, now.discs, now.open, now.robots, now.maps],
+      [stage.places, keys.size, stage.open.length, 1, 0],
+    );
+    assert.equal(stage.places, keys.size);
+    const folded = number === 0 ? 1 : stages[number - 1].places + 1 - stage.places;
+    assert.equal(now.words.endsWith(`, ${folded} folded`), folded > 1);
+    if (!pictured && Math.max(...stage.layers) === most) {
+      pictured = true;
+      await page.setViewportSize(LAPTOP);
+      await photograph(page, file, "trail-light");
+      await page.emulateMedia({ colorScheme: "dark" });
+      await photograph(page, file, "trail-dark");
+      await page.emulateMedia({ colorScheme: "light" });
+      await page.setViewportSize(DESK);
+      await assertNamesReadable(page, [".trail .name:not([hidden])"]);
+    }
+  }
+  const end = await shownTrail(page);
+  assert.deepEqual([end.open, end.further], [0, 0], "the trail is the map");
+  await button.click();
+  assert.equal((await shownTrail(page)).maps, 1);
+  assert.equal((await shownTrail(page)).places, 0);
+}
+
 async function enlarge(page) {
   const wide = () => page.locator(".floor svg").evaluate((svg) => svg.getBoundingClientRect().height);
   const before = await wide();
@@ -226,6 +283,7 @@ async function visit(page, kind, file) {
   await photograph(page, file, "dark");
   await page.emulateMedia({ colorScheme: "light" });
   await assertOneScreen(page, kind);
+  await followTrail(page, data, file);
   await enlarge(page);
   await assertNamesReadable(page, [".floor .name", ".map .stage:not([hidden]) .name"]);
   await assertFitsPhone(page);

@@ -190,7 +190,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
         (&[log, "--events", "pictures"], "--events: the log does not have"),
-        (&[log, "--max-edges", "0"], "--max-edges"),
+        (&[log, "--max-edges", "12"], "--max-edges"),
         (&[log, "--edges", "30"], "--edges"),
         (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
         (&[log, "--minimise", log], "this output would replace the input"),
@@ -313,40 +313,72 @@ fn logs_without_evidence_are_an_error() {
     }
 }
 
-/// The log of a robot in building 12, without its world. The smallest world that explains it has 14 edges.
+/// The log of a robot in building 12, without its world, which has 14 edges.
 #[test]
-fn a_bound_that_is_reached_is_not_a_divergence() {
-    let folder = folder("conform-bound");
+fn a_complete_run_determines_its_world_whatever_its_size() {
+    let folder = folder("conform-unique");
     let log = logged(&folder, "worlds/building-12.toml", &["--start", "north-west:north"]);
-    let (code, report) = judged(&log, &["--driver", "anyone"]);
-    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    assert_eq!((&report["event"], &report["class"]), (&Value::Null, &Value::Null));
-    let limit = &report["limits"][0];
-    assert_eq!(
-        (&limit["option"], &limit["value"], &limit["edges"]),
-        (&"--max-edges".into(), &12.into(), &12.into())
-    );
-    let remark = report["remarks"][0].as_str().unwrap();
-    assert!(remark.contains("at most 12 edges") && remark.contains("--max-edges"), "{remark}");
-    assert!(report["shorter"].as_array().unwrap().is_empty());
-    // The world is written if it was found.
     let map = folder.join("smallest.toml");
     let map = map.to_str().unwrap();
-    let (code, _) = judged(&log, &["--driver", "anyone", "--map", map]);
-    assert!(code == Some(3) && !Path::new(map).exists());
-    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "14", "--map", map]);
+    // A complete folded trail needs no search.
+    let search = ["--driver", "anyone", "--max-steps", "1", "--map", map];
+    let (code, report) = judged(&log, &search);
     assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-    assert_eq!(report["limits"], serde_json::json!([]));
+    assert_eq!((&report["unique"], &report["open_doors"]), (&true.into(), &0.into()));
+    assert_eq!(report["smallest"], json!({ "vertices": 12, "edges": 14, "least": true }));
+    assert_eq!((&report["limits"], &report["never_followed"]), (&json!([]), &json!([])));
+    assert_eq!(report["facts"]["unique"], "This log determines its world.");
     let (code, report) = judged(&log, &["--driver", "anyone", "--world", map]);
     assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
-    // Few steps, and few edge ends.
-    let (code, report) = judged(&log, &["--driver", "anyone", "--max-steps", "5"]);
-    assert_eq!((code, &report["limits"][0]["option"]), (Some(3), &"--max-steps".into()));
+    assert_eq!((&report["unique"], &report["smallest"]), (&true.into(), &Value::Null));
+    // Few edge ends.
     let (code, report) = judged(&log, &["--max-darts", "1"]);
     assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
-    let limits = report["limits"].as_array().unwrap();
-    let darts = limits.iter().find(|limit| limit["option"] == "--max-darts").unwrap();
-    assert_eq!((&darts["value"], &darts["event"]), (&1.into(), &1.into()));
+    let darts = json!([{ "option": "--max-darts", "value": 1, "decides": true, "event": 1 }]);
+    assert_eq!(report["limits"], darts);
+    // A log that diverges determines nothing.
+    let (code, report) = judged(&log, &["--world", SHAPE_8]);
+    assert_eq!((code, &report["unique"]), (Some(1), &Value::Null), "{report}");
+    assert_eq!((&report["open_doors"], &report["never_followed"]), (&Value::Null, &Value::Null));
+}
+
+/// A robot goes from the marker at a junction with three doors to a dead end and back.
+#[test]
+fn doors_that_were_never_followed_are_listed() {
+    let folder = folder("conform-open");
+    let log = walked(&folder, &[(3, 0, Some(1)), (1, -1, Some(0)), (3, 2, None)]);
+    let page = folder.join("open.html");
+    let arguments = ["--driver", "anyone", "--html", page.to_str().unwrap()];
+    let (code, report) = judged(&log, &arguments);
+    assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
+    assert_eq!((&report["unique"], &report["open_doors"]), (&false.into(), &2.into()));
+    // The two doors are the ends of one hallway, in the smallest world.
+    assert_eq!(report["smallest"], json!({ "vertices": 2, "edges": 2, "least": true }));
+    let door = |door| json!({ "vertex": "v0", "door": door, "toward": null });
+    assert_eq!(report["never_followed"], json!([door(0), door(2)]));
+    let words =
+        "This log does not determine its world: 2 doors were never followed: v0 door 0, v0 door 2.";
+    assert_eq!(report["facts"]["unique"], words);
+    let written = fs::read_to_string(page).unwrap();
+    assert!(written.contains(&format!("<p>{words}</p>")));
+    assert!(written.contains("What the log proves about its world"));
+    // In a class without loops there are two more dead ends.
+    let (_, report) = judged(&log, &["--driver", "anyone", "--class", "simple"]);
+    assert_eq!(report["smallest"], json!({ "vertices": 4, "edges": 3, "least": true }));
+    let output = run(["conform", log.to_str().unwrap(), "--driver", "anyone", "--max-steps", "1"]);
+    let text = stdout(&output);
+    assert!(text.contains("  unique     This log does not determine its world: 2 doors"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    // In a known world the doors have its names.
+    let world = folder.join("world.toml");
+    let star = "name = \"star\"\n[clockwise]\nhub = [\"a\", \"b\", \"c\"]\na = [\"hub\"]\n\
+                b = [\"hub\"]\nc = [\"hub\"]\n[start]\nat = \"hub\"\nfacing = \"a\"\n";
+    fs::write(&world, star).unwrap();
+    let known = ["--driver", "anyone", "--world", world.to_str().unwrap()];
+    let (code, report) = judged(&log, &known);
+    assert_eq!((code, &report["unique"]), (Some(0), &false.into()), "{report}");
+    let words = report["facts"]["unique"].as_str().unwrap();
+    assert!(words.ends_with("2 doors were never followed: hub toward a, hub toward c."), "{words}");
 }
 
 /// Percepts and doors of a robot without numbers, shapes and odometry.

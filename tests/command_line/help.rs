@@ -71,7 +71,6 @@ const VERBS: [(&str, &[&str]); 19] = [
             "--world",
             "--start",
             "--driver",
-            "--max-edges",
             "--max-steps",
             "--quirks",
             "--require-coverage",

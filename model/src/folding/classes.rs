@@ -246,10 +246,20 @@ impl DartClasses {
         self.changes.push(Change::Open { before: self.open });
     }
 
+    /// The number of changes by unions that can be undone.
+    pub(super) fn change_count(&self) -> usize {
+        self.changes.len()
+    }
+
     /// Undoes the latest union.
     pub(super) fn undo(&mut self) {
+        self.undo_to(self.before_union);
+    }
+
+    /// Undoes the latest unions, so that this many changes are left.
+    pub(super) fn undo_to(&mut self, count: usize) {
         let Self { changes, parent, first, percept, size, number, opposite, .. } = self;
-        for change in changes.drain(self.before_union..).rev() {
+        for change in changes.drain(count..).rev() {
             match change {
                 Change::Child { child, root } => {
                     let darts = first[child as usize]..;

@@ -20,8 +20,15 @@ impl FoldedTrail {
     /// perceived.
     #[must_use]
     pub fn closed(&self) -> Option<ClosedTrail> {
-        if self.vertex_count() == 0 {
-            return None;
+        (self.vertex_count() > 0).then(|| self.closed_by(&[]).0)
+    }
+
+    /// The folded trail as a world in which these pairs of open darts are edges, with a dead end behind each
+    /// other open dart; and the robot's pose in it at the start. At least one thing was perceived.
+    pub(super) fn closed_by(&self, edges: &[(Dart, Dart)]) -> (ClosedTrail, Dart) {
+        let mut joined = vec![None; self.dart_count()];
+        for &(one, other) in edges {
+            (joined[one.at()], joined[other.at()]) = (Some(other), Some(one));
         }
         let mut graph = EmbeddedGraph::unfinished();
         let mut number = vec![0; self.dart_count()];
@@ -33,12 +40,12 @@ impl FoldedTrail {
         for first in self.vertices() {
             let _: Vertex = graph.add_vertex(self.degree(first));
         }
-        for _ in 0..self.open_count() {
+        for _ in 2 * edges.len()..self.open_count() {
             let _: Vertex = graph.add_vertex(1);
         }
         for dart in self.vertices().flat_map(|first| self.darts_around(first)) {
             let one = Dart(number[dart.at()]);
-            match self.opposite(dart) {
+            match self.opposite(dart).or(joined[dart.at()]) {
                 None => {
                     graph.join(one, Dart(next));
                     next += 1;
@@ -48,7 +55,7 @@ impl FoldedTrail {
             }
         }
         let numbered = |dart: Dart| Dart(number[dart.at()]);
-        let marker = self.marker().map(numbered);
-        Some(ClosedTrail { graph, marker, pose: numbered(self.pose()) })
+        let [start, pose] = [self.start(), self.pose()].map(numbered);
+        (ClosedTrail { graph, marker: self.marker().map(numbered), pose }, start)
     }
 }

@@ -10,7 +10,9 @@
 //!   *open* dart is the end of an edge that was never traversed. Dead ends behind the open darts make
 //!   the folded trail a world that explains the walk, so there is at least one.
 //! * If no dart is open and the marker was seen, the folded trail *is* the world: a covering of it in
-//!   which the marker has one preimage.
+//!   which the marker has one preimage. Without a sighting of the marker, and for a robot without one,
+//!   the folded trail is a tree; if none of its darts is open, it is the world: a finite tree covers no
+//!   other graph. So a walk determines its world exactly if no dart is open.
 //!
 //! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
 //! another marker that lies at a vertex is compared where vertices are identified for another reason,
@@ -22,6 +24,7 @@ mod classes;
 mod closed;
 mod contradiction;
 mod marker_tree;
+mod smallest;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
@@ -30,6 +33,7 @@ pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
 pub(crate) use marker_tree::MarkerTree;
+pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_world};
 pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept};

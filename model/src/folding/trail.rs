@@ -135,11 +135,27 @@ impl FoldedTrail {
         self.classes.number(dart.0)
     }
 
+    /// The number of changes by unions that can be undone.
+    pub(super) fn change_count(&self) -> usize {
+        self.classes.change_count()
+    }
+
+    /// Undoes the latest unions, so that this many changes are left.
+    pub(super) fn undo_to(&mut self, count: usize) {
+        self.classes.undo_to(count);
+    }
+
     /// The number of moves.
     #[inline]
     #[must_use]
     pub fn moves(&self) -> usize {
         self.moves
+    }
+
+    /// The robot's pose at the start, as a dart of a root. There is one if anything was perceived.
+    #[must_use]
+    pub fn start(&self) -> Dart {
+        self.root_of(Dart(0))
     }
 
     /// The robot's pose: the dart by which it came in, as a dart of a root.
@@ -178,6 +194,44 @@ impl FoldedTrail {
     #[must_use]
     pub fn open_count(&self) -> usize {
         self.classes.open_count()
+    }
+
+    /// For each vertex, in the order of the first visits, the dart by which the robot first came in. The doors
+    /// are those of the walk.
+    #[must_use]
+    pub fn first_entries(&self, doors: &[Door]) -> Vec<Dart> {
+        let mut entries = Vec::new();
+        let mut seen = vec![false; self.trail_vertex_count()];
+        let mut next = (self.vertex_count() > 0).then(|| self.start());
+        let mut doors = doors.iter();
+        while let Some(pose) = next {
+            if !std::mem::replace(&mut seen[self.vertex(pose)], true) {
+                entries.push(pose);
+            }
+            next = doors.next().and_then(|&door| self.opposite(self.behind(pose, door)));
+        }
+        entries
+    }
+
+    /// The open darts, as darts of roots.
+    pub fn open_darts(&self) -> impl Iterator<Item = Dart> + '_ {
+        let darts = self.vertices().flat_map(|first| self.darts_around(first));
+        darts.filter(|&dart| self.opposite(dart).is_none())
+    }
+
+    /// Whether no edge is a loop and no two edges join the same vertices.
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        let mut seen_from = vec![OPEN; self.trail_vertex_count()];
+        self.vertices().all(|first| {
+            let here = self.vertex(first);
+            seen_from[here] = first.0;
+            let mut far = self.darts_around(first).filter_map(|dart| self.opposite(dart));
+            far.all(|dart| {
+                let there = self.vertex(dart);
+                std::mem::replace(&mut seen_from[there], first.0) != first.0
+            })
+        })
     }
 
     /// Whether the walk determines its world: no dart is open, and the marker was seen.

@@ -43,10 +43,16 @@ pub fn code(graph: &EmbeddedGraph, facing: Dart) -> StartCode {
 /// dart first. Isomorphic starts become equal graphs.
 #[must_use]
 pub fn as_discovered(graph: &EmbeddedGraph, facing: Dart) -> EmbeddedGraph {
+    graph.renumbered(&discovery_order(graph, facing))
+}
+
+/// The darts in the order in which a robot meets them from a start, the facing dart first.
+#[must_use]
+pub fn discovery_order(graph: &EmbeddedGraph, facing: Dart) -> Vec<Dart> {
     let mut numbering = Numbering::new(graph);
     numbering.begin(graph, facing);
     while numbering.next_word(graph).is_some() {}
-    graph.renumbered(&numbering.order)
+    numbering.order
 }
 
 /// The numbering of a graph's darts from a start, made one edge at a time. Can be begun again

@@ -8,7 +8,7 @@ mod compare;
 
 pub use bijection::{Bijection, Candidate};
 pub use canonical::{Canonical, canonical};
-pub use code::{StartCode, as_discovered, code};
+pub use code::{StartCode, as_discovered, code, discovery_order};
 pub use compare::{Difference, isomorphism, mirror_isomorphism};
 
 #[cfg(test)]

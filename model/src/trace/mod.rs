@@ -5,7 +5,6 @@ mod algorithm_match;
 mod coverage;
 mod known_world;
 mod shorten;
-mod world_search;
 
 use thiserror::Error;
 
@@ -16,7 +15,6 @@ pub use algorithm_match::{
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
 pub use shorten::shortened;
-pub use world_search::{SearchLimit, SmallestWorld, WorldSearch, smallest};
 
 use crate::percept::{Door, Percept};
 
@@ -174,6 +172,14 @@ pub(crate) mod tests {
         percept::Sighting,
         world::{GraphWorld, World},
     };
+
+    impl Trace {
+        /// The same walk of a robot that sees no marker.
+        pub(crate) fn without_marker(mut self) -> Self {
+            self.percepts.iter_mut().for_each(|percept| percept.sighting = Sighting::Nothing);
+            self
+        }
+    }
 
     /// What a robot perceives on a walk from a start.
     pub(crate) fn walked(graph: &EmbeddedGraph, facing: Dart, doors: &[Door]) -> Trace {

@@ -1,9 +1,10 @@
-//! The first event of a trace that no world of any size explains. Section 2.1.
+//! A trace, folded: what it proves about its world, and the first event that no world of any size explains.
+//! Section 2.1.
 
 use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
-    folding::{ContradictionReason, FoldError, TrailContradiction, fold},
+    folding::{ContradictionReason, FoldError, FoldedTrail, TrailContradiction, fold},
     marker::{Directional, Marker, NoMarker},
     percept::{Percept, Sighting},
     trace::Trace,
@@ -21,6 +22,21 @@ pub enum Impossibility {
     /// The vertex has more doors than a vertex of the class.
     #[error("in a world of class {class} a vertex has at most {} doors", .class.max_degree())]
     Degree {
+        /// The class.
+        class: Class,
+    },
+    /// An edge would be a loop, or two edges would join the same vertices.
+    #[error(
+        "in a world of class {class} no hallway leads back to its own junction, and no two hallways join the \
+         same two"
+    )]
+    NotSimple {
+        /// The class.
+        class: Class,
+    },
+    /// All worlds with these percepts are outside of the class.
+    #[error("no world of class {class} explains it")]
+    Class {
         /// The class.
         class: Class,
     },
@@ -46,29 +62,77 @@ impl Impossibility {
     }
 }
 
-/// The index of the first event of a trace that no world of any size explains together with all before
-/// it, and why. `None` if some world explains the trace, or if this is not known: it is decided for the
-/// directional marker and for none, in the class of all worlds.
-#[must_use]
-pub fn first_impossible(
-    trace: &Trace,
-    marker: &dyn Marker,
-    class: Class,
-) -> Option<(usize, Impossibility)> {
-    let directional = marker.name() == Directional.name();
-    if !directional && marker.name() != NoMarker.name() {
-        return None;
-    }
-    let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
-    let walk = match fold(trace.percepts(), trace.doors()) {
-        Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
-            Some((event, Impossibility::Walk(reason)))
+/// A trace, folded as far as some world explains it.
+#[derive(Clone, Debug)]
+pub struct FoldedTrace {
+    /// The folded trail up to the first impossible event; `None` if there is no event before it, or if the
+    /// trail is too large.
+    pub trail: Option<FoldedTrail>,
+    /// The index of the first event of the trace that no world of any size explains together with all
+    /// before it, and why.
+    pub impossible: Option<(usize, Impossibility)>,
+}
+
+impl FoldedTrace {
+    /// Folds the trace of a robot with the directional marker or without one; for other markers nothing is
+    /// decided.
+    ///
+    /// Whether some world of the class explains the trace is exact, except that of a planar world only the
+    /// degrees and the edges are compared here.
+    #[must_use]
+    pub fn new(trace: &Trace, marker: &dyn Marker, class: Class) -> Self {
+        let directional = marker.name() == Directional.name();
+        if !directional && marker.name() != NoMarker.name() {
+            return Self { trail: None, impossible: None };
         }
-        Ok(_) | Err(FoldError::TooManyDarts { .. }) => None,
-    };
-    let marked = first(&|percept| !directional && percept.sighting != Sighting::Nothing);
-    let crowded = first(&|percept| percept.degree > class.max_degree());
-    let marked = marked.map(|event| (event, Impossibility::Marker));
-    let crowded = crowded.map(|event| (event, Impossibility::Degree { class }));
-    [walk, marked, crowded].into_iter().flatten().min_by_key(|(event, _)| *event)
+        let (mut trail, walk) = match fold(trace.percepts(), trace.doors()) {
+            Ok(trail) => (Some(trail), None),
+            Err(FoldError::Contradiction(TrailContradiction { event, reason })) => {
+                (None, Some((event, Impossibility::Walk(reason))))
+            }
+            Err(FoldError::TooManyDarts { .. }) => (None, None),
+        };
+        let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
+        let marked = first(&|percept| !directional && percept.sighting != Sighting::Nothing);
+        let crowded = first(&|percept| percept.degree > class.max_degree());
+        let marked = marked.map(|event| (event, Impossibility::Marker));
+        let crowded = crowded.map(|event| (event, Impossibility::Degree { class }));
+        let mut impossible =
+            [walk, marked, crowded].into_iter().flatten().min_by_key(|(event, _)| *event);
+        if let Some((event, _)) = impossible {
+            trail = folded_before(trace, event);
+        }
+        if let Some(before) = trail.as_ref().filter(|it| class.is_simple() && !it.is_simple()) {
+            let event =
+                first_percept(trace, before.moves(), |trail: &FoldedTrail| !trail.is_simple());
+            impossible = Some((event, Impossibility::NotSimple { class }));
+            trail = folded_before(trace, event);
+        }
+        Self { trail, impossible }
+    }
+}
+
+/// The folded trail of the events before an event; `None` if there are none, or if it is too large.
+pub(super) fn folded_before(trace: &Trace, event: usize) -> Option<FoldedTrail> {
+    let before = trace.up_to(event.checked_sub(1)?);
+    fold(before.percepts(), before.doors()).ok()
+}
+
+/// The index of the first percept after which something holds for the folded trail. It holds after the last
+/// of these moves, and after each percept that follows the first one.
+pub(super) fn first_percept(
+    trace: &Trace,
+    moves: usize,
+    holds: impl Fn(&FoldedTrail) -> bool,
+) -> usize {
+    let (mut low, mut high) = (0, moves);
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        if folded_before(trace, 2 * middle + 1).is_some_and(|trail| holds(&trail)) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    2 * low
 }

@@ -6,21 +6,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
-    embedded_graph::EmbeddedGraph,
     enumerate::Watch,
-    mapping::FACING,
+    folding::{FoldedTrail, SearchLimit, SmallestWorld, WorldSearch, smallest_world},
     marker::{Directional, Marker},
     trace::{
-        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, SearchLimit, SmallestWorld, Trace,
-        TraceClaim, TraceOrderError, WorldSearch, match_algorithm, poses, smallest,
+        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceClaim, TraceOrderError,
+        match_algorithm, poses,
     },
-    world::GraphWorld,
 };
 
 use super::{
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
-    impossible::first_impossible,
+    impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
     known_world::KnownWorld,
     quirks::Quirks,
     tolerance::Tolerance,
@@ -59,6 +57,9 @@ pub struct Judgement {
     pub trace: Trace,
     /// The first divergence.
     pub divergence: Option<Divergence>,
+    /// The folded trail of the events before the divergence, or of all; `None` if there is none, or if it is
+    /// too large.
+    pub trail: Option<FoldedTrail>,
     /// The candidate poses in the known world.
     pub poses: Option<Poses>,
     /// The smallest world that explains the log, if none is known and one of any size may.
@@ -133,18 +134,10 @@ pub enum JudgeError {
 /// A limit that was reached before everything was checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachedLimit {
-    /// No world with at most this many edges explains the log; larger ones were not searched.
-    Edges {
-        /// The number of edges.
-        edges: usize,
-    },
-    /// No world with at most this many edges explains the log; then the search reached its last step.
-    Steps {
-        /// The number of edges.
-        edges: usize,
-    },
-    /// The search was stopped.
-    Stopped,
+    /// A world explains the log. The search for smaller ones ended early.
+    SmallerWorld(SearchLimit),
+    /// The search ended before a world of the class was found.
+    World(SearchLimit),
     /// Algorithm 1 would know more darts than the bound allows.
     Darts {
         /// The index of the event.
@@ -208,6 +201,7 @@ impl Judgement {
         let mut judgement = Self {
             events: events.clone(),
             divergence: None,
+            trail: None,
             poses: None,
             smallest: None,
             algorithm: None,
@@ -224,7 +218,6 @@ impl Judgement {
             }
             judgement.poses = Some(poses);
         }
-        let mut explored = None;
         if question.driver == RunDriver::Algorithm1 {
             let claim = if events.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part };
             let followed = match_algorithm(trace, claim, question.dart_bound);
@@ -232,8 +225,7 @@ impl Judgement {
                 MatchEnd::Departure(departure) => {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
                 }
-                MatchEnd::Mapped => explored = followed.exploration.map().complete().cloned(),
-                MatchEnd::EndOfTrace | MatchEnd::Bound { .. } => {}
+                MatchEnd::Mapped | MatchEnd::EndOfTrace | MatchEnd::Bound { .. } => {}
             }
             if in_turn {
                 for cause in events.false_ending(&followed, question.world.as_ref()) {
@@ -246,23 +238,29 @@ impl Judgement {
         if in_turn && let Some(cause) = events.false_moves(trace) {
             found.note(len, cause);
         }
-        if question.world.is_none() {
-            let class = question.search.class;
-            if let Some((event, why)) = first_impossible(trace, question.marker, class) {
-                let event = trace.event(event);
-                found.note(event.id, DivergenceCause::NoWorld { event, why });
-            } else if let Some(graph) = explored
-                .filter(|graph| class.contains(graph) && explains(graph, question.marker, trace))
-            {
-                // A complete map is the only world that explains the run.
-                judgement.smallest = Some(SmallestWorld::World { graph, marker: Some(FACING) });
+        let FoldedTrace { mut trail, mut impossible } =
+            FoldedTrace::new(trace, question.marker, question.search.class);
+        if question.world.is_none() && impossible.is_none() {
+            let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);
+            let too_large = SmallestWorld::NotFound { limit: SearchLimit::Decisions };
+            let smallest = trail.as_ref().map_or(too_large, search);
+            if smallest == SmallestWorld::NoWorld {
+                let moves = trail.as_ref().map_or(0, FoldedTrail::moves);
+                let is_impossible = |trail: &FoldedTrail| search(trail) == SmallestWorld::NoWorld;
+                let event = first_percept(trace, moves, is_impossible);
+                impossible = Some((event, Impossibility::Class { class: question.search.class }));
             } else {
-                // An incomplete one is part of every world that does.
-                let followed = judgement.algorithm.as_ref();
-                let known = followed.map(|followed| followed.exploration.map());
-                judgement.smallest = Some(smallest(trace, known, question.search, watch));
+                judgement.smallest = Some(smallest);
             }
         }
+        if let Some((event, why)) = impossible.filter(|_| question.world.is_none()) {
+            let event = trace.event(event);
+            found.note(event.id, DivergenceCause::NoWorld { event, why });
+        }
+        if let Some(first) = &found.first {
+            trail = trail.and_then(|_| folded_before(trace, trace.index_of(first.event)));
+        }
+        judgement.trail = trail;
         judgement.divergence = found.first;
         Ok(judgement)
     }
@@ -272,23 +270,29 @@ impl Judgement {
     pub fn verdict(&self) -> ConformVerdict {
         if self.divergence.is_some() {
             ConformVerdict::Diverged
-        } else if self.limits().is_empty() && self.events.is_whole(self.algorithm.is_some()) {
+        } else if self.is_decided() && self.events.is_whole(self.algorithm.is_some()) {
             ConformVerdict::Conforms
         } else {
             ConformVerdict::Incomplete
         }
     }
 
+    /// Whether no limit leaves the verdict open.
+    #[must_use]
+    pub fn is_decided(&self) -> bool {
+        self.limits().iter().all(|limit| matches!(limit, ReachedLimit::SmallerWorld(_)))
+    }
+
     /// The limits that were reached.
     #[must_use]
     pub fn limits(&self) -> Vec<ReachedLimit> {
         let mut limits = Vec::new();
-        if let Some(SmallestWorld::NotFound { edges, limit }) = self.smallest {
-            limits.push(match limit {
-                SearchLimit::Edges => ReachedLimit::Edges { edges },
-                SearchLimit::Steps => ReachedLimit::Steps { edges },
-                SearchLimit::Stopped => ReachedLimit::Stopped,
-            });
+        match self.smallest {
+            Some(SmallestWorld::World { limit: Some(limit), .. }) => {
+                limits.push(ReachedLimit::SmallerWorld(limit));
+            }
+            Some(SmallestWorld::NotFound { limit }) => limits.push(ReachedLimit::World(limit)),
+            _ => {}
         }
         if let Some(MatchEnd::Bound { event }) =
             self.algorithm.as_ref().map(|followed| &followed.reached)
@@ -296,6 +300,14 @@ impl Judgement {
             limits.push(ReachedLimit::Darts { event: event.id });
         }
         limits
+    }
+
+    /// Whether the log determines its world: no other world explains it, whatever its size. `None` if the log
+    /// diverges, or if this is not known.
+    #[must_use]
+    pub fn determines_world(&self) -> Option<bool> {
+        let trail = self.trail.as_ref().filter(|_| self.divergence.is_none())?;
+        Some(trail.open_count() == 0)
     }
 
     /// The number of candidate poses after the last event that fits; 1 if the world was not known and one
@@ -308,12 +320,6 @@ impl Judgement {
             _ => 0,
         }
     }
-}
-
-/// Whether a map is a world in which the walk of a trace has its percepts.
-fn explains(map: &EmbeddedGraph, marker: &'static dyn Marker, trace: &Trace) -> bool {
-    let start = GraphWorld::with_marker(map, marker, FACING).state();
-    poses(map, &marker, &[start], trace).misfit.is_none()
 }
 
 /// The first divergence that is not tolerated.

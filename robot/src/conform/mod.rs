@@ -24,7 +24,7 @@ pub use events::{
 pub use extract::{
     Evidence, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
 };
-pub use impossible::{Impossibility, first_impossible};
+pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{
     ConformConfig, ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, RunDriver,

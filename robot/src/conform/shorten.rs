@@ -4,8 +4,9 @@ use std::mem::discriminant;
 
 use toposlam_model::{
     enumerate::Watch,
+    folding::WorldSearch,
     percept::Percept,
-    trace::{MisfitReason, Trace, TraceEvent, TraceEventKind, WorldSearch, shortened},
+    trace::{MisfitReason, Trace, TraceEvent, TraceEventKind, shortened},
 };
 
 use super::{
@@ -41,7 +42,7 @@ pub fn shorten_run(
 ) -> Option<ShortenedRun> {
     let divergence = judgement.divergence.as_ref()?;
     // A world that explains a shorter log is not a divergence.
-    let search = WorldSearch { max_edges: 0, ..question.search };
+    let search = WorldSearch { steps: 0, ..question.search };
     let question = &ConformConfig { search, ..question.clone() };
     let anyone = question.clone().by_itself();
     let judged = |events: &RunEvents, question: &ConformConfig| {

@@ -9,9 +9,11 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
+    folding::WorldSearch,
+    mapping::DirectionalAlgorithm,
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    trace::{WorldSearch, anywhere},
+    trace::anywhere,
     world::GraphWorld,
 };
 
@@ -90,7 +92,8 @@ impl RunObserver for Log {
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, facing, robot, NoSensor, &mut log, DARTS);
+    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let run = run(plan, facing, robot, NoSensor, &mut log, algorithm, DARTS);
     assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
 }
@@ -106,7 +109,7 @@ fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
 }
 
 fn without_world() -> ConformConfig<'static> {
-    let search = WorldSearch { class: Class::Multigraph, max_edges: 12, steps: 1_000_000 };
+    let search = WorldSearch { class: Class::Multigraph, steps: 100_000 };
     ConformConfig {
         world: None,
         marker: &Directional,

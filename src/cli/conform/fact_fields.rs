@@ -2,12 +2,16 @@
 
 use serde::Serialize;
 use toposlam_model::{
+    folding::SmallestWorld,
     format::named_world::NamedWorld,
-    trace::{AlgorithmMatch, MatchedChoices, SmallestWorld},
+    trace::{AlgorithmMatch, MatchedChoices},
 };
 use toposlam_robot::{conform::Evidence, record::RunEnding};
 
-use super::Judged;
+use super::{
+    Judged,
+    folded::{OpenDoor, open_doors},
+};
 use crate::cli::json::TruncatedLine;
 
 /// What the remarks and the facts of a report state in words.
@@ -22,6 +26,11 @@ pub(super) struct FactFields<'j> {
     ending: Option<Ending<'j>>,
     world: Option<World<'j>>,
     smallest: Option<Size>,
+    /// Whether no other world explains the log.
+    unique: Option<bool>,
+    /// The number of doors that were never followed.
+    open_doors: Option<usize>,
+    never_followed: Option<Vec<NeverFollowed>>,
     doors: Option<Doors>,
     map: Option<Map>,
 }
@@ -57,6 +66,16 @@ struct World<'j> {
 struct Size {
     vertices: usize,
     edges: usize,
+    /// Whether all smaller worlds were excluded.
+    least: bool,
+}
+
+/// A door that was never followed.
+#[derive(Serialize)]
+struct NeverFollowed {
+    vertex: String,
+    door: u32,
+    toward: Option<String>,
 }
 
 /// The choices of Algorithm 1 that explain the doors.
@@ -82,11 +101,14 @@ impl<'j> FactFields<'j> {
         let Judged { opened, gathered, judgement, known, .. } = judged;
         let run = opened.run.as_ref();
         let smallest = match &judgement.smallest {
-            Some(SmallestWorld::World { graph, .. }) => {
-                Some(Size { vertices: graph.vertex_count(), edges: graph.edge_count() })
-            }
+            Some(SmallestWorld::World { graph, limit, .. }) => Some(Size {
+                vertices: graph.vertex_count(),
+                edges: graph.edge_count(),
+                least: limit.is_none(),
+            }),
             _ => None,
         };
+        let open = open_doors(judged);
         let candidates = judgement.poses.as_ref().and_then(|poses| poses.left.first());
         Self {
             evidence: match gathered.evidence {
@@ -112,9 +134,18 @@ impl<'j> FactFields<'j> {
                 }
             }),
             smallest,
+            unique: open.as_ref().map(Vec::is_empty),
+            open_doors: open.as_ref().map(Vec::len),
+            never_followed: open.map(|open| open.into_iter().map(NeverFollowed::from).collect()),
             doors: judgement.algorithm.as_ref().map(Doors::of),
             map: judgement.algorithm.as_ref().map(Map::of),
         }
+    }
+}
+
+impl From<OpenDoor> for NeverFollowed {
+    fn from(OpenDoor { vertex, door, toward }: OpenDoor) -> Self {
+        Self { vertex, door, toward }
     }
 }
 

@@ -8,10 +8,11 @@ use toposlam::{
 };
 use toposlam_model::{
     embedded_graph::Dart,
+    folding::{SearchLimit, SmallestWorld},
     format::named_world::NamedWorld,
     mapping::PartialMap,
     percept::{Percept, Sighting},
-    trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason, SmallestWorld},
+    trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason},
 };
 use toposlam_robot::{
     conform::{
@@ -22,11 +23,11 @@ use toposlam_robot::{
     record::{Arrival, RunEnding},
 };
 
-use super::{Judged, minimise::Minimised};
+use super::{Judged, folded, minimise::Minimised};
 use crate::cli::text::{counted, grouped, moment, vertices};
 
-/// The largest number of candidates that are listed.
-const LISTED: usize = 8;
+/// The largest number of candidates or doors that are listed.
+pub(super) const LISTED: usize = 8;
 
 impl Judged<'_> {
     /// The report of a log; with pictures if it is `shown` on a page.
@@ -62,6 +63,7 @@ impl Judged<'_> {
             shorter,
             command,
             picture,
+            folded: if shown { self.folded() } else { None },
             world: self.world().filter(|_| shown),
         }
     }
@@ -103,21 +105,23 @@ impl Judged<'_> {
     }
 
     /// A limit that was reached, and the option that raises it.
-    fn limit(&self, limit: ReachedLimit) -> String {
-        let no_world =
-            |edges| format!("no world with at most {} explains it", counted(edges, "edge"));
-        match limit {
-            ReachedLimit::Edges { edges } => {
-                format!("{}; larger ones were not searched (--max-edges)", no_world(edges))
-            }
-            ReachedLimit::Steps { edges } => {
+    fn limit(&self, reached: ReachedLimit) -> String {
+        let search = |limit| match limit {
+            SearchLimit::Steps => {
                 let steps = grouped(self.search.steps.into());
-                format!(
-                    "{}; the search reached its limit of {steps} steps (--max-steps)",
-                    no_world(edges)
-                )
+                format!("the search reached its limit of {steps} steps (--max-steps)")
             }
-            ReachedLimit::Stopped => "the search for a world was stopped".to_owned(),
+            SearchLimit::Decisions => "the search has too many places to decide".to_owned(),
+            SearchLimit::Stopped => "the search was stopped".to_owned(),
+        };
+        match reached {
+            ReachedLimit::SmallerWorld(limit) => {
+                format!("a smaller world may explain it: {}", search(limit))
+            }
+            ReachedLimit::World(limit) => {
+                let class = self.search.class;
+                format!("no world of class {class} was found: {}", search(limit))
+            }
             ReachedLimit::Darts { event } => {
                 let darts = counted(self.dart_bound, "edge end");
                 format!(
@@ -141,8 +145,8 @@ impl Judged<'_> {
             }
         };
         let mut facts = vec![("events", format!("{count}, {made}"))];
-        match (&self.known, &judgement.poses, &judgement.smallest) {
-            (Some(known), Some(poses), _) => {
+        match (&self.known, &judgement.poses) {
+            (Some(known), Some(poses)) => {
                 let world = known.world;
                 let from = match known.start {
                     None => "from any start".to_owned(),
@@ -160,22 +164,10 @@ impl Judged<'_> {
                 };
                 facts.push(("world", format!("{}, {from}; {fit}", world.name)));
             }
-            (_, _, Some(SmallestWorld::World { graph, .. })) => {
-                let (edges, count) = (counted(graph.edge_count(), "edge"), graph.vertex_count());
-                let smallest = format!("{edges}, {}", vertices(count));
-                facts.push((
-                    "world",
-                    format!("unknown; the smallest that explains the log has {smallest}"),
-                ));
-            }
-            (_, _, Some(SmallestWorld::NotFound { edges, .. })) => {
-                let edges = counted(*edges, "edge");
-                facts.push((
-                    "world",
-                    format!("unknown; none with at most {edges} explains the log"),
-                ));
-            }
-            _ => facts.push(("world", "unknown".to_owned())),
+            _ => facts.push(("world", self.unknown_world())),
+        }
+        if let Some(doors) = folded::open_doors(self) {
+            facts.push(("unique", folded::in_words(&doors)));
         }
         if let Some(followed) = &judgement.algorithm {
             let choices = match followed.choices {
@@ -318,7 +310,7 @@ impl Judged<'_> {
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
             (Some(known), _) => Some(picture::svg(&WorldPicture::from(known.world))),
-            (None, Some(SmallestWorld::World { graph, marker })) => {
+            (None, Some(SmallestWorld::World { graph, marker, .. })) => {
                 let start = marker.or(Some(Dart(0)));
                 let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
                 Some(picture::svg(&WorldPicture::from(&world)))

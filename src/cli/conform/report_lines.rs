@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
+use toposlam_model::folding::SearchLimit;
 use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 
 use super::{CliError, Judged, fact_fields::FactFields};
@@ -47,12 +48,12 @@ struct Line<'r> {
 }
 
 /// A limit that was reached, and the option that raises it.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Serialize)]
 struct Limit {
     option: Option<&'static str>,
     value: Option<u64>,
-    /// No world with at most this many edges explains the log.
-    edges: Option<usize>,
+    /// Whether the verdict depends on it.
+    decides: bool,
     /// The event at which the limit was reached.
     event: Option<usize>,
 }
@@ -114,20 +115,18 @@ pub(super) fn json(
 }
 
 fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
-    let none = Limit { option: None, value: None, edges: None, event: None };
+    let none = Limit { option: None, value: None, decides: true, event: None };
     let of = |option, value| Limit { option: Some(option), value: Some(value), ..none };
+    let search = |limit| match limit {
+        SearchLimit::Steps => of("--max-steps", judged.search.steps),
+        SearchLimit::Decisions | SearchLimit::Stopped => none,
+    };
     match reached {
-        ReachedLimit::Edges { edges } => {
-            let edges = Some(edges);
-            Limit { edges, ..of("--max-edges", judged.search.max_edges as u64) }
-        }
-        ReachedLimit::Steps { edges } => {
-            Limit { edges: Some(edges), ..of("--max-steps", judged.search.steps) }
-        }
+        ReachedLimit::SmallerWorld(limit) => Limit { decides: false, ..search(limit) },
+        ReachedLimit::World(limit) => search(limit),
         ReachedLimit::Darts { event } => {
             Limit { event: Some(event + 1), ..of("--max-darts", judged.dart_bound as u64) }
         }
-        ReachedLimit::Stopped => none,
     }
 }
 

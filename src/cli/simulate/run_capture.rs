@@ -10,6 +10,7 @@ use toposlam_model::{
     enumerate::Watch,
     floor_plan::FloorPlan,
     mapping::{Journey, MappingEvent, Observer, PartialMap},
+    percept::Door,
 };
 use toposlam_robot::{
     pose::Pose,
@@ -27,8 +28,10 @@ pub(super) struct RunCapture<'o> {
     progress: Progress,
     pictures: Pictures,
     rounds: Vec<FrameEntry>,
-    /// The number of frames before each arrival.
-    arrivals: Vec<usize>,
+    /// The number of frames before each arrival, and the door taken before it.
+    arrivals: Vec<(usize, Option<Door>)>,
+    /// The latest door.
+    door: Option<Door>,
     maps: Vec<PartialMap>,
     moves: u64,
     /// The first picture that could not be written.
@@ -62,6 +65,7 @@ impl<'o> RunCapture<'o> {
             pictures,
             rounds: Vec::new(),
             arrivals: Vec::new(),
+            door: None,
             maps: Vec::new(),
             moves: 0,
             failure: None,
@@ -85,9 +89,10 @@ impl<'o> RunCapture<'o> {
             return Err(failure);
         }
         let calls = self.arrivals.into_iter().zip(run.monitor.arrivals());
-        let calls = calls.map(|(rounds, arrival)| JunctionCall {
+        let calls = calls.map(|((rounds, door), arrival)| JunctionCall {
             rounds,
             pose: arrival.pose,
+            door,
             percept: arrival.perceived,
             conforms: arrival.conforms(),
         });
@@ -177,8 +182,11 @@ impl RunObserver for RunCapture<'_> {
                     (last.state, last.command) = (*state, *command);
                 }
             }
-            EventKind::Door { .. } => self.moves += 1,
-            EventKind::Arrival(_) => self.arrivals.push(self.rounds.len()),
+            EventKind::Door { door, .. } => {
+                self.moves += 1;
+                self.door = Some(*door);
+            }
+            EventKind::Arrival(_) => self.arrivals.push((self.rounds.len(), self.door)),
             _ => {}
         }
     }

@@ -14,6 +14,9 @@ const stages = [...document.querySelectorAll(".map .stage")];
 for (const svg of document.querySelectorAll(".map svg")) {
   keepReadable(svg);
 }
+const trail = data.trail && new Trail(find(".trail"), data.trail);
+if (trail) keepReadable(trail.svg);
+find("#folding").hidden = !trail;
 const called = new Map(calls.map((call) => [call.rounds - 1, call]));
 
 const lines = story.map((line) => {
@@ -67,7 +70,20 @@ function showMap({ maps }) {
   const newest = [...(stages[maps - 1]?.querySelectorAll(".name") ?? [])].at(-1);
   if (newest) reveal(stages[maps - 1], newest);
   find(".no-map").hidden = maps > 0;
-  write(".grown", `${maps} of ${stages.length}`);
+}
+
+/** The number of the latest stage of the trail. */
+function folded() {
+  const before = calls.filter((call) => call.rounds <= at + 1).length;
+  return Math.min(Math.max(before, 1), trail.data.stages.length) - 1;
+}
+
+/** The trail in place of the map, if it was chosen. */
+function showTrail(duration) {
+  const shown = find(".map").classList.contains("folding");
+  if (shown) trail.show(folded(), duration);
+  const { maps } = rounds[at];
+  write(".grown", shown ? trail.words(folded()) : `${maps} of ${stages.length}`);
 }
 
 function showStory({ story: shown }) {
@@ -87,6 +103,7 @@ function show(number, duration = 0) {
   showCamera(round);
   showFacts(round);
   showMap(round);
+  showTrail(still.matches ? 0 : COLLAPSE);
   showStory(round);
   const now = `frame ${at + 1} of ${rounds.length}, ${round.time} min, move ${round.moves}`;
   slider.value = at;
@@ -137,6 +154,13 @@ function enlarge() {
   find("#larger").setAttribute("aria-pressed", String(large));
 }
 
+/** The trail as it folds, or the map of Algorithm 1. */
+function choosePanel() {
+  const folding = find(".map").classList.toggle("folding");
+  find("#folding").setAttribute("aria-pressed", String(folding));
+  showTrail(0);
+}
+
 const deeds = {
   play: () => (timer === null ? play() : pause()),
   back: () => go(at - 1),
@@ -155,6 +179,7 @@ function keyed({ key, shiftKey }) {
 }
 
 find("#larger").addEventListener("click", enlarge);
+find("#folding").addEventListener("click", choosePanel);
 if (last >= 0) {
   slider.max = last;
   slider.addEventListener("input", () => go(Number(slider.value)));

@@ -4,7 +4,7 @@ use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
     moment::clock,
     picture::escaped,
-    report::{DivergenceReport, LogReport, SourceFile},
+    report::{DivergenceReport, FoldedReport, LogReport, SourceFile},
 };
 
 /// The number of items of a list that are not folded.
@@ -15,7 +15,7 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     let beneath = level.beneath();
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
-    let seen = [picture(report, beneath), world(report, beneath)].concat();
+    let seen = [picture(report, beneath), folded(report, beneath), world(report, beneath)].concat();
     // Without a divergence there is room on the left.
     let (left, right) = if report.divergence.is_some() {
         let led =
@@ -48,11 +48,13 @@ fn verdict(report: &LogReport, log: usize, level: Level) -> String {
         Some(divergence) => because(divergence, report, log),
         None => format!("<p>{}</p>\n", wording::fits(report)),
     };
+    let unique = report.fact("unique").map(|unique| format!("<p>{}</p>\n", escaped(unique)));
+    let unique = unique.unwrap_or_default();
     let remarks =
         each(&report.remarks, |remark| format!("<p>{}</p>\n", escaped(&wording::sentence(remark))));
     format!(
-        "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{remarks}\
-         </div>\n</div>\n"
+        "<div class=\"verdict {name}\">\n{heading}<div class=\"because\">{because}{unique}\
+         {remarks}</div>\n</div>\n"
     )
 }
 
@@ -183,23 +185,56 @@ fn picture(report: &LogReport, level: Level) -> String {
     panel(level, "camera", "What the camera saw", &image)
 }
 
+/// What the log proves about its world, with the doors that were never followed.
+fn folded(report: &LogReport, level: Level) -> String {
+    let Some(FoldedReport { vertices, open_doors, drawing }) = &report.folded else {
+        return String::new();
+    };
+    let image = match drawing {
+        Some(svg) => drawn(svg, "A drawing of the folded trail"),
+        None => "<p class=\"faint\">It is too large to be drawn.</p>\n".to_owned(),
+    };
+    let doors = wording::counted(*open_doors, "door");
+    let were = if *open_doors == 1 { "was" } else { "were" };
+    let legend = format!(
+        "<p class=\"legend\"><span class=\"open-door\"></span> {doors} that {were} never followed, at {}</p>\n",
+        match vertices {
+            1 => "the only junction".to_owned(),
+            count => format!("{count} different junctions"),
+        },
+    );
+    let name = match report.divergence {
+        Some(_) => "What the log proves before it diverges",
+        None => "What the log proves about its world",
+    };
+    panel(level, "folded", name, &(image + if *open_doors > 0 { &legend } else { "" }))
+}
+
 fn world(report: &LogReport, level: Level) -> String {
     let Some(svg) = &report.world else {
         return String::new();
     };
     // What can be reached is known only for a known world.
     let known = report.coverage.iter().any(|case| case.reachable.is_some());
-    let name = if known { "The known world" } else { "The smallest world that explains the log" };
+    let name = match (known, &report.folded) {
+        (true, _) => "The known world",
+        (false, Some(_)) => "The smallest world that explains the log",
+        (false, None) => "The only world that explains the log",
+    };
+    panel(level, "", name, &drawn(svg, "A drawing of the world"))
+}
+
+/// A drawing in an SVG document.
+fn drawn(svg: &str, what: &str) -> String {
     let address = wording::svg_address(svg);
     let own = wording::svg_width(svg).map_or_else(String::new, |width| {
         // The stylesheet keeps the names readable with it.
         format!(" style=\"--own:{width}px\"")
     });
-    let image = format!(
-        "<div class=\"drawing\" tabindex=\"0\"><img class=\"world\" alt=\"A drawing of the world\" \
+    format!(
+        "<div class=\"drawing\" tabindex=\"0\"><img class=\"world\" alt=\"{what}\" \
          src=\"{address}\"{own}></div>\n"
-    );
-    panel(level, "", name, &image)
+    )
 }
 
 fn covered(report: &LogReport, level: Level) -> String {

@@ -5,7 +5,7 @@ use std::{cell::RefCell, collections::BTreeSet};
 use toposlam_robot::conform::{ConformVerdict, FaultClass};
 
 use super::*;
-use crate::report::{CoveredCase, DivergenceReport, EventLine, SourceFile};
+use crate::report::{CoveredCase, DivergenceReport, EventLine, FoldedReport, SourceFile};
 
 fn page_of(reports: &[LogReport]) -> String {
     let command = "toposlam conform logs/shape-6.mcap --html report.html".to_owned();
@@ -51,6 +51,7 @@ fn conforming(events: usize) -> LogReport {
         shorter: Vec::new(),
         command: None,
         picture: None,
+        folded: None,
         world: None,
     }
 }
@@ -213,6 +214,37 @@ fn what_there_is_not_takes_no_room() {
     assert_eq!(page_of(&[odd]), page);
     let png = LogReport { picture: Some(b"\x89PNG\r\n\x1a\n".to_vec()), ..conforming(2) };
     assert!(page_of(&[png]).contains("src=\"data:image/png;base64,"));
+}
+
+#[test]
+fn what_the_log_proves_is_drawn_with_its_open_doors() {
+    let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned();
+    let fact = "This log does not determine its world: 2 doors were never followed.";
+    let folded = FoldedReport { vertices: 3, open_doors: 2, drawing: Some(svg.clone()) };
+    let open = LogReport {
+        facts: vec![("unique", fact.to_owned())],
+        folded: Some(folded),
+        world: Some(svg.clone()),
+        coverage: Vec::new(),
+        ..conforming(2)
+    };
+    let page = page_of(std::slice::from_ref(&open));
+    for part in [
+        "<h2>What the log proves about its world</h2>",
+        "<span class=\"open-door\"></span> 2 doors that were never followed, at 3 different junctions",
+        "<h2>The smallest world that explains the log</h2>",
+        &format!("<p>{fact}</p>"),
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert_eq!(page.matches("src=\"data:image/svg+xml;base64,").count(), 2);
+    let only = page_of(&[LogReport { folded: None, ..open }]);
+    assert!(only.contains("<h2>The only world that explains the log</h2>"));
+    assert!(!only.contains("never followed, at"));
+    let folded = FoldedReport { vertices: 1, open_doors: 1, drawing: None };
+    let page = page_of(&[LogReport { folded: Some(folded), ..diverged(4, 3) }]);
+    assert!(page.contains("<h2>What the log proves before it diverges</h2>"));
+    assert!(page.contains("1 door that was never followed, at the only junction"));
 }
 
 #[test]

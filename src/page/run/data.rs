@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
-use super::words;
+use super::{folding, words};
 use crate::{
     journal::{FrameEntry, Journal, JunctionCall},
     moment::clock,
@@ -32,6 +32,7 @@ pub(super) fn json(journal: &Journal, drawn: &Drawn) -> String {
         "story": journal.story,
         "pictures": album.pictures,
         "body": rounded(BODY * drawn.metre),
+        "trail": folding::json(journal),
     }))
 }
 
@@ -78,6 +79,6 @@ fn call(call: &JunctionCall) -> Value {
 }
 
 /// Rounded to tenths.
-fn rounded(number: f64) -> f64 {
+pub(super) fn rounded(number: f64) -> f64 {
     (number * 10.0).round() / 10.0 + 0.0
 }

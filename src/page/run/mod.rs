@@ -2,6 +2,7 @@
 //! and the story of Algorithm 1. Section 6, Figure 11.
 
 mod data;
+mod folding;
 mod words;
 
 use super::{PAGE_SCRIPT, PAGE_STYLE, filled};
@@ -14,8 +15,12 @@ const PAGE: &str = include_str!("../browser/run.html");
 /// The panel of the pictures.
 const CAMERA: &str = include_str!("../browser/camera.html");
 /// In the order of their dependencies; they share one scope.
-const SCRIPT: [&str; 3] =
-    [PAGE_SCRIPT, include_str!("../browser/floor.js"), include_str!("../browser/run.js")];
+const SCRIPT: [&str; 4] = [
+    PAGE_SCRIPT,
+    include_str!("../browser/floor.js"),
+    include_str!("../browser/trail.js"),
+    include_str!("../browser/run.js"),
+];
 
 /// The page of a run as an HTML document. The same run gives the same bytes.
 #[must_use]

@@ -12,7 +12,7 @@ use crate::{
         embedded_graph::Dart,
         floor_plan::FloorPlan,
         mapping::{Exploration, Journey, MappingEvent, Nearest, PartialMap, map_world},
-        percept::{Percept, Sighting},
+        percept::{Door, Percept, Sighting},
         world::GraphWorld,
     },
 };
@@ -42,6 +42,7 @@ pub(crate) fn journal() -> Journal {
     let call = |(pictures, degree): (usize, u32)| JunctionCall {
         rounds: pictures,
         pose: rounds[pictures - 1].pose,
+        door: (pictures > 1).then_some(Door(0)),
         percept: Percept { degree, sighting: Sighting::Nothing },
         conforms: pictures < 7,
     };
