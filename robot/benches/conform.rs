@@ -58,7 +58,8 @@ fn trace(plan: &FloorPlan) -> Trace {
 
 /// A run of Algorithm 1 in a known world, from any start.
 fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
-    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
     let states = anywhere(plan.graph(), &Directional);
     ConformConfig {
         world: Some(KnownWorld { graph: plan.graph(), states }),
@@ -125,7 +126,8 @@ fn the_smallest_world(bencher: divan::Bencher, junctions: usize) {
     let plan = random_plan_with(1, junctions).unwrap();
     let trace = trace(&plan);
     let half = trace.up_to(trace.len() / 2);
-    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: None, steps: WorldSearch::STEPS };
     let trail = fold(half.percepts(), half.doors()).unwrap();
     bencher.bench_local(|| smallest_world(&trail, search, &()));
 }

@@ -93,6 +93,9 @@ pub(super) struct ConformArguments {
     /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
+    /// Without --world: search only worlds with at most this many edges [default: any number]
+    #[arg(long, value_name = "N", conflicts_with = "world", value_parser = at_least_one_edge)]
+    max_edges: Option<usize>,
     /// Without --world: end the search for the smallest world after this many steps
     #[arg(long, default_value_t = WorldSearch::STEPS, value_name = "N", conflicts_with = "world",
         value_parser = clap::value_parser!(u64).range(1..))]
@@ -175,6 +178,15 @@ enum Made {
     Scenes,
     /// Images and odometry
     Pictures,
+}
+
+/// A largest number of edges.
+fn at_least_one_edge(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("a world has at least one edge".to_owned()),
+        Ok(edges) => Ok(edges),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// A log and its judgement.
@@ -359,7 +371,11 @@ impl ConformArguments {
                 Who::Algorithm1 => RunDriver::Algorithm1,
                 Who::Anyone => RunDriver::Anyone,
             },
-            search: WorldSearch { class: self.class, steps: self.max_steps },
+            search: WorldSearch {
+                class: self.class,
+                max_edges: self.max_edges,
+                steps: self.max_steps,
+            },
             dart_bound: self.max_darts,
         }
     }

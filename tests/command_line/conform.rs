@@ -190,7 +190,7 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--world", SHAPE_6, "--start", "nowhere:here"], "--start: "),
         (&[log, "--minimise", "x.bag"], "x.bag"),
         (&[log, "--events", "pictures"], "--events: the log does not have"),
-        (&[log, "--max-edges", "12"], "--max-edges"),
+        (&[log, "--max-edges", "0"], "a world has at least one edge"),
         (&[log, "--edges", "30"], "--edges"),
         (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
         (&[log, "--minimise", log], "this output would replace the input"),
@@ -331,6 +331,16 @@ fn a_complete_run_determines_its_world_whatever_its_size() {
     let (code, report) = judged(&log, &["--driver", "anyone", "--world", map]);
     assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
     assert_eq!((&report["unique"], &report["smallest"]), (&true.into(), &Value::Null));
+    // A limit is not a divergence.
+    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "13"]);
+    assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");
+    assert_eq!((&report["event"], &report["smallest"]), (&Value::Null, &Value::Null));
+    let edges = json!([{ "option": "--max-edges", "value": 13, "decides": true, "event": null }]);
+    assert_eq!(report["limits"], edges);
+    let remark = report["remarks"][0].as_str().unwrap();
+    assert!(remark.contains("at most 13 edges (--max-edges)"), "{remark}");
+    let (code, report) = judged(&log, &["--driver", "anyone", "--max-edges", "14"]);
+    assert_eq!((code, &report["limits"]), (Some(0), &json!([])), "{report}");
     // Few edge ends.
     let (code, report) = judged(&log, &["--max-darts", "1"]);
     assert_eq!((code, &report["verdict"]), (Some(3), &"incomplete".into()), "{report}");

@@ -24,6 +24,8 @@ use crate::{
 pub struct WorldSearch {
     /// The class of worlds.
     pub class: Class,
+    /// The largest number of edges, if only smaller worlds are searched.
+    pub max_edges: Option<usize>,
     /// The largest number of steps. A step tries to unite two vertices or to join two darts. On a long
     /// trail one try counts as several steps.
     pub steps: u64,
@@ -71,6 +73,8 @@ pub enum SmallestWorld {
 /// Why a search ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchLimit {
+    /// It reached the largest number of edges. A larger world may explain the walk.
+    Edges,
     /// It reached the largest number of steps.
     Steps,
     /// It reached the largest number of decisions.
@@ -91,6 +95,7 @@ pub fn smallest_world(
     let mut state = Search {
         trail: trail.clone(),
         class: search.class,
+        max_edges: search.max_edges,
         watch,
         steps: search.steps,
         stopped: None,
@@ -117,6 +122,9 @@ pub fn smallest_world(
     match (state.best, state.stopped) {
         (Some(Proposal { graph, marker, .. }), limit) => {
             SmallestWorld::World { graph, marker, limit }
+        }
+        (None, None) if search.max_edges.is_some() => {
+            SmallestWorld::NotFound { limit: SearchLimit::Edges }
         }
         (None, None) => SmallestWorld::NoWorld,
         (None, Some(limit)) => SmallestWorld::NotFound { limit },
@@ -169,6 +177,7 @@ impl Undecided {
 struct Search<'w> {
     trail: FoldedTrail,
     class: Class,
+    max_edges: Option<usize>,
     watch: &'w dyn Watch,
     steps: u64,
     stopped: Option<SearchLimit>,
@@ -282,14 +291,15 @@ impl Search<'_> {
         fits
     }
 
-    /// Whether a world with these distinct vertices has no fewer edges than the best one.
+    /// Whether a world with these distinct vertices has too many edges, or no fewer than the best one.
     fn is_too_large(&self, distinct: &[Dart]) -> bool {
         let darts: usize = distinct.iter().map(|&dart| self.trail.degree(dart) as usize).sum();
         self.exceeds(darts.div_ceil(2))
     }
 
     fn exceeds(&self, edges: usize) -> bool {
-        self.best.as_ref().is_some_and(|best| edges >= best.edges)
+        self.max_edges.is_some_and(|max| edges > max)
+            || self.best.as_ref().is_some_and(|best| edges >= best.edges)
     }
 
     /// Joins open darts in pairs; all vertices are distinct.

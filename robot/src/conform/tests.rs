@@ -109,7 +109,7 @@ fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
 }
 
 fn without_world() -> ConformConfig<'static> {
-    let search = WorldSearch { class: Class::Multigraph, steps: 100_000 };
+    let search = WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 };
     ConformConfig {
         world: None,
         marker: &Directional,

@@ -107,6 +107,10 @@ impl Judged<'_> {
     /// A limit that was reached, and the option that raises it.
     fn limit(&self, reached: ReachedLimit) -> String {
         let search = |limit| match limit {
+            SearchLimit::Edges => {
+                let edges = counted(self.search.max_edges.unwrap_or_default(), "edge");
+                format!("the search was limited to worlds with at most {edges} (--max-edges)")
+            }
             SearchLimit::Steps => {
                 let steps = grouped(self.search.steps.into());
                 format!("the search reached its limit of {steps} steps (--max-steps)")

@@ -118,6 +118,10 @@ fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
     let none = Limit { option: None, value: None, decides: true, event: None };
     let of = |option, value| Limit { option: Some(option), value: Some(value), ..none };
     let search = |limit| match limit {
+        SearchLimit::Edges => {
+            let edges = judged.search.max_edges.unwrap_or_default();
+            of("--max-edges", edges as u64)
+        }
         SearchLimit::Steps => of("--max-steps", judged.search.steps),
         SearchLimit::Decisions | SearchLimit::Stopped => none,
     };

@@ -20,7 +20,7 @@ use crate::{
 };
 
 fn search(class: Class) -> WorldSearch {
-    WorldSearch { class, steps: 10_000_000 }
+    WorldSearch { class, max_edges: None, steps: 10_000_000 }
 }
 
 fn folded(trace: &Trace) -> FoldedTrail {
@@ -141,6 +141,25 @@ fn a_search_that_ends_early_has_a_world_and_names_its_limit() {
 }
 
 #[test]
+fn a_largest_number_of_edges_leaves_out_larger_worlds_only() {
+    let trace = explored(&lollipop(), Dart(0));
+    for trace in [trace.up_to(6), trace] {
+        let SmallestWorld::World { graph, marker, limit: None } =
+            smallest(&trace, Class::Multigraph)
+        else {
+            panic!()
+        };
+        let edges = graph.edge_count();
+        let within = |edges| {
+            let search = WorldSearch { max_edges: Some(edges), ..search(Class::Multigraph) };
+            smallest_world(&folded(&trace), search, &())
+        };
+        assert_eq!(within(edges), SmallestWorld::World { graph, marker, limit: None });
+        assert_eq!(within(edges - 1), SmallestWorld::NotFound { limit: SearchLimit::Edges });
+    }
+}
+
+#[test]
 fn a_long_walk_without_a_marker_does_not_exhaust_the_stack() {
     let plain = |degree| Percept { degree, sighting: Sighting::Nothing };
     // Degrees that no small world has in this order.
@@ -149,7 +168,7 @@ fn a_long_walk_without_a_marker_does_not_exhaust_the_stack() {
         [TraceEventKind::Percept(plain(degree(moves))), TraceEventKind::Door(Door(1))]
     });
     let trace = Trace::new(events).unwrap();
-    let search = WorldSearch { class: Class::Multigraph, steps: WorldSearch::STEPS };
+    let search = WorldSearch { steps: WorldSearch::STEPS, ..search(Class::Multigraph) };
     let SmallestWorld::World { graph, marker, .. } = smallest_world(&folded(&trace), search, &())
     else {
         panic!()

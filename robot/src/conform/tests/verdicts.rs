@@ -60,7 +60,7 @@ impl Options {
             world: known,
             marker: if self.unmarked { &NoMarker } else { &Directional },
             driver: self.driver,
-            search: WorldSearch { class: self.class, steps: self.steps },
+            search: WorldSearch { class: self.class, max_edges: None, steps: self.steps },
             dart_bound: self.dart_bound,
         }
     }
@@ -314,6 +314,12 @@ fn a_limit_is_not_a_divergence() {
     assert_eq!((few.verdict(), few.determines_world()), (ConformVerdict::Conforms, Some(false)));
     let many = ConformConfig { search: without_world().search, ..anyone };
     assert_eq!(judged(&half, &many).limits(), []);
+    // The world has one edge more.
+    let search = WorldSearch { max_edges: Some(13), ..without_world().search };
+    let bounded =
+        judged(&events, &ConformConfig { driver: RunDriver::Anyone, search, ..without_world() });
+    assert_eq!((bounded.verdict(), &bounded.divergence), (ConformVerdict::Incomplete, &None));
+    assert_eq!(bounded.limits(), [ReachedLimit::World(SearchLimit::Edges)]);
     // Algorithm 1 does not come to its end if it may know only one dart.
     let few = judged(&events, &ConformConfig { dart_bound: 1, ..without_world() });
     assert_eq!((few.verdict(), &few.divergence), (ConformVerdict::Incomplete, &None));
