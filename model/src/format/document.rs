@@ -675,9 +675,9 @@ mod tests {
         let places = items.map(at);
         let expected = [
             "line 2, column 20: é[0]: ",
-            "line 2, column 25: é[1]: ",
-            "line 2, column 30: é[2]: ",
-            "line 2, column 35: é[3]: ",
+            "line 2, column 26: é[1]: ",
+            "line 2, column 31: é[2]: ",
+            "line 2, column 36: é[3]: ",
             "line 2, column 43: é[4]: ",
             "line 2, column 51: é[5]: ",
         ];
