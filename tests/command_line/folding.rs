@@ -89,8 +89,8 @@ fn one_movable_marker_is_not_for_the_folding_explorer() {
 #[test]
 fn a_simulated_run_is_logged_and_replayed_with_its_algorithm() {
     let folder = folder("folding-run");
-    let log = folder.join("run.mcap");
-    let [log, page] = [&log, &folder.join("run.html")].map(|path| path.to_str().unwrap());
+    let paths = ["run.mcap", "run.html"].map(|name| folder.join(name));
+    let [log, page] = [&paths[0], &paths[1]].map(|path| path.to_str().unwrap());
     let words = ["simulate", "worlds/building-12.toml", "--by-scene", "--json", "--log", log];
     let line = [&words[..], &FOLDING, &["--html", page]].concat();
     let simulated = objects(&stdout_of(line)).remove(0);

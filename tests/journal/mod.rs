@@ -8,7 +8,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::JunctionKind,
     format::world_file,
-    mapping::{DEFAULT_DART_BOUND, Journey, MappingEvent},
+    mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, Journey, MappingEvent},
 };
 use toposlam_robot::{
     record::{Event, EventKind, NoSensor, RunObserver},

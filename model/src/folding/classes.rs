@@ -274,7 +274,7 @@ impl DartClasses {
     /// The open darts of roots that the latest union identified with other darts, as they were numbered
     /// before it, if they are not open any more or were identified with a dart of a larger class.
     pub(super) fn identified(&self) -> impl Iterator<Item = u32> + '_ {
-        self.changes[self.before_union..].iter().flat_map(|change| {
+        self.changes[self.before_union..].iter().flat_map(move |change| {
             let darts = match *change {
                 Change::Child { child, .. } => self.darts_of(child),
                 Change::Opposite { dart } => dart..dart + 1,
