@@ -6,6 +6,7 @@
 //! [`model`].
 
 pub mod journal;
+pub mod moment;
 pub mod page;
 pub mod paper;
 pub mod picture;

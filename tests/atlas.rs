@@ -55,7 +55,8 @@ fn the_atlas_contains_what_the_search_finds() {
         assert!(table.contains(&format!("{class}, up to {whole} edges |")), "{class}");
         for marker in MARKERS {
             let (edges, class_name) = (edges.to_string(), class.name());
-            let arguments = ["--class", class_name, "--edges", &edges, "--marker", marker.name()];
+            let arguments =
+                ["--class", class_name, "--max-edges", &edges, "--marker", marker.name()];
             let lines = toposlam(&[&["counterexample", "--json"], &arguments[..]].concat());
             let last: Value = serde_json::from_str(lines.lines().last().unwrap()).unwrap();
             let Some(worlds) = last["smallest"]["worlds"].as_array() else {

@@ -34,7 +34,7 @@ fn the_documents_show_what_the_commands_print() {
     for world in ["worlds/shape-6.toml", "worlds/shape-8.toml"] {
         fs::write(folder.join(world), read(world)).unwrap();
     }
-    for page in ["README.md", "docs/commands.md"] {
+    for page in ["README.md", "docs/commands.md", "docs/folding.md"] {
         let page_text = read(page);
         let mut blocks = blocks(&page_text).into_iter().peekable();
         while let Some((kind, commands)) = blocks.next() {

@@ -218,7 +218,7 @@ fn see(folder: &Path) {
     for n in 1..=7 {
         let pose = format!("0,{n},{}", 50 * n);
         let [image, labels] = [path(&format!("images/{n}.png")), path(&format!("labels/{n}.png"))];
-        let render = ["render", "worlds/shape-8.toml", "--marker", "--size", "640x480"];
+        let render = ["render", "worlds/shape-8.toml", "--with-marker", "--size", "640x480"];
         let seed = n.to_string();
         let view = ["--pose", &pose, "--seed", &seed, "--out", &image, "--labels", &labels];
         stdout_of(&[&render[..], &view].concat());

@@ -55,6 +55,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "explore worlds/shape-6.toml --choices all",
             "explore worlds/shape-8.toml --marker movable",
             "explore worlds/shape-6.toml --max-darts 4",
+            "explore worlds/shape-6.toml --certificate",
         ],
     ),
     (
@@ -103,7 +104,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
         "evaluate-vision",
         &[
             "evaluate vision --size 640x480 --look tiles --views 12 --visits 1",
-            "evaluate vision --size 640x480 --look tiles --view 5 --out view",
+            "evaluate vision --size 640x480 --look tiles --view 5 --out-dir view",
         ],
     ),
 ];
@@ -166,7 +167,8 @@ fn folder() -> PathBuf {
     fs::write(folder.join("damaged.mcap"), log).unwrap();
     for n in [2, 5, 7] {
         let pose = format!("0,{n},{}", 50 * n);
-        let render = format!("render worlds/shape-8.toml --marker --size 640x480 --pose {pose}");
+        let render =
+            format!("render worlds/shape-8.toml --with-marker --size 640x480 --pose {pose}");
         let files = format!("--out images/{n}.png --labels labels/{n}.png");
         lines(&folder, &format!("{render} --seed {n} {files}"));
         fs::copy(folder.join(format!("images/{n}.png")), folder.join(format!("{n}.png"))).unwrap();

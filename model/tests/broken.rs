@@ -1,16 +1,13 @@
 //! The check fails on broken variants of Algorithm 1, each on its smallest start.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::ops::ControlFlow;
 
 use toposlam_model::{
-    check::{
-        self, Algorithm, Algorithm1, CostOrder, FailedStart, OpenChoices, Shard, Sweep, every_way,
-    },
+    check::{self, Algorithm, Algorithm1, CostOrder, OpenChoices, every_way},
     embedded_graph::Dart,
     enumerate::{Class, Each, Enumeration},
-    isomorphism::code,
     mapping::{
         Exploration, MappingChoice, MappingError, Nearest, Observer, ValidationResult, step_with,
     },
@@ -18,6 +15,8 @@ use toposlam_model::{
     percept::{Door, Percept, Sighting},
     world::{GraphWorld, Refused},
 };
+
+use crate::smallest_failure::{more_darts_than, new, of_algorithm};
 
 /// Algorithm 1 with something broken in lines 10 to 17.
 struct Broken(Flaw);
@@ -147,39 +146,18 @@ impl Algorithm for Broken {
     }
 }
 
-/// The first start on which a broken variant fails: its edges, its code, what was wrong.
-fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
-    (1..=4)
-        .find_map(|edges| {
-            let sweep = Sweep::new(Class::Multigraph, edges, Shard::WHOLE);
-            let tally = sweep.unwrap().run(&Broken(flaw), &());
-            assert_eq!(tally.failed() > 0, tally.failure.is_some());
-            let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
-            let words = code(&graph, facing).words().to_vec();
-            let step = false_step
-                .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());
-            Some((edges, words, format!("{step}: {flaw}")))
-        })
-        .expect("the check catches it")
-}
-
 // paper: alg1.validation, alg1.hypotheses
 // paper: alg1.10, alg1.11, alg1.12, alg1.13, alg1.14, alg1.15, alg1.16, alg1.17
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught = FLAWS.map(smallest_failure);
-    // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
-    let bound = |darts: u32| {
-        format!("more than {darts} darts (edge ends) are known, and the map is not complete")
-    };
-    let new = |degree: u32| u32::MAX - degree;
+    let caught = FLAWS.map(|flaw| of_algorithm(&Broken(flaw), Class::Multigraph, 4));
     let expected = [
         (
             3,
             vec![new(1), new(5), 5, 4],
             format!(
                 "after 4 moves the map's darts 2 and 4 are wrongly made one edge: {}",
-                bound(6)
+                more_darts_than(6)
             ),
         ),
         (
@@ -187,7 +165,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             vec![new(2), new(6), 4, 7, 6],
             format!(
                 "after 5 moves the map's darts 3 and 5 are wrongly made one edge: {}",
-                bound(8)
+                more_darts_than(8)
             ),
         ),
         (
@@ -203,7 +181,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             vec![new(2), new(4), 3, 5],
             format!(
                 "after 6 moves vertex v2 is wrongly added behind the map's dart 4: {}",
-                bound(6)
+                more_darts_than(6)
             ),
         ),
         (
@@ -211,7 +189,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             vec![new(1), new(3), 3],
             format!(
                 "after 4 moves vertex v2 is wrongly added behind the map's dart 2: {}",
-                bound(4)
+                more_darts_than(4)
             ),
         ),
     ];

@@ -1,12 +1,11 @@
 //! The check fails on broken variants of the movable marker algorithm, each on its smallest start.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use toposlam_model::{
-    check::{Algorithm, CostOrder, FailedStart, MovableMarker, Shard, Sweep},
+    check::{Algorithm, CostOrder, MovableMarker},
     embedded_graph::{Dart, Vertex},
     enumerate::Class,
-    isomorphism::code,
     mapping::{
         MappingError, MarkerSearch, Nearest, Observer, ReachedPlace, ValidationResult,
         validate_back_link, validate_place,
@@ -14,6 +13,8 @@ use toposlam_model::{
     marker::Movable,
     world::{GraphWorld, Refused},
 };
+
+use crate::smallest_failure::{more_darts_than, new, of_algorithm};
 
 /// The movable marker algorithm with something broken in one of its validations.
 struct Broken(Flaw);
@@ -172,36 +173,15 @@ impl Algorithm for Broken {
     }
 }
 
-/// The first start on which a broken variant fails: its edges, its code, what was wrong.
-fn smallest_failure(flaw: Flaw) -> (usize, Vec<u32>, String) {
-    (1..=7)
-        .find_map(|edges| {
-            let sweep = Sweep::new(Class::Simple, edges, Shard::WHOLE);
-            let tally = sweep.unwrap().run(&Broken(flaw), &());
-            assert_eq!(tally.failed() > 0, tally.failure.is_some());
-            let FailedStart { graph, facing, flaw, moves, false_step } = tally.failure?;
-            let words = code(&graph, facing).words().to_vec();
-            let step = false_step
-                .map_or_else(|| format!("after {} moves", moves.unwrap()), |step| step.to_string());
-            Some((edges, words, format!("{step}: {flaw}")))
-        })
-        .expect("the check catches it")
-}
-
 // paper: movable.place, movable.new, movable.known, movable.back-link
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught = FLAWS.map(smallest_failure);
-    // The codes: u32::MAX - degree for each new vertex, a dart's number for each edge to a known one.
-    let new = |degree: u32| u32::MAX - degree;
+    let caught = FLAWS.map(|flaw| of_algorithm(&Broken(flaw), Class::Simple, 7));
     let cycle = |edges: u32| {
         let last = edges as usize;
         let mut words = vec![new(2); last];
         words.push(2 * edges - 1);
         words
-    };
-    let endless = |darts: u32| {
-        format!("more than {darts} darts (edge ends) are known, and the map is not complete")
     };
     let nothing_here = "there is no marker here that could be picked up";
     let expected = [
@@ -210,7 +190,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             cycle(3),
             format!(
                 "after 3 moves vertex v3 is wrongly added behind the map's dart 5: {}",
-                endless(6)
+                more_darts_than(6)
             ),
         ),
         (4, cycle(4), format!("after 6 moves: {nothing_here}")),
@@ -219,7 +199,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             vec![new(3), new(3), new(3), new(3), 7, 10, 11],
             format!(
                 "after 16 moves vertex v4 is wrongly added behind the map's dart 10: {}",
-                endless(12)
+                more_darts_than(12)
             ),
         ),
         (4, cycle(4), format!("after 6 moves: {nothing_here}")),
@@ -240,7 +220,7 @@ fn every_broken_variant_is_caught_on_a_small_start() {
             vec![new(3), new(2), new(1), new(2), 7],
             format!(
                 "after 6 moves the map's darts 6 and 1 are wrongly made one edge: {}",
-                endless(8)
+                more_darts_than(8)
             ),
         ),
         (

@@ -1,29 +1,31 @@
-//! What worlds cost, with either algorithm: the tables in `worlds/README.md`.
+//! What worlds cost, with each algorithm and at least: the tables in `worlds/README.md` and
+//! `docs/folding.md`.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{fs, path::Path};
+use std::{fs, ops::RangeInclusive, path::Path};
 
 use toposlam_model::{
     check::{
-        Algorithm, Algorithm1, DEFAULT_STATE_BUDGET, MovableMarker, RunState, Shard, Sweep, Tally,
-        every_way,
+        Algorithm, Algorithm1, DEFAULT_STATE_BUDGET, MappingAlgorithm, MovableMarker, RunState,
+        Shard, Sweep, Tally, every_way,
     },
     embedded_graph::Dart,
     enumerate::Class,
+    folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
     world::GraphWorld,
 };
 
-fn worlds(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../worlds");
-    fs::read_to_string(folder.join(name)).unwrap()
+fn read(path: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    fs::read_to_string(folder.join(path)).unwrap()
 }
 
-/// The rows of the table that stands under a heading.
-fn printed(heading: &str) -> Vec<String> {
-    let readme = worlds("README.md");
-    let (_, section) = readme.split_once(&format!("\n## {heading}\n")).unwrap();
+/// The rows of the table that stands under a heading of a page.
+fn printed(page: &str, heading: &str) -> Vec<String> {
+    let page = read(page);
+    let (_, section) = page.split_once(&format!("\n## {heading}\n")).unwrap();
     let section = section.split("\n## ").next().unwrap();
     let rows = section.lines().filter(|line| line.starts_with('|'));
     // After its head.
@@ -31,7 +33,7 @@ fn printed(heading: &str) -> Vec<String> {
 }
 
 fn world(name: &str) -> NamedWorld {
-    world_file::read(worlds(&format!("{name}.toml")).as_bytes()).unwrap()
+    world_file::read(read(&format!("worlds/{name}.toml")).as_bytes()).unwrap()
 }
 
 fn moves<A: Algorithm>(algorithm: &A, world: &NamedWorld, facing: Dart) -> u64 {
@@ -66,7 +68,7 @@ fn rows(name: &str, paper: u64) -> Vec<String> {
 #[test]
 fn the_table_of_costs_is_true() {
     let table: Vec<_> = [rows("shape-6", 9), rows("shape-8", 14)].concat();
-    let printed = printed("What the paper's own worlds cost");
+    let printed = printed("worlds/README.md", "What the paper's own worlds cost");
     assert_eq!(printed, table, "\n{}", table.join("\n"));
     assert!(table.iter().any(|row| row.contains("| 9: yes |")));
     assert!(table.iter().any(|row| row.contains("| 14: yes |")));
@@ -83,11 +85,12 @@ fn own_starts() -> Vec<String> {
     let rows = worlds.map(|world| {
         let facing = world.start.unwrap();
         format!(
-            "| {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} |",
             world.name,
             world.start_text(facing),
             world.graph.vertex_count(),
             world.graph.edge_count(),
+            certificate_length(&world.graph, facing),
             moves(&Algorithm1, &world, facing),
             moves(&MovableMarker, &world, facing),
         )
@@ -98,26 +101,40 @@ fn own_starts() -> Vec<String> {
 #[test]
 fn the_table_of_both_costs_is_true() {
     let table = own_starts();
-    let printed = printed("What a movable marker costs");
+    let printed = printed("worlds/README.md", "What a movable marker costs");
     assert!(table.len() >= 14);
     assert_eq!(printed, table, "\n{}", table.join("\n"));
 }
 
-fn tally(class: Class, edges: usize, algorithm: &impl Algorithm) -> Tally {
-    let tally = Sweep::new(class, edges, Shard::WHOLE).unwrap().run(algorithm, &());
+fn tally(class: Class, edges: usize, algorithm: MappingAlgorithm) -> Tally {
+    let sweep = Sweep::new(class, edges, Shard::WHOLE).unwrap();
+    let tally = algorithm.sweep(&sweep, &());
     assert_eq!(tally.failure, None);
+    assert_eq!((tally.mapped, tally.below_certificate), (tally.starts, 0));
     tally
 }
 
-/// A row for each number of edges: the mean and the most moves of both algorithms.
+/// The mean over the starts, and the largest value, as two cells.
+fn cells(tally: &Tally, total: u64, most: u64) -> String {
+    format!("{:.1} | {most}", total as f64 / tally.starts as f64)
+}
+
+fn moves_of(tally: &Tally) -> String {
+    cells(tally, tally.moves_total, tally.moves_max())
+}
+
+fn certificates_of(tally: &Tally) -> String {
+    cells(tally, tally.certificate_total, tally.certificate_max)
+}
+
+/// A row for each number of edges: the mean and the most moves of a certificate and of both algorithms.
 fn every_start(class: Class, up_to: usize) -> Vec<String> {
     let rows = (1..=up_to).map(|edges| {
-        let tallies = [tally(class, edges, &Algorithm1), tally(class, edges, &MovableMarker)];
-        let [one, other] = tallies.each_ref().map(|tally| {
-            let mean = tally.moves_total as f64 / tally.starts as f64;
-            format!("{mean:.1} | {}", tally.moves_max())
-        });
-        format!("| {class} | {edges} | {} | {one} | {other} |", tallies[0].starts)
+        let one = tally(class, edges, MappingAlgorithm::Algorithm1);
+        let other = tally(class, edges, MappingAlgorithm::MovableMarker);
+        let (starts, certificate) = (one.starts, certificates_of(&one));
+        let [one, other] = [one, other].map(|tally| moves_of(&tally));
+        format!("| {class} | {edges} | {starts} | {certificate} | {one} | {other} |")
     });
     rows.collect()
 }
@@ -126,6 +143,56 @@ fn every_start(class: Class, up_to: usize) -> Vec<String> {
 fn the_table_of_every_small_start_is_true() {
     let classes = [(Class::Simple, 8), (Class::Corridor, 10), (Class::Planar, 8)];
     let table = classes.map(|(class, up_to)| every_start(class, up_to)).concat();
-    let printed = printed("What every small start costs");
+    let printed = printed("worlds/README.md", "What every small start costs");
     assert_eq!(printed, table, "\n{}", table.join("\n"));
+}
+
+/// The sizes of each class in the table on folding: the first, the last that is checked at once, and the
+/// last.
+const FOLDED: [(Class, [usize; 3]); 4] = [
+    (Class::Multigraph, [3, 6, 7]),
+    (Class::Simple, [3, 8, 9]),
+    (Class::Corridor, [3, 10, 11]),
+    (Class::Planar, [3, 8, 9]),
+];
+
+/// A row of the table on folding. A start that is mapped wrongly, in more moves than the bound or in fewer
+/// than its certificate has is an error.
+fn folded(class: Class, edges: usize) -> String {
+    let folding = tally(class, edges, MappingAlgorithm::Folding);
+    let algorithm1 = tally(class, edges, MappingAlgorithm::Algorithm1);
+    let two_places = |total: u64, most: u64| {
+        format!("{:.2} / {most}", total as f64 / folding.starts as f64)
+    };
+    format!(
+        "| {class} | {edges} | {} | {} | {} | {} |",
+        folding.starts,
+        two_places(folding.certificate_total, folding.certificate_max),
+        two_places(folding.moves_total, folding.moves_max()),
+        two_places(algorithm1.moves_total, algorithm1.moves_max()),
+    )
+}
+
+/// The rows of the table on folding for these sizes are printed as they are computed.
+fn check_folded(sizes: impl Fn([usize; 3]) -> RangeInclusive<usize>) {
+    let printed = printed("docs/folding.md", "What every small start costs");
+    let count: usize = FOLDED.iter().map(|(_, [first, _, last])| last + 1 - first).sum();
+    assert_eq!(printed.len(), count);
+    let rows = FOLDED.iter().flat_map(|&(class, bounds)| {
+        sizes(bounds).map(move |edges| folded(class, edges))
+    });
+    let wrong: Vec<String> = rows.filter(|row| !printed.contains(row)).collect();
+    assert!(wrong.is_empty(), "these rows are right:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_table_on_folding_is_true() {
+    check_folded(|[first, middle, _]| first..=middle);
+}
+
+/// `docs/folding.md` has the command that runs it.
+#[test]
+#[ignore = "it takes a minute"]
+fn the_largest_sizes_in_the_table_on_folding_are_true() {
+    check_folded(|[_, middle, last]| middle + 1..=last);
 }

@@ -4,6 +4,7 @@
 
 mod ambiguity;
 mod broken;
+mod broken_folding;
 mod broken_movable;
 mod check;
 mod contradictions;
@@ -16,6 +17,8 @@ mod folding;
 mod folding_explorer;
 mod markers;
 mod movable;
+mod optimum;
 mod perception;
+mod smallest_failure;
 mod verdicts;
 mod worlds;

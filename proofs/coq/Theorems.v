@@ -4,7 +4,7 @@
 From mathcomp Require Import all_ssreflect.
 From toposlam Require Import Spec Program Algorithm1.
 From toposlam Require Walks Bisimulation Separates Figures Impossible Always Obeying Embedding Validation.
-From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect.
+From toposlam Require Rounds Correct Mapper Degree1 Classes MovableMarker MovableCorrect Covering.
 
 Import Figures(cycle_3, cycle_4, figure_1a, figure_1b, smallest_a, smallest_b).
 Import Embedding(embeds).
@@ -284,3 +284,13 @@ Proof. (* paper: movable.place, movable.back-link *)
 move=> simple_W enough; have short S path : size path < known_vertices S -> any_path S path by [].
 exact: (MovableCorrect.movable_marker_answers_right short simple_W enough).
 Qed.
+
+(** A folded trail without open darts is the world: if the darts of one start map to the darts of another,
+    so that opposites and clockwise successors are kept, and only the facing dart maps to the facing dart,
+    then both starts are isomorphic. Paper: beyond 2.3. *)
+Theorem complete_trail_is_the_world (V W : start) (f : V -> W) :
+  (forall d, f (opposite d) = opposite (f d)) ->
+  (forall d, f (clockwise d) = clockwise (f d)) ->
+  (forall d, f d = facing W <-> d = facing V) ->
+  isomorphic_starts V W.
+Proof. exact: Covering.covering_isomorphic. Qed.

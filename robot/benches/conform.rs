@@ -7,6 +7,7 @@
 use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
+    floor_plan::FloorPlan,
     mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
@@ -43,7 +44,7 @@ fn main() {
 }
 
 /// A run of Algorithm 1 in a plan with this number of junctions.
-fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
+fn trace(plan: &FloorPlan) -> Trace {
     let graph = plan.graph();
     let mut events = vec![TraceEventKind::Percept(GraphWorld::new(graph, Dart(0)).sensed())];
     let mut listen = |_: &mut _, _: &Journey, event: MappingEvent| {
@@ -55,6 +56,20 @@ fn trace(plan: &toposlam_model::floor_plan::FloorPlan) -> Trace {
     let mut world = GraphWorld::new(graph, Dart(0));
     map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
     Trace::new(events).unwrap()
+}
+
+/// A run of Algorithm 1 in a known world, from any start.
+fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
+    let search =
+        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
+    let states = anywhere(plan.graph(), &Directional);
+    ConformConfig {
+        world: Some(KnownWorld { graph: plan.graph(), states }),
+        marker: &Directional,
+        driver: RunDriver::Algorithm1,
+        search,
+        dart_bound: 1000,
+    }
 }
 
 /// Follows a run in a known world, with and without a known start.
@@ -72,17 +87,7 @@ fn a_run(bencher: divan::Bencher, junctions: usize) {
         },
     };
     let events = RunEvents { events: trace.events().map(event).collect(), ..RunEvents::default() };
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
-    let states = anywhere(plan.graph(), &Directional);
-    let world = Some(KnownWorld { graph: plan.graph(), states });
-    let question = ConformConfig {
-        world,
-        marker: &Directional,
-        driver: RunDriver::Algorithm1,
-        search,
-        dart_bound: 1000,
-    };
+    let question = in_known_world(&plan);
     bencher.bench_local(|| judge(events.clone(), &question, &Quirks::default(), &()));
 }
 
@@ -107,17 +112,7 @@ fn ten_thousand_events(bencher: divan::Bencher) {
         }
     }
     let bytes = log.finish().unwrap();
-    let search =
-        WorldSearch { class: Class::Multigraph, max_edges: 400, steps: WorldSearch::STEPS };
-    let states = anywhere(plan.graph(), &Directional);
-    let world = Some(KnownWorld { graph: plan.graph(), states });
-    let question = ConformConfig {
-        world,
-        marker: &Directional,
-        driver: RunDriver::Algorithm1,
-        search,
-        dart_bound: 1000,
-    };
+    let question = in_known_world(&plan);
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
         let mapping = TopicMap::unambiguous(&log);

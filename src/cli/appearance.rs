@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use toposlam_robot::simulator::{BuildingLook, Effects, LOOKS};
 
-use super::Failure;
+use super::CliError;
 
 /// Width and height of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -72,13 +72,13 @@ impl Appearance {
     }
 
     /// The effects drawn from a seed.
-    pub(super) fn effects(&self, seed: u64) -> Result<Effects, Failure> {
+    pub(super) fn effects(&self, seed: u64) -> Result<Effects, CliError> {
         let mut effects = match self.effects {
             EffectsChoice::Default => Effects::drawn(&mut Xoshiro256PlusPlus::seed_from_u64(seed)),
             EffectsChoice::None => Effects::plain(),
         };
         for (name, value) in &self.effect {
-            effects.set(name, *value).map_err(|error| Failure::at("--effect", error))?;
+            effects.set(name, *value).map_err(|error| CliError::at("--effect", error))?;
         }
         Ok(effects)
     }

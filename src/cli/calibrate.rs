@@ -17,7 +17,9 @@ use toposlam_vision::camera::{
     unchanging,
 };
 
-use super::{Failure, Outcome, input, json::print_line, output, picture_file};
+use super::{
+    CliError, Outcome, exit_codes::help_end, input, json::print_line, output, picture_file,
+};
 
 /// Find centre, rim and focal length of a spherical mirror in images
 ///
@@ -25,23 +27,29 @@ use super::{Failure, Outcome, input, json::print_line, output, picture_file};
 /// brighter than its surroundings. The border of the image may cut off parts of its rim. The focal
 /// length is computed from the rim and from the mirror's radius and distance, which you measure.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam calibrate view-*.png --out camera.toml --picture fit.png \\
     --mask-out mask.png
 
-Missing values are taken from --start. Without it they are the SuperScout's:
-radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.")]
+Missing values are taken from --initial. Without it they are the SuperScout's:
+radius 0.05, distance 0.15, height 0.90, ahead 90, seen from below.",
+    &[
+        (0, "the rim was found"),
+        (2, "bad usage or input, or no rim was found"),
+    ],
+))]
 pub(super) struct CalibrateArguments {
     /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<PathBuf>,
     /// Calibration file to write: .toml [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Calibration from which missing values are taken
     #[arg(long, value_name = "FILE")]
-    start: Option<PathBuf>,
+    initial: Option<PathBuf>,
     /// Radius of the spherical mirror, in metres
     #[arg(long, value_name = "METRES")]
     mirror_radius: Option<f64>,
@@ -94,7 +102,7 @@ struct Report {
 }
 
 impl CalibrateArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.check_places()?;
         let known = self.known()?;
         let images = self.read_images()?;
@@ -103,7 +111,7 @@ impl CalibrateArguments {
         let mask = match &self.mask_out {
             Some(path) => {
                 let found = unchanging::mask(&self.mask_name(path), &images, &rim);
-                Some((path, found.map_err(|error| Failure::at("--mask-out", error))?))
+                Some((path, found.map_err(|error| CliError::at("--mask-out", error))?))
             }
             None => None,
         };
@@ -114,7 +122,7 @@ impl CalibrateArguments {
             picture_file::write(path, &fit_picture(&images[0], &camera, &rim))?;
         }
         if let Some((path, mask)) = &mask {
-            let png = mask.to_png().map_err(|error| Failure::in_file(path, error))?;
+            let png = mask.to_png().map_err(|error| CliError::in_file(path, error))?;
             output::write_whole(path, &png)?;
         }
         match &self.out {
@@ -126,7 +134,7 @@ impl CalibrateArguments {
         Ok(Outcome::Holds)
     }
 
-    fn check_places(&self) -> Result<(), Failure> {
+    fn check_places(&self) -> Result<(), CliError> {
         let places: [(_, &[&str]); 3] = [
             (&self.out, &["toml"]),
             (&self.picture, &["png", "jpg", "jpeg"]),
@@ -138,21 +146,21 @@ impl CalibrateArguments {
             }
         }
         if let (Some(_), None) = (&self.mask_out, &self.out) {
-            return Err(Failure::at("--mask-out", "this goes with --out, the file that names it"));
+            return Err(CliError::at("--mask-out", "this goes with --out, the file that names it"));
         }
         Ok(())
     }
 
     /// The camera as far as it is known without the images.
-    fn known(&self) -> Result<(Camera, SphericalMirror), Failure> {
-        let start = match &self.start {
+    fn known(&self) -> Result<(Camera, SphericalMirror), CliError> {
+        let initial = match &self.initial {
             Some(path) => input::read_camera(path)?,
             None => Camera::superscout(),
         };
-        let OpticsModel::SphericalMirror(mirror) = start.optics else {
-            let path = self.start.as_deref().unwrap_or(Path::new("--start"));
+        let OpticsModel::SphericalMirror(mirror) = initial.optics else {
+            let path = self.initial.as_deref().unwrap_or(Path::new("--initial"));
             let cause = "camera.kind: only a spherical mirror is calibrated by its rim";
-            return Err(Failure::in_file(path, cause));
+            return Err(CliError::in_file(path, cause));
         };
         let mirror = SphericalMirror {
             mirror_radius: self.mirror_radius.unwrap_or(mirror.mirror_radius),
@@ -160,11 +168,11 @@ impl CalibrateArguments {
             camera_height: self.camera_height.unwrap_or(mirror.camera_height),
             ..mirror
         };
-        let ahead = self.ahead.map_or(start.ahead, f64::to_radians);
+        let ahead = self.ahead.map_or(initial.ahead, f64::to_radians);
         let seen_from = match self.seen_from {
             Some(From::Below) => SeenFrom::Below,
             Some(From::Above) => SeenFrom::Above,
-            None => start.seen_from,
+            None => initial.seen_from,
         };
         let known = Camera {
             optics: OpticsModel::SphericalMirror(mirror),
@@ -180,7 +188,7 @@ impl CalibrateArguments {
     }
 
     /// Reads the images. All must have the size of the first.
-    fn read_images(&self) -> Result<Vec<RgbImage>, Failure> {
+    fn read_images(&self) -> Result<Vec<RgbImage>, CliError> {
         let mut images: Vec<RgbImage> = Vec::new();
         for path in &self.images {
             let image = match images.first() {
@@ -196,7 +204,7 @@ impl CalibrateArguments {
                         "the image is {} by {} pixels; its sides should be from {least} to {most}",
                         found[0], found[1]
                     );
-                    Err(Failure::in_file(path, cause))
+                    Err(CliError::in_file(path, cause))
                 }),
             };
             images.push(image?);
@@ -205,14 +213,14 @@ impl CalibrateArguments {
     }
 
     /// The failure if no rim was found.
-    fn no_rim(&self, error: RimError) -> Failure {
+    fn no_rim(&self, error: RimError) -> CliError {
         match self.images.as_slice() {
-            [path] => Failure::in_file(path, error),
+            [path] => CliError::in_file(path, error),
             [first, others @ ..] => {
                 let others = others.len();
-                Failure::at(format!("{} and {others} more", first.display()), error)
+                CliError::at(format!("{} and {others} more", first.display()), error)
             }
-            [] => Failure::at("IMAGE", error),
+            [] => CliError::at("IMAGE", error),
         }
     }
 
@@ -224,7 +232,7 @@ impl CalibrateArguments {
         name.unwrap_or_else(whole).to_string_lossy().into_owned()
     }
 
-    fn report(&self, out: &mut dyn Write, camera: &Camera, rim: &Rim) -> Result<(), Failure> {
+    fn report(&self, out: &mut dyn Write, camera: &Camera, rim: &Rim) -> Result<(), CliError> {
         let OpticsModel::SphericalMirror(mirror) = &camera.optics else { return Ok(()) };
         let mask_seen = camera.mask.as_ref().map(|mask| share_seen(mask, rim));
         if self.json {
@@ -272,7 +280,7 @@ fn with_rim(
     (known, mirror): (Camera, SphericalMirror),
     image: [u32; 2],
     rim: &Rim,
-) -> Result<Camera, Failure> {
+) -> Result<Camera, CliError> {
     let (radius, distance) = (mirror.mirror_radius, mirror.mirror_distance);
     let focal = hundredth(SphericalMirror::focal_of_rim(rim.radius, radius, distance));
     let centre = rim.centre.map(hundredth);
@@ -288,7 +296,7 @@ fn hundredth(number: f64) -> f64 {
 }
 
 /// Returns an error if a calibration file cannot contain this camera.
-fn checked(camera: &Camera) -> Result<(), Failure> {
+fn checked(camera: &Camera) -> Result<(), CliError> {
     let text = calibration::to_toml(camera);
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
     match calibration::read(text.as_bytes(), nothing) {
@@ -296,9 +304,9 @@ fn checked(camera: &Camera) -> Result<(), Failure> {
         // The options have the names of the keys.
         Err(CalibrationError { position, kind }) if !position.key.is_empty() => {
             let name = position.key.trim_start_matches("camera.").replace('_', "-");
-            Err(Failure::at(format!("--{name}"), kind))
+            Err(CliError::at(format!("--{name}"), kind))
         }
-        Err(error) => Err(Failure::at("the calibration that was found", error)),
+        Err(error) => Err(CliError::at("the calibration that was found", error)),
     }
 }
 
@@ -307,7 +315,7 @@ fn same_size(
     expected: [u32; 2],
     path: &Path,
     found: [u32; 2],
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     if found == expected {
         return Ok(());
     }
@@ -316,7 +324,7 @@ fn same_size(
         "the image is {width} by {height} pixels, but {} is {first_width} by {first_height}",
         first.display()
     );
-    Err(Failure::in_file(path, cause))
+    Err(CliError::in_file(path, cause))
 }
 
 /// The share of the mirror's pixels that a mask keeps.

@@ -18,8 +18,9 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome,
-    ci_report::CiOptions,
+    ChoicesOption, CliError, Outcome,
+    ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     input,
     mapping_marker::{AlgorithmOption, MappingMarker, movable_not_sufficient},
     output,
@@ -37,7 +38,8 @@ use report::{AlgorithmInfo, CheckReport, SizeResult};
 /// With --marker movable, the algorithm for one movable marker is checked instead, on worlds without
 /// loops and parallel edges. Its bound is 3 n (n - 1) / 2 + (m - n + 1) (6 n - 7) moves.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam check                              every world with up to 6 edges
   toposlam check --edges 8 --class planar     one size of one class
@@ -47,10 +49,14 @@ Examples:
   toposlam check --marker movable             a marker that the robot carries
   toposlam check --algorithm folding          the folding explorer
 
-Ctrl-C stops the check and prints the results so far.
-
-Exit codes: 0 every map is right, 1 a map is wrong, 2 bad usage or input, 3 not everything was \
-checked.")]
+Ctrl-C stops the check and prints the results so far.",
+    &[
+        (0, "every map is right"),
+        (1, "a map is wrong"),
+        (2, "bad usage or input"),
+        (3, "not everything was checked: a limit was reached, there is nothing to check, or Ctrl-C"),
+    ],
+))]
 pub(super) struct CheckArguments {
     /// Number of edges, as in 6, or a range, as in 1..=6
     #[arg(long, default_value = "1..=6", value_name = "SIZES", allow_hyphen_values = true)]
@@ -98,6 +104,10 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     json: bool,
 
+    /// Check larger worlds also after a map was wrong
+    #[arg(long)]
+    keep_going: bool,
+
     #[command(flatten)]
     ci: CiOptions,
 }
@@ -109,7 +119,7 @@ enum Work {
 }
 
 impl CheckArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let choice = self.choices.with_budget(self.max_states)?;
         use_threads(self.threads)?;
         self.ci.check_places()?;
@@ -125,23 +135,42 @@ impl CheckArguments {
         let mut report = CheckReport::new(out, self.json, AlgorithmInfo::of(&algorithm), choice);
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
-        for (edges, work) in work {
+        let mut sizes = work.into_iter();
+        while let Some((edges, work)) = sizes.next() {
             let tally = work.check(edges, &algorithm)?;
             let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
             let result = SizeResult { edges, class, from, shard, tally: &tally };
             report.size(&result)?;
             cases.push(result.ci_case());
+            let (failed, interrupted) = (tally.failed() > 0, tally.interrupted);
             keep_worse(&mut worst, tally.worst);
-            if tally.interrupted {
+            if interrupted || (failed && !self.keep_going) {
                 break;
             }
         }
         let outcome = report.verdict(start.elapsed())?;
+        if outcome == Outcome::Violated {
+            cases.extend(self.not_checked(sizes.map(|(edges, _)| edges)));
+        }
         self.ci.write("check", &cases)?;
         if let Some(path) = &self.worst {
             write_worst(path, worst)?;
         }
         Ok(outcome)
+    }
+
+    /// The sizes after one in which a map was wrong, for CI systems.
+    fn not_checked(&self, sizes: impl Iterator<Item = usize>) -> Vec<CiCase> {
+        let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
+        let tally = Tally::default();
+        let name = |edges| SizeResult { edges, class, from, shard, tally: &tally }.name();
+        let file = from.map(Path::to_owned);
+        let cases = sizes.map(|edges| CiCase::not_checked(name(edges), file.clone()));
+        let cases: Vec<_> = cases.collect();
+        if !cases.is_empty() {
+            remark!("worlds with more edges are not checked; --keep-going checks them");
+        }
+        cases
     }
 
     fn class(&self) -> Class {
@@ -152,20 +181,20 @@ impl CheckArguments {
     }
 
     /// A sweep for each number of edges.
-    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn sweeps(&self) -> Result<BTreeMap<usize, Work>, CliError> {
         let class = self.class();
         if self.marker == MappingMarker::Movable && !class.is_simple() {
-            return Err(Failure::at("--class", movable_not_sufficient(format!("class {class}"))));
+            return Err(CliError::at("--class", movable_not_sufficient(format!("class {class}"))));
         }
         let sweep = |edges| {
             let sweep = Sweep::new(class, edges, self.shard);
-            Ok((edges, Work::Sweep(sweep.map_err(|error| Failure::at("--edges", error))?)))
+            Ok((edges, Work::Sweep(sweep.map_err(|error| CliError::at("--edges", error))?)))
         };
         self.edges.iter().map(sweep).collect()
     }
 
     /// The worlds of a file, by their number of edges.
-    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, Failure> {
+    fn worlds_by_size(&self, path: &Path) -> Result<BTreeMap<usize, Work>, CliError> {
         let graphs = input::read_graphs(path)?;
         self.marker.check_worlds(path, &graphs)?;
         let mut sizes: BTreeMap<usize, Vec<EmbeddedGraph>> = BTreeMap::new();
@@ -177,7 +206,7 @@ impl CheckArguments {
 }
 
 impl Work {
-    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, Failure> {
+    fn check(&self, edges: usize, algorithm: &MappingAlgorithm) -> Result<Tally, CliError> {
         let progress = Progress::new(&format!("{edges} edges"), "starts")?;
         let tally = match self {
             Self::Sweep(sweep) => algorithm.sweep(sweep, &progress),
@@ -203,9 +232,9 @@ fn keep_worse(worst: &mut Option<WorstStart>, other: Option<WorstStart>) {
     }
 }
 
-fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), Failure> {
+fn write_worst(path: &Path, worst: Option<WorstStart>) -> Result<(), CliError> {
     let Some(WorstStart { graph, facing, moves }) = worst else {
-        eprintln!("{} is not written: no start was mapped", path.display());
+        remark!("{} is not written: no start was mapped", path.display());
         return Ok(());
     };
     let about = format!("The start that took the most moves in a check: {moves}");

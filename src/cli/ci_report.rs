@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-use super::{Failure, Outcome, output};
+use super::{CliError, Outcome, output, terminal, version};
 
 /// The options of a verb that gives verdicts.
 #[derive(clap::Args, Debug, Default)]
@@ -34,18 +34,26 @@ pub(super) struct CiCase {
     pub(super) file: Option<PathBuf>,
 }
 
+impl CiCase {
+    /// What was not checked because something before it is violated.
+    pub(super) fn not_checked(name: String, file: Option<PathBuf>) -> Self {
+        let message = "not checked after a violation; --keep-going checks it".to_owned();
+        Self { name, outcome: Outcome::Incomplete, message, file }
+    }
+}
+
 impl CiOptions {
     /// Refuses the options where there is no verdict to write.
-    pub(super) fn check_unused(&self, cause: &str) -> Result<(), Failure> {
+    pub(super) fn check_unused(&self, cause: &str) -> Result<(), CliError> {
         match (&self.junit, &self.sarif) {
-            (Some(_), _) => Err(Failure::at("--junit", cause)),
-            (None, Some(_)) => Err(Failure::at("--sarif", cause)),
+            (Some(_), _) => Err(CliError::at("--junit", cause)),
+            (None, Some(_)) => Err(CliError::at("--sarif", cause)),
             (None, None) => Ok(()),
         }
     }
 
     /// Checks that the reports can be written, before long work begins.
-    pub(super) fn check_places(&self) -> Result<(), Failure> {
+    pub(super) fn check_places(&self) -> Result<(), CliError> {
         if let Some(path) = &self.junit {
             output::check_place(path, &["xml"])?;
         }
@@ -57,7 +65,7 @@ impl CiOptions {
 
     /// Writes the reports. In a workflow of GitHub Actions, each case that does not hold becomes an
     /// annotation, on standard error.
-    pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), Failure> {
+    pub(super) fn write(&self, verb: &str, cases: &[CiCase]) -> Result<(), CliError> {
         if let Some(path) = &self.junit {
             output::write_whole(path, junit(verb, cases).as_bytes())?;
         }
@@ -66,7 +74,7 @@ impl CiOptions {
             output::write_whole(path, text.as_bytes())?;
         }
         if env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
-            eprint!("{}", annotations(verb, cases));
+            terminal::print_message(&annotations(verb, cases));
         }
         Ok(())
     }
@@ -149,7 +157,7 @@ fn sarif(verb: &str, cases: &[CiCase]) -> Value {
         "runs": [{
             "tool": { "driver": {
                 "name": "toposlam",
-                "semanticVersion": env!("CARGO_PKG_VERSION"),
+                "semanticVersion": version::VERSION,
                 "rules": [{ "id": verb, "shortDescription": { "text": rule(verb) } }],
             } },
             "results": cases.iter().map(result).collect::<Vec<_>>(),

@@ -15,7 +15,9 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome, input,
+    CliError, Outcome,
+    exit_codes::help_end,
+    input,
     json::print_line,
     marker_kinds,
     progress::Progress,
@@ -34,7 +36,8 @@ use robot_comparison::RobotComparison;
 /// The start in each file places the marker. The robot in A begins there. The robot in B begins at each
 /// pose that the marker cannot distinguish from its start, unless --start is given twice.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --walk 0,1,1
@@ -43,7 +46,13 @@ Examples:
 If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
 be in. If there are more than 100,000 pairs, the proof is the classes of indistinguishable states. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
 in the file, and the robot in B is at w. With a movable marker, v:2@u has the marker at u, and in \
-v:2+marker the robot carries it.")]
+v:2+marker the robot carries it.",
+    &[
+        (0, "the worlds were compared, whatever the result"),
+        (2, "bad usage or input"),
+        (3, "interrupted"),
+    ],
+))]
 pub(super) struct CompareArguments {
     /// A world file
     a: PathBuf,
@@ -81,10 +90,10 @@ struct GraphComparison<'w> {
 }
 
 impl CompareArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut worlds = [input::read_world(&self.a)?, input::read_world(&self.b)?];
         if self.start.len() > 2 {
-            return Err(Failure::at("--start", "there are two worlds; give it at most twice"));
+            return Err(CliError::at("--start", "there are two worlds; give it at most twice"));
         }
         for (world, start) in worlds.iter_mut().zip(&self.start) {
             world.start = Some(input::start_of(world, Some(start))?);
@@ -97,12 +106,12 @@ impl CompareArguments {
         let walk = match (&self.walk, &robots) {
             (None, _) => None,
             (Some(actions), Some(robots)) => Some(robots.walk(actions)?),
-            (Some(_), None) => return Err(Failure::at("--walk", NO_START)),
+            (Some(_), None) => return Err(CliError::at("--walk", NO_START)),
         };
         if let Some(path) = &self.html {
             match &robots {
                 Some(robots) => robots.write_page(path)?,
-                None => return Err(Failure::at("--html", NO_START)),
+                None => return Err(CliError::at("--html", NO_START)),
             }
         }
         let graphs = GraphComparison {
@@ -135,7 +144,7 @@ impl CompareArguments {
     fn robots<'w>(
         &self,
         worlds: [&'w NamedWorld; 2],
-    ) -> Result<Option<RobotComparison<'w>>, Failure> {
+    ) -> Result<Option<RobotComparison<'w>>, CliError> {
         let named = [&self.a, &self.b].into_iter().zip(worlds);
         let startless = named.clone().find(|(_, world)| world.start.is_none());
         let marker = match (self.marker, startless) {
@@ -149,7 +158,7 @@ impl CompareArguments {
                      A and then for B",
                     marker.name()
                 );
-                return Err(Failure::in_file(path, cause));
+                return Err(CliError::in_file(path, cause));
             }
             (Some(marker), _) => marker,
         };
@@ -187,7 +196,7 @@ impl GraphComparison<'_> {
         line.as_object().cloned().unwrap_or_default()
     }
 
-    fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         for (letter, world) in ["A", "B"].into_iter().zip(self.worlds) {
             let text = format!(
                 "{letter} is {}: {}, {}, {}, genus {}",

@@ -33,8 +33,9 @@ use toposlam_robot::conform::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     input,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
@@ -55,15 +56,19 @@ use known_world::Known;
 /// for the smallest world that explains the log. The doors must be doors that Algorithm 1 takes, or may
 /// take.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam simulate worlds/shape-6.toml --by-scene --log run.mcap
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
-  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
-
-Exit codes: 0 all logs conform, 1 a log diverges, 2 bad usage or input, 3 a log is incomplete (it is \
-truncated, its run did not end, or a limit was reached) or a required case is not covered. With several \
-logs the worst one counts: 2 before 1 before 3 before 0.")]
+  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml",
+    &[
+        (0, "all logs conform"),
+        (1, "a log diverges"),
+        (2, "bad usage or input"),
+        (3, "not known: a log is truncated, its run did not end, a limit was reached, or a required case is not covered"),
+    ],
+))]
 pub(super) struct ConformArguments {
     /// The logs to check
     #[arg(required = true, value_name = "LOG")]
@@ -191,7 +196,7 @@ impl SensingProgress for Progress {
 }
 
 impl ConformArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         self.ci.check_places()?;
         self.check_places()?;
         self.check_marker()?;
@@ -199,8 +204,8 @@ impl ConformArguments {
             None => Quirks::default(),
             Some(path) => {
                 let text = String::from_utf8(input::read(path)?)
-                    .map_err(|error| Failure::in_file(path, error))?;
-                Quirks::read(&text).map_err(|error| Failure::in_file(path, error))?
+                    .map_err(|error| CliError::in_file(path, error))?;
+                Quirks::read(&text).map_err(|error| CliError::in_file(path, error))?
             }
         };
         let world = self.world.as_deref().map(input::read_world).transpose()?;
@@ -247,7 +252,7 @@ impl ConformArguments {
         path: &Path,
         judged: &Judged,
         quirks: &Quirks,
-    ) -> Result<LogReport, Failure> {
+    ) -> Result<LogReport, CliError> {
         let shorter = self.shorter(judged)?;
         let mut report = judged.report(path, quirks, shorter, self.html.is_some());
         if self.html.is_some() {
@@ -262,7 +267,7 @@ impl ConformArguments {
         Ok(report)
     }
 
-    fn check_places(&self) -> Result<(), Failure> {
+    fn check_places(&self) -> Result<(), CliError> {
         if let Some(path) = &self.html {
             output::check_place(path, &["html", "htm"])?;
         }
@@ -274,16 +279,16 @@ impl ConformArguments {
         }
         for (option, path) in [("--map", &self.map), ("--minimise", &self.minimise)] {
             if path.is_some() && self.logs.len() > 1 {
-                return Err(Failure::at(option, "this needs exactly one log"));
+                return Err(CliError::at(option, "this needs exactly one log"));
             }
         }
         Ok(())
     }
 
-    fn check_marker(&self) -> Result<(), Failure> {
+    fn check_marker(&self) -> Result<(), CliError> {
         if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm1 {
             let cause = "Algorithm 1 needs the directional marker; add --driver anyone";
-            return Err(Failure::at("--marker none", cause));
+            return Err(CliError::at("--marker none", cause));
         }
         Ok(())
     }
@@ -294,13 +299,13 @@ impl ConformArguments {
         path: &Path,
         world: Option<&'w NamedWorld>,
         quirks: &Quirks,
-    ) -> Result<Judged<'w>, Failure> {
+    ) -> Result<Judged<'w>, CliError> {
         let opened = OpenLog::new(path, &self.sources)?;
         let evidence = match self.events {
             Some(made) if Evidence::from(made).is_in(&opened.mapping) => made.into(),
             Some(_) => {
                 let cause = "the log does not have what this needs";
-                return Err(Failure::at("--events", format!("{cause} ({})", path.display())));
+                return Err(CliError::at("--events", format!("{cause} ({})", path.display())));
             }
             None => opened.evidence(path)?,
         };
@@ -318,26 +323,26 @@ impl ConformArguments {
             extract(&opened.log, &opened.mapping, evidence, sensor.as_ref(), marked, &progress);
         let gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
-            error => Failure::in_file(path, error),
+            error => CliError::in_file(path, error),
         })?;
         let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
         if assumed && self.driver == Who::Algorithm1 && !shows_marker(&gathered.events) {
             let cause = "no percept in it shows a marker, which Algorithm 1 needs";
-            return Err(Failure::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
+            return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
         let question = self.question(known.as_ref(), marker);
         let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
         progress.finish();
         let judgement = judgement.map_err(|error| match error {
-            JudgeError::Empty if gathered.pictures > 0 => Failure::in_file(
+            JudgeError::Empty if gathered.pictures > 0 => CliError::in_file(
                 path,
                 format!("no junction is visited in its {} images", gathered.pictures),
             ),
             error @ (JudgeError::Marker(_) | JudgeError::Algorithm(_)) => {
-                Failure::in_file(path, format!("{error}{WITHOUT_MARKER}"))
+                CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
             }
-            error => Failure::in_file(path, error),
+            error => CliError::in_file(path, error),
         })?;
         Ok(Judged { opened, gathered, judgement, known, marker, search, dart_bound })
     }
@@ -364,10 +369,10 @@ impl ConformArguments {
     }
 
     /// Writes the smallest world that explains a log to the file of `--map`.
-    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), Failure> {
+    fn write_map(&self, log: &Path, judgement: &Judgement) -> Result<(), CliError> {
         let Some(path) = &self.map else { return Ok(()) };
         let Some(SmallestWorld::World { graph, marker }) = &judgement.smallest else {
-            eprintln!("{}: not written: no world was found", path.display());
+            remark!("{}: not written: no world was found", path.display());
             return Ok(());
         };
         let about = format!("The smallest world that explains {}", log.display());

@@ -14,10 +14,12 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     marker_kinds, output,
     progress::Progress,
+    text::counted,
     use_threads, walk_page,
 };
 use pairs::WorldPairs;
@@ -28,19 +30,25 @@ use report::SearchReport;
 /// The search covers all worlds of the class up to a size, with the marker at every place. Two of them
 /// are a pair if no walk distinguishes them. A verified bisimulation confirms every reported pair.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam counterexample                       every marker, simple worlds
   toposlam counterexample --marker undirected --html page.html
                                                 one marker, and a page to walk
                                                 the two worlds
-  toposlam counterexample --class corridor --edges 9 --json
+  toposlam counterexample --class corridor --max-edges 9 --json
   toposlam counterexample --marker directional --expect none
                                                 for CI: exit code 1 on a pair
 
-The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.
-
-Exit codes: 0 the search is done, 1 --expect none and a pair was found, 2 bad usage, 3 interrupted.")]
+The smallest pair is the one whose larger world is smallest. A world is ambiguous if it is in a pair.",
+    &[
+        (0, "the search is done; with --expect none, there is no pair"),
+        (1, "--expect none, and a pair was found"),
+        (2, "bad usage or input"),
+        (3, "interrupted"),
+    ],
+))]
 pub(super) struct CounterexampleArguments {
     /// Kind of marker; may be repeated [default: every kind]
     #[arg(long = "marker", value_name = "KIND", value_parser = marker_kinds())]
@@ -53,15 +61,15 @@ pub(super) struct CounterexampleArguments {
     /// Search the worlds with 1 to N edges [default: 6 for multigraph, 8 for simple and planar, 11 for
     /// corridor]
     #[arg(long, value_name = "N")]
-    edges: Option<usize>,
+    max_edges: Option<usize>,
 
     /// Report all pairs, not only the smallest
     #[arg(long)]
     all: bool,
 
     /// Write the worlds of the reported pairs into a folder, as world files
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
+    #[arg(short, long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
 
     /// Write a page on which a person walks the smallest pair; needs one --marker
     #[arg(long, value_name = "FILE")]
@@ -71,14 +79,18 @@ pub(super) struct CounterexampleArguments {
     /// pictures and a table
     #[arg(
         long,
-        value_name = "FOLDER",
-        conflicts_with_all = ["markers", "class", "all", "out", "html", "expect", "json"],
+        value_name = "DIR",
+        conflicts_with_all = ["markers", "class", "all", "out_dir", "html", "expect", "json"],
     )]
     atlas: Option<PathBuf>,
 
     /// The expected result: none (no pair)
     #[arg(long, hide_possible_values = true)]
     expect: Option<Expectation>,
+
+    /// With --expect none: search with the other markers also after a pair was found
+    #[arg(long, requires = "expect")]
+    keep_going: bool,
 
     /// Number of threads, up to 1024 [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -100,36 +112,36 @@ enum Expectation {
 }
 
 impl CounterexampleArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
         if self.expect.is_none() {
             self.ci.check_unused("this needs --expect none")?;
         }
         self.ci.check_places()?;
         if let Some(folder) = &self.atlas {
-            return atlas::write(folder, self.edges);
+            return atlas::write(folder, self.max_edges);
         }
-        let edges = self.edges.unwrap_or_else(|| usual_size(self.class));
+        let edges = self.max_edges.unwrap_or_else(|| usual_size(self.class));
         // Each marker once, in the order of the list.
         let wanted =
             |marker: &&dyn Marker| self.markers.is_empty() || self.markers.contains(marker);
         let markers: Vec<_> = MARKERS.into_iter().filter(wanted).collect();
         let search = |marker| {
             let search = AmbiguitySearch::new(self.class, edges, marker);
-            search.map_err(|error| Failure::at("--edges", error))
+            search.map_err(|error| CliError::at("--max-edges", error))
         };
         let searches: Vec<_> =
             markers.iter().map(|&marker| search(marker)).collect::<Result<_, _>>()?;
         if let Some(path) = &self.html {
             walk_page::check_place(path)?;
             if searches.len() != 1 {
-                return Err(Failure::at(
+                return Err(CliError::at(
                     "--html",
                     "a page shows one marker; choose it with --marker",
                 ));
             }
         }
-        if let Some(folder) = &self.out {
+        if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
         }
         let mut report = SearchReport::new(out, self.json, self.class, edges, searches.len());
@@ -149,17 +161,29 @@ impl CounterexampleArguments {
             };
             let found = WorldPairs::new(marker, self.class, &findings, self.all);
             report.marker(marker, &findings, &found)?;
-            if let Some(folder) = &self.out {
+            if let Some(folder) = &self.out_dir {
                 found.write(folder)?;
             }
             if let Some(path) = &self.html {
                 found.write_page(path, marker)?;
             }
+            cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
             if self.expect == Some(Expectation::None) && !found.pairs().is_empty() {
                 outcome = Outcome::Violated;
+                if !self.keep_going {
+                    break;
+                }
             }
-            cases.push(self.ci_case(marker, edges, Ok(found.pairs().len())));
         }
+        let others = markers.iter().skip(cases.len());
+        let others: Vec<_> = others.map(|&marker| self.case_name(marker, edges)).collect();
+        if !others.is_empty() {
+            remark!(
+                "{} not searched; --keep-going searches with all markers",
+                counted(others.len(), "marker")
+            );
+        }
+        cases.extend(others.into_iter().map(|name| CiCase::not_checked(name, None)));
         report.end()?;
         self.ci.write("counterexample", &cases)?;
         Ok(outcome)
@@ -177,8 +201,11 @@ impl CounterexampleArguments {
             Ok(_) => (Outcome::Violated, "there are worlds that no walk distinguishes".to_owned()),
             Err(unfinished) => (Outcome::Incomplete, unfinished.to_string()),
         };
-        let name = format!("{}, class {}, 1 to {edges} edges", marker.name(), self.class);
-        CiCase { name, outcome, message, file: None }
+        CiCase { name: self.case_name(marker, edges), outcome, message, file: None }
+    }
+
+    fn case_name(&self, marker: &dyn Marker, edges: usize) -> String {
+        format!("{}, class {}, 1 to {edges} edges", marker.name(), self.class)
     }
 }
 

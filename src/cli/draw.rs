@@ -12,13 +12,14 @@ use toposlam::picture::{WorldPicture, png, svg};
 
 use toposlam_model::{format::dot, marker::Marker};
 
-use super::{Failure, Outcome, input, marker_kinds, output};
+use super::{CliError, Outcome, exit_codes::help_end, input, marker_kinds, output};
 
 /// Draw a world: the clockwise order of the doors at each vertex, and the start
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png"
-)]
+#[command(after_help = help_end(
+    "Example:\n  toposlam draw worlds/figure-1a.toml --start x:a --out figure-1a.png",
+    &[(0, "the world is drawn"), (2, "bad usage or input")],
+))]
 pub(super) struct DrawArguments {
     /// The world file
     world: PathBuf,
@@ -29,7 +30,7 @@ pub(super) struct DrawArguments {
     #[arg(long, value_name = "KIND", value_parser = marker_kinds())]
     marker: Option<&'static dyn Marker>,
     /// The file to write: .svg, .png or .dot [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// The format on standard output: svg, png or dot
     #[arg(long, default_value = "svg", hide_possible_values = true, conflicts_with = "out")]
@@ -47,12 +48,12 @@ enum Format {
 }
 
 impl DrawArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(path) = &self.out {
             output::check_place(path, &["svg", "png", "dot"])?;
         }
         if let (Format::Dot, Some(_)) = (self.format(), self.marker) {
-            return Err(Failure::at("--marker", "a DOT file does not show the marker"));
+            return Err(CliError::at("--marker", "a DOT file does not show the marker"));
         }
         let mut world = input::read_world(&self.world)?;
         world.marker = self.marker.or(world.marker);
@@ -62,7 +63,7 @@ impl DrawArguments {
         let drawn = || svg(&WorldPicture::from(&world));
         let bytes = match self.format() {
             Format::Svg => drawn().into_bytes(),
-            Format::Png => png(&drawn()).map_err(|error| Failure::in_file(&self.world, error))?,
+            Format::Png => png(&drawn()).map_err(|error| CliError::in_file(&self.world, error))?,
             Format::Dot => dot::write(&world).into_bytes(),
         };
         match &self.out {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
 
-use super::{Failure, Outcome, mapping_marker::AlgorithmOption, simulate::MAX_DARTS};
+use super::{CliError, Outcome, exit_codes::help_end, mapping_marker::AlgorithmOption, simulate::MAX_DARTS};
 
 /// Let a live SuperScout map its building from camera images
 ///
@@ -25,7 +25,15 @@ use super::{Failure, Outcome, mapping_marker::AlgorithmOption, simulate::MAX_DAR
     override_usage = "\
 toposlam drive [OPTIONS] --ros <URI> --calibration <FILE>
                       --colours <FILE>",
-    after_help = AFTER_HELP
+    after_help = help_end(
+        NOTES,
+        &[
+            (0, "the building is mapped"),
+            (1, "the robot gave up"),
+            (2, "bad usage or input, or there is no robot"),
+            (3, "ended by Ctrl-C or at --max-darts"),
+        ],
+    )
 )]
 #[cfg_attr(not(feature = "ros1"), allow(dead_code, reason = "there is no robot to drive"))]
 pub(super) struct DriveArguments {
@@ -82,13 +90,13 @@ fn patience(text: &str) -> Result<f64, String> {
 impl DriveArguments {
     #[cfg(not(feature = "ros1"))]
     #[expect(clippy::unused_self, reason = "with the feature it is used")]
-    pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, _: &mut dyn std::io::Write) -> Result<Outcome, CliError> {
         Err(super::without_ros())
     }
 }
 
-/// Examples.
-const AFTER_HELP: &str =
+/// Notes and examples.
+const NOTES: &str =
     "The run is not checked against --plan while the robot drives. Check its log with toposlam conform.
 
 This command needs a build with ROS 1: cargo build --release --features ros1
@@ -96,7 +104,4 @@ This command needs a build with ROS 1: cargo build --release --features ros1
 Examples:
   toposlam drive --ros http://robot:11311 --calibration camera.toml --colours colours.toml \\
       --log run.mcap --map map.toml
-  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311    a simulated robot
-
-Exit codes: 0 mapped, 1 the robot gave up, 2 bad usage or input, or there is no robot,
-3 ended by Ctrl-C or at --max-darts.";
+  toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311    a simulated robot";

@@ -11,14 +11,23 @@ use std::io::Write;
 
 use clap::Subcommand;
 
-use super::{Failure, Outcome};
+use super::{CliError, Outcome, exit_codes::help_end};
 
 /// Measure sensing, driving or whole runs against the ground truth
 #[derive(clap::Args)]
-#[command(after_help = "Examples:
-  toposlam evaluate vision --views 200 --out failing    sensing on rendered views
-  toposlam evaluate control                             every door of every junction
-  toposlam evaluate runs                                mapping of whole buildings")]
+#[command(after_help = help_end(
+    "\
+Examples:
+  toposlam evaluate vision --views 200   sensing on rendered views
+  toposlam evaluate control              every door of every junction
+  toposlam evaluate runs                 mapping of whole buildings",
+    &[
+        (0, "all targets are met, everything is right"),
+        (1, "a target is missed, or something is wrong"),
+        (2, "bad usage or input"),
+        (3, "a target is not shown, or not everything was measured"),
+    ],
+))]
 pub(super) struct EvaluateArguments {
     #[command(subcommand)]
     what: What,
@@ -32,7 +41,7 @@ enum What {
 }
 
 impl EvaluateArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         match self.what {
             What::Vision(vision) => vision.run(out),
             What::Control(control) => control.run(out),

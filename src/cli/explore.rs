@@ -1,5 +1,6 @@
 //! `toposlam explore WORLD`: one algorithm in one world, as a story.
 
+mod certificate;
 mod doors_writer;
 mod result;
 pub(super) mod story;
@@ -24,11 +25,12 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, Failure, Outcome, input,
+    ChoicesOption, CliError, Outcome, exit_codes::help_end, input,
     mapping_marker::{AlgorithmOption, MappingMarker},
     output,
     text::print_paragraph,
 };
+use certificate::CertificateOfStart;
 use doors_writer::DoorsWriter;
 use result::ExploreResult;
 use story::{Story, StoryDetail, head};
@@ -46,7 +48,8 @@ use summary::Summary;
 /// With --marker movable, the algorithm for one movable marker runs instead. It needs a world without
 /// loops and parallel edges.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam explore worlds/shape-6.toml
   toposlam explore worlds/figure-1b.toml --start X:B --svg map.svg
@@ -54,14 +57,19 @@ Examples:
   toposlam explore worlds/shape-8.toml --algorithm folding
   toposlam explore worlds/shape-8.toml --marker movable
   toposlam explore worlds/building-25.toml --summary
+  toposlam explore worlds/shape-6.toml --certificate
 
 In the story, v2.1 is dart 1 of the map's vertex v2. Darts are counted clockwise from the dart by \
 which the vertex was first entered. When the robot has followed an unexplored dart, each other \
 unexplored dart may be the other end of the same edge. A candidate is one that the percept does not \
-rule out. To test it, the robot follows the path that would lead from there to the marker.
-
-Exit codes: 0 the map is right, 1 it is wrong, 2 bad usage or input, 3 --max-darts, \
---max-states or 1 GiB of memory for the states was reached.")]
+rule out. To test it, the robot follows the path that would lead from there to the marker.",
+    &[
+        (0, "the map is right"),
+        (1, "the map is wrong"),
+        (2, "bad usage or input"),
+        (3, "not known: --max-darts, --max-states or 1 GiB of memory for the states was reached"),
+    ],
+))]
 #[expect(clippy::struct_excessive_bools, reason = "these are independent switches")]
 pub(super) struct ExploreArguments {
     /// A world file, or a plantri file with one world
@@ -108,6 +116,10 @@ pub(super) struct ExploreArguments {
     #[arg(long, conflicts_with = "json")]
     doors: bool,
 
+    /// Print a shortest walk that proves the map of the world, and compare the run with it
+    #[arg(long)]
+    certificate: bool,
+
     /// Write the map: .toml, .json, .dot, or plantri's .ec or .pc
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
@@ -131,7 +143,7 @@ impl ExploreArguments {
         self.summary || (!story && world.graph.vertex_count() > STORY_VERTICES)
     }
 
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let world = input::read_world(&self.world)?;
         self.marker.check_worlds(&self.world, slice::from_ref(&world.graph))?;
         let facing = input::start_of(&world, self.start.as_deref())?;
@@ -140,6 +152,9 @@ impl ExploreArguments {
         }
         if let Some(svg) = &self.svg {
             output::check_place(svg, &["svg"])?;
+        }
+        if self.certificate && self.marker != MappingMarker::Directional {
+            return Err(CliError::at("--certificate", "needs --marker directional"));
         }
         let choice = self.choices.with_budget(self.max_states)?;
         let chosen = self.algorithm.with(self.marker, choice)?;
@@ -163,7 +178,7 @@ impl ExploreArguments {
         world: &NamedWorld,
         facing: Dart,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let mut out = io::BufWriter::new(out);
         let mut state = A::State::new(self.max_darts);
         let mut robot = GraphWorld::with_marker(&world.graph, A::Marker::default(), facing);
@@ -189,6 +204,8 @@ impl ExploreArguments {
         let result = run
             .map_err(Flaw::from)
             .and_then(|()| judge(algorithm, &state, facing, &robot, &mut candidate));
+        let moves = result.is_ok().then(|| state.journey().moves());
+        let certificate = self.certificate.then(|| CertificateOfStart::new(world, facing, moves));
         let result = ExploreResult {
             world,
             facing,
@@ -198,6 +215,7 @@ impl ExploreArguments {
             move_bound: algorithm.move_bound(world.graph.edge_count(), world.graph.vertex_count()),
             carries: robot.carries(),
             result,
+            certificate,
             ways: chosen.other_runs(&world.graph, facing, &()).transpose(),
         };
         if self.json {
@@ -210,14 +228,14 @@ impl ExploreArguments {
         match result.map() {
             Some(map) => self.write_map(&map, &result)?,
             None if self.map.is_some() || self.svg.is_some() => {
-                eprintln!("the map is not written: it is not complete");
+                remark!("the map is not written: it is not complete");
             }
             None => {}
         }
         Ok(result.outcome())
     }
 
-    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), Failure> {
+    fn write_map(&self, map: &NamedWorld, result: &ExploreResult) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             output::write_world(path, map)?;
         }

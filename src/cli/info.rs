@@ -17,12 +17,14 @@ use toposlam_robot::log::{
 };
 
 use super::{
-    Failure, Outcome, input,
+    CliError, Outcome,
+    exit_codes::help_end,
+    input,
     json::{TruncatedLine, print_line},
     outcome::SeveralInputs,
     output,
     progress::Progress,
-    text::{counted, grouped, moment, print_hanging, print_rows},
+    text::{counted, duration_text, grouped, moment, print_hanging, print_rows},
 };
 
 /// Show the contents of logs: times, completeness and topics
@@ -34,15 +36,20 @@ use super::{
 /// A log is listed from its index, if it has one. --verify reads all of it, and compares it with its
 /// checksums and its index.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam info run.mcap --write-mapping mapping.toml
   toposlam info run.mcap --verify
 
-A log that cannot be read is reported, and the others are shown.
-
-Exit codes: 0 done, 1 --verify found damage, 2 bad usage or input, 3 a log is truncated (its contents up \
-to there are shown), or --verify was interrupted.")]
+A log that cannot be read is reported, and the others are shown.",
+    &[
+        (0, "the logs are listed; with --verify, they are not damaged"),
+        (1, "--verify found damage"),
+        (2, "bad usage or input"),
+        (3, "a log is truncated (its contents up to there are listed), or --verify was interrupted"),
+    ],
+))]
 pub(super) struct InfoArguments {
     /// The logs
     #[arg(required = true, value_name = "LOG")]
@@ -119,18 +126,18 @@ struct TopicLine<'l> {
 }
 
 impl InfoArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(path) = &self.write_mapping {
             output::check_place(path, &["toml"])?;
             if self.logs.len() > 1 {
-                return Err(Failure::at("--write-mapping", "this needs exactly one log"));
+                return Err(CliError::at("--write-mapping", "this needs exactly one log"));
             }
         }
         let mapping = match &self.mapping {
             None => None,
             Some(path) => {
                 let read = TopicMap::read(&input::read(path)?);
-                Some((path, read.map_err(|error| Failure::in_file(path, error))?))
+                Some((path, read.map_err(|error| CliError::in_file(path, error))?))
             }
         };
         let mut inputs = SeveralInputs::new();
@@ -149,18 +156,18 @@ impl InfoArguments {
         out: &mut dyn Write,
         path: &Path,
         mapping: Option<&(&PathBuf, TopicMap)>,
-    ) -> Result<(ReadTo, Outcome), Failure> {
+    ) -> Result<(ReadTo, Outcome), CliError> {
         let log = match input::log_or_cause(path)? {
             Ok(log) => log,
             Err(error) if self.verify && error.cause.is_damage() => {
                 self.print_damaged(out, path, error)?;
                 return Ok((ReadTo::End, Outcome::Violated));
             }
-            Err(error) => return Err(Failure::in_file(path, error)),
+            Err(error) => return Err(CliError::in_file(path, error)),
         };
         if let Some((mapping_path, mapping)) = mapping {
             mapping.bind(&log).map_err(|error| {
-                Failure::in_file(mapping_path, format!("{error} ({})", path.display()))
+                CliError::in_file(mapping_path, format!("{error} ({})", path.display()))
             })?;
         }
         let carriers = carriers(&log, mapping.map(|(_, mapping)| mapping));
@@ -189,7 +196,7 @@ impl InfoArguments {
         out: &mut dyn Write,
         path: &Path,
         error: LogError,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         let found = Verification { damage: vec![error], ..Verification::default() };
         if self.json {
             let (log, verification) = (path.display().to_string(), verification_line(&found));
@@ -221,9 +228,9 @@ fn carriers<'l>(log: &'l Log, mapping: Option<&'l TopicMap>) -> Vec<(&'static st
     guess(log.topics()).into_iter().map(names).collect()
 }
 
-fn verify(path: &Path, log: &Log) -> Result<Verification, Failure> {
+fn verify(path: &Path, log: &Log) -> Result<Verification, CliError> {
     let progress = Progress::new("reading", "chunks")?;
-    let found = log.verify(&progress).map_err(|error| Failure::in_file(path, error));
+    let found = log.verify(&progress).map_err(|error| CliError::in_file(path, error));
     progress.finish();
     found
 }
@@ -243,7 +250,7 @@ fn verification_line(found: &Verification) -> VerificationLine {
     }
 }
 
-fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), Failure> {
+fn print_damage(out: &mut dyn Write, found: &Verification) -> Result<(), CliError> {
     for error in &found.damage {
         print_hanging(out, "  ", &error.to_string())?;
     }
@@ -340,7 +347,7 @@ fn print(
     log: &Log,
     verification: Option<&Verification>,
     carriers: &[(&str, Vec<&str>)],
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let format = match log.format() {
         Format::Bag => "ROS 1 bag",
         Format::Mcap => "MCAP",
@@ -354,7 +361,9 @@ fn print(
         print_damage(out, found)?;
     }
     if let (Some(start), Some(duration)) = (log.start(), duration(log)) {
-        writeln!(out, "from {}, for {duration:.3} s", moment(start))?;
+        let exact = format!("{duration:.3} s");
+        let duration = if duration < 60.0 { exact } else { duration_text(duration) };
+        writeln!(out, "from {}, for {duration}", moment(start))?;
     }
     writeln!(out, "{} messages\n", grouped(log.messages_total().into()))?;
     let rows: Vec<_> = log
@@ -391,10 +400,10 @@ fn print(
 }
 
 /// Writes the roles with one possible topic; those with several are comments.
-fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), Failure> {
+fn write_mapping(path: &Path, log: &Log, carriers: &[(&str, Vec<&str>)]) -> Result<(), CliError> {
     let mapping = TopicMap::unambiguous(log);
     if mapping.is_empty() {
-        return Err(Failure::in_file(path, "no role has exactly one possible topic"));
+        return Err(CliError::in_file(path, "no role has exactly one possible topic"));
     }
     let several = carriers.iter().filter(|(_, topics)| topics.len() > 1);
     let comments = several.map(|(role, topics)| {

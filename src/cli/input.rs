@@ -1,10 +1,12 @@
 //! Input files: worlds in any format, calibrations, colours, logs. All are registered: no output replaces
-//! them.
+//! them. The path `-` is standard input, which can be one of the inputs.
 
 use std::{
+    ffi::OsString,
     fs,
-    io::{self, Read},
+    io::{self, Cursor, Read},
     path::{Path, PathBuf},
+    sync::{Arc, OnceLock},
 };
 
 use toposlam_model::{
@@ -18,67 +20,74 @@ use toposlam_vision::{
     colour::ColourModel,
 };
 
-use super::{Failure, files::files};
+use super::{CliError, files::files};
 
 /// Reads the world of a world file (TOML or JSON) or of a plantri file with one world. If the file gives
 /// no name, the world gets the name of the file.
-pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, Failure> {
+pub(crate) fn read_world(path: &Path) -> Result<NamedWorld, CliError> {
     let bytes = read(path)?;
     let mut world = match plantri_code(path, &bytes) {
-        None => world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?,
+        None => world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?,
         Some(code) => match <[_; 1]>::try_from(read_plantri(path, &bytes, code)?) {
             Ok([graph]) => NamedWorld::numbered("", "", graph, None),
             Err(graphs) => {
                 let cause = format!("expected one world, found {}", graphs.len());
-                return Err(Failure::in_file(path, cause));
+                return Err(CliError::in_file(path, cause));
             }
         },
     };
     if world.name.is_empty() {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
-        world.name = stem.chars().map(|letter| if fits(letter) { letter } else { '_' }).collect();
+        let stem = stem(path);
+        world.name = stem.to_string_lossy().into_owned();
+        if !world_file::is_name(&world.name) {
+            let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+            let letters = world.name.chars().map(|letter| if fits(letter) { letter } else { '_' });
+            world.name = letters.collect();
+        }
     }
     Ok(world)
 }
 
 /// Reads the colours of a building.
-pub(crate) fn read_colours(path: &Path) -> Result<ColourModel, Failure> {
-    ColourModel::read(&read(path)?).map_err(|error| Failure::in_file(path, error))
+pub(crate) fn read_colours(path: &Path) -> Result<ColourModel, CliError> {
+    ColourModel::read(&read(path)?).map_err(|error| CliError::in_file(path, error))
 }
 
 /// The floor plan of a world.
-pub(crate) fn floor_plan<'w>(path: &Path, world: &'w NamedWorld) -> Result<&'w FloorPlan, Failure> {
+pub(crate) fn floor_plan<'w>(
+    path: &Path,
+    world: &'w NamedWorld,
+) -> Result<&'w FloorPlan, CliError> {
     let cause = "this world is not a floor plan: it has no [floor]";
-    world.plan.as_ref().ok_or_else(|| Failure::in_file(path, cause))
+    world.plan.as_ref().ok_or_else(|| CliError::in_file(path, cause))
 }
 
 /// Reads the camera of a calibration file. Paths in the file are relative to its folder.
-pub(crate) fn read_camera(path: &Path) -> Result<Camera, Failure> {
+pub(crate) fn read_camera(path: &Path) -> Result<Camera, CliError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let beside = &mut |name: &str| {
         let path = folder.join(name);
         files().read(&path).map_err(io::Error::other)?;
         fs::read(path)
     };
-    calibration::read(&read(path)?, beside).map_err(|error| Failure::in_file(path, error))
+    calibration::read(&read(path)?, beside).map_err(|error| CliError::in_file(path, error))
 }
 
 /// The start from the command line, or else from the world file, or else the first dart.
-pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, Failure> {
+pub(crate) fn start_of(world: &NamedWorld, start: Option<&str>) -> Result<Dart, CliError> {
     match start {
-        Some(text) => world.start_from_text(text).map_err(|error| Failure::at("--start", error)),
+        Some(text) => world.start_from_text(text).map_err(|error| CliError::at("--start", error)),
         None => Ok(world.start.unwrap_or(Dart(0))),
     }
 }
 
 /// Reads the embedded graphs of a world file, or of a file in plantri's `planar_code` or `edge_code`.
-pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, Failure> {
+pub(crate) fn read_graphs(path: &Path) -> Result<Vec<EmbeddedGraph>, CliError> {
     let bytes = read(path)?;
     if let Some(code) = plantri_code(path, &bytes) {
         return read_plantri(path, &bytes, code);
     }
-    let world = world_file::read(&bytes).map_err(|error| Failure::in_file(path, error))?;
+    let world = world_file::read(&bytes).map_err(|error| CliError::in_file(path, error))?;
     Ok(vec![world.graph])
 }
 
@@ -86,14 +95,14 @@ fn read_plantri(
     path: &Path,
     bytes: &[u8],
     code: plantri::PlantriCode,
-) -> Result<Vec<EmbeddedGraph>, Failure> {
+) -> Result<Vec<EmbeddedGraph>, CliError> {
     let graphs: Result<Vec<_>, _> = plantri::read_headerless(bytes, code).collect();
     match graphs {
         Ok(graphs) if graphs.is_empty() => {
-            Err(Failure::in_file(path, "the file contains no world"))
+            Err(CliError::in_file(path, "the file contains no world"))
         }
         Ok(graphs) => Ok(graphs),
-        Err(error) => Err(Failure::in_file(path, error)),
+        Err(error) => Err(CliError::in_file(path, error)),
     }
 }
 
@@ -113,34 +122,73 @@ fn plantri_code(path: &Path, bytes: &[u8]) -> Option<plantri::PlantriCode> {
 }
 
 /// Registers files that are read later, so that an output among them is refused before the work.
-pub(crate) fn register(paths: &[PathBuf]) -> Result<(), Failure> {
-    Ok(paths.iter().try_for_each(|path| files().read(path))?)
+pub(crate) fn register(paths: &[PathBuf]) -> Result<(), CliError> {
+    let mut files_of_paths = paths.iter().filter(|path| !is_standard(path));
+    Ok(files_of_paths.try_for_each(|path| files().read(path))?)
+}
+
+/// The name of a file without its ending.
+pub(crate) fn stem(path: &Path) -> OsString {
+    let stem =
+        if is_standard(path) { "stdin".as_ref() } else { path.file_stem().unwrap_or_default() };
+    stem.to_owned()
 }
 
 /// Opens a log.
-pub(crate) fn open_log(path: &Path) -> Result<Log, Failure> {
-    log_or_cause(path)?.map_err(|error| Failure::in_file(path, error))
+pub(crate) fn open_log(path: &Path) -> Result<Log, CliError> {
+    log_or_cause(path)?.map_err(|error| CliError::in_file(path, error))
 }
 
 /// Opens a log, or returns why it cannot be read.
-pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, Failure> {
+pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, CliError> {
+    if is_standard(path) {
+        return Ok(Log::new(Cursor::new(standard_input()?)));
+    }
     files().read(path)?;
     Ok(Log::open(path))
 }
 
 /// Opens a file that was read before, to read it in pieces.
-pub(crate) fn open_again(path: &Path) -> io::Result<fs::File> {
-    fs::File::open(path)
+pub(crate) fn open_again(path: &Path) -> io::Result<Box<dyn Read>> {
+    match STANDARD_INPUT.get().filter(|_| is_standard(path)) {
+        Some(bytes) => Ok(Box::new(Cursor::new(bytes.clone()))),
+        None => Ok(Box::new(fs::File::open(path)?)),
+    }
 }
 
-/// Reads a file. `-` is standard input.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        files().read(path)?;
-        fs::read(path)
-    };
-    bytes.map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))
+/// Reads a file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    if is_standard(path) {
+        return Ok(standard_input()?.to_vec());
+    }
+    files().read(path)?;
+    fs::read(path).map_err(|error| not_readable(path, &error))
+}
+
+/// The content of standard input, once it was read.
+static STANDARD_INPUT: OnceLock<Arc<[u8]>> = OnceLock::new();
+
+/// The path of standard input.
+const STANDARD: &str = "-";
+
+/// Whether a path is that of standard input.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// Reads standard input to its end. A log, too, is kept in memory.
+fn standard_input() -> Result<Arc<[u8]>, CliError> {
+    let mut bytes = Vec::new();
+    let read = io::stdin().lock().read_to_end(&mut bytes);
+    read.map_err(|error| not_readable(Path::new(STANDARD), &error))?;
+    let bytes: Arc<[u8]> = bytes.into();
+    STANDARD_INPUT.set(bytes.clone()).map_err(|_| {
+        let cause = "standard input is one input; give the path of a file for the others";
+        CliError::at(STANDARD, cause)
+    })?;
+    Ok(bytes)
+}
+
+fn not_readable(path: &Path, error: &io::Error) -> CliError {
+    CliError::in_file(path, format!("cannot be read: {error}"))
 }

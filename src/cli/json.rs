@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use toposlam_model::{percept::Percept, world::Action};
 use toposlam_robot::log::error::Truncation;
 
-use super::Failure;
+use super::CliError;
 
 /// The version of the lines.
 const SCHEMA: u32 = 1;
@@ -31,7 +31,7 @@ pub(super) fn print_line(
     out: &mut dyn Write,
     kind: &'static str,
     content: &impl Serialize,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     Ok(writeln!(out, "{}", line_text(kind, content)?)?)
 }
 

@@ -13,7 +13,7 @@ use toposlam_model::{
     marker::{Directional, Marker, Movable},
 };
 
-use super::{Failure, RunChoices};
+use super::{CliError, RunChoices};
 
 /// A marker that an algorithm maps with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl MappingMarker {
     }
 
     /// The algorithm that maps with the marker.
-    pub(super) fn algorithm(self, choice: RunChoices) -> Result<MappingAlgorithm, Failure> {
+    pub(super) fn algorithm(self, choice: RunChoices) -> Result<MappingAlgorithm, CliError> {
         match (self, choice) {
             (Self::Directional, RunChoices::Default) => Ok(MappingAlgorithm::Algorithm1),
             (Self::Directional, RunChoices::All { budget }) => {
@@ -53,7 +53,7 @@ impl MappingMarker {
             (Self::Movable, RunChoices::Default) => Ok(MappingAlgorithm::MovableMarker),
             (Self::Movable, RunChoices::All { .. }) => {
                 let cause = "`all` needs --marker directional";
-                Err(Failure::at("--choices", cause))
+                Err(CliError::at("--choices", cause))
             }
         }
     }
@@ -62,14 +62,18 @@ impl MappingMarker {
     ///
     /// # Errors
     /// Returns an error if the marker is movable and a world has loops or parallel edges.
-    pub(super) fn check_worlds(self, path: &Path, graphs: &[EmbeddedGraph]) -> Result<(), Failure> {
+    pub(super) fn check_worlds(
+        self,
+        path: &Path,
+        graphs: &[EmbeddedGraph],
+    ) -> Result<(), CliError> {
         match self {
             Self::Directional => Ok(()),
             Self::Movable => match graphs.iter().position(|graph| !graph.is_simple()) {
                 None => Ok(()),
                 Some(index) => {
                     let world = format!("world {}", index + 1);
-                    Err(Failure::in_file(path, movable_not_sufficient(world)))
+                    Err(CliError::in_file(path, movable_not_sufficient(world)))
                 }
             },
         }
@@ -99,12 +103,12 @@ impl AlgorithmOption {
         self,
         marker: MappingMarker,
         choice: RunChoices,
-    ) -> Result<MappingAlgorithm, Failure> {
+    ) -> Result<MappingAlgorithm, CliError> {
         match (self, marker, choice) {
             (Self::Algorithm1, ..) => marker.algorithm(choice),
             (Self::Folding, MappingMarker::Movable, _) => {
                 let cause = "the folding explorer maps with --marker directional";
-                Err(Failure::at("--algorithm", cause))
+                Err(CliError::at("--algorithm", cause))
             }
             (Self::Folding, MappingMarker::Directional, RunChoices::All { budget }) => {
                 Ok(MappingAlgorithm::AllTies(AllTies { budget }))

@@ -1,5 +1,10 @@
 //! The verbs of the command line, and what they share: exit codes, errors, files, text output.
 
+/// Prints a remark on standard error, unless `--quiet` is given.
+macro_rules! remark {
+    ($($text:tt)*) => { $crate::cli::terminal::remark(format_args!($($text)*)) };
+}
+
 mod appearance;
 mod calibrate;
 mod check;
@@ -11,11 +16,13 @@ mod counterexample;
 mod draw;
 mod drive;
 mod evaluate;
+mod exit_codes;
 mod explore;
 mod files;
 mod info;
 mod input;
 mod json;
+mod man;
 mod mapping_marker;
 mod open_log;
 mod outcome;
@@ -24,6 +31,7 @@ mod paper;
 mod picture_file;
 mod progress;
 mod proofs;
+mod renamed;
 mod render;
 mod replay;
 mod report_output;
@@ -31,38 +39,54 @@ mod scene;
 mod sense;
 mod simulate;
 mod story_lines;
+mod terminal;
 mod text;
 mod train;
+mod version;
 mod walk_page;
 
 use std::{
+    env,
     io::{self, Write},
     process::ExitCode,
 };
 
 use clap::{
-    CommandFactory, Parser, Subcommand, ValueEnum,
+    CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use toposlam_model::check::DEFAULT_STATE_BUDGET;
 use toposlam_model::marker::{self, MARKERS, Marker};
 use toposlam_robot::simulator::MotionNoise;
 
-use outcome::{Failure, Outcome};
+use outcome::{CliError, Outcome};
 use report_output::ReportOutput;
+use terminal::TerminalOptions;
 
 /// Deterministic topological SLAM that can be trusted: an executable specification of the mapping
 /// algorithm, and a checker that runs it on every small world
 #[derive(Parser)]
 #[command(
     name = "toposlam",
-    version,
+    version = version::VERSION,
     max_term_width = 80,
-    after_help = "Example:\n  toposlam check  run the algorithm on every world with up to 6 edges"
+    after_help = exit_codes::help_end(
+        "Example:\n  toposlam check  run the algorithm on every world with up to 6 edges\n\n\
+         Where a command reads a file, - is standard input.",
+        &[
+            (0, "it holds, or the work is done"),
+            (1, "it is violated"),
+            (2, "bad usage or input"),
+            (3, "it is not known: a limit was reached, a log is truncated, a sample is too small, or \
+                 the work was stopped"),
+        ],
+    )
 )]
 struct CommandLine {
     #[command(subcommand)]
     verb: Option<Verb>,
+    #[command(flatten)]
+    terminal: TerminalOptions,
 }
 
 #[derive(Subcommand)]
@@ -85,6 +109,7 @@ enum Verb {
     Conform(conform::ConformArguments),
     Replay(replay::ReplayArguments),
     Completions(completions::CompletionsArguments),
+    Man(man::ManArguments),
 }
 
 /// How the open choices of Algorithm 1 are made.
@@ -113,11 +138,11 @@ impl ChoicesOption {
     ///
     /// # Errors
     /// Returns an error if there is a budget for the default choices.
-    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, Failure> {
+    fn with_budget(self, max_states: Option<u64>) -> Result<RunChoices, CliError> {
         match (self, max_states) {
             (Self::Default, None) => Ok(RunChoices::Default),
             (Self::Default, Some(_)) => {
-                Err(Failure::at("--max-states", "this needs --choices all"))
+                Err(CliError::at("--max-states", "this needs --choices all"))
             }
             (Self::All, budget) => {
                 Ok(RunChoices::All { budget: budget.unwrap_or(DEFAULT_STATE_BUDGET) })
@@ -145,23 +170,24 @@ fn noise(text: &str) -> Result<f64, String> {
 }
 
 /// Sets the number of threads, if one is given.
-fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
+fn use_threads(threads: Option<u16>) -> Result<(), CliError> {
     let Some(threads) = threads else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into());
-    pool.build_global().map_err(|error| Failure::at("--threads", error))
+    pool.build_global().map_err(|error| CliError::at("--threads", error))
 }
 
 /// The error of `--ros` in a program without the feature `ros1`.
 #[cfg(not(feature = "ros1"))]
-fn without_ros() -> Failure {
+fn without_ros() -> CliError {
     let cause = "this program was built without ROS 1; to add it, run \
                  cargo build --release --features ros1";
-    Failure::at("--ros", cause)
+    CliError::at("--ros", cause)
 }
 
 /// Runs the verb on the command line.
 pub(crate) fn run() -> ExitCode {
-    let arguments = CommandLine::parse();
+    let arguments = parse();
+    arguments.terminal.apply();
     let mut out = ReportOutput::new(io::stdout().lock());
     let result = match arguments.verb {
         Some(Verb::Check(verb)) => verb.run(&mut out),
@@ -182,16 +208,27 @@ pub(crate) fn run() -> ExitCode {
         Some(Verb::Conform(verb)) => verb.run(&mut out),
         Some(Verb::Replay(verb)) => verb.run(&mut out),
         Some(Verb::Completions(verb)) => verb.run(&mut out),
+        Some(Verb::Man(verb)) => verb.run(&mut out),
         None => print_help(&mut out),
     };
-    match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(Failure::from)) {
+    match result.and_then(|outcome| out.flush().map(|()| outcome).map_err(CliError::from)) {
         Ok(outcome) => outcome.into(),
         Err(failure) => failure.report(),
     }
 }
 
+/// Parses the command line. Prints help, the version or an error, and ends the program, if that is asked
+/// for or due.
+fn parse() -> CommandLine {
+    let command = CommandLine::command().color(terminal::color_choice(env::args_os()));
+    let mut command = renamed::with_old_names(command);
+    let parsed = command.try_get_matches_from_mut(env::args_os());
+    let parsed = parsed.and_then(|matches| CommandLine::from_arg_matches(&matches));
+    parsed.unwrap_or_else(|error| error.format(&mut command).exit())
+}
+
 /// Prints the help of `toposlam` without a verb.
-fn print_help(out: &mut dyn Write) -> Result<Outcome, Failure> {
+fn print_help(out: &mut dyn Write) -> Result<Outcome, CliError> {
     write!(out, "{}", CommandLine::command().render_help())?;
     Ok(Outcome::Holds)
 }

@@ -20,7 +20,7 @@ use toposlam_vision::{
     sensing::{Sensor, WrongSize},
 };
 
-use super::{Failure, input};
+use super::{CliError, input};
 
 /// What the log itself may not contain.
 #[derive(clap::Args)]
@@ -50,12 +50,12 @@ pub(super) struct OpenLog {
 const ANNOTATED: &str = toposlam_robot::log::recorder::ANNOTATED;
 
 impl OpenLog {
-    pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, Failure> {
+    pub(super) fn new(path: &Path, sources: &LogOptions) -> Result<Self, CliError> {
         let log = input::open_log(path)?;
         let mapping = match &sources.mapping {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
-                .map_err(|error| Failure::in_file(file, error))?,
+                .map_err(|error| CliError::in_file(file, error))?,
         };
         let mapping_path = sources.mapping.clone();
         let calibration_path = sources.calibration.clone();
@@ -71,7 +71,7 @@ impl OpenLog {
     }
 
     /// Returns an error for a calibration or colours without effect.
-    fn check_used(&self, path: &Path, sources: &LogOptions) -> Result<(), Failure> {
+    fn check_used(&self, path: &Path, sources: &LogOptions) -> Result<(), CliError> {
         let given = [("--calibration", &sources.calibration), ("--colours", &sources.colours)];
         let Some((option, _)) = given.into_iter().find(|(_, file)| file.is_some()) else {
             return Ok(());
@@ -80,7 +80,7 @@ impl OpenLog {
         let ambiguous = self.mapping_path.is_none() && TopicMap::from_log(&self.log).is_err();
         if self.mapping.carrier(Role::Image).is_none() && !ambiguous {
             let cause = format!("this is for images, and {} has none", path.display());
-            return Err(Failure::at(option, cause));
+            return Err(CliError::at(option, cause));
         }
         Ok(())
     }
@@ -89,17 +89,17 @@ impl OpenLog {
     ///
     /// # Errors
     /// Returns an error if there is none, for example because several topics could carry the same data.
-    pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, Failure> {
+    pub(super) fn evidence(&self, path: &Path) -> Result<Evidence, CliError> {
         if let Some(evidence) = Evidence::of(&self.mapping) {
             return Ok(evidence);
         }
         if self.log.messages_total() == 0 {
-            return Err(Failure::in_file(path, "the log is empty: it has no messages"));
+            return Err(CliError::in_file(path, "the log is empty: it has no messages"));
         }
         if self.mapping_path.is_none() {
-            TopicMap::from_log(&self.log).map_err(|error| Failure::in_file(path, error))?;
+            TopicMap::from_log(&self.log).map_err(|error| CliError::in_file(path, error))?;
         }
-        Err(Failure::in_file(path, ExtractError::NothingMapped))
+        Err(CliError::in_file(path, ExtractError::NothingMapped))
     }
 
     /// The camera and the colours: those that are given, or else those in the log.
@@ -108,26 +108,25 @@ impl OpenLog {
         path: &Path,
         calibration: Option<&Path>,
         colours: Option<&Path>,
-    ) -> Result<Option<(Camera, ColourModel)>, Failure> {
+    ) -> Result<Option<(Camera, ColourModel)>, CliError> {
         let recorded =
             |text: fn(&Run) -> &String| self.run.as_ref().map(text).filter(|text| !text.is_empty());
-        let camera =
-            match (calibration, recorded(|run| &run.calibration)) {
-                (Some(path), _) => Some(input::read_camera(path)?),
-                (None, Some(text)) => {
-                    let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-                    let camera = calibration::read(text.as_bytes(), &mut { no_file });
-                    Some(camera.map_err(|error| {
-                        Failure::in_file(path, format!("its calibration: {error}"))
-                    })?)
-                }
-                (None, None) => None,
-            };
+        let camera = match (calibration, recorded(|run| &run.calibration)) {
+            (Some(path), _) => Some(input::read_camera(path)?),
+            (None, Some(text)) => {
+                let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+                let camera = calibration::read(text.as_bytes(), &mut { no_file });
+                Some(camera.map_err(|error| {
+                    CliError::in_file(path, format!("its calibration: {error}"))
+                })?)
+            }
+            (None, None) => None,
+        };
         let colours = match (colours, recorded(|run| &run.colours)) {
             (Some(path), _) => Some(input::read_colours(path)?),
             (None, Some(text)) => Some(
                 ColourModel::read(text.as_bytes())
-                    .map_err(|error| Failure::in_file(path, format!("its colours: {error}")))?,
+                    .map_err(|error| CliError::in_file(path, format!("its colours: {error}")))?,
             ),
             (None, None) => None,
         };
@@ -140,25 +139,25 @@ impl OpenLog {
     }
 
     /// The kind of marker in the log. The default is directional.
-    pub(super) fn marker(&self) -> Result<&'static dyn Marker, Failure> {
+    pub(super) fn marker(&self) -> Result<&'static dyn Marker, CliError> {
         let name = self.run.as_ref().map_or("", |run| &run.marker);
         let name = if name.is_empty() { "directional" } else { name };
-        marker::named(name).map_err(|error| Failure::at("the log", error))
+        marker::named(name).map_err(|error| CliError::at("the log", error))
     }
 
     /// The error for a topic map that does not fit its log.
-    pub(super) fn wrong_mapping(&self, log: &Path, error: &TopicMapError) -> Failure {
+    pub(super) fn wrong_mapping(&self, log: &Path, error: &TopicMapError) -> CliError {
         match &self.mapping_path {
-            Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
-            None => Failure::in_file(log, error),
+            Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
+            None => CliError::in_file(log, error),
         }
     }
 
     /// The error for a calibration that does not fit the images of its log.
-    pub(super) fn wrong_calibration(&self, log: &Path, error: &WrongSize) -> Failure {
+    pub(super) fn wrong_calibration(&self, log: &Path, error: &WrongSize) -> CliError {
         match &self.calibration_path {
-            Some(path) => Failure::in_file(path, format!("{error} ({})", log.display())),
-            None => Failure::in_file(log, format!("its calibration: {error}")),
+            Some(path) => CliError::in_file(path, format!("{error} ({})", log.display())),
+            None => CliError::in_file(log, format!("its calibration: {error}")),
         }
     }
 
@@ -197,8 +196,8 @@ impl OpenLog {
 }
 
 /// The description of the run at the beginning of a log.
-fn head(path: &Path, log: &Log, mapping: &TopicMap) -> Result<Option<Run>, Failure> {
-    let failed = |error| Failure::in_file(path, error);
+fn head(path: &Path, log: &Log, mapping: &TopicMap) -> Result<Option<Run>, CliError> {
+    let failed = |error| CliError::in_file(path, error);
     let Ok(bound) = mapping.only(&[Role::Run]).bind(log) else { return Ok(None) };
     for entry in log.entries(&bound) {
         if let Content::Run(run) = entry.map_err(failed)?.content {

@@ -4,7 +4,7 @@ use std::{fmt::Display, io, path::Path, process::ExitCode};
 
 use toposlam_model::enumerate::Interrupted;
 
-use super::{files::FileConflict, report_output};
+use super::{files::FileConflict, report_output, terminal};
 
 /// The result of a verb that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ impl From<Outcome> for ExitCode {
 
 /// Why a verb could not do its work.
 #[derive(Debug)]
-pub(crate) enum Failure {
+pub(crate) enum CliError {
     /// Bad usage or bad input, exit code 2. The message names the place and the cause.
     Input(String),
     /// Bad input that was reported when it was found, exit code 2.
@@ -38,7 +38,7 @@ pub(crate) enum Failure {
     Interrupted,
 }
 
-impl Failure {
+impl CliError {
     /// A failure at a place: an argument, or a place in a file.
     pub(crate) fn at(place: impl Display, cause: impl Display) -> Self {
         Self::Input(format!("{place}: {cause}"))
@@ -53,13 +53,13 @@ impl Failure {
     pub(crate) fn report(&self) -> ExitCode {
         match self {
             Self::Input(message) => {
-                eprintln!("error: {message}");
+                terminal::error(message);
                 ExitCode::from(2)
             }
             Self::Reported => ExitCode::from(2),
             Self::Interrupted => {
                 if !report_output::is_useless() {
-                    eprintln!("{Interrupted}");
+                    terminal::print_message(&format!("{Interrupted}\n"));
                 }
                 Outcome::Incomplete.into()
             }
@@ -70,20 +70,20 @@ impl Failure {
 /// The worse of two results. Bad input is worse than a violation, that is worse than work that is not
 /// finished, and that is worse than a result that holds: exit codes 2, 1, 3, 0.
 pub(crate) fn worse(
-    one: Result<Outcome, Failure>,
-    other: Result<Outcome, Failure>,
-) -> Result<Outcome, Failure> {
-    let rank = |result: &Result<Outcome, Failure>| match result {
-        Err(Failure::Input(_) | Failure::Reported) => 3,
+    one: Result<Outcome, CliError>,
+    other: Result<Outcome, CliError>,
+) -> Result<Outcome, CliError> {
+    let rank = |result: &Result<Outcome, CliError>| match result {
+        Err(CliError::Input(_) | CliError::Reported) => 3,
         Ok(Outcome::Violated) => 2,
-        Ok(Outcome::Incomplete) | Err(Failure::Interrupted) => 1,
+        Ok(Outcome::Incomplete) | Err(CliError::Interrupted) => 1,
         Ok(Outcome::Holds) => 0,
     };
     if rank(&other) > rank(&one) { other } else { one }
 }
 
 /// The result of a verb that handles each of its inputs, also if another one is bad.
-pub(crate) struct SeveralInputs(Result<Outcome, Failure>);
+pub(crate) struct SeveralInputs(Result<Outcome, CliError>);
 
 impl SeveralInputs {
     /// The result without any input.
@@ -92,12 +92,12 @@ impl SeveralInputs {
     }
 
     /// Adds the result of one input, and prints its failure. Returns the value, if there is one.
-    pub(crate) fn add<T>(&mut self, result: Result<(T, Outcome), Failure>) -> Option<T> {
+    pub(crate) fn add<T>(&mut self, result: Result<(T, Outcome), CliError>) -> Option<T> {
         let (value, result) = match result {
             Ok((value, outcome)) => (Some(value), Ok(outcome)),
-            Err(failure @ Failure::Input(_)) => {
+            Err(failure @ CliError::Input(_)) => {
                 failure.report();
-                (None, Err(Failure::Reported))
+                (None, Err(CliError::Reported))
             }
             Err(failure) => (None, Err(failure)),
         };
@@ -107,24 +107,24 @@ impl SeveralInputs {
     }
 
     /// The worst result of all inputs.
-    pub(crate) fn worst(self) -> Result<Outcome, Failure> {
+    pub(crate) fn worst(self) -> Result<Outcome, CliError> {
         self.0
     }
 }
 
-impl From<io::Error> for Failure {
+impl From<io::Error> for CliError {
     fn from(error: io::Error) -> Self {
         Self::at("standard output", error)
     }
 }
 
-impl From<FileConflict> for Failure {
+impl From<FileConflict> for CliError {
     fn from(conflict: FileConflict) -> Self {
         Self::Input(conflict.to_string())
     }
 }
 
-impl From<Interrupted> for Failure {
+impl From<Interrupted> for CliError {
     fn from(_: Interrupted) -> Self {
         Self::Interrupted
     }
@@ -134,18 +134,18 @@ impl From<Interrupted> for Failure {
 mod tests {
     use super::*;
 
-    fn all() -> [Result<Outcome, Failure>; 6] {
+    fn all() -> [Result<Outcome, CliError>; 6] {
         [
             Ok(Outcome::Holds),
-            Err(Failure::Interrupted),
+            Err(CliError::Interrupted),
             Ok(Outcome::Incomplete),
             Ok(Outcome::Violated),
-            Err(Failure::Reported),
-            Err(Failure::Input("x".to_owned())),
+            Err(CliError::Reported),
+            Err(CliError::Input("x".to_owned())),
         ]
     }
 
-    fn code(result: Result<Outcome, Failure>) -> ExitCode {
+    fn code(result: Result<Outcome, CliError>) -> ExitCode {
         result.map_or_else(|failure| failure.report(), ExitCode::from)
     }
 
@@ -169,8 +169,8 @@ mod tests {
     fn a_bad_input_does_not_hide_the_others() {
         let mut inputs = SeveralInputs::new();
         assert_eq!(inputs.add(Ok((1, Outcome::Violated))), Some(1));
-        assert_eq!(inputs.add::<u8>(Err(Failure::Input("x".to_owned()))), None);
+        assert_eq!(inputs.add::<u8>(Err(CliError::Input("x".to_owned()))), None);
         assert_eq!(inputs.add(Ok((3, Outcome::Holds))), Some(3));
-        assert!(matches!(inputs.worst(), Err(Failure::Reported)));
+        assert!(matches!(inputs.worst(), Err(CliError::Reported)));
     }
 }

@@ -11,7 +11,7 @@ use std::{
 
 use toposlam_model::format::{dot, named_world::NamedWorld, plantri, world_file};
 
-use super::{Failure, files::files};
+use super::{CliError, files::files, input};
 
 /// Locked while a file is written.
 static WRITING: Mutex<()> = Mutex::new(());
@@ -24,9 +24,9 @@ pub(crate) fn exit_between_files(code: i32) -> ! {
 
 /// Writes a file completely or not at all: the bytes go to a temporary file beside it, which is then
 /// renamed.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     let Some(name) = path.file_name() else {
-        return Err(Failure::in_file(path, "this is not a file name"));
+        return Err(CliError::in_file(path, "this is not a file name"));
     };
     files().write(path)?;
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
@@ -47,16 +47,17 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Creates a file that grows under its own name. The beginning of a log is useful even if its writer was
 /// killed.
-pub(crate) fn create_growing(path: &Path) -> Result<fs::File, Failure> {
+pub(crate) fn create_growing(path: &Path) -> Result<fs::File, CliError> {
     files().grow(path)?;
     fs::File::create(path).map_err(|error| not_writable(path, &error))
 }
 
 /// Creates the folder if it does not exist.
-pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
     files().fill_folder();
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::in_file(folder, format!("the folder cannot be created: {error}")))
+    fs::create_dir_all(folder).map_err(|error| {
+        CliError::in_file(folder, format!("the folder cannot be created: {error}"))
+    })
 }
 
 /// Checks that a file can be written to a path, before long work begins.
@@ -64,13 +65,16 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 /// # Errors
 /// Returns an error if the path is a folder, an input or another output, if its folder does not exist, or
 /// if its extension is not in the list.
-pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
+pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), CliError> {
     if path.is_dir() {
-        return Err(Failure::in_file(path, "this is a folder, not a file"));
+        return Err(CliError::in_file(path, "this is a folder, not a file"));
+    }
+    if input::is_standard(path) {
+        return Err(CliError::in_file(path, "an output is a file; only an input can be `-`"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        return Err(Failure::in_file(path, format!("there is no folder {}", folder.display())));
+        return Err(CliError::in_file(path, format!("there is no folder {}", folder.display())));
     }
     // A device has no extension.
     let fits = path.exists() && !path.is_file()
@@ -81,7 +85,7 @@ pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failur
     if !fits {
         let extensions: Vec<_> = extensions.iter().map(|name| format!(".{name}")).collect();
         let cause = format!("the name must end in {}", extensions.join(" or "));
-        return Err(Failure::in_file(path, cause));
+        return Err(CliError::in_file(path, cause));
     }
     Ok(files().plan(path)?)
 }
@@ -90,7 +94,7 @@ pub(crate) fn check_place(path: &Path, extensions: &[&str]) -> Result<(), Failur
 const PLANAR_CODE: [&str; 3] = ["pc", "plc", "planar_code"];
 
 /// Does [`check_place`] for a world that may or may not be simple.
-pub(crate) fn check_world_place(path: &Path, simple: bool) -> Result<(), Failure> {
+pub(crate) fn check_world_place(path: &Path, simple: bool) -> Result<(), CliError> {
     let extensions = ["toml", "json", "dot", "ec", "edge_code"];
     if simple {
         check_place(path, &[&extensions[..], &PLANAR_CODE].concat())
@@ -101,9 +105,9 @@ pub(crate) fn check_world_place(path: &Path, simple: bool) -> Result<(), Failure
 
 /// Writes a world in the format of the file's extension: `.toml`, `.json`, Graphviz's `.dot`, plantri's
 /// `.ec` and `.pc` (also `.edge_code` and `.planar_code`).
-pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure> {
+pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), CliError> {
     let graph = std::slice::from_ref(&world.graph);
-    let coded = |code| plantri::write(graph, code).map_err(|error| Failure::in_file(path, error));
+    let coded = |code| plantri::write(graph, code).map_err(|error| CliError::in_file(path, error));
     let bytes = match path.extension().and_then(OsStr::to_str) {
         Some("json") => world_file::to_json_text(world).into_bytes(),
         Some("dot") => dot::write(world).into_bytes(),
@@ -114,6 +118,6 @@ pub(crate) fn write_world(path: &Path, world: &NamedWorld) -> Result<(), Failure
     write_whole(path, &bytes)
 }
 
-fn not_writable(path: &Path, error: &io::Error) -> Failure {
-    Failure::in_file(path, format!("cannot be written: {error}"))
+fn not_writable(path: &Path, error: &io::Error) -> CliError {
+    CliError::in_file(path, format!("cannot be written: {error}"))
 }

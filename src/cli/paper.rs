@@ -11,16 +11,23 @@ use toposlam::paper::{
 };
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
+    exit_codes::help_end,
     json::print_line,
     text::{print_hanging, print_indented},
 };
 
 /// List every requirement of the paper: where it is implemented and tested, and what is open
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  toposlam paper --section 2.3\n\n\
-                  Exit code 1: a requirement is marked as done but no code or no test cites it, or a \
-                  citation names an unknown requirement.")]
+#[command(after_help = help_end(
+    "Example:\n  toposlam paper --section 2.3",
+    &[
+        (0, "the citations fit the requirements"),
+        (1, "a requirement is marked as done but no code or no test cites it, or a citation names \
+             an unknown requirement"),
+        (2, "bad usage"),
+    ],
+))]
 pub(super) struct PaperArguments {
     /// List only this section of the paper and its subsections
     #[arg(long, value_name = "N")]
@@ -34,9 +41,9 @@ pub(super) struct PaperArguments {
 }
 
 impl PaperArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let requirements =
-            requirements(TABLE).map_err(|error| Failure::at("tests/paper.toml", error))?;
+            requirements(TABLE).map_err(|error| CliError::at("tests/paper.toml", error))?;
         let trace = PaperTrace::new(&requirements, CITATIONS);
         let mut rows: Vec<_> = trace.rows.iter().collect();
         if let Some(section) = &self.section {
@@ -45,7 +52,7 @@ impl PaperArguments {
                 let known: BTreeSet<_> = requirements.iter().map(|r| r.section.as_str()).collect();
                 let known = known.into_iter().collect::<Vec<_>>().join(", ");
                 let cause = format!("section `{section}` has no requirements; sections: {known}");
-                return Err(Failure::at("--section", cause));
+                return Err(CliError::at("--section", cause));
             }
         }
         if self.open {
@@ -89,7 +96,7 @@ fn print_json(
     out: &mut dyn Write,
     rows: &[&TracedRequirement],
     trace: &PaperTrace,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let place = |citation: &Citation| format!("{}:{}", citation.file, citation.line);
     for row in rows {
         let requirement = row.requirement;

@@ -6,15 +6,15 @@ use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
 use toposlam::picture::with_legend;
 use toposlam_vision::{annotate, image_file::ImageFile, sensing::WrongSize};
 
-use super::{Failure, input, output};
+use super::{CliError, input, output};
 
 /// Reads an image of an expected size. The size is checked before the image is decoded.
-pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure> {
+pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, CliError> {
     read_if(path, |found| {
         if found == expected {
             Ok(())
         } else {
-            Err(Failure::in_file(path, WrongSize { found, expected }))
+            Err(CliError::in_file(path, WrongSize { found, expected }))
         }
     })
 }
@@ -22,28 +22,28 @@ pub(super) fn read(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure>
 /// Reads an image if its size, width and height, fits. The size is checked before the image is decoded.
 pub(super) fn read_if(
     path: &Path,
-    fits: impl FnOnce([u32; 2]) -> Result<(), Failure>,
-) -> Result<RgbImage, Failure> {
+    fits: impl FnOnce([u32; 2]) -> Result<(), CliError>,
+) -> Result<RgbImage, CliError> {
     let bytes = input::read(path)?;
-    let refused = |error| Failure::in_file(path, error);
+    let refused = |error| CliError::in_file(path, error);
     let file = ImageFile::open(&bytes).map_err(refused)?;
     fits(file.size())?;
     file.image().map_err(refused)
 }
 
 /// Writes an image as JPEG (`.jpg`, `.jpeg`) or else as PNG.
-pub(super) fn write(path: &Path, picture: &RgbImage) -> Result<(), Failure> {
+pub(super) fn write(path: &Path, picture: &RgbImage) -> Result<(), CliError> {
     output::write_whole(path, &encoded(path, picture)?)
 }
 
 /// Writes the picture of a step of sensing, with its legend and its scale below it.
-pub(super) fn write_stage(path: &Path, stage: &str, picture: &RgbImage) -> Result<(), Failure> {
+pub(super) fn write_stage(path: &Path, stage: &str, picture: &RgbImage) -> Result<(), CliError> {
     let whole = with_legend(picture, &annotate::legend(stage));
-    write(path, &whole.map_err(|error| Failure::in_file(path, error))?)
+    write(path, &whole.map_err(|error| CliError::in_file(path, error))?)
 }
 
 /// The bytes that [`write`] writes.
-pub(super) fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, Failure> {
+pub(super) fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, CliError> {
     let mut bytes = Cursor::new(Vec::new());
     let ending = path.extension().and_then(OsStr::to_str);
     let written = if matches!(ending, Some("jpg" | "jpeg")) {
@@ -51,6 +51,6 @@ pub(super) fn encoded(path: &Path, picture: &RgbImage) -> Result<Vec<u8>, Failur
     } else {
         picture.write_to(&mut bytes, ImageFormat::Png)
     };
-    written.map_err(|error| Failure::in_file(path, error))?;
+    written.map_err(|error| CliError::in_file(path, error))?;
     Ok(bytes.into_inner())
 }

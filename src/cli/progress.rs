@@ -16,7 +16,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use toposlam_model::enumerate::Watch;
 
 use super::{
-    Failure, output, report_output,
+    CliError, output, report_output, terminal,
     text::{duration_text, grouped, rough},
 };
 
@@ -63,24 +63,27 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Shows a bar for work on cases.
-    pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, Failure> {
+    pub(crate) fn new(work: &str, unit: &'static str) -> Result<Self, CliError> {
         watch_for_interrupt()?;
-        let style = ProgressStyle::with_template(
-            // The message is cut at the end of the line.
-            "{prefix} {bar:12.cyan/blue} {percent:>3} %  {wide_msg}",
-        )
-        .map_err(|error| Failure::at("progress bar", error))?;
+        let bar = if terminal::has_colors() { "{bar:12.cyan/blue}" } else { "{bar:12}" };
+        // The message is cut at the end of the line.
+        let template = format!("{{prefix}} {bar} {{percent:>3}} %  {{wide_msg}}");
+        let style = ProgressStyle::with_template(&template)
+            .map_err(|error| CliError::at("progress bar", error))?;
         // Without a length, no part is done; with length 0, all would be.
-        let bar = ProgressBar::no_length().with_style(style).with_prefix(work.to_owned());
+        let bar = ProgressBar::no_length().with_style(style).with_prefix(shortened(work));
+        if terminal::is_quiet() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
         let [cases, parts, parts_done] = std::array::from_fn(|_| AtomicU64::new(0));
         Ok(Self { bar, unit, cases, parts, parts_done })
     }
 
     /// Shows a bar for work of unknown length.
-    pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, Failure> {
+    pub(crate) fn endless(work: &str, unit: &'static str) -> Result<Self, CliError> {
         let progress = Self::new(work, unit)?;
         let style = ProgressStyle::with_template("{prefix} {spinner}  {wide_msg}")
-            .map_err(|error| Failure::at("progress bar", error))?;
+            .map_err(|error| CliError::at("progress bar", error))?;
         Ok(Self { bar: progress.bar.with_style(style), ..progress })
     }
 
@@ -114,18 +117,19 @@ impl Watch for Progress {
         self.parts.store(count as u64, Ordering::Relaxed);
         self.parts_done.store(0, Ordering::Relaxed);
         self.bar.set_position(0);
-        self.bar.set_length(count as u64);
+        // All of nothing would be 100 %.
+        self.bar.set_length(count.max(1) as u64);
     }
 
     fn part_done(&self, cases: u64) {
         let cases = self.cases.fetch_add(cases, Ordering::Relaxed) + cases;
         let done = self.parts_done.fetch_add(1, Ordering::Relaxed) + 1;
-        self.bar.inc(1);
         if !self.bar.is_hidden() {
             let (seconds, parts) =
                 (self.bar.elapsed().as_secs_f64(), self.parts.load(Ordering::Relaxed));
             self.bar.set_message(message(seconds, [done, parts], cases, self.unit));
         }
+        self.bar.inc(1);
     }
 
     fn stop(&self) -> bool {
@@ -133,11 +137,21 @@ impl Watch for Progress {
     }
 }
 
+/// The work in at most 28 columns: with the bar and the time left, it fits in 60.
+fn shortened(work: &str) -> String {
+    const WIDEST: usize = 28;
+    if work.chars().count() <= WIDEST {
+        return work.to_owned();
+    }
+    let beginning: String = work.chars().take(WIDEST - 1).collect();
+    beginning + "…"
+}
+
 /// What stands beside the bar, the most important first: the end of a long line is cut. `parts` are the
 /// number of parts that are done, and of all parts; 0 if that is not known.
 fn message(seconds: f64, parts: [u64; 2], cases: u64, unit: &str) -> String {
     let [done, all] = parts;
-    let time = if all >= done && done > 0 {
+    let time = if all > done && done > 0 {
         let left = seconds / done as f64 * (all - done) as f64;
         format!("{} left", duration_text(left))
     } else {
@@ -148,7 +162,7 @@ fn message(seconds: f64, parts: [u64; 2], cases: u64, unit: &str) -> String {
 }
 
 /// The first Ctrl-C stops the work soon, the second one at once. A file that is being written is completed.
-fn watch_for_interrupt() -> Result<(), Failure> {
+fn watch_for_interrupt() -> Result<(), CliError> {
     static SET: Once = Once::new();
     let mut result = Ok(());
     SET.call_once(|| {
@@ -166,24 +180,91 @@ fn watch_for_interrupt() -> Result<(), Failure> {
                 if ANSWERED.load(Ordering::Relaxed) {
                     thread::sleep(TO_REPORT);
                 }
-                eprintln!("interrupted");
+                terminal::print_message("interrupted\n");
                 output::exit_between_files(3);
             });
         });
     });
-    result.map_err(|error| Failure::at("Ctrl-C", error))
+    result.map_err(|error| CliError::at("Ctrl-C", error))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::{
+        io,
+        sync::{Arc, Mutex},
+    };
+
+    use indicatif::TermLike;
+    use textwrap::core::display_width;
+
     use super::*;
 
     #[test]
     fn the_message_has_the_time_left_then_the_cases() {
         let text = message(2.0, [1, 4], 12_345, "starts");
         assert_eq!(text, "6 s left  12,345 starts, 6,200 a second");
+        let text = message(2.0, [4, 4], 12_345, "starts");
+        assert_eq!(text, "2 s  12,345 starts, 6,200 a second");
         let text = message(90.0, [7, 0], 7, "moves");
         assert_eq!(text, "1 min 30 s  7 moves, 0.08 a second");
+    }
+
+    /// What is drawn on a terminal of 60 columns.
+    #[derive(Clone, Debug, Default)]
+    struct Recorded(Arc<Mutex<Vec<String>>>);
+
+    impl TermLike for Recorded {
+        fn width(&self) -> u16 {
+            60
+        }
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, text: &str) -> io::Result<()> {
+            self.write_str(text)
+        }
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.0.lock().unwrap().push(text.to_owned());
+            Ok(())
+        }
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_bar_fits_on_a_line_of_60_columns_and_ends_without_time_left() {
+        let name = "a_confirmed_hypothesis_is_right_and_a_refuted_one_is_wrong";
+        for (parts, work) in [(3, name), (1, "1 edges"), (0, "6 edges")] {
+            let terminal = Recorded::default();
+            let progress = Progress::new(work, "placed worlds").unwrap();
+            let target = ProgressDrawTarget::term_like_with_hz(Box::new(terminal.clone()), 255);
+            progress.bar.set_draw_target(target);
+            progress.parts(parts);
+            for _ in 0..parts.max(1) {
+                thread::sleep(Duration::from_millis(10));
+                progress.part_done(1_234_567);
+            }
+            let drawn = terminal.0.lock().unwrap().clone();
+            let lines: Vec<_> = drawn.iter().filter(|line| line.contains('%')).collect();
+            assert!(lines.iter().all(|line| display_width(line.trim_end()) <= 60), "{lines:#?}");
+            assert!(lines[0].contains("  0 %"), "{lines:#?}");
+            assert!(lines.iter().all(|line| !line.contains("0 s left") || parts > 1), "{lines:#?}");
+            progress.finish();
+        }
     }
 
     #[test]

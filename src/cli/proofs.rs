@@ -14,8 +14,9 @@ use clap::ValueEnum;
 use toposlam_proofs::{Lemma, Theorem, lemmas, theorems};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     ci_report::{CiCase, CiOptions},
+    exit_codes::help_end,
     progress::Progress,
     text::grouped,
 };
@@ -28,7 +29,8 @@ use report::ProofsReport;
 /// The list shows each lemma, its place in the paper and the engines that check it. It also shows the
 /// theorems that Coq proves for every world; proofs/coq/check checks those.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam proofs            list the lemmas and how each one is checked
   toposlam proofs --run all  check every lemma in every case within its bound
@@ -38,10 +40,14 @@ The last one prints a single case: its worlds, as world files, and its walks, st
 v2:1 has entered v2 by the dart 1 place clockwise from the first one in the file. For a lemma that \
 fails, the report contains such a command.
 
-A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and prints the results so far.
-
-Exit codes: 0 everything holds, 1 a lemma fails, 2 bad usage or input, 3 not everything was checked, \
-or the lemma excludes the case of --choices.")]
+A part of a lemma's name is enough if it is unique. Ctrl-C stops a check and prints the results so far.",
+    &[
+        (0, "everything holds, or the list is printed"),
+        (1, "a lemma fails"),
+        (2, "bad usage or input"),
+        (3, "not everything was checked, or the lemma excludes the case of --choices"),
+    ],
+))]
 pub(super) struct ProofsArguments {
     /// Check the lemma of this name, or all lemmas; may be repeated
     #[arg(long, value_name = "NAME")]
@@ -58,6 +64,10 @@ pub(super) struct ProofsArguments {
     /// Print one JSON object a line; a list or a check ends with the totals
     #[arg(long)]
     json: bool,
+
+    /// Check the other lemmas also after one fails
+    #[arg(long, requires = "run", conflicts_with = "choices")]
+    keep_going: bool,
 
     #[command(flatten)]
     ci: CiOptions,
@@ -101,7 +111,7 @@ impl Engine {
 }
 
 impl ProofsArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if self.run.is_empty() || self.choices.is_some() {
             self.ci.check_unused("this needs --run, without --choices")?;
         }
@@ -115,11 +125,11 @@ impl ProofsArguments {
         lemmas: &[&Lemma],
         theorems: &[Theorem],
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let is_wanted = |theorem: &&Theorem| self.run.iter().any(|name| name == theorem.name);
         if let Some(Theorem { name, .. }) = theorems.iter().find(is_wanted) {
             let cause = "is proved in Coq, for every world; run proofs/coq/check to check it";
-            return Err(Failure::at("--run", format!("{name} {cause}")));
+            return Err(CliError::at("--run", format!("{name} {cause}")));
         }
         match (&self.choices, self.run.as_slice()) {
             (Some(choices), [name]) if name != ALL => {
@@ -129,7 +139,7 @@ impl ProofsArguments {
             }
             (Some(_), _) => {
                 let cause = "choices make a case of one lemma; choose it with one --run";
-                Err(Failure::at("--choices", cause))
+                Err(CliError::at("--choices", cause))
             }
             (None, []) => {
                 listing::list(lemmas, theorems, self.json, out)?;
@@ -140,21 +150,28 @@ impl ProofsArguments {
     }
 
     /// Checks lemmas, each in every case within its bound.
-    fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn check(&self, lemmas: &[&Lemma], out: &mut dyn Write) -> Result<Outcome, CliError> {
         let mut report = ProofsReport::new(out, self.json, lemmas);
         let mut results = Vec::new();
-        for &lemma in lemmas {
+        let mut left = lemmas.iter();
+        for &lemma in left.by_ref() {
             let progress = Progress::new(lemma.name, "cases")?;
             let checked = check_lemma(lemma, &progress)?;
             progress.finish();
             let interrupted = matches!(checked.end, CheckEnd::Interrupted { .. });
-            results.push(ci_case(lemma, &checked.end));
+            let result = ci_case(lemma, &checked.end);
+            let failed = result.outcome == Outcome::Violated;
+            results.push(result);
             report.lemma(lemma, checked)?;
-            if interrupted {
+            if interrupted || (failed && !self.keep_going) {
                 break;
             }
         }
         let outcome = report.verdict()?;
+        if outcome == Outcome::Violated {
+            let names = left.map(|lemma| lemma.name.to_owned());
+            results.extend(names.map(|name| CiCase::not_checked(name, None)));
+        }
         self.ci.write("proofs", &results)?;
         Ok(outcome)
     }
@@ -175,7 +192,7 @@ fn ci_case(lemma: &Lemma, end: &CheckEnd) -> CiCase {
 const ALL: &str = "all";
 
 /// The lemmas of these names or parts of names, each once.
-fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, Failure> {
+fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lemma>, CliError> {
     let mut selected: Vec<&Lemma> = Vec::new();
     for name in names {
         let found = if name == ALL { lemmas.to_vec() } else { vec![find_lemma(lemmas, name)?] };
@@ -189,12 +206,12 @@ fn find_lemmas<'l>(lemmas: &[&'l Lemma], names: &[String]) -> Result<Vec<&'l Lem
 }
 
 /// The lemma of this name, or else the only one whose name contains it.
-fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure> {
+fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, CliError> {
     if let Some(lemma) = lemmas.iter().find(|lemma| lemma.name == name) {
         return Ok(lemma);
     }
     if name.is_empty() {
-        return Err(Failure::at("--run", "the name is empty"));
+        return Err(CliError::at("--run", "the name is empty"));
     }
     let fitting: Vec<_> = lemmas.iter().copied().filter(|l| l.name.contains(name)).collect();
     let (cause, listed) = match fitting.as_slice() {
@@ -203,7 +220,7 @@ fn find_lemma<'l>(lemmas: &[&'l Lemma], name: &str) -> Result<&'l Lemma, Failure
         several => (format!("`{name}` is part of several names"), several),
     };
     let lines: Vec<_> = listed.iter().map(|lemma| lemma.name).collect();
-    Err(Failure::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
+    Err(CliError::at("--run", format!("{cause}:\n  {}", lines.join("\n  "))))
 }
 
 /// A number of cases.

@@ -12,8 +12,9 @@ use toposlam_robot::simulator::{
 use toposlam_vision::camera::Camera;
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{Appearance, ImageSize},
+    exit_codes::help_end,
     input, output,
     picture_file::encoded,
     text::print_hanging,
@@ -30,7 +31,7 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "X,Y,HEADING", value_parser = parse_pose, allow_hyphen_values = true)]
     pose: Option<Pose>,
     /// Output file: .png, .jpg or .jpeg
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Camera calibration [default: a spherical mirror, 1280x960]
     #[arg(long, value_name = "FILE")]
@@ -45,7 +46,7 @@ pub(super) struct RenderArguments {
     seed: u64,
     /// Put the marker at the plan's start, along the facing hallway, or, without a start, at the first L
     #[arg(long)]
-    marker: bool,
+    with_marker: bool,
     /// Also write the class of each pixel as a .png: floor green, stripe red, marker blue, the robot and
     /// the area outside the mirror white, anything else black
     #[arg(long, value_name = "FILE")]
@@ -53,7 +54,7 @@ pub(super) struct RenderArguments {
 }
 
 impl RenderArguments {
-    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, _: &mut dyn Write) -> Result<Outcome, CliError> {
         output::check_place(&self.out, &["png", "jpg", "jpeg"])?;
         if let Some(path) = &self.labels {
             output::check_place(path, &["png"])?;
@@ -62,12 +63,12 @@ impl RenderArguments {
         let plan = input::floor_plan(&self.plan, &world)?;
         let camera = self.camera()?;
         let pose = self.pose.unwrap_or_else(|| start_pose(plan, world.start.unwrap_or(Dart(0))));
-        let marker = if self.marker { Some(self.marked(plan, world.start)?) } else { None };
+        let marker = if self.with_marker { Some(self.marked(plan, world.start)?) } else { None };
         let effects = self.appearance.effects(self.seed)?;
         let building = Building::new(plan, self.appearance.look, marker, &effects, self.seed);
         if !building.has_floor(pose.position) {
             let [x, y] = pose.position;
-            return Err(Failure::at("--pose", format!("there is no floor at {x},{y}")));
+            return Err(CliError::at("--pose", format!("there is no floor at {x},{y}")));
         }
         let rig = Rig::new(&camera);
         let picture = render(&rig, &building, pose, &effects, self.seed);
@@ -86,7 +87,7 @@ impl RenderArguments {
         Ok(Outcome::Holds)
     }
 
-    fn camera(&self) -> Result<Camera, Failure> {
+    fn camera(&self) -> Result<Camera, CliError> {
         let camera = match &self.calibration {
             Some(path) => input::read_camera(path)?,
             None => Camera::superscout(),
@@ -98,12 +99,12 @@ impl RenderArguments {
     }
 
     /// The dart along which the marker points.
-    fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, Failure> {
+    fn marked(&self, plan: &FloorPlan, start: Option<Dart>) -> Result<Dart, CliError> {
         let graph = plan.graph();
         let at_l = |dart: &Dart| plan.junction(graph.vertex(*dart)).kind == JunctionKind::L;
         start
             .or_else(|| graph.darts().find(at_l))
-            .ok_or_else(|| Failure::in_file(&self.plan, "it has neither a start nor an L"))
+            .ok_or_else(|| CliError::in_file(&self.plan, "it has neither a start nor an L"))
     }
 }
 
@@ -137,5 +138,6 @@ fn after_help() -> String {
     }
     let example = "\nExample:\n  toposlam render worlds/shape-8.toml --pose 2,8,0 --look vinyl \\\n    \
                    --effect blur=1.5 --out view.png";
-    String::from_utf8_lossy(&text).into_owned() + example
+    let notes = String::from_utf8_lossy(&text).into_owned() + example;
+    help_end(&notes, &[(0, "the image is written"), (2, "bad usage or input")])
 }

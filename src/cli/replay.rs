@@ -10,7 +10,8 @@ use toposlam_model::{
 use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
+    exit_codes::help_end,
     json::{TruncatedLine, print_line},
     mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
@@ -24,12 +25,18 @@ use super::{
 /// percepts, doors and the map are compared with the recorded ones, and the computing time with the
 /// robot's time. If the log has no images, its scenes are used.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam simulate worlds/shape-6.toml --log run.mcap
-  toposlam replay run.mcap
-
-Exit codes: 0 all results are as recorded, 1 one differs, 2 bad usage or input, 3 the log is truncated, its run is incomplete, or --max-darts was reached.")]
+  toposlam replay run.mcap",
+    &[
+        (0, "all results are as recorded"),
+        (1, "a result differs"),
+        (2, "bad usage or input"),
+        (3, "not known: the log is truncated, its run is incomplete, or --max-darts was reached"),
+    ],
+))]
 pub(super) struct ReplayArguments {
     /// The log
     log: PathBuf,
@@ -80,7 +87,7 @@ struct DifferenceJson {
 }
 
 impl ReplayArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(map) = &self.map {
             output::check_world_place(map, false)?;
         }
@@ -93,7 +100,7 @@ impl ReplayArguments {
         let replay = replay.map_err(|error| match error {
             ReplayError::TopicMap(error) => opened.wrong_mapping(&self.log, &error),
             ReplayError::Calibration(error) => opened.wrong_calibration(&self.log, &error),
-            error => Failure::in_file(&self.log, error),
+            error => CliError::in_file(&self.log, error),
         })?;
         if self.json {
             print_line(out, "replay", &self.line(&opened, &replay, seconds))?;
@@ -105,7 +112,7 @@ impl ReplayArguments {
         }
         if let Some(path) = &self.map {
             match replay.mapping.map().complete() {
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
                 Some(graph) => {
                     let about = format!("The map from a replay of {}", self.log.display());
                     let map = NamedWorld::numbered("map", &about, graph.clone(), Some(FACING));
@@ -117,14 +124,14 @@ impl ReplayArguments {
     }
 
     /// The algorithm that was asked for, or that of the log; without either Algorithm 1.
-    fn algorithm(&self, opened: &OpenLog) -> Result<DirectionalAlgorithm, Failure> {
+    fn algorithm(&self, opened: &OpenLog) -> Result<DirectionalAlgorithm, CliError> {
         let recorded = opened.run.as_ref().map_or("", |run| &run.algorithm);
         match (self.algorithm, recorded) {
             (Some(option), _) => Ok(option.directional()),
             (None, "") => Ok(DirectionalAlgorithm::Algorithm1),
             (None, name) => name.parse().map_err(|_| {
                 let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
-                Failure::in_file(&self.log, cause)
+                CliError::in_file(&self.log, cause)
             }),
         }
     }
@@ -158,7 +165,7 @@ impl ReplayArguments {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), Failure> {
+    fn print(&self, out: &mut dyn Write, replay: &Replay, seconds: f64) -> Result<(), CliError> {
         let map = replay.mapping.map();
         let whole = if map.complete().is_some() { "complete" } else { "incomplete" };
         let comparison = &replay.comparison;

@@ -12,7 +12,9 @@ use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
 use super::{
-    Failure, Outcome, input,
+    CliError, Outcome,
+    exit_codes::help_end,
+    input,
     json::print_line,
     outcome::SeveralInputs,
     output, picture_file,
@@ -26,7 +28,8 @@ use super::{
 /// a hallway; a junction with its doors and centre lines; or unknown, with a reason. If the marker is
 /// in view, its position is reported too.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml \\
     --stages steps
@@ -34,7 +37,12 @@ Example:
 An image that cannot be used is reported, and the others are sensed.
 
 Angles are relative to the robot's heading, counter-clockwise. Doors are listed
-clockwise from the entry door.")]
+clockwise from the entry door.",
+    &[
+        (0, "all images were sensed, also if a scene is unknown"),
+        (2, "bad usage, or an input cannot be used"),
+    ],
+))]
 pub(super) struct SenseArguments {
     /// Images: .png or .jpg
     #[arg(required = true, value_name = "IMAGE")]
@@ -52,7 +60,7 @@ pub(super) struct SenseArguments {
     #[arg(long)]
     json: bool,
     /// Output file: .txt, .json or .jsonl [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
@@ -65,7 +73,7 @@ struct Line {
 }
 
 impl SenseArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;
         }
@@ -98,7 +106,7 @@ impl SenseArguments {
         sensor: &mut Sensor,
         names: &[OsString],
         out: &mut dyn Write,
-    ) -> Result<SeveralInputs, Failure> {
+    ) -> Result<SeveralInputs, CliError> {
         let mut inputs = SeveralInputs::new();
         for (path, name) in self.images.iter().zip(names) {
             let sensed = self.sense(camera, sensor, path, name);
@@ -125,9 +133,9 @@ impl SenseArguments {
         sensor: &mut Sensor,
         path: &Path,
         name: &OsString,
-    ) -> Result<Scene, Failure> {
+    ) -> Result<Scene, CliError> {
         let image = picture_file::read(path, camera.image)?;
-        let wrong = |error| Failure::in_file(path, error);
+        let wrong = |error| CliError::in_file(path, error);
         let Some(folder) = &self.stages else { return sensor.sense(&image).map_err(wrong) };
         let (scene, stages) = annotate::stages(sensor, &image).map_err(wrong)?;
         for (stage, picture) in &stages {
@@ -140,16 +148,16 @@ impl SenseArguments {
 }
 
 /// The names of the images without their endings. The pictures of their stages start with them.
-fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, Failure> {
+fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliError> {
     let mut names: BTreeMap<OsString, &Path> = BTreeMap::new();
-    let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_owned();
+    let name = |path: &PathBuf| input::stem(path);
     for path in images {
         if let Some(other) = names.insert(name(path), path)
             && wanted
         {
             let cause =
                 format!("its pictures would have the same names as those of {}", other.display());
-            return Err(Failure::in_file(path, cause));
+            return Err(CliError::in_file(path, cause));
         }
     }
     Ok(images.iter().map(name).collect())

@@ -30,8 +30,9 @@ use toposlam_robot::{
 use toposlam_vision::{camera::Camera, sensing::Sensor};
 
 use super::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{Appearance, ImageSize},
+    exit_codes::help_end,
     explore::story::{Story, StoryDetail},
     input,
     mapping_marker::AlgorithmOption,
@@ -136,7 +137,7 @@ struct Simulation {
 }
 
 impl SimulateArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         #[cfg(not(feature = "ros1"))]
         if self.ros.is_some() {
             return Err(super::without_ros());
@@ -181,11 +182,11 @@ impl SimulateArguments {
     }
 
     /// Where the run starts. If the plan's own start is not an L, at the L that is nearest to it.
-    fn start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, Failure> {
+    fn start_in(&self, world: &NamedWorld, plan: &FloorPlan) -> Result<Dart, CliError> {
         let facing = input::start_of(world, self.start.as_deref())?;
         let nearest = feasible::nearest_start(plan, facing).filter(|_| self.start.is_none());
         let Some(nearest) = nearest else { return Ok(facing) };
-        eprintln!(
+        remark!(
             "the run starts at {}: the start of the plan, {}, is not an L, where a marker can lie",
             world.start_text(nearest),
             world.at_text(facing),
@@ -193,7 +194,7 @@ impl SimulateArguments {
         Ok(nearest)
     }
 
-    fn check_places(&self) -> Result<(), Failure> {
+    fn check_places(&self) -> Result<(), CliError> {
         let places: [(&Option<PathBuf>, &[&str]); 3] =
             [(&self.log, &["mcap"]), (&self.svg, &["svg"]), (&self.html, &["html", "htm"])];
         for (path, endings) in places {
@@ -211,7 +212,7 @@ impl SimulateArguments {
         }
     }
 
-    fn camera(&self) -> Result<Camera, Failure> {
+    fn camera(&self) -> Result<Camera, CliError> {
         Ok(match (&self.calibration, self.size) {
             (Some(path), None) => input::read_camera(path)?,
             (Some(path), Some(size)) => input::read_camera(path)?.sized(size.pixels()),
@@ -219,7 +220,7 @@ impl SimulateArguments {
         })
     }
 
-    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, Failure> {
+    fn eyes(&self, camera: &Camera) -> Result<LearnedSensors, CliError> {
         let look = self.appearance.look;
         if let Some(path) = &self.colours {
             return Ok(LearnedSensors::with_colours(camera, look, input::read_colours(path)?));
@@ -229,7 +230,7 @@ impl SimulateArguments {
         progress.finish();
         eyes.map_err(|error| match error {
             LearningError::Interrupted(stopped) => stopped.into(),
-            error => Failure::at("--look", error),
+            error => CliError::at("--look", error),
         })
     }
 
@@ -242,7 +243,7 @@ impl SimulateArguments {
         pictures: Pictures,
         mut log: Option<Recorder<File>>,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let Simulation { world, plan, facing, .. } = simulation;
         let progress = Progress::endless("exploring", "pictures")?;
         // On a terminal the story shows how far the run is.
@@ -284,11 +285,11 @@ impl SimulateArguments {
         Ok(result.outcome())
     }
 
-    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), Failure> {
+    fn write_files(&self, journal: &Journal, result: &SimulationResult) -> Result<(), CliError> {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
             }
         }
         let write = |path: &Path, text: String| output::write_whole(path, text.as_bytes());
@@ -331,7 +332,8 @@ fn after_help() -> String {
         .iter()
         .map(|(_, name, lasting, about)| format!("  {name:<14} {lasting}   {about}\n"));
     let head = "Faults, and for how many pictures or commands each lasts by default:\n".to_owned();
-    head + &faults.collect::<String>()
+    let notes = head
+        + &faults.collect::<String>()
         + "\nThe log is an MCAP file of ROS 2 messages: /camera/image/compressed, \
 /camera/annotated/compressed, /cmd_vel, /odom, /tf, and under /toposlam: run, scene, command, door, \
 percept, hypothesis, map, end. If the program is killed, all but the last ten seconds can be read.
@@ -344,7 +346,14 @@ Examples:
   toposlam simulate worlds/building-12.toml --by-scene --algorithm folding
   toposlam simulate worlds/shape-6.toml --fault blocked@40
   toposlam simulate worlds/shape-6.toml --ros http://127.0.0.1:11311 --speed 5
-
-Exit codes: 0 the map is right, 1 it is wrong or the robot gave up, 2 bad usage or input, 3 ended by \
-Ctrl-C or at --max-darts, or a fault did not happen."
+";
+    help_end(
+        &notes,
+        &[
+            (0, "the map is right"),
+            (1, "the map is wrong, or the robot gave up"),
+            (2, "bad usage or input"),
+            (3, "ended by Ctrl-C or at --max-darts, or a fault did not happen"),
+        ],
+    )
 }

@@ -6,7 +6,9 @@ use std::{
     sync::LazyLock,
 };
 
-use textwrap::{Options, WordSplitter};
+use textwrap::{Options, WordSplitter, core::display_width};
+
+pub(crate) use toposlam::moment::{grouped, moment, since_start};
 
 /// The widest line that is printed: the terminal's width, and at most 80 columns.
 static WIDTH: LazyLock<usize> = LazyLock::new(|| {
@@ -20,7 +22,7 @@ const MIN_WIDTH: usize = 40;
 
 /// Prints a text after its head. The lines that follow are indented as far as the head is wide.
 pub(super) fn print_hanging(out: &mut dyn Write, head: &str, text: &str) -> io::Result<()> {
-    print_indented(out, head, head.chars().count(), text)
+    print_indented(out, head, display_width(head), text)
 }
 
 /// Prints a text after its head. The lines that follow are indented by `indent` columns.
@@ -38,7 +40,7 @@ pub(super) fn print_indented(
 
 /// Prints a command. A line that is too long continues after a backslash, as in a shell.
 pub(super) fn print_command(out: &mut dyn Write, head: &str, command: &str) -> io::Result<()> {
-    let lines = wrapped(*WIDTH - 2, head, head.chars().count() + 2, command);
+    let lines = wrapped(*WIDTH - 2, head, display_width(head) + 2, command);
     writeln!(out, "{}", lines.join(" \\\n"))
 }
 
@@ -62,9 +64,9 @@ pub(super) fn print_paragraph(out: &mut dyn Write, text: &str) -> io::Result<()>
 
 /// Prints short texts in columns, row by row, each line indented by two columns.
 pub(super) fn print_columns(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
-    let widest = texts.iter().map(|text| text.chars().count()).max().unwrap_or_default();
+    let widest = texts.iter().map(|text| display_width(text)).max().unwrap_or_default();
     for row in texts.chunks((*WIDTH / (widest + 2)).max(1)) {
-        let row: Vec<_> = row.iter().map(|text| format!("  {text:widest$}")).collect();
+        let row: Vec<_> = row.iter().map(|text| cell(text, widest)).collect();
         writeln!(out, "{}", row.concat().trim_end())?;
     }
     Ok(())
@@ -77,50 +79,21 @@ pub(super) fn print_rows<const COLUMNS: usize>(
     rows: &[[String; COLUMNS]],
 ) -> io::Result<()> {
     let widths: [_; COLUMNS] = std::array::from_fn(|column| {
-        let texts = rows.iter().map(|row| row[column].chars().count());
-        texts.chain([heads[column].chars().count()]).max().unwrap_or_default()
+        let texts = rows.iter().map(|row| display_width(&row[column]));
+        texts.chain([display_width(heads[column])]).max().unwrap_or_default()
     });
     let heads = heads.map(str::to_owned);
     for row in [&heads].into_iter().chain(rows) {
         let Some((last, others)) = row.split_last() else { return Ok(()) };
-        let cells = others.iter().zip(widths).map(|(cell, width)| format!("  {cell:width$}"));
+        let cells = others.iter().zip(widths).map(|(text, width)| cell(text, width));
         print_hanging(out, &format!("{}  ", cells.collect::<String>()), last)?;
     }
     Ok(())
 }
 
-/// A number with a comma between thousands.
-pub(crate) fn grouped(number: u128) -> String {
-    let digits = number.to_string();
-    let mut out = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
-
-/// A time in nanoseconds: a date if it can be one, otherwise seconds.
-///
-/// A date counts from 1970, in UTC. A clock that starts with the computer shows less than a year.
-pub(crate) fn moment(nanoseconds: u64) -> String {
-    const YEAR: u64 = 365 * 24 * 3600;
-    let (seconds, milliseconds) = (nanoseconds / 1_000_000_000, nanoseconds / 1_000_000 % 1000);
-    if seconds < YEAR {
-        return format!("{seconds}.{milliseconds:03} s");
-    }
-    let (days, second) = (seconds / 86_400, seconds % 86_400);
-    let [year, month, day] = date(days);
-    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
-    format!("{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.{milliseconds:03} UTC")
-}
-
-/// Seconds since the first message of a log; a date if the messages carry one and the log does not.
-pub(crate) fn since_start(seconds: f64) -> String {
-    const YEAR: f64 = 365.0 * 24.0 * 3600.0;
-    if seconds < YEAR { format!("{seconds:.1} s") } else { moment((seconds * 1e9) as u64) }
+/// A text in a column of this width, after two spaces. Some letters are two columns wide.
+fn cell(text: &str, width: usize) -> String {
+    format!("  {text}{}", " ".repeat(width.saturating_sub(display_width(text))))
 }
 
 /// A duration in words, as in "9 s", "2 min 5 s", "1 h 20 min".
@@ -144,28 +117,6 @@ pub(crate) fn rough(number: f64) -> String {
     }
     let step = 10_f64.powi(number.log10().floor() as i32 - 1);
     grouped(((number / step).round() * step) as u128)
-}
-
-/// The year, month and day of the Gregorian calendar, so many days after 1970-01-01.
-fn date(days: u64) -> [u64; 3] {
-    let is_leap = |year: u64| {
-        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
-    };
-    let (mut year, mut rest) = (1970, days);
-    while rest >= 365 + u64::from(is_leap(year)) {
-        rest -= 365 + u64::from(is_leap(year));
-        year += 1;
-    }
-    let february = 28 + u64::from(is_leap(year));
-    let mut month = 1;
-    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
-        if rest < length {
-            break;
-        }
-        rest -= length;
-        month += 1;
-    }
-    [year, month, rest + 1]
 }
 
 /// A number and its noun, as in "1 edge", "2 edges".
@@ -208,21 +159,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_since_1970_is_a_date_and_a_time_since_power_on_is_seconds() {
-        for (seconds, text) in [
-            (0, "0.000 s"),
-            (1, "1.000 s"),
-            (86_400, "86400.000 s"),
-            // By `date -u -d @SECONDS`.
-            (951_782_400, "2000-02-29 00:00:00.000 UTC"),
-            (1_700_000_000, "2023-11-14 22:13:20.000 UTC"),
-            (1_735_689_599, "2024-12-31 23:59:59.000 UTC"),
-            (4_107_542_400, "2100-03-01 00:00:00.000 UTC"),
-        ] {
-            assert_eq!(moment(seconds * 1_000_000_000), text);
-        }
-        assert_eq!(moment(1_034_567_890), "1.034 s");
-        assert_eq!(moment(u64::MAX), "2554-07-21 23:34:33.709 UTC");
+    fn a_column_is_as_wide_as_its_widest_text_on_a_terminal() {
+        let mut out = Vec::new();
+        let rows = [["東口", "x"], ["a", "y"]].map(|row| row.map(str::to_owned));
+        print_rows(&mut out, ["at", "to"], &rows).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text, "  at    to\n  東口  x\n  a     y\n");
+        let mut out = Vec::new();
+        print_hanging(&mut out, "東口 ", &"a b ".repeat(20)).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(text.lines().nth(1).unwrap().starts_with("     "), "{text}");
     }
 
     #[test]
@@ -236,17 +182,5 @@ mod tests {
         let expected =
             ["0.00", "0.31", "8.4", "57", "120", "1,200", "57,000", "1.3 million", "57 million"];
         assert_eq!(texts, expected);
-    }
-
-    #[test]
-    fn a_stamp_of_another_clock_than_the_log_is_a_date() {
-        assert_eq!(since_start(76.24), "76.2 s");
-        assert_eq!(since_start(1.7e9), "2023-11-14 22:13:20.000 UTC");
-    }
-
-    #[test]
-    fn thousands_are_grouped() {
-        let texts = [0, 12, 123, 1234, 123_456, 1_234_567].map(grouped);
-        assert_eq!(texts, ["0", "12", "123", "1,234", "123,456", "1,234,567"]);
     }
 }

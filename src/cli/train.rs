@@ -18,7 +18,10 @@ use toposlam_vision::{
     colour::{ExampleError, PixelClass, Stripe, StripeKind, Training, TrainingError},
 };
 
-use super::{Failure, Outcome, input, output, picture_file, progress::Progress, text::counted};
+use super::{
+    CliError, Outcome, exit_codes::help_end, input, output, picture_file, progress::Progress,
+    text::counted,
+};
 use report::{LeftOut, TrainingReport, Validation};
 
 /// Learn the colours of a building's floor, stripe and marker from labelled images
@@ -31,8 +34,8 @@ use report::{LeftOut, TrainingReport, Validation};
 #[command(
     override_usage = "\
 toposlam train [OPTIONS] --images <DIR> --labels <DIR>
-                      --calibration <FILE> --out <COLOURS>",
-    after_help = "\
+                      --calibration <FILE> --out <FILE>",
+    after_help = help_end("\
 Colours of labels:
   floor (0,255,0)   stripe (255,0,0)   marker (0,0,255)
   other (0,0,0)     ignore (255,255,255)
@@ -40,15 +43,17 @@ Colours of labels:
 Example, with rendered images and labels:
   mkdir -p images labels
   for n in 1 2 3 4 5 6 7; do
-    toposlam render worlds/shape-8.toml --marker --pose 0,$n,$((50 * n)) \\
+    toposlam render worlds/shape-8.toml --with-marker --pose 0,$n,$((50 * n)) \\
       --seed $n --out images/$n.png --labels labels/$n.png
   done
   toposlam calibrate images/*.png --out camera.toml
   toposlam train --images images --labels labels --calibration camera.toml \\
     --out colours.toml
-  toposlam render worlds/shape-8.toml --marker --pose 0.1,7.5,80 --seed 8 \\
+  toposlam render worlds/shape-8.toml --with-marker --pose 0.1,7.5,80 --seed 8 \\
     --out view.png
-  toposlam sense view.png --calibration camera.toml --colours colours.toml"
+  toposlam sense view.png --calibration camera.toml --colours colours.toml",
+        &[(0, "the colours are learned"), (2, "bad usage or input"), (3, "interrupted")],
+    )
 )]
 pub(super) struct TrainArguments {
     /// Folder of the images: .png, .jpg and .jpeg
@@ -61,7 +66,7 @@ pub(super) struct TrainArguments {
     #[arg(long, value_name = "FILE")]
     calibration: PathBuf,
     /// Output file: .toml
-    #[arg(long, value_name = "COLOURS")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Place of the stripe between floor and wall
     #[arg(long, value_name = "WHERE", default_value = "floor")]
@@ -96,7 +101,7 @@ struct Pair {
 }
 
 impl TrainArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         output::check_place(&self.out, &["toml"])?;
         let stripe = self.stripe()?;
         let camera = input::read_camera(&self.calibration)?;
@@ -108,7 +113,7 @@ impl TrainArguments {
         for pair in pairs {
             if progress.stop() {
                 progress.finish();
-                return Err(Failure::Interrupted);
+                return Err(CliError::Interrupted);
             }
             if let Some(cause) = learn(&mut training, &camera, &pair)? {
                 left_out.push(LeftOut { image: pair.image, cause });
@@ -117,13 +122,13 @@ impl TrainArguments {
         }
         progress.finish();
         for LeftOut { image, cause } in &left_out {
-            eprintln!("left out: {}: {cause}", image.display());
+            remark!("left out: {}: {cause}", image.display());
         }
         self.check_classes(&training)?;
         if training.seen(PixelClass::Marker).images == 0 {
-            eprintln!("no marker is labelled: sensing with these colours sees no marker");
+            remark!("no marker is labelled: sensing with these colours sees no marker");
         }
-        let model = training.model().map_err(|error| Failure::in_file(&self.images, error))?;
+        let model = training.model().map_err(|error| CliError::in_file(&self.images, error))?;
         let progress = Progress::new("cross-validating", "parts")?;
         let validation = self.validation(&training, &progress);
         progress.finish();
@@ -138,7 +143,7 @@ impl TrainArguments {
         Ok(Outcome::Holds)
     }
 
-    fn stripe(&self) -> Result<Stripe, Failure> {
+    fn stripe(&self) -> Result<Stripe, CliError> {
         let [least, most] = Stripe::WIDTHS;
         let width = self.stripe_width;
         if !(least..=most).contains(&width) {
@@ -146,7 +151,7 @@ impl TrainArguments {
                 "{width} is out of range; the width of a stripe in metres lies between {least} and \
                  {most}"
             );
-            return Err(Failure::at("--stripe-width", cause));
+            return Err(CliError::at("--stripe-width", cause));
         }
         let kind = match self.stripe {
             On::Floor => StripeKind::OnFloor,
@@ -156,20 +161,20 @@ impl TrainArguments {
     }
 
     /// Pairs each image with its labels by name.
-    fn pairs(&self) -> Result<Vec<Pair>, Failure> {
+    fn pairs(&self) -> Result<Vec<Pair>, CliError> {
         let images = by_stem(&self.images, &["png", "jpg", "jpeg"])?;
         let mut labels = by_stem(&self.labels, &["png"])?;
         if images.is_empty() {
             let cause = "there is no image in this folder: no .png, .jpg or .jpeg";
-            return Err(Failure::in_file(&self.images, cause));
+            return Err(CliError::in_file(&self.images, cause));
         }
-        let pairs: Result<Vec<Pair>, Failure> = images
+        let pairs: Result<Vec<Pair>, CliError> = images
             .into_iter()
             .map(|(stem, image)| {
                 let labels = labels.remove(&stem).ok_or_else(|| {
                     let expected = named(&self.labels, &stem);
                     let cause = format!("its labels, {}, are not there", expected.display());
-                    Failure::in_file(&image, cause)
+                    CliError::in_file(&image, cause)
                 })?;
                 Ok(Pair { image, labels })
             })
@@ -180,25 +185,25 @@ impl TrainArguments {
             Some(alone) => {
                 let images = self.images.display();
                 let cause = format!("there is no image of this name in {images}");
-                Err(Failure::in_file(alone, cause))
+                Err(CliError::in_file(alone, cause))
             }
         }
     }
 
     /// Returns an error for an impossible number of parts, before the long work begins.
-    fn check_folds(&self, images: usize) -> Result<(), Failure> {
+    fn check_folds(&self, images: usize) -> Result<(), CliError> {
         match self.folds {
             Some(folds) if folds < 2 || folds > images => {
-                Err(Failure::at("--folds", too_few(folds, images)))
+                Err(CliError::at("--folds", too_few(folds, images)))
             }
             _ => Ok(()),
         }
     }
 
     /// Returns an error if a class is missing that sensing needs.
-    fn check_classes(&self, training: &Training) -> Result<(), Failure> {
+    fn check_classes(&self, training: &Training) -> Result<(), CliError> {
         if training.images() == 0 {
-            return Err(Failure::in_file(&self.images, "every image was left out"));
+            return Err(CliError::in_file(&self.images, "every image was left out"));
         }
         let needed = [PixelClass::Floor, PixelClass::Stripe];
         match needed.into_iter().find(|&class| training.seen(class).images == 0) {
@@ -207,13 +212,13 @@ impl TrainArguments {
                 let [red, green, blue] = class.label();
                 let missing = TrainingError::NoPixel { class };
                 let cause = format!("{missing} ({red},{green},{blue})");
-                Err(Failure::in_file(&self.labels, cause))
+                Err(CliError::in_file(&self.labels, cause))
             }
         }
     }
 
     /// Cross-validates. If the number of parts was not given and is impossible, returns the reason.
-    fn validation(&self, training: &Training, watch: &dyn Watch) -> Result<Validation, Failure> {
+    fn validation(&self, training: &Training, watch: &dyn Watch) -> Result<Validation, CliError> {
         let images = training.images();
         let folds = self.folds.unwrap_or(FOLDS.min(images));
         match training.cross_validate(folds, watch) {
@@ -223,8 +228,10 @@ impl TrainArguments {
                 Ok(Validation::None { why: "there is only one image to learn from".to_owned() })
             }
             Err(error) if self.folds.is_none() => Ok(Validation::None { why: error.to_string() }),
-            Err(TrainingError::Folds { .. }) => Err(Failure::at("--folds", too_few(folds, images))),
-            Err(error) => Err(Failure::at("--folds", error)),
+            Err(TrainingError::Folds { .. }) => {
+                Err(CliError::at("--folds", too_few(folds, images)))
+            }
+            Err(error) => Err(CliError::at("--folds", error)),
         }
     }
 }
@@ -240,9 +247,9 @@ fn too_few(folds: usize, images: usize) -> String {
 }
 
 /// The files in a folder with one of these endings, by name without the ending.
-fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf>, Failure> {
+fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf>, CliError> {
     let unreadable =
-        |error| Failure::in_file(folder, format!("cannot be read as a folder: {error}"));
+        |error| CliError::in_file(folder, format!("cannot be read as a folder: {error}"));
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
@@ -260,7 +267,7 @@ fn by_stem(folder: &Path, endings: &[&str]) -> Result<BTreeMap<OsString, PathBuf
         let stem = path.file_stem().unwrap_or_default().to_owned();
         if let Some(other) = files.insert(stem, path.clone()) {
             let cause = format!("its labels would be those of {}", other.display());
-            return Err(Failure::in_file(&path, cause));
+            return Err(CliError::in_file(&path, cause));
         }
     }
     Ok(files)
@@ -278,22 +285,22 @@ fn learn(
     training: &mut Training,
     camera: &Camera,
     pair: &Pair,
-) -> Result<Option<ExampleError>, Failure> {
+) -> Result<Option<ExampleError>, CliError> {
     let image = picture_file::read(&pair.image, camera.image)?;
     let labels = read_labels(&pair.labels, camera.image)?;
     match training.add(camera, &image, &labels) {
         Ok(()) => Ok(None),
         Err(cause @ ExampleError::Light(_)) => Ok(Some(cause)),
-        Err(cause @ ExampleError::ImageSize { .. }) => Err(Failure::in_file(&pair.image, cause)),
-        Err(cause) => Err(Failure::in_file(&pair.labels, cause)),
+        Err(cause @ ExampleError::ImageSize { .. }) => Err(CliError::in_file(&pair.image, cause)),
+        Err(cause) => Err(CliError::in_file(&pair.labels, cause)),
     }
 }
 
-fn read_labels(path: &Path, expected: [u32; 2]) -> Result<RgbImage, Failure> {
+fn read_labels(path: &Path, expected: [u32; 2]) -> Result<RgbImage, CliError> {
     picture_file::read_if(path, |found| {
         if found == expected {
             return Ok(());
         }
-        Err(Failure::in_file(path, ExampleError::LabelSize { found, expected }))
+        Err(CliError::in_file(path, ExampleError::LabelSize { found, expected }))
     })
 }

@@ -11,12 +11,12 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure, output,
+    CliError, output,
     text::{grouped, sentence},
 };
 
 /// Checks that a page can be written to a path, before long work begins.
-pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
+pub(crate) fn check_place(path: &Path) -> Result<(), CliError> {
     output::check_place(path, &["html", "htm"])
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn write(
     marker: &dyn Marker,
     comparison: &Comparison,
     poses: [Dart; 2],
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     for world in worlds {
         let states = state_count(&world.graph, marker);
         if states > MOST_STATES {
@@ -40,7 +40,7 @@ pub(crate) fn write(
                 grouped(states as u128),
                 grouped(MOST_STATES as u128)
             );
-            return Err(Failure::in_file(path, cause));
+            return Err(CliError::in_file(path, cause));
         }
     }
     let kind = if marker.name() == "none" { "no" } else { marker.name() };

@@ -35,22 +35,3 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
 fn in_script(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
-
-/// Minutes and seconds.
-fn clock(seconds: f64) -> String {
-    let tenths = (seconds * 10.0).round().max(0.0) as u64;
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_shown_in_minutes() {
-        assert_eq!(
-            [0.0, 59.96, 61.25, 754.3].map(clock),
-            ["0:00.0", "1:00.0", "1:01.3", "12:34.3"]
-        );
-    }
-}

@@ -55,13 +55,14 @@ pub(super) fn lines(text: &str, size: f64, widest: f64) -> Vec<String> {
     lines
 }
 
-/// A name in two lines of similar length, broken after a `-` or a `_`; in one line if it has none.
+/// A name in two lines of similar length, broken at a space or after a `-` or a `_`; in one line if it has
+/// none.
 pub(super) fn in_two(name: &str) -> Vec<String> {
-    let ends = name.char_indices().filter(|(_, letter)| ['-', '_'].contains(letter));
+    let ends = name.char_indices().filter(|(_, letter)| [' ', '-', '_'].contains(letter));
     let breaks = ends.map(|(at, _)| name.split_at(at + 1)).filter(|(_, rest)| !rest.is_empty());
     let widest = |two: &(&str, &str)| width(two.0, 1.0).max(width(two.1, 1.0));
     match breaks.min_by(|one, other| widest(one).total_cmp(&widest(other))) {
-        Some((first, second)) => vec![first.to_owned(), second.to_owned()],
+        Some((first, second)) => vec![first.trim_end().to_owned(), second.to_owned()],
         None => vec![name.to_owned()],
     }
 }
@@ -99,6 +100,7 @@ mod tests {
     fn names_break_behind_their_signs() {
         assert_eq!(in_two("north-west"), ["north-", "west"]);
         assert_eq!(in_two("a_b_room"), ["a_b_", "room"]);
+        assert_eq!(in_two("große Küche"), ["große", "Küche"]);
         assert_eq!(in_two("corner"), ["corner"]);
         assert_eq!(in_two("corner-"), ["corner-"]);
     }

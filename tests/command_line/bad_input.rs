@@ -115,12 +115,14 @@ fn a_truncated_plantri_code_is_an_error_with_its_byte() {
 
 #[test]
 fn a_bad_argument_is_an_error_that_names_what_is_expected() {
-    let cases: [(&[&str], &str); 50] = [
+    let cases: [(&[&str], &str); 52] = [
         (&["check", "--edges", "0"], "a world has at least one edge"),
         (&["check", "--edges", "0..=3"], "a world has at least one edge"),
         (&["check", "--edges", "5..=3"], "the range is empty"),
         (&["check", "--edges", "x"], "write a number as in 6, or several as in 1..=6, not `x`"),
         (&["check", "--edges", "1.."], "not `1..`"),
+        (&["check", "--edges", "1..3"], "write 1..=3 for all sizes from 1 to 3"),
+        (&["check", "--edges", "..3"], "not `..3`"),
         (&["check", "--edges", "99"], "--edges: worlds with 99 edges are too many to enumerate"),
         (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
         (&["check", "--shard", "3/2"], "`3/2` is not a shard; write i/n with i from 1 to n"),
@@ -176,8 +178,11 @@ fn a_bad_argument_is_an_error_that_names_what_is_expected() {
         (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is not an action"),
         (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
         (&["compare", WORLD, WORLD, "--walk", "pick-up"], "action 1: there is no marker here that"),
-        (&["counterexample", "--edges", "0"], "--edges: a world has at least one edge"),
-        (&["counterexample", "--edges", "33"], "--edges: worlds with 33 edges are too many"),
+        (&["counterexample", "--max-edges", "0"], "--max-edges: a world has at least one edge"),
+        (
+            &["counterexample", "--max-edges", "33"],
+            "--max-edges: worlds with 33 edges are too many",
+        ),
         (&["counterexample", "--expect", "some"], "[possible values: none]"),
         (
             &["counterexample", "--html", "page.html"],
@@ -260,7 +265,7 @@ fn an_output_path_is_checked_before_the_work() {
     let verbs: [&[&str]; 6] = [
         &["check", "--edges", "1..=12", "--worst"],
         &["compare", WORLD, WORLD, "--html"],
-        &["counterexample", "--marker", "none", "--edges", "12", "--html"],
+        &["counterexample", "--marker", "none", "--max-edges", "12", "--html"],
         &["explore", WORLD, "--map"],
         &["explore", WORLD, "--svg"],
         &["draw", WORLD, "--out"],
@@ -328,8 +333,9 @@ fn an_output_folder_is_checked_before_the_work() {
     let file = write(&folder, "file", b"");
     let inside = format!("{file}/inside");
     for place in [&file, &inside] {
-        for verb in [["--out", place], ["--atlas", place]] {
-            let rejected = error_of(&[&["counterexample", "--edges", "12"], &verb[..]].concat());
+        for verb in [["--out-dir", place], ["--atlas", place]] {
+            let rejected =
+                error_of(&[&["counterexample", "--max-edges", "12"], &verb[..]].concat());
             assert!(
                 rejected.starts_with(&format!("error: {place}: the folder cannot be created")),
                 "{rejected}"

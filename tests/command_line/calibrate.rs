@@ -166,7 +166,8 @@ fn known_values_come_from_the_start_file_and_the_options() {
          seen_from = \"above\"\n",
     )
     .unwrap();
-    let more = ["--start", start.to_str().unwrap(), "--camera-height", "0.75", "--ahead", "-12.5"];
+    let more =
+        ["--initial", start.to_str().unwrap(), "--camera-height", "0.75", "--ahead", "-12.5"];
     let text = stdout_of(calibrate(&LABORATORY.files[..1], &more));
     let nothing = &mut |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let camera = calibration::read(text.as_bytes(), nothing).unwrap();
@@ -223,10 +224,10 @@ fn invalid_input_is_refused_with_one_message_and_nothing_is_written() {
         (&[promises_much], format!("{promises_much}: the image has 16384 x 16384 pixels, which are too many")),
         (&[&black], format!("{black}: no mirror is seen in the images")),
         (&[&white], format!("{white}: no mirror is seen in the images")),
-        (&[image, "--start", &absurd], format!("{absurd}: line 8, column 17: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10")),
+        (&[image, "--initial", &absurd], format!("{absurd}: line 8, column 17: camera.camera_height: 90 is out of range; a height above the floor in metres lies between 0.01 and 10")),
         (&["gone.png"], "gone.png: cannot be read: ".to_owned()),
-        (&[image, "--start", &bad], format!("{bad}: line 2, column 8: camera.kind: expected \"spherical-mirror\"")),
-        (&[image, "--start", other], format!("{other}: camera.kind: only a spherical mirror is calibrated by its rim")),
+        (&[image, "--initial", &bad], format!("{bad}: line 2, column 8: camera.kind: expected \"spherical-mirror\"")),
+        (&[image, "--initial", other], format!("{other}: camera.kind: only a spherical mirror is calibrated by its rim")),
         (&[image, "--mirror-radius", "7"], "--mirror-radius: 7 is out of range; the radius of a mirror in metres lies between 0.001 and 1".to_owned()),
         (&[image, "--mirror-distance", "0.05"], "--mirror-distance: 0.05 is out of range; the distance of the sphere's centre in metres, more than its radius, lies between 0.05005 and 10".to_owned()),
         (&[image, "--camera-height", "nan"], "--camera-height: NaN is out of range".to_owned()),

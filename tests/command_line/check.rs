@@ -23,6 +23,9 @@ fn every_start_of_every_world_with_up_to_4_edges_is_mapped() {
     assert_eq!(numbers(&lines, "failed"), [0; 4]);
     assert_eq!(numbers(&lines, "moves_total"), [2, 23, 289, 4182]);
     assert_eq!(numbers(&lines, "moves_max"), [1, 3, 10, 21]);
+    // By the second implementation in Python.
+    assert_eq!(numbers(&lines, "certificate_total"), [2, 22, 266, 3625]);
+    assert_eq!(numbers(&lines, "certificate_max"), [1, 3, 6, 10]);
     for line in &lines {
         assert_eq!(line["class"], "multigraph");
         assert_eq!(line["marker"], "directional");
@@ -45,6 +48,8 @@ fn with_a_movable_marker_every_simple_world_is_mapped() {
     }
     // From the start with four vertices and 32 moves, not from the one with 36 moves.
     assert_eq!(lines[5]["largest_ratio"], 4.0 / 3.0);
+    // Certificates are for the directional marker.
+    assert!(lines.iter().all(|line| line.get("certificate_total").is_none()));
     for class in ["simple", "corridor", "planar"] {
         let table = stdout_of(["check", "--marker", "movable", "--class", class]);
         let title = format!("Place and back-link validation, movable marker, class {class}\n");
@@ -79,6 +84,18 @@ fn the_output_is_the_same_at_any_number_of_threads() {
     assert_eq!(with("1"), with("2"));
     let table = |threads: &str| stdout_of(["check", "--edges", "1..=5", "--threads", threads]);
     assert_eq!(table("1"), table("2"));
+}
+
+#[test]
+fn the_table_fits_80_columns() {
+    for arguments in [["--edges", "7", "--shard", "1/64"], ["--marker", "movable", "--edges", "5"]] {
+        let table = stdout_of([&["check"][..], &arguments].concat());
+        assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+    }
+    let table = stdout_of(["check", "--edges", "6"]);
+    assert!(table.contains(" mean/max moves  certificate  max/(m^2 n)\n"), "{table}");
+    // The published figures.
+    assert!(table.contains("         11.4/55       8.5/21 "), "{table}");
 }
 
 #[test]

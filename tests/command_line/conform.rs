@@ -29,6 +29,12 @@ fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
     log
 }
 
+/// The log of a run in shape 6, and the file of its page.
+fn log_and_page(name: &str) -> [PathBuf; 2] {
+    let folder = folder(name);
+    [logged(&folder, SHAPE_6, &["--seed", "3"]), folder.join("report.html")]
+}
+
 /// The exit code and what `--json` says.
 fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
     let conform = ["conform", log.to_str().unwrap(), "--json"];
@@ -431,9 +437,7 @@ fn the_marker_is_asked_for_if_it_is_not_recorded() {
 
 #[test]
 fn another_world_is_a_remark_of_the_report() {
-    let folder = folder("conform-remark");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let page = folder.join("report.html");
+    let [log, page] = log_and_page("conform-remark");
     let output = run([
         "conform",
         log.to_str().unwrap(),
@@ -504,9 +508,7 @@ fn required_cases_that_are_not_covered_are_listed() {
 
 #[test]
 fn the_page_shows_version_command_date_and_hashes() {
-    let folder = folder("conform-origin");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let page = folder.join("report.html");
+    let [log, page] = log_and_page("conform-origin");
     let [log, page] = [&log, &page].map(|path| path.to_str().unwrap());
     let write = || {
         stdout_of(["conform", log, "--world", SHAPE_6, "--html", page]);
@@ -515,7 +517,8 @@ fn the_page_shows_version_command_date_and_hashes() {
     let written = write();
     let command = format!("toposlam conform {log} --world {SHAPE_6} --html {page}");
     assert!(written.contains(&format!("<code>{command}</code>")));
-    assert!(written.contains(&format!("Made by toposlam {} with", env!("CARGO_PKG_VERSION"))));
+    let version = stdout_of(["--version"]);
+    assert!(written.contains(&format!("Made by {} with", version.trim_end())));
     let begun =
         "<th scope=\"row\">first message</th><td>no date: 0.000 s on the clock of the log</td>";
     assert!(written.contains(begun));
@@ -534,12 +537,10 @@ fn the_page_shows_version_command_date_and_hashes() {
 
 #[test]
 fn a_case_that_a_complete_run_has_is_expected() {
-    let folder = folder("conform-expected");
-    let log = logged(&folder, SHAPE_6, &["--seed", "3"]);
-    let cut = folder.join("cut.mcap");
+    let [log, page] = log_and_page("conform-expected");
+    let cut = log.with_file_name("cut.mcap");
     let bytes = fs::read(&log).unwrap();
     fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
-    let page = folder.join("report.html");
     let [cut, page] = [&cut, &page].map(|path| path.to_str().unwrap());
     let output = run(["conform", cut, "--world", SHAPE_6, "--html", page]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));

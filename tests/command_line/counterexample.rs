@@ -1,11 +1,11 @@
 //! `toposlam counterexample`.
 
-use std::{collections::BTreeSet, fs};
+use std::{collections::BTreeSet, fs, process::Output};
 
 use serde_json::{Value, json};
 use toposlam_model::format::world_file;
 
-use super::{folder, names_in, objects, read_world, run, stdout, stdout_of};
+use super::{folder, names_in, objects, read_world, run, stderr, stdout, stdout_of};
 
 /// The lines of a search, those of sizes and then the rest.
 fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {
@@ -16,7 +16,7 @@ fn searched(arguments: &[&str]) -> (Vec<Value>, Vec<Value>) {
 
 #[test]
 fn a_line_for_each_size_and_one_for_the_smallest_pair() {
-    let (sizes, rest) = searched(&["--marker", "undirected", "--edges", "7"]);
+    let (sizes, rest) = searched(&["--marker", "undirected", "--max-edges", "7"]);
     let edges: Vec<_> = sizes.iter().map(|line| line["edges"].as_u64().unwrap()).collect();
     assert_eq!(edges, [1, 2, 3, 4, 5, 6, 7]);
     let six = &sizes[5];
@@ -36,15 +36,15 @@ fn a_line_for_each_size_and_one_for_the_smallest_pair() {
 
 #[test]
 fn without_a_pair_the_smallest_is_null() {
-    let (_, rest) = searched(&["--marker", "directional", "--edges", "5"]);
+    let (_, rest) = searched(&["--marker", "directional", "--max-edges", "5"]);
     assert_eq!((rest.len(), &rest[0]["smallest"]), (1, &Value::Null));
-    let text = stdout_of(["counterexample", "--marker", "directional", "--edges", "5"]);
+    let text = stdout_of(["counterexample", "--marker", "directional", "--max-edges", "5"]);
     assert!(text.ends_with("\nno pair up to 5 edges: a walk distinguishes any two\n"), "{text}");
 }
 
 #[test]
 fn several_markers_make_a_table() {
-    let text = stdout_of(["counterexample", "--edges", "7"]);
+    let text = stdout_of(["counterexample", "--max-edges", "7"]);
     let rows: Vec<_> = text.lines().skip(3).map(|row| row.split_whitespace().next()).collect();
     let markers = [
         "none",
@@ -58,12 +58,12 @@ fn several_markers_make_a_table() {
     ];
     assert_eq!(rows, markers.map(Some));
     assert!(text.contains("undirected               2,177         10  6 and 6 edges\n"), "{text}");
-    let (sizes, rest) = searched(&["--edges", "3"]);
+    let (sizes, rest) = searched(&["--max-edges", "3"]);
     assert_eq!((sizes.len(), rest.len()), (8 * 3, 8));
     // A repeated marker counts once. The pairs are printed after the table.
-    let twice = ["counterexample", "--edges", "4", "--marker", "none", "--marker", "none"];
+    let twice = ["counterexample", "--max-edges", "4", "--marker", "none", "--marker", "none"];
     assert!(stdout_of(twice).starts_with("none marker: "));
-    let text = stdout_of(["counterexample", "--edges", "4", "--all"]);
+    let text = stdout_of(["counterexample", "--max-edges", "4", "--all"]);
     let (table, pairs) = text.split_once("\nAll pairs: 1\n").unwrap();
     assert_eq!(table.lines().count(), 3 + 8);
     assert!(pairs.contains("none-simple-1 ~ none-simple-2: 3 and 4 edges"), "{text}");
@@ -74,8 +74,9 @@ fn several_markers_make_a_table() {
 fn all_pairs_are_reported_and_written_and_are_pairs() {
     let folder = folder("counterexample_all");
     let out = folder.join("new/deep");
-    let arguments = ["--all", "--marker", "undirected", "--class", "multigraph", "--edges", "3"];
-    let written = ["--out", out.to_str().unwrap()];
+    let arguments =
+        ["--all", "--marker", "undirected", "--class", "multigraph", "--max-edges", "3"];
+    let written = ["--out-dir", out.to_str().unwrap()];
     let (sizes, rest) = searched(&[&arguments[..], &written[..]].concat());
     let ambiguous: u64 = sizes.iter().map(|line| line["ambiguous"].as_u64().unwrap()).sum();
     assert_eq!(names_in(&out).len() as u64, ambiguous);
@@ -108,7 +109,8 @@ fn all_pairs_are_reported_and_written_and_are_pairs() {
 #[test]
 fn the_expectation_decides_the_exit_code() {
     let code = |marker, expect: &[&str]| {
-        let arguments = [&["counterexample", "--edges", "4", "--marker", marker], expect].concat();
+        let arguments =
+            [&["counterexample", "--max-edges", "4", "--marker", marker], expect].concat();
         run(arguments).status.code()
     };
     assert_eq!(code("none", &[]), Some(0));
@@ -117,9 +119,34 @@ fn the_expectation_decides_the_exit_code() {
 }
 
 #[test]
+fn after_a_pair_the_other_markers_are_searched_if_the_search_is_to_keep_going() {
+    let folder = folder("counterexample_keep_going");
+    let junit = folder.join("report.xml");
+    let arguments = ["counterexample", "--max-edges", "4", "--expect", "none", "--json", "--junit"];
+    let arguments = [&arguments[..], &[junit.to_str().unwrap()]].concat();
+    let markers = |output: &Output| -> BTreeSet<String> {
+        let lines = objects(&stdout(output)).into_iter();
+        lines.map(|line| line["marker"].as_str().unwrap().to_owned()).collect()
+    };
+    let output = run(&arguments);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(markers(&output), BTreeSet::from(["none".to_owned()]));
+    assert!(stderr(&output).contains("7 markers not searched; --keep-going"));
+    let report = fs::read_to_string(&junit).unwrap();
+    assert!(report.contains("tests=\"8\" failures=\"1\" errors=\"7\""), "{report}");
+    assert!(report.contains("not checked after a violation"), "{report}");
+    let output = run([&arguments[..], &["--keep-going"]].concat());
+    assert_eq!((output.status.code(), markers(&output).len()), (Some(1), 8));
+    let report = fs::read_to_string(&junit).unwrap();
+    assert!(report.contains("errors=\"0\"") && !report.contains("not checked"), "{report}");
+    let output = run(["counterexample", "--keep-going"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn the_output_is_the_same_at_any_number_of_threads() {
     let searched = |threads| {
-        let sizes = ["--class", "multigraph", "--edges", "4", "--all", "--json"];
+        let sizes = ["--class", "multigraph", "--max-edges", "4", "--all", "--json"];
         stdout(&run([&["counterexample", "--threads", threads], &sizes[..]].concat()))
     };
     let one = searched("1");
@@ -131,7 +158,7 @@ fn the_output_is_the_same_at_any_number_of_threads() {
 fn a_page_is_written_if_there_is_a_pair() {
     let folder = folder("counterexample_page");
     let page = folder.join("page.html");
-    let written = ["--edges", "4", "--html", page.to_str().unwrap()];
+    let written = ["--max-edges", "4", "--html", page.to_str().unwrap()];
     let output = run([&["counterexample", "--marker", "directional"], &written[..]].concat());
     assert_eq!((output.status.code(), names_in(&folder).len()), (Some(0), 0));
     stdout_of([&["counterexample", "--marker", "none"], &written[..]].concat());

@@ -74,7 +74,7 @@ fn one_view_is_shown_stage_by_stage() {
         "tiles",
         "--view",
         "5",
-        "--out",
+        "--out-dir",
         folder.to_str().unwrap(),
     ]);
     let line = &objects(&stdout(&output))[0];

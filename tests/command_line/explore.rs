@@ -5,6 +5,7 @@ use std::{fs, path::PathBuf};
 use serde_json::Value;
 use toposlam_model::{
     embedded_graph::{Dart, Vertex},
+    folding::fold,
     format::{
         named_world::NamedWorld,
         plantri::{self, PlantriCode},
@@ -12,7 +13,8 @@ use toposlam_model::{
     },
     isomorphism::Bijection,
     marker::{Directional, Marker, Movable},
-    world::{Action, GraphWorld},
+    percept::{Door, Percept},
+    world::{Action, GraphWorld, World},
 };
 
 use super::{folder, objects, read_world, run, stdout, stdout_of, world_files};
@@ -86,12 +88,50 @@ Round 3: the robot takes v0.2 (1 move) and senses 3 doors.
   Known: 2 vertices, 3 edges. Unexplored: 0 darts.
 
 The map is complete after 4 moves: 2 vertices, 3 edges. A run in this world
-takes at least 3 and at most 24 moves.
+takes at least 4 and at most 24 moves.
 It is isomorphic to the world:
   v0 = u, v1 = v
 The robot is where it believes to be: at v0, entered by dart v0.0.
 ";
     assert_eq!(stdout_of(["explore", "worlds/theta-torus.toml"]), story);
+}
+
+#[test]
+fn the_certificate_is_a_walk_whose_folded_trail_is_complete() {
+    for path in world_files() {
+        let file = path.to_str().unwrap();
+        let lines = objects(&stdout_of(["explore", "--json", "--certificate", file]));
+        let certificate = &lines[0]["certificate"];
+        let world = read_world(&path);
+        let start = world.start.unwrap();
+        let doors: Vec<Door> = certificate["doors"].as_array().unwrap().iter().map(door).collect();
+        assert_eq!(certificate["moves"], doors.len());
+        let robot = GraphWorld::with_marker(&world.graph, Directional, start);
+        let trail = fold(&percepts(robot, &doors), &doors).unwrap();
+        assert!(trail.is_complete(), "{file}");
+        let moves = lines[0]["moves"].as_u64().unwrap();
+        assert_eq!(certificate["ratio"], moves as f64 / doors.len() as f64);
+    }
+    let text = flat(&stdout_of(["explore", "worlds/shape-6.toml", "--certificate"]));
+    let expected = "Certificate: the shortest walk that proves the map of this world takes 7 moves. \
+                    No robot can map the world in fewer. This run took 1.00 times as many. doors 0";
+    assert!(text.contains(expected), "{text}");
+    let movable =
+        run(["explore", "worlds/shape-6.toml", "--marker", "movable", "--certificate"]);
+    assert_eq!(movable.status.code(), Some(2));
+}
+
+fn door(door: &Value) -> Door {
+    Door(door.as_u64().unwrap() as u32)
+}
+
+fn percepts(mut robot: GraphWorld<Directional>, doors: &[Door]) -> Vec<Percept> {
+    let mut percepts = vec![robot.percept().unwrap()];
+    for &door in doors {
+        robot.traverse(door).unwrap();
+        percepts.push(robot.percept().unwrap());
+    }
+    percepts
 }
 
 #[test]

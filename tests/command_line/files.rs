@@ -41,7 +41,7 @@ const OUTPUTS: [OutputOption; 38] = [
         ],
     ),
     // These read no file.
-    output("counterexample", "--out", &[]),
+    output("counterexample", "--out-dir", &[]),
     output("counterexample", "--html", &[]),
     output("counterexample", "--junit", &[]),
     output("counterexample", "--sarif", &[]),
@@ -71,7 +71,7 @@ const OUTPUTS: [OutputOption; 38] = [
         &[("w.png", "render IN --out OUT"), ("c.png", "render WORLD --calibration IN --out OUT")],
     ),
     output("render", "--labels", &[("w.png", "render IN --out NEW.png --labels OUT")]),
-    output("calibrate", "--out", &[("c.toml", "calibrate IMAGE --start IN --out OUT")]),
+    output("calibrate", "--out", &[("c.toml", "calibrate IMAGE --initial IN --out OUT")]),
     output(
         "calibrate",
         "--picture",
@@ -93,7 +93,7 @@ const OUTPUTS: [OutputOption; 38] = [
         ],
     ),
     output("sense", "--stages", &[]),
-    output("evaluate vision", "--out", &[]),
+    output("evaluate vision", "--out-dir", &[]),
     output("info", "--write-mapping", &[("l.toml", "info IN --write-mapping OUT")]),
     output(
         "conform",
@@ -129,7 +129,7 @@ const INPUTS: [(&str, &[&str]); 9] = [
     ("simulate", &["--calibration", "--colours"]),
     ("drive", &["--calibration", "--colours", "--plan"]),
     ("render", &["--calibration"]),
-    ("calibrate", &["--start"]),
+    ("calibrate", &["--initial"]),
     ("train", &["--images", "--labels", "--calibration"]),
     ("sense", &["--calibration", "--colours"]),
     ("conform", &["--world", "--mapping", "--calibration", "--colours", "--quirks"]),
@@ -141,8 +141,7 @@ fn file_options(verb: &str) -> BTreeSet<String> {
     let help = stdout_of(verb.split(' ').chain(["--help"]));
     let names = help.lines().filter_map(|line| {
         let (option, value) = line.trim_start().split_once(" <")?;
-        let is_file = ["FILE>", "DIR>", "FOLDER>", "COLOURS>"]
-            .contains(&value.trim().trim_end_matches("..."));
+        let is_file = ["FILE>", "DIR>"].contains(&value.trim().trim_end_matches("..."));
         (is_file && option.starts_with('-'))
             .then(|| option.rsplit(' ').next().unwrap_or_default().to_owned())
     });

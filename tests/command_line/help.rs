@@ -2,9 +2,9 @@
 
 use std::{io::Read, process::Stdio};
 
-use super::{folder, run, stderr, stdout, stdout_of, toposlam};
+use super::{exit_codes, folder, names_in, run, stderr, stdout, stdout_of, toposlam};
 
-const VERBS: [(&str, &[&str]); 18] = [
+const VERBS: [(&str, &[&str]); 19] = [
     ("check", &["--edges", "--class", "--marker", "--choices", "--shard", "--from", "--worst"]),
     (
         "explore",
@@ -13,12 +13,21 @@ const VERBS: [(&str, &[&str]); 18] = [
     ("compare", &["--marker", "--start", "--walk", "--html", "--json"]),
     (
         "counterexample",
-        &["--marker", "--class", "--edges", "--all", "--out", "--html", "--expect", "--atlas"],
+        &[
+            "--marker",
+            "--class",
+            "--max-edges",
+            "--all",
+            "--out-dir",
+            "--html",
+            "--expect",
+            "--atlas",
+        ],
     ),
     ("draw", &["--start", "--marker", "--out", "--format"]),
     ("paper", &["--section", "--open", "--json"]),
     ("proofs", &["--run", "--choices", "--engine", "--json"]),
-    ("calibrate", &["--out", "--start", "--mirror-radius", "--picture", "--mask-out", "--json"]),
+    ("calibrate", &["--out", "--initial", "--mirror-radius", "--picture", "--mask-out", "--json"]),
     ("train", &["--images", "--labels", "--stripe-width", "--folds", "marker (0,0,255)", "--json"]),
     ("sense", &["--calibration", "--colours", "--stages", "--json", "--out"]),
     ("evaluate", &["vision", "control", "runs"]),
@@ -44,7 +53,16 @@ const VERBS: [(&str, &[&str]); 18] = [
     ),
     (
         "render",
-        &["--pose", "--out", "--calibration", "--size", "--look", "--effects", "--labels", "vinyl"],
+        &[
+            "--pose",
+            "--out",
+            "--calibration",
+            "--size",
+            "--look",
+            "--effects",
+            "--with-marker",
+            "--labels",
+        ],
     ),
     ("info", &["--mapping", "--write-mapping", "--json"]),
     (
@@ -66,6 +84,7 @@ const VERBS: [(&str, &[&str]); 18] = [
     ),
     ("replay", &["--calibration", "--colours", "--mapping", "--map", "--json"]),
     ("completions", &[]),
+    ("man", &["--out-dir"]),
 ];
 
 #[test]
@@ -99,10 +118,10 @@ fn no_line_is_wider_than_80_columns() {
         &["compare", "worlds/figure-1a.toml", "worlds/figure-1b.toml", "--marker", "undirected"],
         &["compare", "worlds/cycle-3.toml", "worlds/cycle-4.toml", "--marker", "two-distinct"],
         &["compare", "worlds/k4-plane.toml", "worlds/k4-plane.toml", "--html", &page],
-        &["counterexample", "--edges", "6"],
-        &["counterexample", "--edges", "4", "--all"],
-        &["counterexample", "--marker", "undirected", "--class", "corridor", "--edges", "7"],
-        &["counterexample", "--marker", "directional", "--edges", "5"],
+        &["counterexample", "--max-edges", "6"],
+        &["counterexample", "--max-edges", "4", "--all"],
+        &["counterexample", "--marker", "undirected", "--class", "corridor", "--max-edges", "7"],
+        &["counterexample", "--marker", "directional", "--max-edges", "5"],
         &["paper"],
         &["paper", "--open"],
         &["proofs"],
@@ -143,6 +162,75 @@ fn every_shell_has_completions_of_every_verb() {
     for shell in ["bash", "zsh", "fish"] {
         let script = stdout_of(["completions", shell]);
         assert!(VERBS.iter().all(|(verb, _)| script.contains(verb)), "{shell}");
+    }
+}
+
+#[test]
+fn the_help_of_every_verb_ends_with_its_exit_codes() {
+    let parts = ["evaluate vision", "evaluate control", "evaluate runs"];
+    let verbs = VERBS.iter().map(|(verb, _)| *verb).chain(parts).chain([""]);
+    // The verbs that work on what they are given, and have no verdict.
+    let without_verdict =
+        ["compare", "draw", "calibrate", "train", "sense", "render", "completions", "man"];
+    for verb in verbs {
+        let words: Vec<_> = verb.split(' ').filter(|word| !word.is_empty()).collect();
+        for help in ["-h", "--help"] {
+            let codes = exit_codes(&stdout_of([&words[..], &[help]].concat()));
+            assert!(codes.contains_key(&0) && codes.contains_key(&2), "{verb}: {codes:?}");
+            assert!(codes.keys().all(|code| (0..=3).contains(code)), "{verb}: {codes:?}");
+            assert!(codes.values().all(|meaning| meaning.len() > 8), "{verb}: {codes:?}");
+            assert_eq!(codes.contains_key(&1), !without_verdict.contains(&verb), "{verb}");
+        }
+    }
+}
+
+#[test]
+fn there_is_a_manual_page_of_every_verb() {
+    let folder = folder("man");
+    stdout_of(["man", "-o", folder.to_str().unwrap()]);
+    let parts = ["evaluate-vision", "evaluate-control", "evaluate-runs"];
+    let mut pages: Vec<_> = VERBS.iter().map(|(verb, _)| *verb).chain(parts).collect();
+    pages.sort_unstable();
+    let mut names: Vec<_> = pages.iter().map(|verb| format!("toposlam-{verb}.1")).collect();
+    names.push("toposlam.1".to_owned());
+    names.sort_unstable();
+    assert_eq!(names_in(&folder), names);
+    let main = std::fs::read_to_string(folder.join("toposlam.1")).unwrap();
+    for verb in pages {
+        let page = std::fs::read_to_string(folder.join(format!("toposlam-{verb}.1"))).unwrap();
+        let printed = stdout_of([&["man"], &verb.split('-').collect::<Vec<_>>()[..]].concat());
+        assert_eq!(page, printed);
+        let sections = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "NOTES", "\"EXIT STATUS\""];
+        for section in sections {
+            assert!(page.contains(&format!("\n.SH {section}\n")), "{section}: {page}");
+        }
+        assert!(page.contains("\n  2  bad usage"), "{page}");
+        assert!(verb.contains('-') || main.contains(&format!("toposlam\\-{verb}(1)")), "{main}");
+    }
+    assert_eq!(main, stdout_of(["man"]));
+    let unknown = run(["man", "fly"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(stderr(&unknown).contains("there is no command `fly`; there are: check, explore"));
+}
+
+/// The program that formats the pages for `man` finds no fault in them.
+#[test]
+fn the_manual_pages_are_well_formed() {
+    for verb in VERBS.iter().map(|(verb, _)| *verb).filter(|verb| *verb != "evaluate") {
+        let page = stdout_of(["man", verb]);
+        let mut groff = std::process::Command::new("groff");
+        // Without overstriking.
+        groff.args(["-man", "-ww", "-Tascii", "-rLL=80n", "-P-cbou"]);
+        let Ok(mut child) =
+            groff.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()
+        else {
+            eprintln!("skipped: there is no groff");
+            return;
+        };
+        std::io::Write::write_all(&mut child.stdin.take().unwrap(), page.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(stderr(&output), "", "{verb}");
+        assert!(stdout(&output).contains("\nEXIT STATUS\n"), "{verb}");
     }
 }
 

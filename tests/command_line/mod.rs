@@ -16,6 +16,8 @@ mod folding;
 mod help;
 mod info;
 mod log;
+mod names;
+mod options;
 mod proofs;
 mod render;
 mod replay;
@@ -24,10 +26,12 @@ mod simulate;
 mod train;
 
 use std::{
-    ffi::OsStr,
+    collections::{BTreeMap, BTreeSet},
+    ffi::{OsStr, OsString},
     fs,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
+    sync::{Mutex, PoisonError},
 };
 
 use serde_json::Value;
@@ -42,9 +46,49 @@ fn toposlam() -> Command {
     command
 }
 
-/// Runs the program to its end.
+/// Runs the program to its end. Its exit code is one that the help of the verb has.
 fn run<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Output {
-    toposlam().args(arguments).output().unwrap()
+    let arguments: Vec<OsString> =
+        arguments.into_iter().map(|word| word.as_ref().to_owned()).collect();
+    let output = toposlam().args(&arguments).output().unwrap();
+    check_exit_code(&arguments, &output);
+    output
+}
+
+fn check_exit_code(arguments: &[OsString], output: &Output) {
+    static KNOWN: Mutex<BTreeMap<Vec<OsString>, BTreeSet<i32>>> = Mutex::new(BTreeMap::new());
+    let words = if arguments.first().is_some_and(|verb| verb == "evaluate") { 2 } else { 1 };
+    let verb = arguments.get(..words).unwrap_or_default().to_vec();
+    let code = output.status.code().expect("the program was killed");
+    // Bad usage can be an unknown verb.
+    if code == 2 || verb.iter().any(|word| word.to_string_lossy().starts_with('-')) {
+        return;
+    }
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let codes = known.entry(verb.clone()).or_insert_with(|| {
+        let help = toposlam().args(&verb).arg("--help").output().unwrap();
+        exit_codes(&stdout(&help)).into_keys().collect()
+    });
+    assert!(codes.contains(&code), "exit code {code} is not in the help: {arguments:?}");
+}
+
+/// The exit codes at the end of a help, with their meanings.
+fn exit_codes(help: &str) -> BTreeMap<i32, String> {
+    let (_, listed) = help.rsplit_once("\nExit codes:\n").expect(help);
+    let mut codes = BTreeMap::new();
+    for line in listed.lines() {
+        match line.strip_prefix("  ").and_then(|line| line.split_once("  ")) {
+            Some((code, meaning)) if !code.is_empty() => {
+                let twice = codes.insert(code.parse().expect(help), meaning.to_owned());
+                assert_eq!(twice, None, "{help}");
+            }
+            _ => {
+                let mut last = codes.last_entry().expect(help);
+                last.get_mut().push_str(line.strip_prefix("    ").expect(help));
+            }
+        }
+    }
+    codes
 }
 
 /// The standard output of a successful run.

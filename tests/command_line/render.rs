@@ -34,7 +34,8 @@ fn the_same_command_writes_the_same_files() {
     // At the start the robot stands on the marker and hides it.
     let aside = ["--pose", "0.8,8,90"];
     assert!(
-        render("aside", &aside)[1] != render("marked", &[&aside[..], &["--marker"]].concat())[1]
+        render("aside", &aside)[1]
+            != render("marked", &[&aside[..], &["--with-marker"]].concat())[1]
     );
     let plain = render("plain", &["--effects", "none"]);
     assert!(plain != first);

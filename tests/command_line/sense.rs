@@ -56,7 +56,7 @@ fn rendered(name: &str, pose: &str) -> String {
         "laboratory",
         "--effects",
         "none",
-        "--marker",
+        "--with-marker",
         "--out",
         &path,
     ]);

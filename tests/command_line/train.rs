@@ -65,7 +65,7 @@ impl Set {
 
     fn render(&self, pose: &str, image: &str, more: &[&str]) {
         let [image, camera] = [image, "camera.toml"].map(|name| self.path(name));
-        let what = ["render", "worlds/shape-8.toml", "--marker", "--effects", "none"];
+        let what = ["render", "worlds/shape-8.toml", "--with-marker", "--effects", "none"];
         let how = ["--pose", pose, "--calibration", &camera, "--out", &image];
         stdout_of([&what[..], &how, more].concat());
     }

@@ -6,12 +6,14 @@ use thiserror::Error;
 
 use super::{
     Algorithm, AlgorithmExplorer, Explorer, FailedStart, FalseStep, RunState, Tally,
-    first_false_step, judge_start,
+    first_false_step, judge_start, tally::CheckedStart,
 };
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph},
+    embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::{Class, Each, Enumeration, EnumerationPart, SizeError, Watch, in_parts},
+    folding::MarkerTree,
     isomorphism::{Candidate, canonical},
+    marker::{Directional, Marker},
 };
 
 /// One of `n` disjoint parts of a check.
@@ -102,10 +104,9 @@ impl Sweep {
     fn tally<C: StartChecker>(&self, watch: &dyn Watch, new: impl Fn() -> C + Sync) -> Tally {
         let parts = self.shard.select(self.worlds.parts());
         tally_parts(&parts, watch, |part, tally| {
-            let mut checker = new();
+            let mut part_checker = PartChecker::new(new(), watch);
             part.for_each(&mut |found| {
-                let automorphisms = found.automorphisms as usize;
-                check_starts(&mut checker, found.graph, automorphisms, watch, tally)
+                part_checker.check_starts(found.graph, found.automorphisms as usize, tally)
             })
         })
     }
@@ -140,9 +141,9 @@ fn check_parts<C: StartChecker>(
 ) -> Tally {
     let parts: Vec<_> = graphs.chunks(64).collect();
     tally_parts(&parts, watch, |part, tally| {
-        let mut checker = new();
+        let mut part_checker = PartChecker::new(new(), watch);
         part.iter().try_for_each(|graph| {
-            check_starts(&mut checker, graph, canonical(graph).automorphisms, watch, tally)
+            part_checker.check_starts(graph, canonical(graph).automorphisms, tally)
         })
     })
 }
@@ -171,29 +172,57 @@ fn tally_parts<P: Sync>(
 
 /// Checks one start after the other. Memory is kept from start to start.
 trait StartChecker {
-    fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally);
+    /// The marker of the starts.
+    fn marker(&self) -> impl Marker;
+
+    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally);
 }
 
-/// Checks every start of a world.
-fn check_starts(
-    checker: &mut impl StartChecker,
-    graph: &EmbeddedGraph,
-    automorphisms: usize,
-    watch: &dyn Watch,
-    tally: &mut Tally,
-) -> ControlFlow<()> {
-    tally.worlds += 1;
-    let mut check = |facing| {
-        tally.starts += 1;
-        checker.check_start(graph, facing, tally);
-        go_on(watch)
-    };
-    if automorphisms == 1 {
-        graph.darts().try_for_each(check)
-    } else {
-        // Darts that an automorphism takes to each other are the same start.
-        let orbit = canonical(graph).orbit;
-        graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
+/// Checks the worlds of one part.
+struct PartChecker<'w, C> {
+    checker: C,
+    watch: &'w dyn Watch,
+    /// Measures certificates, if the marker has them.
+    certificates: Option<MarkerTree>,
+}
+
+impl<'w, C: StartChecker> PartChecker<'w, C> {
+    fn new(checker: C, watch: &'w dyn Watch) -> Self {
+        let directional = checker.marker().name() == Directional.name();
+        Self { checker, watch, certificates: directional.then(MarkerTree::default) }
+    }
+
+    /// Checks every start of a world.
+    fn check_starts(
+        &mut self,
+        graph: &EmbeddedGraph,
+        automorphisms: usize,
+        tally: &mut Tally,
+    ) -> ControlFlow<()> {
+        tally.worlds += 1;
+        // The starts at one vertex follow one another, and have one certificate.
+        let mut measured: Option<(Vertex, u64)> = None;
+        let mut check = |facing| {
+            let vertex = graph.vertex(facing);
+            if let Some(tree) = &mut self.certificates
+                && measured.is_none_or(|(at, _)| at != vertex)
+            {
+                tree.grow(graph, vertex);
+                measured = Some((vertex, tree.length(graph) as u64));
+            }
+            let certificate = measured.map(|(_, length)| length);
+            let start = CheckedStart { graph, facing, certificate };
+            tally.count_start(start);
+            self.checker.check_start(start, tally);
+            go_on(self.watch)
+        };
+        if automorphisms == 1 {
+            graph.darts().try_for_each(check)
+        } else {
+            // Darts that an automorphism takes to each other are the same start.
+            let orbit = canonical(graph).orbit;
+            graph.darts().filter(|dart| orbit[dart.at()] == *dart).try_for_each(&mut check)
+        }
     }
 }
 
@@ -203,11 +232,16 @@ struct ExplorerChecker<E> {
 }
 
 impl<E: Explorer> StartChecker for ExplorerChecker<E> {
-    fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
+    fn marker(&self) -> impl Marker {
+        self.explorer.marker()
+    }
+
+    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally) {
+        let CheckedStart { graph, facing, .. } = start;
         let Self { explorer, candidate } = self;
         match judge_start(explorer, graph, facing, candidate) {
             (moves, Ok(())) => {
-                tally.count_run(graph, facing, moves);
+                tally.count_run(start, moves);
                 tally.mapped += 1;
             }
             (moves, Err(flaw)) => {
@@ -246,9 +280,14 @@ impl<'a, A: Algorithm> AlgorithmChecker<'a, A> {
 }
 
 impl<A: Algorithm> StartChecker for AlgorithmChecker<'_, A> {
-    fn check_start(&mut self, graph: &EmbeddedGraph, facing: Dart, tally: &mut Tally) {
+    fn marker(&self) -> impl Marker {
+        self.explorer.marker()
+    }
+
+    fn check_start(&mut self, start: CheckedStart, tally: &mut Tally) {
+        let CheckedStart { graph, facing, .. } = start;
         match judge_start(&mut self.explorer, graph, facing, &mut self.candidate) {
-            (moves, Ok(())) => tally.count_run(graph, facing, moves),
+            (moves, Ok(())) => tally.count_run(start, moves),
             (moves, Err(flaw)) => {
                 if tally.failure.is_none() {
                     let (false_step, graph) = (self.false_step(graph, facing), graph.clone());

@@ -3,6 +3,15 @@
 use super::{ChoicesLimit, CostOrder, EveryWay, FalseStep, Flaw};
 use crate::embedded_graph::{Dart, EmbeddedGraph};
 
+/// A start that is checked.
+#[derive(Clone, Copy)]
+pub(super) struct CheckedStart<'g> {
+    pub(super) graph: &'g EmbeddedGraph,
+    pub(super) facing: Dart,
+    /// The length of its [certificate](crate::folding::certificate_length), if the marker is directional.
+    pub(super) certificate: Option<u64>,
+}
+
 /// The start that took the most moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorstStart {
@@ -40,6 +49,14 @@ pub struct Tally {
     pub mapped: u64,
     /// The total of moves of all runs with the default choices.
     pub moves_total: u64,
+    /// The total of the [certificates](crate::folding::certificate_length) of the starts; 0 if the
+    /// marker is not directional.
+    pub certificate_total: u64,
+    /// The longest certificate of a start; 0 if the marker is not directional.
+    pub certificate_max: u64,
+    /// Starts that were mapped right in fewer moves than their certificate has. The algorithm guessed:
+    /// there is another world in which it makes the same walk.
+    pub below_certificate: u64,
     /// The first start that took the most moves with the default choices.
     pub worst: Option<WorstStart>,
     /// The moves and the vertices of the run with the most moves per vertex.
@@ -86,9 +103,19 @@ impl Tally {
         moves as f64 / order.of(edges as f64, vertices as f64)
     }
 
+    /// Counts a start, and its certificate.
+    pub(super) fn count_start(&mut self, start: CheckedStart) {
+        self.starts += 1;
+        let certificate = start.certificate.unwrap_or_default();
+        self.certificate_total += certificate;
+        self.certificate_max = self.certificate_max.max(certificate);
+    }
+
     /// Counts a run that ended.
-    pub(super) fn count_run(&mut self, graph: &EmbeddedGraph, facing: Dart, moves: u64) {
+    pub(super) fn count_run(&mut self, start: CheckedStart, moves: u64) {
+        let CheckedStart { graph, facing, certificate } = start;
         self.moves_total += moves;
+        self.below_certificate += u64::from(certificate.is_some_and(|least| moves < least));
         if self.worst.as_ref().is_none_or(|worst| moves > worst.moves) {
             self.worst = Some(WorstStart { graph: graph.clone(), facing, moves });
         }
@@ -127,6 +154,9 @@ impl Tally {
         self.starts += later.starts;
         self.mapped += later.mapped;
         self.moves_total += later.moves_total;
+        self.below_certificate += later.below_certificate;
+        self.certificate_total += later.certificate_total;
+        self.certificate_max = self.certificate_max.max(later.certificate_max);
         self.states += later.states;
         self.over_budget += later.over_budget;
         self.over_memory += later.over_memory;

@@ -7,178 +7,85 @@
 //!
 //! No explorer can map a world in fewer moves than its certificate has, whatever it does.
 
-use std::collections::VecDeque;
+use std::mem;
 
+use super::marker_tree::MarkerTree;
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     percept::Door,
 };
 
-/// A breadth-first tree from the marker's vertex.
-struct MarkerTree<'g> {
-    graph: &'g EmbeddedGraph,
-    /// The distance of each vertex from the marker.
-    distance: Vec<usize>,
-    /// The dart at each vertex that leads toward the marker; of no use at the marker's vertex.
-    up: Vec<Dart>,
-    /// Whether each vertex is behind a hanging edge.
-    hangs: Vec<bool>,
-    /// The number of hanging edges on the way from each vertex to the marker.
-    hanging: Vec<usize>,
-    /// The vertices in the order of their distances.
-    order: Vec<Vertex>,
-}
-
-impl<'g> MarkerTree<'g> {
-    fn new(graph: &'g EmbeddedGraph, facing: Dart) -> Self {
-        let count = graph.vertex_count();
-        let root = graph.vertex(facing);
-        let mut tree = Self {
-            graph,
-            distance: vec![usize::MAX; count],
-            up: vec![facing; count],
-            hangs: vec![true; count],
-            hanging: vec![0; count],
-            order: Vec::with_capacity(count),
-        };
-        tree.distance[root.at()] = 0;
-        let mut queue = VecDeque::from([root]);
-        while let Some(vertex) = queue.pop_front() {
-            tree.order.push(vertex);
-            for dart in graph.darts_of(vertex) {
-                let entry = graph.opposite(dart);
-                let next = graph.vertex(entry).at();
-                if tree.distance[next] == usize::MAX {
-                    tree.distance[next] = tree.distance[vertex.at()] + 1;
-                    tree.up[next] = entry;
-                    queue.push_back(graph.vertex(entry));
-                }
-            }
-        }
-        tree.hangs[root.at()] = false;
-        for (one, other) in tree.loops().collect::<Vec<_>>() {
-            for dart in [one, other] {
-                tree.hangs[graph.vertex(dart).at()] = false;
-            }
-        }
-        for &vertex in tree.order.iter().skip(1).rev() {
-            if !tree.hangs[vertex.at()] {
-                let parent = tree.parent(vertex);
-                tree.hangs[parent.at()] = false;
-            }
-        }
-        for &vertex in tree.order.iter().skip(1) {
-            let hangs = usize::from(tree.hangs[vertex.at()]);
-            tree.hanging[vertex.at()] = tree.hanging[tree.parent(vertex).at()] + hangs;
-        }
-        tree
-    }
-
-    fn root(&self) -> Vertex {
-        self.order[0]
-    }
-
-    fn parent(&self, vertex: Vertex) -> Vertex {
-        self.graph.vertex(self.graph.opposite(self.up[vertex.at()]))
-    }
-
-    fn is_tree_edge(&self, one: Dart, other: Dart) -> bool {
-        [one, other].into_iter().any(|dart| {
-            let vertex = self.graph.vertex(dart);
-            vertex != self.root() && self.up[vertex.at()] == dart
-        })
-    }
-
-    /// The edges that are not in the tree.
-    fn loops(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
-        self.graph.edges().filter(|&(one, other)| !self.is_tree_edge(one, other))
-    }
-
-    fn distance_of(&self, dart: Dart) -> usize {
-        self.distance[self.graph.vertex(dart).at()]
-    }
-
-    /// The hanging leaf at which a shortest certificate ends, and what that saves; `None` if it ends at
-    /// the marker.
-    fn last_leaf(&self) -> Option<(Vertex, usize)> {
-        let saved = |&vertex: &Vertex| {
-            let (hanging, distance) = (self.hanging[vertex.at()], self.distance[vertex.at()]);
-            let leaf = self.hangs[vertex.at()] && self.graph.degree(vertex) == 1;
-            (leaf && 2 * hanging > distance).then(|| (vertex, 2 * hanging - distance))
-        };
-        // The first of the best, in the order of the tree.
-        self.order.iter().rev().filter_map(saved).max_by_key(|&(_, saved)| saved)
-    }
-
-    fn length(&self) -> usize {
-        let loops: usize = self
-            .loops()
-            .map(|(one, other)| self.distance_of(one) + self.distance_of(other) + 1)
-            .sum();
-        let hanging = self.hangs.iter().filter(|&&hangs| hangs).count();
-        loops + 2 * hanging - self.last_leaf().map_or(0, |(_, saved)| saved)
-    }
-
-    /// The darts by which a shortest certificate leaves, in order.
-    fn walk(&self) -> Vec<Dart> {
-        let last = self.last_leaf().map(|(leaf, _)| leaf);
-        let mut on_last_way = vec![false; self.graph.vertex_count()];
-        let mut last_way = Vec::new();
-        let mut at = last.unwrap_or(self.root());
-        while at != self.root() {
-            on_last_way[at.at()] = true;
-            last_way.push(self.graph.opposite(self.up[at.at()]));
-            at = self.parent(at);
-        }
-        last_way.reverse();
-        let mut walk = CertificateWalk {
-            tree: self,
-            visited: vec![false; self.hangs.len()],
-            on_last_way,
-            darts: vec![],
-        };
-        walk.visit(self.root());
-        for (one, other) in self.loops() {
-            let mut there = Vec::new();
-            let mut at = self.graph.vertex(one);
-            while at != self.root() {
-                there.push(self.graph.opposite(self.up[at.at()]));
-                at = self.parent(at);
-            }
-            for dart in there.into_iter().rev().chain([one]) {
-                walk.take(dart);
-            }
-            let mut at = self.graph.vertex(other);
-            while at != self.root() {
-                walk.take(self.up[at.at()]);
-                at = self.parent(at);
-            }
-        }
-        for dart in last_way {
-            walk.take(dart);
-        }
-        walk.darts
-    }
-}
-
 /// A certificate under construction.
-struct CertificateWalk<'t> {
-    tree: &'t MarkerTree<'t>,
+struct CertificateWalk<'g> {
+    graph: &'g EmbeddedGraph,
+    tree: MarkerTree,
     visited: Vec<bool>,
     /// The vertices on the last way, which is not walked back.
     on_last_way: Vec<bool>,
+    /// The darts by which the walk leaves, in order.
     darts: Vec<Dart>,
 }
 
-impl CertificateWalk<'_> {
+impl<'g> CertificateWalk<'g> {
+    fn new(graph: &'g EmbeddedGraph, root: Vertex) -> Self {
+        let mut tree = MarkerTree::default();
+        tree.grow(graph, root);
+        let visited = vec![false; graph.vertex_count()];
+        Self { graph, tree, on_last_way: visited.clone(), visited, darts: Vec::new() }
+    }
+
+    /// Walks along the tree and along each edge outside it, and ends on the last way.
+    fn walk(&mut self) {
+        let last_way = match self.tree.last_leaf(self.graph) {
+            Some((leaf, _)) => self.way_from_marker(leaf),
+            None => Vec::new(),
+        };
+        for &dart in &last_way {
+            let vertex = self.behind(dart);
+            self.on_last_way[vertex.at()] = true;
+        }
+        self.visit(self.tree.root());
+        for (one, other) in self.graph.edges() {
+            if [one, other].into_iter().any(|dart| self.tree.leads_up(self.graph, dart)) {
+                continue;
+            }
+            for dart in self.way_from_marker(self.graph.vertex(one)) {
+                self.take(dart);
+            }
+            self.take(one);
+            let mut at = self.graph.vertex(other);
+            while at != self.tree.root() {
+                self.take(self.tree.up(at));
+                at = self.tree.parent(self.graph, at);
+            }
+        }
+        for dart in last_way {
+            self.take(dart);
+        }
+    }
+
+    fn behind(&self, dart: Dart) -> Vertex {
+        self.graph.vertex(self.graph.opposite(dart))
+    }
+
+    /// The darts of the tree that lead from the marker to a vertex.
+    fn way_from_marker(&self, mut vertex: Vertex) -> Vec<Dart> {
+        let mut way = Vec::new();
+        while vertex != self.tree.root() {
+            way.push(self.graph.opposite(self.tree.up(vertex)));
+            vertex = self.tree.parent(self.graph, vertex);
+        }
+        way.reverse();
+        way
+    }
+
     /// Takes a dart. At the first visit of a vertex, what hangs there is traversed.
     fn take(&mut self, dart: Dart) {
         self.darts.push(dart);
-        self.visit(self.tree.graph.vertex(self.tree.graph.opposite(dart)));
+        self.visit(self.behind(dart));
     }
 
     fn visit(&mut self, vertex: Vertex) {
-        let graph = self.tree.graph;
         // A way through hanging trees, with the darts that are still to be tried at each vertex.
         let mut open = vec![(vertex, self.first_visit(vertex))];
         while let Some((vertex, darts)) = open.last_mut() {
@@ -186,11 +93,11 @@ impl CertificateWalk<'_> {
                 let vertex = *vertex;
                 open.pop();
                 if !open.is_empty() {
-                    self.darts.push(self.tree.up[vertex.at()]);
+                    self.darts.push(self.tree.up(vertex));
                 }
                 continue;
             };
-            let next = graph.vertex(graph.opposite(dart));
+            let next = self.behind(dart);
             self.darts.push(dart);
             let darts = self.first_visit(next);
             open.push((next, darts));
@@ -199,18 +106,16 @@ impl CertificateWalk<'_> {
 
     /// The darts that lead to what hangs at a vertex and is not on the last way, the first one last.
     fn first_visit(&mut self, vertex: Vertex) -> Vec<Dart> {
-        if std::mem::replace(&mut self.visited[vertex.at()], true) {
+        if mem::replace(&mut self.visited[vertex.at()], true) {
             return Vec::new();
         }
-        let (tree, graph) = (self.tree, self.tree.graph);
-        let leads_down = |dart: &Dart| {
-            let next = graph.vertex(graph.opposite(*dart));
-            tree.hangs[next.at()]
+        let leads_down = |&dart: &Dart| {
+            let next = self.behind(dart);
+            self.tree.hangs(next)
                 && !self.on_last_way[next.at()]
-                && next != tree.root()
-                && tree.up[next.at()] == graph.opposite(*dart)
+                && self.tree.leads_up(self.graph, self.graph.opposite(dart))
         };
-        let mut darts: Vec<Dart> = graph.darts_of(vertex).filter(leads_down).collect();
+        let mut darts: Vec<Dart> = self.graph.darts_of(vertex).filter(leads_down).collect();
         darts.reverse();
         darts
     }
@@ -223,17 +128,22 @@ impl CertificateWalk<'_> {
 ///
 /// where `d` is the distance from the marker, `A` is the number of hanging edges, a hanging leaf is a
 /// vertex of degree 1 behind one, and `a(l)` is the number of hanging edges on its way to the marker.
+/// It depends on the marker's vertex, and not on where the marker points.
 #[must_use]
 pub fn certificate_length(graph: &EmbeddedGraph, facing: Dart) -> usize {
-    MarkerTree::new(graph, facing).length()
+    let mut tree = MarkerTree::default();
+    tree.grow(graph, graph.vertex(facing));
+    tree.length(graph)
 }
 
 /// The doors of a shortest walk that determines the world of a start.
 #[must_use]
 pub fn certificate(graph: &EmbeddedGraph, facing: Dart) -> Vec<Door> {
+    let mut walk = CertificateWalk::new(graph, graph.vertex(facing));
+    walk.walk();
     let mut pose = facing;
-    let mut doors = Vec::new();
-    for dart in MarkerTree::new(graph, facing).walk() {
+    let mut doors = Vec::with_capacity(walk.darts.len());
+    for dart in walk.darts {
         let degree = graph.degree(graph.vertex(pose));
         doors.push(Door::between(graph.index(pose), graph.index(dart), degree));
         pose = graph.opposite(dart);
@@ -300,10 +210,9 @@ mod tests {
         let trail = FoldedTrail::new(world.sensed()).unwrap();
         let mut seen = HashSet::from([seen_from_robot(&trail)]);
         let mut level = vec![(world, trail)];
-        for moves in 0.. {
-            if level.iter().any(|(_, trail)| trail.is_complete()) {
-                return moves;
-            }
+        let mut moves = 0;
+        while !level.iter().any(|(_, trail)| trail.is_complete()) {
+            moves += 1;
             let mut later = Vec::new();
             for (world, trail) in &level {
                 for door in 0..world.sensed().degree {
@@ -317,7 +226,7 @@ mod tests {
             }
             level = later;
         }
-        unreachable!()
+        moves
     }
 
     fn every_start(class: Class, edges: usize, mut visit: impl FnMut(&EmbeddedGraph)) {

@@ -21,6 +21,7 @@ mod certificate;
 mod classes;
 mod closed;
 mod contradiction;
+mod marker_tree;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
@@ -28,6 +29,7 @@ pub use closed::ClosedTrail;
 pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
+pub(crate) use marker_tree::MarkerTree;
 pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept};

@@ -17,8 +17,7 @@ use toml::de::{DeTable, DeValue};
 /// A place in a document.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextPosition {
-    /// Line and column, both from 1, the column in characters. `None` for a value of a JSON document,
-    /// and for the document as a whole.
+    /// Line and column, both from 1, the column in characters. `None` for the document as a whole.
     pub line_column: Option<(usize, usize)>,
     /// The path of a key, such as `clockwise.a` or `hallways[0].from`. It may be empty.
     pub key: Box<str>,
@@ -160,16 +159,20 @@ impl<'t> Document<'t> {
         if !text.trim_start().starts_with('{') {
             return Self::parse_toml(bytes);
         }
-        let root = serde_json::from_str(text).map_err(|error| {
+        let mut root: Node = serde_json::from_str(text).map_err(|error| {
             let (line, column) = (error.line(), error.column());
             // serde_json appends the place to its message; here it comes first.
             let whole = error.to_string();
             let message = whole.strip_suffix(&format!(" at line {line} column {column}"));
             let message = message.unwrap_or(&whole).to_owned();
-            let line_column = Some((line, column));
-            DocumentErrorKind::Syntax(message)
-                .at(TextPosition { line_column, ..TextPosition::default() })
+            // Its columns count bytes, from 1.
+            let before: usize =
+                text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+            let byte = before + column.saturating_sub(1);
+            DocumentErrorKind::Syntax(message).at(TextPosition::at_byte(bytes, byte))
         })?;
+        JsonPlaces { text: bytes, at: 0 }.place(&mut root);
+        root.at = None;
         Ok(Self { text, root })
     }
 
@@ -479,6 +482,84 @@ impl DocumentEntry<'_> {
     }
 }
 
+/// Finds where the values of a JSON text begin. The text was parsed, so it is well-formed.
+struct JsonPlaces<'t> {
+    text: &'t [u8],
+    at: usize,
+}
+
+impl JsonPlaces<'_> {
+    /// Sets the places of a value and of what is in it, and goes to its end.
+    fn place(&mut self, node: &mut Node<'_>) {
+        node.at = Some(self.skip_space());
+        match &mut node.content {
+            Content::Table(entries) => {
+                self.at += 1;
+                for (key, child) in entries.iter_mut() {
+                    key.at = Some(self.skip_space());
+                    self.skip_text();
+                    self.skip_space();
+                    // The colon.
+                    self.at += 1;
+                    self.place(child);
+                    if matches!(child.content, Content::Table(_)) {
+                        child.at = key.at;
+                    }
+                    self.skip_space();
+                    // The comma, or the closing brace.
+                    self.at += 1;
+                }
+                if entries.is_empty() {
+                    self.skip_space();
+                    self.at += 1;
+                }
+            }
+            Content::List(items) => {
+                self.at += 1;
+                for item in items.iter_mut() {
+                    self.place(item);
+                    self.skip_space();
+                    self.at += 1;
+                }
+                if items.is_empty() {
+                    self.skip_space();
+                    self.at += 1;
+                }
+            }
+            Content::Text(_) => self.skip_text(),
+            _ => {
+                self.skip_while(|byte| !b",]}".contains(&byte) && !byte.is_ascii_whitespace());
+            }
+        }
+    }
+
+    /// Goes to the next byte that is not space, and returns its place.
+    fn skip_space(&mut self) -> usize {
+        self.skip_while(|byte| byte.is_ascii_whitespace());
+        self.at
+    }
+
+    /// Goes past a text in quotes.
+    fn skip_text(&mut self) {
+        self.at += 1;
+        loop {
+            self.skip_while(|byte| byte != b'"' && byte != b'\\');
+            if self.text.get(self.at) != Some(&b'\\') {
+                break;
+            }
+            // The escaped character may be a quote.
+            self.at += 2;
+        }
+        self.at += 1;
+    }
+
+    fn skip_while(&mut self, skipped: impl Fn(u8) -> bool) {
+        while self.text.get(self.at).is_some_and(|&byte| skipped(byte)) {
+            self.at += 1;
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for Node<'_> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let content = deserializer.deserialize_any(JsonVisitor(PhantomData))?;
@@ -571,9 +652,45 @@ mod tests {
         assert_eq!(entry.position().to_string(), "line 3, column 10: b.c d.e[1].f: ");
         let [_, second] = root.need("g").unwrap().array("").unwrap();
         assert_eq!(second.position().to_string(), "line 5, column 1: g[1]: ");
-        let json = Document::parse(b" {\"a\": [{\"b\": 1}]}").unwrap();
-        let [only] = json.root().any_table().unwrap().need("a").unwrap().array("").unwrap();
-        assert_eq!(at(only.any_table().unwrap().need("b").unwrap()), "a[0].b: ");
+    }
+
+    #[test]
+    fn values_and_keys_of_json_have_line_column_and_path() {
+        let text = r#" {"\"\\": [], "n": {},
+            "é": [ -1e3 ,true,null,[1,2], "x\"]", {"b" : {"c": 1 }}],
+            "z":"é"}"#;
+        let document = Document::parse(text.as_bytes()).unwrap();
+        let root = document.root().any_table().unwrap();
+        assert_eq!(root.position().to_string(), "");
+        let at = |value: DocumentValue<'_>| value.position().to_string();
+        let keys: Vec<_> = root.entries().map(|entry| entry.position().to_string()).collect();
+        let expected = [
+            "line 1, column 3: \\\"\\\\: ",
+            "line 1, column 15: n: ",
+            "line 2, column 13: é: ",
+            "line 3, column 13: z: ",
+        ];
+        assert_eq!(keys, expected);
+        let items: [_; 6] = root.need("é").unwrap().array("").unwrap();
+        let places = items.map(at);
+        let expected = [
+            "line 2, column 20: é[0]: ",
+            "line 2, column 25: é[1]: ",
+            "line 2, column 30: é[2]: ",
+            "line 2, column 35: é[3]: ",
+            "line 2, column 43: é[4]: ",
+            "line 2, column 51: é[5]: ",
+        ];
+        assert_eq!(places, expected);
+        let inner = items[5].any_table().unwrap().need("b").unwrap();
+        assert_eq!(at(inner), "line 2, column 52: é[5].b: ");
+        assert_eq!(
+            at(inner.any_table().unwrap().need("c").unwrap()),
+            "line 2, column 64: é[5].b.c: "
+        );
+        assert_eq!(at(root.need("z").unwrap()), "line 3, column 17: z: ");
+        let broken = Document::parse("{\"é\": 1,\n\"ü\": x}".as_bytes()).unwrap_err();
+        assert_eq!(broken.to_string(), "line 2, column 6: expected value");
     }
 
     #[test]

@@ -72,6 +72,12 @@ pub enum StartError {
         /// The edges that end there.
         listed: String,
     },
+    /// Names with colons can make a text the start of several darts.
+    #[error("`{text}` is ambiguous: several starts are written like this")]
+    Ambiguous {
+        /// The text.
+        text: String,
+    },
     /// The edge is a loop, and the text does not name one of its ends.
     #[error("edge `{edge}` is a loop; write `{edge}:1` or `{edge}:2` for one of its ends")]
     BareLoop {
@@ -121,14 +127,25 @@ impl NamedWorld {
         Some(Vertex(number as u32))
     }
 
-    /// The dart of a start in the form of the command line, `vertex:facing`.
+    /// The dart of a start in the form of the command line, `vertex:facing`. Names may contain colons.
     ///
     /// # Errors
-    /// Returns an error if there is no colon or no such dart.
+    /// Returns an error if there is no colon, no such dart, or several.
     pub fn start_from_text(&self, text: &str) -> Result<Dart, StartError> {
-        match text.split_once(':') {
-            Some((at, facing)) => self.start_from_names(at, facing),
-            None => Err(StartError::NoColon { text: shown(text) }),
+        let Some((at, facing)) = text.split_once(':') else {
+            return Err(StartError::NoColon { text: shown(text) });
+        };
+        let split_after = |name: &'_ String| {
+            let facing = text.strip_prefix(name.as_str())?.strip_prefix(':')?;
+            Some(self.start_from_names(name, facing))
+        };
+        let readings = self.vertex_names.iter().filter_map(split_after);
+        let (darts, errors): (Vec<_>, Vec<_>) = readings.partition(Result::is_ok);
+        let mut readings = darts.into_iter().chain(errors);
+        match (readings.next(), readings.next()) {
+            (Some(Ok(_)), Some(Ok(_))) => Err(StartError::Ambiguous { text: shown(text) }),
+            (Some(reading), _) => reading,
+            (None, _) => self.start_from_names(at, facing),
         }
     }
 
@@ -145,17 +162,23 @@ impl NamedWorld {
         })?;
         let edge = facing.strip_suffix(":1").or(facing.strip_suffix(":2"));
         let mut bare_loop = false;
+        let mut found = None;
         for dart in self.graph.darts_of(vertex) {
             let name = self.leads_to(dart);
-            if !self.is_named_loop(dart) {
-                if name == facing {
-                    return Ok(dart);
-                }
-            } else if name == facing {
+            let is_loop = self.is_named_loop(dart);
+            if is_loop && name == facing {
                 bare_loop = true;
-            } else if Some(name) == edge && self.facing_text(dart) == facing {
-                return Ok(dart);
+            } else if (!is_loop && name == facing)
+                || (is_loop && Some(name) == edge && self.facing_text(dart) == facing)
+            {
+                // An edge can have the name of an end of a loop.
+                if found.replace(dart).is_some() {
+                    return Err(StartError::Ambiguous { text: shown(facing) });
+                }
             }
+        }
+        if let Some(dart) = found {
+            return Ok(dart);
         }
         let vertex = at.to_owned();
         let facing = shown(facing);
@@ -278,6 +301,39 @@ mod tests {
             assert_eq!(world.start_text(Dart(dart)), text);
         }
         assert_eq!(path().start_from_text("v1:v2"), Ok(Dart(2)));
+    }
+
+    #[test]
+    fn names_with_colons_are_read_if_only_one_start_is_written_like_this() {
+        let named = |names: [&str; 3]| NamedWorld {
+            vertex_names: names.map(str::to_owned).to_vec(),
+            ..path()
+        };
+        let world = named(["a", "a:b", "c:d"]);
+        assert_eq!(world.start_from_text("a:b:c:d"), Ok(Dart(2)));
+        assert_eq!(world.start_from_text("c:d:a:b"), Ok(Dart(3)));
+        assert_eq!(world.start_from_text("a:a:b"), Ok(Dart(0)));
+        let world = named(["b:c", "a", "a:b"]);
+        // From a to b:c, or from a:b to c: only one of them is there.
+        assert_eq!(world.start_from_text("a:b:c"), Ok(Dart(1)));
+        let lists = [("a", ["b:c", "x"]), ("a:b", ["c", "x"]), ("p", ["b:c", "c"])];
+        let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
+        let edges = lists.iter().flat_map(|(_, edges)| edges);
+        let world = NamedWorld {
+            edge_names: Some(edges.map(|&edge| edge.to_owned()).collect()),
+            vertex_names: lists.iter().map(|(vertex, _)| (*vertex).to_owned()).collect(),
+            ..NamedWorld::numbered("", "", graph, None)
+        };
+        let ambiguous = StartError::Ambiguous { text: "a:b:c".to_owned() };
+        assert_eq!(world.start_from_text("a:b:c"), Err(ambiguous));
+        let loop_and_edge = NamedWorld {
+            edge_names: Some(["e", "e:1", "e", "f", "e:1", "f"].map(str::to_owned).to_vec()),
+            ..with_loop()
+        };
+        let ambiguous = StartError::Ambiguous { text: "e:1".to_owned() };
+        assert_eq!(loop_and_edge.start_from_names("u", "e:1"), Err(ambiguous));
+        assert_eq!(loop_and_edge.start_from_text("u:e:2"), Ok(Dart(2)));
+        assert_eq!(loop_and_edge.start_from_text("v:e:1"), Ok(Dart(4)));
     }
 
     #[test]

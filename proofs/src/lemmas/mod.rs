@@ -9,6 +9,7 @@ mod decoders;
 mod driving;
 mod embedded_graph;
 mod figure_1;
+mod folding;
 mod mapping;
 mod retracing;
 mod sighting;
@@ -29,6 +30,7 @@ const THEMES: &[&[Lemma]] = &[
     retracing::LEMMAS,
     validation::LEMMAS,
     mapping::LEMMAS,
+    folding::LEMMAS,
     figure_1::LEMMAS,
     certificates::LEMMAS,
     driving::LEMMAS,

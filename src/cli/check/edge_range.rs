@@ -1,4 +1,4 @@
-//! Numbers of edges as arguments: `6`, `1..=6`, `1..7`.
+//! Numbers of edges as arguments: exactly `6`, or each of `1..=6`.
 
 use std::{ops::RangeInclusive, str::FromStr};
 
@@ -16,16 +16,14 @@ impl FromStr for EdgeRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |number: &str| {
-            number.parse::<usize>().map_err(|_| {
-                format!("write a number as in 6, or several as in 1..=6, not `{text}`")
-            })
-        };
+        let refused = || format!("write a number as in 6, or several as in 1..=6, not `{text}`");
+        let number = |number: &str| number.parse::<usize>().map_err(|_| refused());
         let range = if let Some((first, last)) = text.split_once("..=") {
             number(first)?..=number(last)?
-        } else if let Some((first, end)) = text.split_once("..") {
-            let end = number(end)?.checked_sub(1).ok_or("the range is empty")?;
-            number(first)?..=end
+        } else if let Some((first, last)) = text.split_once("..") {
+            // In some languages the last number is not in such a range.
+            let [first, last] = [number(first)?, number(last)?];
+            return Err(format!("write {first}..={last} for all sizes from {first} to {last}"));
         } else {
             let only = number(text)?;
             only..=only

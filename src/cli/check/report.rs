@@ -7,10 +7,11 @@ use toposlam_model::{
     check::{CostOrder, FailedStart, MappingAlgorithm, Shard, Tally},
     enumerate::Class,
     format::{named_world::NamedWorld, world_file},
+    marker::{Directional, Marker},
 };
 
 use crate::cli::{
-    Failure, Outcome, RunChoices,
+    CliError, Outcome, RunChoices,
     ci_report::CiCase,
     json::print_line,
     text::{grouped, print_hanging, print_paragraph},
@@ -21,6 +22,8 @@ use crate::cli::{
 pub(super) struct AlgorithmInfo {
     algorithm: &'static str,
     marker: &'static str,
+    /// Whether the starts have certificates.
+    certificates: bool,
     /// The order of its cost.
     order: CostOrder,
 }
@@ -30,6 +33,7 @@ impl AlgorithmInfo {
         Self {
             algorithm: algorithm.name(),
             marker: algorithm.marker().name(),
+            certificates: *algorithm.marker() == *(&Directional as &dyn Marker),
             order: algorithm.order(),
         }
     }
@@ -71,21 +75,32 @@ impl SizeResult<'_> {
         } else if tally.gave_up() > 0 {
             message += "; the other runs of some starts reached a limit";
         }
-        let name = format!("{} edges, {}", self.edges, self.worlds());
         let file = self.from.map(Path::to_owned);
-        CiCase { name, outcome: verdict(tally).0, message, file }
+        CiCase { name: self.name(), outcome: verdict(tally).0, message, file }
+    }
+
+    /// What is checked.
+    pub(super) fn name(&self) -> String {
+        format!("{} edges, {}", self.edges, self.worlds())
     }
 }
 
 /// The outcome of a check, and its name. A check does not hold if it is empty or interrupted.
 fn verdict(tally: &Tally) -> (Outcome, &'static str) {
     match () {
-        () if tally.mapped < tally.starts => (Outcome::Violated, "violated"),
+        () if tally.mapped < tally.starts || tally.below_certificate > 0 => {
+            (Outcome::Violated, "violated")
+        }
         () if tally.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
         () if tally.starts == 0 => (Outcome::Incomplete, "incomplete: there is nothing to check"),
         () if tally.gave_up() > 0 => (Outcome::Incomplete, "incomplete"),
         () => (Outcome::Holds, "holds"),
     }
+}
+
+/// The mean over the starts, and the largest value.
+fn mean_and_most(tally: &Tally, total: u64, most: u64) -> String {
+    format!("{:.1}/{}", total as f64 / tally.starts.max(1) as f64, grouped(most.into()))
 }
 
 /// Prints each result when it is there.
@@ -109,7 +124,7 @@ impl<'o> CheckReport<'o> {
     }
 
     /// Prints the result for one number of edges.
-    pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), Failure> {
+    pub(super) fn size(&mut self, size: &SizeResult) -> Result<(), CliError> {
         if self.json {
             let line = Line::new(size, self.subject, self.choice);
             print_line(self.out, "size", &line)?;
@@ -121,37 +136,42 @@ impl<'o> CheckReport<'o> {
         Ok(())
     }
 
-    fn header(&mut self, size: &SizeResult) -> Result<(), Failure> {
-        let AlgorithmInfo { algorithm, marker, order } = self.subject;
+    fn header(&mut self, size: &SizeResult) -> Result<(), CliError> {
+        let AlgorithmInfo { algorithm, marker, certificates, order } = self.subject;
         let head = format!("{algorithm}, {marker} marker, {}", size.worlds());
         print_paragraph(self.out, &head)?;
         writeln!(
             self.out,
-            "\n{:>5}  {:>11}  {:>13}  {:>6}  {:>10}  {:>9}  {:>12}",
+            "\n{:>5} {:>10}  {:>12}  {:>6}  {:>14}{}  {:>11}",
             "edges",
             "worlds",
             "starts",
             "failed",
-            "mean moves",
-            "max moves",
+            "mean/max moves",
+            if certificates { "  certificate" } else { "" },
             format!("max/({order})"),
         )?;
         Ok(())
     }
 
-    fn row(&mut self, size: &SizeResult) -> Result<(), Failure> {
+    fn row(&mut self, size: &SizeResult) -> Result<(), CliError> {
         let &SizeResult { edges, tally, .. } = size;
         if !std::mem::replace(&mut self.header, true) {
             self.header(size)?;
         }
+        let certificate = if self.subject.certificates {
+            let certificate = mean_and_most(tally, tally.certificate_total, tally.certificate_max);
+            format!("  {certificate:>11}")
+        } else {
+            String::new()
+        };
         writeln!(
             self.out,
-            "{edges:>5}  {:>11}  {:>13}  {:>6}  {:>10.1}  {:>9}  {:>12.3}",
+            "{edges:>5} {:>10}  {:>12}  {:>6}  {:>14}{certificate}  {:>11.3}",
             grouped(tally.worlds.into()),
             grouped(tally.starts.into()),
             grouped(tally.failed().into()),
-            tally.moves_total as f64 / tally.starts.max(1) as f64,
-            grouped(tally.moves_max().into()),
+            mean_and_most(tally, tally.moves_total, tally.moves_max()),
             tally.largest_ratio(edges, self.subject.order),
         )?;
         if self.choice != RunChoices::Default {
@@ -182,9 +202,9 @@ impl<'o> CheckReport<'o> {
     }
 
     /// Prints the verdict and returns the outcome.
-    pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, Failure> {
+    pub(super) fn verdict(self, elapsed: Duration) -> Result<Outcome, CliError> {
         let (outcome, verdict) = verdict(&self.total);
-        let Tally { starts, mapped, over_budget, over_memory, .. } = self.total;
+        let Tally { starts, mapped, below_certificate, over_budget, over_memory, .. } = self.total;
         if self.json {
             return Ok(outcome);
         }
@@ -193,6 +213,10 @@ impl<'o> CheckReport<'o> {
             let (mapped, starts) = (grouped(mapped.into()), grouped(starts.into()));
             let _ = write!(verdict, ": {mapped} of {starts} starts mapped correctly, ");
             verdict += "each proved by a bijection";
+        }
+        if below_certificate > 0 {
+            let starts = grouped(below_certificate.into());
+            let _ = write!(verdict, "; {starts} in fewer moves than their certificates have");
         }
         if over_budget > 0 {
             let starts = grouped(over_budget.into());
@@ -204,7 +228,7 @@ impl<'o> CheckReport<'o> {
         }
         writeln!(self.out)?;
         print_paragraph(self.out, &verdict)?;
-        eprintln!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
+        remark!("{:.2} s on {} threads", elapsed.as_secs_f64(), rayon::current_num_threads());
         Ok(outcome)
     }
 }
@@ -224,6 +248,8 @@ struct Line<'a> {
     failed: u64,
     moves_total: u64,
     moves_max: u64,
+    #[serde(flatten)]
+    certificates: Option<CertificatesLine>,
     largest_ratio: f64,
     #[serde(flatten)]
     every_way: Option<EveryWayLine>,
@@ -234,6 +260,14 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     failure: Option<FailureLine>,
     holds: bool,
+}
+
+/// With a directional marker: the lengths of the certificates of the starts.
+#[derive(Serialize)]
+struct CertificatesLine {
+    certificate_total: u64,
+    certificate_max: u64,
+    below_certificate: u64,
 }
 
 /// With all choices: distinct states, runs, and the fewest and the most moves of a run.
@@ -272,6 +306,11 @@ impl<'a> Line<'a> {
             failed: tally.failed(),
             moves_total: tally.moves_total,
             moves_max: tally.moves_max(),
+            certificates: subject.certificates.then_some(CertificatesLine {
+                certificate_total: tally.certificate_total,
+                certificate_max: tally.certificate_max,
+                below_certificate: tally.below_certificate,
+            }),
             largest_ratio: tally.largest_ratio(edges, subject.order),
             every_way: (choice != RunChoices::Default).then(|| EveryWayLine {
                 states: tally.states,
@@ -289,10 +328,7 @@ impl<'a> Line<'a> {
                 moves: failure.moves,
                 world: world_file::to_json(&failed_world(failure, subject)),
             }),
-            holds: tally.failed() == 0
-                && tally.starts > 0
-                && tally.gave_up() == 0
-                && !tally.interrupted,
+            holds: verdict(tally).0 == Outcome::Holds,
         }
     }
 }

@@ -10,7 +10,7 @@ use toposlam_model::{
 };
 
 use super::{
-    Failure,
+    CliError,
     robot_comparison::{RobotComparison, actions_json},
 };
 use crate::cli::{
@@ -60,7 +60,7 @@ impl<'w> RobotComparison<'w> {
     ///
     /// # Errors
     /// Returns an error if neither robot can do an action.
-    pub(super) fn walk(&self, ActionList(actions): &ActionList) -> Result<JointWalk<'w>, Failure> {
+    pub(super) fn walk(&self, ActionList(actions): &ActionList) -> Result<JointWalk<'w>, CliError> {
         let mut robots = self.placed_robots();
         let mut walk = JointWalk {
             names: self.names(),
@@ -74,7 +74,7 @@ impl<'w> RobotComparison<'w> {
             match acted {
                 [Ok(()), Ok(())] => {}
                 [Err(error), Err(_)] => {
-                    return Err(Failure::at(format!("--walk: action {number}"), error));
+                    return Err(CliError::at(format!("--walk: action {number}"), error));
                 }
                 [Err(cause), Ok(())] => walk.stopped = Some(Stop { world: "A", cause }),
                 [Ok(()), Err(cause)] => walk.stopped = Some(Stop { world: "B", cause }),
@@ -101,7 +101,7 @@ impl JointWalk<'_> {
         })
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let heads: Vec<_> = self
             .names
             .iter()

@@ -16,7 +16,7 @@ use toposlam_model::{
     world::{Action, State},
 };
 
-use super::{Failure, walk_page};
+use super::{CliError, walk_page};
 use crate::cli::{
     json::action_json,
     text::{counted, grouped, print_columns, print_hanging, print_paragraph},
@@ -53,7 +53,7 @@ impl<'w> RobotComparison<'w> {
         marker: &'static dyn Marker,
         one_pose: bool,
         watch: &dyn Watch,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CliError> {
         let [a, b] = worlds;
         if let Some(world) =
             worlds.into_iter().find(|world| state_count(&world.graph, marker) > MOST_STATES)
@@ -64,7 +64,7 @@ impl<'w> RobotComparison<'w> {
                 grouped(state_count(&world.graph, marker) as u128),
                 grouped(MOST_STATES as u128),
             );
-            return Err(Failure::at(&world.name, cause));
+            return Err(CliError::at(&world.name, cause));
         }
         let (start, other) = (a.start.unwrap_or(Dart(0)), b.start.unwrap_or(Dart(0)));
         let comparison = Comparison::new(marker, (&a.graph, start), (&b.graph, other));
@@ -93,7 +93,7 @@ impl<'w> RobotComparison<'w> {
     }
 
     /// Verifies the walks and the relation in the worlds, independently of the search.
-    fn verify(&self) -> Result<(), Failure> {
+    fn verify(&self) -> Result<(), CliError> {
         let walks_hold = self.others.iter().all(|(pose, walk)| {
             let [one, other] = self.comparison.starts([self.start, *pose]);
             walk.as_ref().is_none_or(|walk| walk.verify(&one, &other))
@@ -104,7 +104,7 @@ impl<'w> RobotComparison<'w> {
         if walks_hold && bisimulation_holds {
             Ok(())
         } else {
-            Err(Failure::at(
+            Err(CliError::at(
                 "compare",
                 "the result is not confirmed: this is a fault of the search",
             ))
@@ -129,7 +129,7 @@ impl<'w> RobotComparison<'w> {
     }
 
     /// Writes the page on which a person walks both worlds.
-    pub(super) fn write_page(&self, path: &Path) -> Result<(), Failure> {
+    pub(super) fn write_page(&self, path: &Path) -> Result<(), CliError> {
         walk_page::write(path, self.worlds, self.marker, &self.comparison, self.poses())
     }
 
@@ -182,7 +182,7 @@ impl<'w> RobotComparison<'w> {
         line.as_object().cloned().unwrap_or_default()
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let [a, b] = self.worlds;
         let start = a.start_text(self.start);
         writeln!(out)?;

@@ -16,7 +16,7 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{Failure, expected::ExpectedRun};
+use super::{CliError, expected::ExpectedRun};
 use crate::cli::input;
 
 /// A known world.
@@ -37,7 +37,7 @@ pub(super) struct Known<'w> {
 const ANY: &str = "any";
 
 /// Checks the text of `--start`.
-pub(super) fn check_start(world: &NamedWorld, start: Option<&str>) -> Result<(), Failure> {
+pub(super) fn check_start(world: &NamedWorld, start: Option<&str>) -> Result<(), CliError> {
     match start {
         None | Some(ANY) => Ok(()),
         Some(_) => input::start_of(world, start).map(|_| ()),
@@ -51,7 +51,7 @@ impl<'w> Known<'w> {
         start: Option<&str>,
         marker: &'static dyn Marker,
         run: Option<&Run>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CliError> {
         let start = match start {
             Some(ANY) => None,
             Some(_) => Some(input::start_of(world, start)?),

@@ -25,7 +25,7 @@ use toposlam_robot::{
     record::Arrival,
 };
 
-use super::{ConformArguments, Failure, Judged};
+use super::{CliError, ConformArguments, Judged};
 use crate::cli::{output, text::quoted};
 
 /// A shorter log.
@@ -40,7 +40,7 @@ const DISTANCE: f64 = 2.0;
 
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
-    pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, Failure> {
+    pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, CliError> {
         let question = self.question(judged.known.as_ref(), judged.marker);
         let shorter = shorten_run(&judged.judgement, &question, &());
         let Some(path) = &self.minimise else {
@@ -67,7 +67,7 @@ impl ConformArguments {
             }
             None => (write(&events, &head), Evidence::Recorded, event),
         };
-        let bytes = bytes.map_err(|error| Failure::in_file(path, error))?;
+        let bytes = bytes.map_err(|error| CliError::in_file(path, error))?;
         let question = if by_itself { question.by_itself() } else { question };
         let again = divergence_of(&bytes, evidence, &question);
         if again.as_ref().is_none_or(|again| again.event != at || !again.is_like(divergence)) {
@@ -93,7 +93,7 @@ impl ConformArguments {
         if let (Some(known), Some(world)) = (&judged.known, &self.world) {
             let start = known.start.map_or("any".to_owned(), |start| known.world.start_text(start));
             words.extend(["--world".to_owned(), quoted(&world.display().to_string())]);
-            words.extend(["--start".to_owned(), start]);
+            words.extend(["--start".to_owned(), quoted(&start)]);
         }
         if self.driver == super::Who::Anyone {
             words.extend(["--driver", "anyone"].map(str::to_owned));
@@ -103,7 +103,7 @@ impl ConformArguments {
 }
 
 fn not_written(path: &Path, why: &str) {
-    eprintln!("{}: not written: {why}", path.display());
+    remark!("{}: not written: {why}", path.display());
 }
 
 fn is_marked(judged: &Judged) -> bool {

@@ -5,23 +5,23 @@ use std::{env, fmt::Write as _, io, path::Path};
 use sha2::{Digest, Sha256};
 use toposlam::report::{ReportOrigin, SourceFile};
 
-use super::Failure;
-use crate::cli::{input, text::quoted};
+use super::CliError;
+use crate::cli::{input, text::quoted, version};
 
 /// This version, and the command line of this process.
 pub(super) fn origin() -> ReportOrigin {
     let words = env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     let command = [vec!["toposlam".to_owned()], words.collect()].concat().join(" ");
-    ReportOrigin { version: env!("CARGO_PKG_VERSION").to_owned(), command }
+    ReportOrigin { version: version::VERSION.to_owned(), command }
 }
 
 /// A log and the world in which it was checked, with their hashes.
-pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile>, Failure> {
+pub(super) fn sources(log: &Path, world: Option<&Path>) -> Result<Vec<SourceFile>, CliError> {
     let files = [("log", Some(log)), ("world", world)];
     let files = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
     files
         .map(|(role, path)| {
-            let sha256 = sha256(path).map_err(|error| Failure::in_file(path, error))?;
+            let sha256 = sha256(path).map_err(|error| CliError::in_file(path, error))?;
             Ok(SourceFile { role, path: path.display().to_string(), sha256 })
         })
         .collect()

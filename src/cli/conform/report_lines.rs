@@ -6,10 +6,10 @@ use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
 use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
 
-use super::{Failure, Judged, fact_fields::FactFields};
+use super::{CliError, Judged, fact_fields::FactFields};
 use crate::cli::{
     json::print_line,
-    text::{counted, print_command, print_hanging},
+    text::{counted, print_command, print_hanging, since_start},
 };
 
 /// The number of steps shown before a divergence.
@@ -74,7 +74,7 @@ pub(super) fn json(
     out: &mut dyn Write,
     report: &LogReport,
     judged: &Judged,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let divergence = report.divergence.as_ref();
     let unreachable = report.coverage.iter().filter(|covered| covered.reachable == Some(false));
     let line = Line {
@@ -135,7 +135,7 @@ fn counts(coverage: &[CoveredCase]) -> BTreeMap<&str, u64> {
     coverage.iter().map(|covered| (&*covered.case, covered.count)).collect()
 }
 
-pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), Failure> {
+pub(super) fn text(out: &mut dyn Write, report: &LogReport) -> Result<(), CliError> {
     match &report.divergence {
         None => writeln!(out, "{}: {}", report.log, in_words(report.verdict))?,
         Some(divergence) => diverged(out, report, divergence)?,
@@ -174,14 +174,10 @@ fn diverged(
     out: &mut dyn Write,
     report: &LogReport,
     divergence: &DivergenceReport,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let DivergenceReport { event, time, message, fault, what, why, allowed, .. } = divergence;
-    writeln!(
-        out,
-        "{}: diverges at event {event} of {}, at {time:.1} s: {fault}",
-        report.log,
-        report.events.len()
-    )?;
+    let (events, time) = (report.events.len(), since_start(*time));
+    writeln!(out, "{}: diverges at event {event} of {events}, at {time}: {fault}", report.log)?;
     print_hanging(out, "  ", &format!("{what}: {why}"))?;
     if let Some((message, offset)) = message {
         writeln!(out, "  message {message} of the log, at byte {offset}")?;
@@ -246,7 +242,7 @@ pub(super) fn together(
     logs: usize,
     reports: &[LogReport],
     as_json: bool,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let count = |verdict| reports.iter().filter(|report| report.verdict == verdict).count();
     let [conform, diverged, incomplete] =
         [ConformVerdict::Conforms, ConformVerdict::Diverged, ConformVerdict::Incomplete].map(count);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use toposlam_model::trace::AlgorithmCase;
 use toposlam_robot::{conform::RunCoverage, evaluation::scene_class::FORMS};
 
-use super::{Failure, Outcome};
+use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
     text::{counted, print_hanging},
@@ -33,7 +33,7 @@ pub(super) fn report(
     required: &[String],
     coverage: &RunCoverage,
     as_json: bool,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, CliError> {
     let not_covered: Vec<_> =
         required.iter().map(String::as_str).filter(|case| !covers(coverage, case)).collect();
     let outcome = if not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete };

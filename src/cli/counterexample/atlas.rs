@@ -12,7 +12,7 @@ use toposlam_model::{
 
 use super::pairs::{self, WorldPairs};
 use crate::cli::{
-    Failure, Outcome, output,
+    CliError, Outcome, output,
     progress::Progress,
     text::{counted, sentence},
 };
@@ -33,7 +33,7 @@ struct Row {
 }
 
 /// Writes the atlas. `edges` limits the sizes of the worlds.
-pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Failure> {
+pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, CliError> {
     let sizes = Class::ALL.map(|class| full_size(class).min(edges.unwrap_or(usize::MAX)));
     let mut rows = Vec::new();
     output::make_folder(folder)?;
@@ -41,7 +41,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
         let mut found = Vec::new();
         for (class, edges) in Class::ALL.into_iter().zip(sizes) {
             let search = AmbiguitySearch::new(class, edges, marker)
-                .map_err(|error| Failure::at("--edges", error))?;
+                .map_err(|error| CliError::at("--max-edges", error))?;
             let work = format!("{}, {class}", marker.name());
             let progress = Progress::new(&work, "placed worlds")?;
             let findings = search.run(&progress);
@@ -63,7 +63,7 @@ pub(super) fn write(folder: &Path, edges: Option<usize>) -> Result<Outcome, Fail
             }
         }
     }
-    let limit = edges.map(|edges| format!(" --edges {edges}")).unwrap_or_default();
+    let limit = edges.map(|edges| format!(" --max-edges {edges}")).unwrap_or_default();
     output::write_whole(&folder.join("README.md"), readme(&rows, sizes, &limit).as_bytes())?;
     Ok(Outcome::Holds)
 }

@@ -9,7 +9,7 @@ use toposlam_model::{
     marker::Marker,
 };
 
-use crate::cli::{Failure, Outcome, output, walk_page};
+use crate::cli::{CliError, Outcome, output, terminal, walk_page};
 
 /// The reported pairs, and each of their worlds once.
 #[derive(Clone)]
@@ -73,9 +73,9 @@ impl WorldPairs {
     }
 
     /// Writes the page of the smallest pair. Without a pair it prints a message and writes nothing.
-    pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), Failure> {
+    pub(super) fn write_page(&self, path: &Path, marker: &dyn Marker) -> Result<(), CliError> {
         let Some(worlds @ [one, other]) = self.pairs().first().copied() else {
-            eprintln!("{} is not written: there is no pair", path.display());
+            remark!("{} is not written: there is no pair", path.display());
             return Ok(());
         };
         let start = PlacedWorld::FACING;
@@ -85,7 +85,7 @@ impl WorldPairs {
     }
 
     /// Writes each world into a file that has its name.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
+    pub(super) fn write(&self, folder: &Path) -> Result<(), CliError> {
         for world in &self.worlds {
             let path = folder.join(format!("{}.toml", world.name));
             output::write_whole(&path, world_file::to_toml(world).as_bytes())?;
@@ -95,11 +95,11 @@ impl WorldPairs {
 }
 
 /// Returns the outcome of a search that did not finish. Prints why, if it was not stopped.
-pub(super) fn report_unfinished(unfinished: &Unfinished) -> Result<Outcome, Failure> {
+pub(super) fn report_unfinished(unfinished: &Unfinished) -> Result<Outcome, CliError> {
     match unfinished {
-        Unfinished::Interrupted => Err(Failure::Interrupted),
+        Unfinished::Interrupted => Err(CliError::Interrupted),
         Unfinished::Unconfirmed(_) => {
-            eprintln!("{unfinished}");
+            terminal::print_message(&format!("{unfinished}\n"));
             Ok(Outcome::Violated)
         }
     }

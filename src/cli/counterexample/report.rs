@@ -12,7 +12,7 @@ use toposlam_model::{
 
 use super::pairs::WorldPairs;
 use crate::cli::{
-    Failure,
+    CliError,
     json::print_line,
     text::{grouped, print_command, print_hanging, print_indented, print_paragraph},
 };
@@ -47,7 +47,7 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         if self.json {
             self.objects(marker, findings, found)?;
         } else if self.markers == 1 {
@@ -64,7 +64,7 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for &SizeFindings { edges, placed_worlds, ambiguous } in &findings.sizes {
             let line = json!({
                 "edges": edges,
@@ -113,7 +113,7 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         if !std::mem::replace(&mut self.header, true) {
             let (class, edges) = (self.class, self.edges);
             let head = format!(
@@ -157,7 +157,7 @@ impl<'o> SearchReport<'o> {
         marker: &dyn Marker,
         findings: &Findings,
         found: &WorldPairs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         print_paragraph(self.out, &format!("{} marker: {}", marker.name(), marker.about()))?;
         writeln!(self.out, "class {}, 1 to {} edges\n", self.class, self.edges)?;
         writeln!(self.out, "{:>5}  {:>13}  {:>9}", "edges", "placed worlds", "ambiguous")?;
@@ -186,7 +186,7 @@ impl<'o> SearchReport<'o> {
         self.print_world(one)?;
         self.print_world(other)?;
         let command = format!(
-            "toposlam counterexample --marker {} --class {} --edges {} --html walk.html",
+            "toposlam counterexample --marker {} --class {} --max-edges {} --html walk.html",
             marker.name(),
             self.class,
             self.edges
@@ -200,7 +200,7 @@ impl<'o> SearchReport<'o> {
     }
 
     /// All pairs by name, and the worlds in them.
-    fn print_pairs(&mut self, found: &WorldPairs) -> Result<(), Failure> {
+    fn print_pairs(&mut self, found: &WorldPairs) -> Result<(), CliError> {
         let pairs = found.pairs();
         let count = grouped(pairs.len() as u128);
         writeln!(self.out, "\nAll pairs: {count}\n")?;
@@ -216,7 +216,7 @@ impl<'o> SearchReport<'o> {
     }
 
     /// The start of a world, and the clockwise order at each of its vertices.
-    fn print_world(&mut self, world: &NamedWorld) -> Result<(), Failure> {
+    fn print_world(&mut self, world: &NamedWorld) -> Result<(), CliError> {
         let start = world.start.map(|dart| world.start_text(dart)).unwrap_or_default();
         writeln!(self.out, "  {}, start {start}", world.name)?;
         for vertex in world.graph.vertices() {
@@ -229,7 +229,7 @@ impl<'o> SearchReport<'o> {
     }
 
     /// After the table, the pairs of all its rows.
-    pub(super) fn end(&mut self) -> Result<(), Failure> {
+    pub(super) fn end(&mut self) -> Result<(), CliError> {
         for found in std::mem::take(&mut self.pairs) {
             self.print_pairs(&found)?;
         }

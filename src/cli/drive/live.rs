@@ -31,17 +31,18 @@ use toposlam_vision::{
     sensing::Sensor,
 };
 
-use super::{DriveArguments, Failure, MAX_DARTS, Outcome, result::DriveResult};
+use super::{CliError, DriveArguments, MAX_DARTS, Outcome, result::DriveResult};
 use crate::cli::{
     explore::story::{Story, StoryDetail},
     input, output,
     progress::Progress,
     story_lines::StoryLines,
     text::quoted,
+    version,
 };
 
 impl DriveArguments {
-    pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(in crate::cli) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         if let Some(log) = &self.log {
             output::check_place(log, &["mcap"])?;
         }
@@ -74,7 +75,7 @@ impl DriveArguments {
         let robot = match LiveRobot::connect(&topics, patience, move || stop.stop()) {
             Ok(robot) => robot,
             Err(RobotError::Stopped) => return Ok(Outcome::Incomplete),
-            Err(error) => return Err(Failure::at("--ros", error)),
+            Err(error) => return Err(CliError::at("--ros", error)),
         };
         let log = self.recorder(world.as_ref(), &camera, &colours)?;
         self.explore(robot, sensor, world.as_ref(), log, &progress, out)
@@ -88,7 +89,7 @@ impl DriveArguments {
         mut log: Option<Recorder<File>>,
         progress: &Rc<Progress>,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let terminal: Option<&mut dyn Write> = if self.json { None } else { Some(&mut *out) };
         let lines = StoryLines::new(terminal);
         let detail = StoryDetail { every_hypothesis: false, doors: false };
@@ -119,7 +120,7 @@ impl DriveArguments {
         if let Some(path) = &self.map {
             match result.map() {
                 Some(map) => output::write_world(path, &map)?,
-                None => eprintln!("the map is not complete, and is not written"),
+                None => remark!("the map is not complete, and is not written"),
             }
         }
         Ok(result.outcome())
@@ -131,7 +132,7 @@ impl DriveArguments {
         world: Option<&(NamedWorld, Dart)>,
         camera: &Camera,
         colours: &ColourModel,
-    ) -> Result<Option<Recorder<File>>, Failure> {
+    ) -> Result<Option<Recorder<File>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let known = world.map(|(world, facing)| {
             let hash = world_hash(&world.graph, *facing);
@@ -140,7 +141,7 @@ impl DriveArguments {
         let (world, world_hash, start) = known.unwrap_or_default();
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: version::VERSION.to_owned(),
             world,
             world_hash,
             start,
@@ -155,9 +156,9 @@ impl DriveArguments {
         recorder.map(Some).map_err(|error| self.unwritten(&error))
     }
 
-    fn unwritten(&self, error: &LogWriteError) -> Failure {
+    fn unwritten(&self, error: &LogWriteError) -> CliError {
         let path = self.log.clone().unwrap_or_default();
-        Failure::in_file(&path, format!("cannot be written: {error}"))
+        CliError::in_file(&path, format!("cannot be written: {error}"))
     }
 
     /// The command of this run, without the options for its outputs.

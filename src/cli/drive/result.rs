@@ -9,7 +9,7 @@ use toposlam_model::{
 };
 use toposlam_robot::explorer::ExplorerError;
 
-use super::{Failure, Outcome};
+use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
     text::{print_paragraph, sentence},
@@ -68,7 +68,7 @@ impl DriveResult<'_> {
         (map.dart_count() - map.unexplored_count() as usize) / 2
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let (moves, vertices) = (self.mapping.moves(), self.mapping.map().vertex_count());
         let ended = match self.error {
             None => format!("the map is complete, after {moves} moves"),
@@ -83,7 +83,7 @@ impl DriveResult<'_> {
         Ok(())
     }
 
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let ending = match (self.outcome(), self.error) {
             (Outcome::Holds, _) => "mapped",
             (_, Some(MappingError::World(ExplorerError::Stopped { .. }))) => "stopped",

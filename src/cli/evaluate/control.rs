@@ -10,7 +10,8 @@ use toposlam_robot::evaluation::traversals::{
 
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
+    exit_codes::help_end,
     json::print_line,
     progress::Progress,
     text::{counted, grouped},
@@ -23,14 +24,19 @@ use crate::cli::{
 /// one of its doors. It is right if the robot enters the junction by the door that the embedded graph
 /// specifies, and perceives what the specification predicts.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam evaluate control                             takes a few seconds
   toposlam evaluate control --images --traversals 200   with rendered images
-  toposlam evaluate control --plan worlds/shape-6.toml --noise 2 --json
-
-Exit codes: 0 every traversal is right, 1 one is not, 2 bad usage or input,
-3 not all were made.")]
+  toposlam evaluate control --plan worlds/shape-6.toml --noise 2 --json",
+    &[
+        (0, "every traversal is right"),
+        (1, "a traversal is wrong"),
+        (2, "bad usage or input"),
+        (3, "not all traversals were made"),
+    ],
+))]
 pub(super) struct EvaluateControlArguments {
     /// Number of traversals; they go through all doors of all junctions repeatedly
     #[arg(long, default_value_t = 20_000, value_name = "N")]
@@ -43,7 +49,7 @@ pub(super) struct EvaluateControlArguments {
 }
 
 impl EvaluateControlArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.robots.threads)?;
         let plans = self.robots.plans(RandomPlans::Any(self.plans), usize::MAX)?;
         let traversals = TraversalSampler::new(plans, self.robots.seed, self.robots.noise);
@@ -64,7 +70,7 @@ impl EvaluateControlArguments {
         } else {
             self.print(&judged, &traversals, outcome, out)?;
         }
-        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
+        remark!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
@@ -74,7 +80,7 @@ impl EvaluateControlArguments {
         traversals: &TraversalSampler,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         let doors = grouped(traversals.cases() as u128);
         let plans = counted(traversals.plans(), "floor plan");
         writeln!(out, "Driving by {}, seed {}", self.robots.sensing(), self.robots.seed)?;
@@ -104,7 +110,7 @@ impl EvaluateControlArguments {
         traversals: &TraversalSampler,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for traversal in judged.iter().filter(|traversal| traversal.outcome != Made::Right) {
             let [junction, from] = junctions(traversal);
             let line = json!({

@@ -18,7 +18,7 @@ use toposlam_robot::evaluation::{
 use toposlam_robot::truth::{JunctionTruth, Truth};
 
 use crate::cli::{
-    Failure, json::print_line, output, picture_file, progress::must_stop, scene::SceneLine,
+    CliError, json::print_line, output, picture_file, progress::must_stop, scene::SceneLine,
     text::counted,
 };
 
@@ -33,7 +33,7 @@ pub(super) fn write(
     views: &[JudgedView],
     visits: &[JudgedVisit],
     calibration: Calibration,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let mut failed: Vec<_> = views.iter().filter(|judged| fails(judged)).collect();
     let mut lines = Vec::new();
     for judged in &failed {
@@ -77,7 +77,7 @@ pub(super) fn write_view(
     judge: &Judge,
     judged: &JudgedView,
     calibration: Calibration,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let name = format!("view-{:05}{}", judged.view.number, mark(calibration));
     write_steps(&folder.join(name), judge, judged, calibration)
 }
@@ -87,10 +87,10 @@ fn write_steps(
     judge: &Judge,
     judged: &JudgedView,
     calibration: Calibration,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     output::make_folder(folder)?;
     let (image, _, stages) =
-        judge.stages(&judged.view, calibration).map_err(|error| Failure::at("evaluate", error))?;
+        judge.stages(&judged.view, calibration).map_err(|error| CliError::at("evaluate", error))?;
     picture_file::write(&folder.join("0-picture.png"), &image)?;
     for (name, picture) in &stages {
         picture_file::write_stage(&folder.join(format!("{name}.png")), name, picture)?;
@@ -123,7 +123,7 @@ pub(super) fn print(
     out: &mut dyn Write,
     judged: &JudgedView,
     calibration: Calibration,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     print_view(out, judged, calibration, None)
 }
 
@@ -132,7 +132,7 @@ fn print_view(
     judged: &JudgedView,
     calibration: Calibration,
     visit: Option<u64>,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     print_line(out, "view", &Line::new(judged, calibration, visit))
 }
 

@@ -14,7 +14,7 @@ use toposlam_robot::evaluation::{
 };
 
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     json::print_line,
     text::{counted, grouped, print_hanging, print_rows},
 };
@@ -42,7 +42,7 @@ impl<'o> Printer<'o> {
         Self { out, json, missed: 0, not_shown: 0 }
     }
 
-    pub(super) fn header(&mut self, header: &EvaluationHeader) -> Result<(), Failure> {
+    pub(super) fn header(&mut self, header: &EvaluationHeader) -> Result<(), CliError> {
         let EvaluationHeader { views, visits, source } = header;
         let sizes: Vec<_> =
             source.sizes.iter().map(|[width, height]| format!("{width}x{height}")).collect();
@@ -75,7 +75,7 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    pub(super) fn report(&mut self, report: &VisionReport) -> Result<(), Failure> {
+    pub(super) fn report(&mut self, report: &VisionReport) -> Result<(), CliError> {
         let standings = report.rates.iter().map(Rate::standing);
         for standing in standings.chain(report.errors.iter().map(Errors::standing)) {
             self.missed += usize::from(standing == TargetStatus::Missed);
@@ -105,7 +105,7 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    fn report_lines(&mut self, report: &VisionReport) -> Result<(), Failure> {
+    fn report_lines(&mut self, report: &VisionReport) -> Result<(), CliError> {
         let calibration = name(report.calibration);
         for rate in &report.rates {
             let line = RateLine {
@@ -156,7 +156,7 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    pub(super) fn groups(&mut self, groups: &[FailureGroup]) -> Result<(), Failure> {
+    pub(super) fn groups(&mut self, groups: &[FailureGroup]) -> Result<(), CliError> {
         if self.json {
             for FailureGroup { by, what, failed, of, .. } in groups {
                 let line = json!({
@@ -183,7 +183,7 @@ impl<'o> Printer<'o> {
         Ok(())
     }
 
-    pub(super) fn verdict(&mut self, outcome: Outcome, interrupted: bool) -> Result<(), Failure> {
+    pub(super) fn verdict(&mut self, outcome: Outcome, interrupted: bool) -> Result<(), CliError> {
         let (missed, not_shown) = (self.missed, self.not_shown);
         if self.json {
             let holds = outcome == Outcome::Holds;

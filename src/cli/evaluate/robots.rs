@@ -17,7 +17,7 @@ use toposlam_vision::camera::Camera;
 
 use super::vision::{read_plan, unlearned, unmeasured};
 use crate::cli::{
-    Failure,
+    CliError,
     appearance::{ImageSize, looks},
     noise,
     progress::Progress,
@@ -72,7 +72,7 @@ impl RobotArguments {
         &self,
         random: RandomPlans,
         most: usize,
-    ) -> Result<Vec<NamedPlan>, Failure> {
+    ) -> Result<Vec<NamedPlan>, CliError> {
         if !self.plan.is_empty() {
             return self.plan.iter().map(|path| read_plan(path)).collect();
         }
@@ -94,7 +94,7 @@ impl RobotArguments {
     }
 
     /// Rigs and sensors, if images are rendered.
-    pub(super) fn sensors(&self) -> Result<Option<LearnedSensors>, Failure> {
+    pub(super) fn sensors(&self) -> Result<Option<LearnedSensors>, CliError> {
         if !self.images {
             return Ok(None);
         }
@@ -142,6 +142,6 @@ pub(super) fn print_failure(
     out: &mut dyn Write,
     what: impl Display,
     how: impl Display,
-) -> Result<(), Failure> {
-    print_indented(out, "  ", 4, &format!("{what}: {how}")).map_err(Failure::from)
+) -> Result<(), CliError> {
+    print_indented(out, "  ", 4, &format!("{what}: {how}")).map_err(CliError::from)
 }

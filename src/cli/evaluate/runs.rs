@@ -12,7 +12,8 @@ use toposlam_robot::{
 
 use super::robots::{RandomPlans, RobotArguments, print_failure, share, share_json};
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
+    exit_codes::help_end,
     json::print_line,
     mapping_marker::AlgorithmOption,
     progress::Progress,
@@ -26,7 +27,8 @@ use crate::cli::{
 /// every move and every percept is as specified, and the number of moves is that of `toposlam explore`
 /// in the plan's embedded graph.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam evaluate runs                                 takes half a minute
   toposlam evaluate runs --images --plans 10 --starts 3  with rendered images,
@@ -36,10 +38,14 @@ Examples:
 
 With --faults, a run may also be given up if the robot reports a contradiction.
 A wrong map is no violation if the robot was carried to a place that it cannot
-distinguish from the right one.
-
-Exit codes: 0 every run is right, 1 one is not, 2 bad usage or input, 3 not all
-were made.")]
+distinguish from the right one.",
+    &[
+        (0, "every run is right"),
+        (1, "a run is wrong"),
+        (2, "bad usage or input"),
+        (3, "not all runs were made"),
+    ],
+))]
 pub(super) struct EvaluateRunsArguments {
     /// Number of random plans with 5 to 25 junctions, if no plan is given; with --images, of any size
     #[arg(long, default_value_t = 200, value_name = "N", conflicts_with = "plan")]
@@ -64,7 +70,7 @@ pub(super) struct EvaluateRunsArguments {
 const MOST_WITH_IMAGES: usize = 12;
 
 impl EvaluateRunsArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.robots.threads)?;
         let sensors = self.robots.sensors()?;
         let (random, most) = match sensors {
@@ -103,7 +109,7 @@ impl EvaluateRunsArguments {
             writeln!(out, "  {} starts in {plans}", grouped(runs.starts() as u128))?;
             self.print(&judged, outcome, out)?;
         }
-        eprintln!("{:.1} s", begun.elapsed().as_secs_f64());
+        remark!("{:.1} s", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
@@ -117,7 +123,7 @@ impl EvaluateRunsArguments {
         judged: &[JudgedRun],
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for run in
             judged.iter().filter(|run| !self.faults || matches!(run.ending, RunOutcome::Wrong(_)))
         {
@@ -160,7 +166,7 @@ impl EvaluateRunsArguments {
         violations: usize,
         outcome: Outcome,
         out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         for run in judged {
             let fault = run.case.config.faults.first();
             let line = json!({

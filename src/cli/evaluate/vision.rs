@@ -29,8 +29,9 @@ use super::{
     report::{EvaluationHeader, Printer},
 };
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     appearance::{EffectsChoice, ImageSize, looks},
+    exit_codes::help_end,
     input, output,
     progress::Progress,
     use_threads,
@@ -46,19 +47,24 @@ use crate::cli::{
 /// In between, both the hallway and the right junction count as right. A visit is a series of images
 /// on one approach to a junction. It is decided when two images agree.
 #[derive(clap::Args)]
-#[command(after_help = "\
+#[command(after_help = help_end(
+    "\
 Examples:
   toposlam evaluate vision                            takes one or two minutes
   toposlam evaluate vision --views 20000 --calibration-errors --json
-  toposlam evaluate vision --plan worlds/shape-8.toml --out failing
-  toposlam evaluate vision --view 17 --out seventeen  one view, stage by stage
+  toposlam evaluate vision --plan worlds/shape-8.toml --out-dir failing
+  toposlam evaluate vision --view 17 -o seventeen  one view, stage by stage
 
 A target is met if the 95 % interval of the rate is within it, missed if the
 interval is beyond it, and otherwise not shown: the sample is too small. A target
-of 0 is met if nothing was seen, and the rate is at most 0.1 %.
-
-Exit codes: 0 all targets are met, 1 one is missed, 2 bad usage or input, 3 one is
-not shown, or not everything was measured.")]
+of 0 is met if nothing was seen, and the rate is at most 0.1 %.",
+    &[
+        (0, "all targets are met"),
+        (1, "a target is missed"),
+        (2, "bad usage or input"),
+        (3, "a target is not shown, or not everything was measured"),
+    ],
+))]
 pub(super) struct EvaluateVisionArguments {
     /// Number of views
     #[arg(long, default_value_t = 1000, value_name = "N")]
@@ -88,8 +94,8 @@ pub(super) struct EvaluateVisionArguments {
     #[arg(long, value_name = "N", conflicts_with_all = ["views", "visits", "json"])]
     view: Option<u64>,
     /// Folder for a picture of each processing stage of the views that fail, or of the one view
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[arg(short, long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
     /// Number of threads, up to 1024; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -99,9 +105,9 @@ pub(super) struct EvaluateVisionArguments {
 }
 
 impl EvaluateVisionArguments {
-    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn run(self, out: &mut dyn Write) -> Result<Outcome, CliError> {
         use_threads(self.threads)?;
-        if let Some(folder) = &self.out {
+        if let Some(folder) = &self.out_dir {
             output::make_folder(folder)?;
         }
         let views = self.source()?;
@@ -111,7 +117,7 @@ impl EvaluateVisionArguments {
         }
     }
 
-    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    fn all(&self, views: &ViewSampler, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let begun = Instant::now();
         let calibrations = self.calibrations();
         let judge = judge(views, calibrations)?;
@@ -131,9 +137,9 @@ impl EvaluateVisionArguments {
                 printer.groups(&groups(&judged))?;
             }
             standings.push(report.standing());
-            if let Some(folder) = &self.out {
+            if let Some(folder) = &self.out_dir {
                 let written = failing::write(folder, &judge, &judged, &judged_visits, calibration)?;
-                eprintln!("{written} in {}", folder.display());
+                remark!("{written} in {}", folder.display());
             }
         }
         let standing = standings.into_iter().max().unwrap_or(TargetStatus::NotShown);
@@ -144,7 +150,7 @@ impl EvaluateVisionArguments {
         };
         printer.verdict(outcome, interrupted)?;
         let threads = rayon::current_num_threads();
-        eprintln!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
+        remark!("{:.1} s on {threads} threads", begun.elapsed().as_secs_f64());
         Ok(outcome)
     }
 
@@ -154,7 +160,7 @@ impl EvaluateVisionArguments {
         views: &ViewSampler,
         visits: u64,
         calibration: Calibration,
-    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), Failure> {
+    ) -> Result<(Vec<JudgedView>, Vec<JudgedVisit>), CliError> {
         let calibrated = match calibration {
             Calibration::Right => "",
             Calibration::Wrong => ", badly calibrated",
@@ -175,7 +181,7 @@ impl EvaluateVisionArguments {
         views: &ViewSampler,
         number: u64,
         out: &mut dyn Write,
-    ) -> Result<Outcome, Failure> {
+    ) -> Result<Outcome, CliError> {
         let view = views.view(number).map_err(unmeasured)?;
         // Learn only the colours that this view needs.
         let views =
@@ -189,7 +195,7 @@ impl EvaluateVisionArguments {
             if judged.verdict.is_wrong() {
                 outcome = Outcome::Violated;
             }
-            if let Some(folder) = &self.out {
+            if let Some(folder) = &self.out_dir {
                 failing::write_view(folder, &judge, &judged, calibration)?;
             }
         }
@@ -205,7 +211,7 @@ impl EvaluateVisionArguments {
     }
 
     /// The sampler of the views.
-    fn source(&self) -> Result<ViewSampler, Failure> {
+    fn source(&self) -> Result<ViewSampler, CliError> {
         let given = self.plan.iter().map(|path| read_plan(path)).collect::<Result<Vec<_>, _>>()?;
         Ok(ViewSampler {
             seed: self.seed,
@@ -224,7 +230,7 @@ impl EvaluateVisionArguments {
     }
 }
 
-fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Failure> {
+fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, CliError> {
     let progress = Progress::new("learning colours", "looks")?;
     let judge = Judge::new(&Camera::superscout(), views, calibrations, &progress);
     progress.finish();
@@ -235,20 +241,20 @@ fn judge(views: &ViewSampler, calibrations: &[Calibration]) -> Result<Judge, Fai
 }
 
 /// The failure if the colours were not learned.
-pub(super) fn unlearned(error: LearningError) -> Failure {
+pub(super) fn unlearned(error: LearningError) -> CliError {
     match error {
         LearningError::Interrupted(stopped) => stopped.into(),
         error => unmeasured(error),
     }
 }
 
-pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), Failure> {
+pub(super) fn read_plan(path: &Path) -> Result<(String, Arc<FloorPlan>), CliError> {
     let world = input::read_world(path)?;
     let plan = input::floor_plan(path, &world)?.clone();
     Ok((world.name, Arc::new(plan)))
 }
 
 /// A failure that is not the user's.
-pub(super) fn unmeasured(error: impl std::fmt::Display) -> Failure {
-    Failure::at("evaluate", error)
+pub(super) fn unmeasured(error: impl std::fmt::Display) -> CliError {
+    CliError::at("evaluate", error)
 }

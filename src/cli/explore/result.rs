@@ -6,17 +6,18 @@ use serde::Serialize;
 use toposlam_model::{
     check::{ChoicesLimit, EveryWay, Flaw},
     embedded_graph::{Dart, EmbeddedGraph},
+    folding::certificate_length,
     format::{named_world::NamedWorld, world_file},
     isomorphism::Bijection,
     mapping::{FACING, Journey, MappingError},
 };
 
-use super::{AlgorithmOption, Failure, MappingMarker, Outcome};
+use super::{AlgorithmOption, CliError, MappingMarker, Outcome, certificate::CertificateOfStart};
 use crate::cli::text::{self, counted, grouped, print_hanging, print_paragraph};
 
 /// What `--json` prints after the doors.
 #[derive(Serialize)]
-struct Rest {
+struct Rest<'a> {
     moves: u64,
     edges: Option<usize>,
     vertices: usize,
@@ -31,6 +32,8 @@ struct Rest {
     algorithm: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<&'a CertificateOfStart>,
     #[serde(flatten)]
     every_way: Option<EveryWayRest>,
 }
@@ -61,6 +64,8 @@ pub(super) struct ExploreResult<'a> {
     pub(super) carries: bool,
     /// The bijection from the map to the world, or what is wrong.
     pub(super) result: Result<&'a Bijection, Flaw>,
+    /// With `--certificate`.
+    pub(super) certificate: Option<CertificateOfStart>,
     /// All runs, with `--choices all`.
     pub(super) ways: Option<Result<EveryWay, Flaw>>,
 }
@@ -94,7 +99,7 @@ impl ExploreResult<'_> {
     }
 
     /// Prints the rest of the object that the run began with its doors.
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let map = self.journey.map();
         let rest = Rest {
             moves: self.journey.moves(),
@@ -107,6 +112,7 @@ impl ExploreResult<'_> {
             algorithm: (self.algorithm != AlgorithmOption::Algorithm1)
                 .then(|| self.algorithm.directional().name()),
             error: self.error().map(ToString::to_string),
+            certificate: self.certificate.as_ref(),
             every_way: self.ways().map(|ways| EveryWayRest {
                 states: ways.states,
                 states_within_rounds: ways.within_rounds,
@@ -122,7 +128,7 @@ impl ExploreResult<'_> {
     }
 
     /// Prints the result with the names of at most so many vertices.
-    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write, listed: usize) -> Result<(), CliError> {
         writeln!(out)?;
         match &self.result {
             Err(flaw) => {
@@ -133,6 +139,9 @@ impl ExploreResult<'_> {
                 }
             }
             Ok(bijection) => self.print_map(bijection, listed, out)?,
+        }
+        if let Some(certificate) = &self.certificate {
+            certificate.print(out)?;
         }
         match &self.ways {
             None => Ok(()),
@@ -154,7 +163,11 @@ impl ExploreResult<'_> {
         let (vertices, edges) = (world.graph.vertex_count(), world.graph.edge_count());
         let size = format!("{}, {}", text::vertices(vertices), counted(edges, "edge"));
         let moves = counted(journey.moves() as usize, "move");
-        let [least, most] = [edges as u128, (*move_bound).into()].map(grouped);
+        let least = match self.marker {
+            MappingMarker::Directional => certificate_length(&world.graph, self.facing),
+            MappingMarker::Movable => edges,
+        };
+        let [least, most] = [least as u128, (*move_bound).into()].map(grouped);
         let complete = format!(
             "The map is complete after {moves}: {size}. A run in this world takes at least {least} \
              and at most {most} moves."

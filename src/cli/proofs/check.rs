@@ -9,7 +9,7 @@ use std::{
 use toposlam_model::enumerate::Watch;
 use toposlam_proofs::{Counterexample, Lemma, lemma};
 
-use crate::cli::Failure;
+use crate::cli::CliError;
 
 /// A check of a lemma.
 pub(super) struct LemmaCheck {
@@ -54,7 +54,7 @@ enum Message {
 ///
 /// # Errors
 /// Returns an error if the thread cannot be started or panics.
-pub(super) fn check_lemma(lemma: &Lemma, watch: &dyn Watch) -> Result<LemmaCheck, Failure> {
+pub(super) fn check_lemma(lemma: &Lemma, watch: &dyn Watch) -> Result<LemmaCheck, CliError> {
     let start = Instant::now();
     let (sender, receiver) = mpsc::channel();
     let lemma_copy = *lemma;
@@ -64,7 +64,7 @@ pub(super) fn check_lemma(lemma: &Lemma, watch: &dyn Watch) -> Result<LemmaCheck
         drop(sender.send(Message::End(result)));
     };
     let spawned = thread::Builder::new().name(lemma.name.to_owned()).spawn(work);
-    spawned.map_err(|error| Failure::at(lemma.name, error))?;
+    spawned.map_err(|error| CliError::at(lemma.name, error))?;
     let mut cases = 0;
     let end = loop {
         match receiver.recv_timeout(INTERVAL) {
@@ -78,7 +78,7 @@ pub(super) fn check_lemma(lemma: &Lemma, watch: &dyn Watch) -> Result<LemmaCheck
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(Failure::at(lemma.name, "the check ended without a result"));
+                return Err(CliError::at(lemma.name, "the check ended without a result"));
             }
         }
         if watch.stop() {

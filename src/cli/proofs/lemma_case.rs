@@ -10,7 +10,7 @@ use super::{
     case_view::{CaseView, CaseViewLine},
 };
 use crate::cli::{
-    Failure, Outcome,
+    CliError, Outcome,
     json::print_line,
     text::{print_command, print_hanging},
 };
@@ -30,16 +30,16 @@ impl<'a> LemmaCase<'a> {
         lemma: &'a Lemma,
         engine: Engine,
         choices: &'a [u8],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CliError> {
         let replay = match (engine, lemma.sampled) {
             (Engine::Exhaustive, _) => lemma.exhaustive.replay,
             (Engine::Sampled, Some(Sampled { replay, .. })) => replay,
             (Engine::Sampled, None) => {
-                return Err(Failure::at("--engine", format!("{} is not sampled", lemma.name)));
+                return Err(CliError::at("--engine", format!("{} is not sampled", lemma.name)));
             }
         };
         let made = CaseReplay::show(replay, choices)
-            .map_err(|misfit| Failure::at("--choices", format!("{}: {misfit}", lemma.name)))?;
+            .map_err(|misfit| CliError::at("--choices", format!("{}: {misfit}", lemma.name)))?;
         let view = CaseView::new(&format!("A case of {}", lemma.name), &made.exhibits);
         Ok(Self { lemma, engine, choices, case: made.case, view })
     }
@@ -53,7 +53,7 @@ impl<'a> LemmaCase<'a> {
     }
 
     /// Prints the case and returns the outcome. A case that the lemma excludes is incomplete.
-    pub(super) fn print(&self, json: bool, out: &mut dyn Write) -> Result<Outcome, Failure> {
+    pub(super) fn print(&self, json: bool, out: &mut dyn Write) -> Result<Outcome, CliError> {
         let (outcome, word) = match self.case {
             Ok(()) => (Outcome::Holds, "holds"),
             Err(Stop::Fails(_)) => (Outcome::Violated, "fails"),

@@ -7,7 +7,7 @@ use toposlam_proofs::{Lemma, Theorem, lemma::Kani, theorems::FILE};
 
 use super::cases;
 use crate::cli::{
-    Failure,
+    CliError,
     json::print_line,
     text::{counted, print_hanging, print_paragraph},
 };
@@ -40,7 +40,7 @@ pub(super) fn list(
     theorems: &[Theorem],
     json: bool,
     out: &mut dyn Write,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     if json { print_json(out, lemmas, theorems) } else { Ok(print_list(out, lemmas, theorems)?) }
 }
 
@@ -141,7 +141,11 @@ struct TotalsLine {
     kani: usize,
 }
 
-fn print_json(out: &mut dyn Write, lemmas: &[&Lemma], theorems: &[Theorem]) -> Result<(), Failure> {
+fn print_json(
+    out: &mut dyn Write,
+    lemmas: &[&Lemma],
+    theorems: &[Theorem],
+) -> Result<(), CliError> {
     for lemma in lemmas {
         let Lemma { name, sentence, paper, file, exhaustive, sampled, kani } = lemma;
         let line = Line {

@@ -13,7 +13,7 @@ use super::{
     check::{CheckEnd, LemmaCheck},
     lemma_case::{LemmaCase, print_head},
 };
-use crate::cli::{Failure, Outcome, json::print_line, text::print_hanging};
+use crate::cli::{CliError, Outcome, json::print_line, text::print_hanging};
 
 /// Prints the result of each lemma when it is there.
 pub(super) struct ProofsReport<'o> {
@@ -22,6 +22,7 @@ pub(super) struct ProofsReport<'o> {
     /// The widths of the names and of the numbers of cases.
     widths: [usize; 2],
     lemmas: usize,
+    checked: usize,
     held: usize,
     cases: u64,
     seconds: f64,
@@ -40,6 +41,7 @@ impl<'o> ProofsReport<'o> {
             json,
             widths: [names.max().unwrap_or_default(), numbers.max().unwrap_or_default()],
             lemmas: lemmas.len(),
+            checked: 0,
             held: 0,
             cases: 0,
             seconds: 0.0,
@@ -49,13 +51,14 @@ impl<'o> ProofsReport<'o> {
     }
 
     /// Prints the result of one lemma.
-    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), Failure> {
+    pub(super) fn lemma(&mut self, lemma: &'o Lemma, checked: LemmaCheck) -> Result<(), CliError> {
         if self.json {
             print_check(self.out, lemma, &checked)?;
         } else {
             self.row(lemma, &checked)?;
         }
         self.out.flush()?;
+        self.checked += 1;
         self.seconds += checked.seconds;
         match checked.end {
             CheckEnd::Holds { cases } => {
@@ -85,8 +88,9 @@ impl<'o> ProofsReport<'o> {
 
     /// Prints the lemmas that fail and the verdict, and returns the outcome. A check does not hold if it is
     /// empty or interrupted.
-    pub(super) fn verdict(self) -> Result<Outcome, Failure> {
+    pub(super) fn verdict(self) -> Result<Outcome, CliError> {
         let Self { lemmas, held, .. } = self;
+        let not_checked = lemmas - self.checked;
         let (outcome, verdict) = match () {
             () if !self.failed.is_empty() => (Outcome::Violated, "violated"),
             () if self.interrupted => (Outcome::Incomplete, "incomplete, interrupted"),
@@ -97,6 +101,7 @@ impl<'o> ProofsReport<'o> {
             let totals = TotalsLine {
                 lemmas,
                 held,
+                not_checked,
                 cases: self.cases,
                 seconds: self.seconds,
                 interrupted: self.interrupted,
@@ -113,6 +118,12 @@ impl<'o> ProofsReport<'o> {
         if lemmas > 0 {
             let hold = if outcome == Outcome::Holds { "" } else { " hold" };
             write!(self.out, ": {held} of {lemmas} lemmas{hold}, {}", cases(self.cases))?;
+        }
+        if not_checked > 0 {
+            write!(self.out, "; {not_checked} not checked")?;
+            if outcome == Outcome::Violated {
+                write!(self.out, " (--keep-going checks them)")?;
+            }
         }
         writeln!(self.out)?;
         Ok(outcome)
@@ -170,7 +181,7 @@ struct Line<'a> {
     interrupted: bool,
 }
 
-fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), Failure> {
+fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Result<(), CliError> {
     let LemmaCheck { end, seconds } = checked;
     let failed = match end {
         CheckEnd::Fails(failed) => Some(failed),
@@ -199,6 +210,7 @@ fn print_check(out: &mut dyn Write, lemma: &Lemma, checked: &LemmaCheck) -> Resu
 struct TotalsLine {
     lemmas: usize,
     held: usize,
+    not_checked: usize,
     /// The cases in which a lemma holds.
     cases: u64,
     seconds: f64,

@@ -19,7 +19,7 @@ use toposlam_proofs::{
 use super::*;
 
 /// Runs the verb on these lemmas.
-fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, Failure>, String) {
+fn run(lemmas: &[Lemma], arguments: &[&str]) -> (Result<Outcome, CliError>, String) {
     let command = ProofsArguments::augment_args(clap::Command::new("proofs").no_binary_name(true));
     let matches = command.try_get_matches_from(arguments).unwrap();
     let arguments = ProofsArguments::from_arg_matches(&matches).unwrap();
@@ -119,7 +119,7 @@ fn a_lemma_that_fails_prints_the_case_and_the_command_that_repeats_it() {
 #[test]
 fn the_json_contains_the_same() {
     let lemmas = [false_lemma(), true_lemma()];
-    let (outcome, text) = run(&lemmas, &["--run", "all", "--json"]);
+    let (outcome, text) = run(&lemmas, &["--run", "all", "--json", "--keep-going"]);
     assert_eq!(outcome.unwrap(), Outcome::Violated);
     let lines = objects(&text);
     let [failed, held, totals] = lines.as_slice() else { panic!("{text}") };
@@ -155,6 +155,22 @@ fn the_json_contains_the_same() {
         assert_eq!(again[key], failed[key], "{key}");
     }
     assert_eq!((&again["engine"], &again["verdict"]), (&"exhaustive".into(), &"fails".into()));
+}
+
+#[test]
+fn the_lemmas_after_one_that_fails_are_checked_if_the_check_is_to_keep_going() {
+    let lemmas = [false_lemma(), true_lemma()];
+    let (outcome, text) = run(&lemmas, &["--run", "all"]);
+    assert_eq!(outcome.unwrap(), Outcome::Violated);
+    assert!(!text.contains("low"), "{text}");
+    let verdict =
+        "violated: 0 of 2 lemmas hold, 0 cases; 1 not checked (--keep-going checks them)\n";
+    assert!(text.ends_with(verdict), "{text}");
+    let (_, text) = run(&lemmas, &["--run", "all", "--json"]);
+    assert_eq!(objects(&text).last().unwrap()["not_checked"], 1);
+    let (outcome, text) = run(&lemmas, &["--run", "all", "--keep-going"]);
+    assert_eq!(outcome.unwrap(), Outcome::Violated);
+    assert!(text.ends_with("violated: 1 of 2 lemmas hold, 4 cases\n"), "{text}");
 }
 
 #[test]
@@ -277,11 +293,13 @@ fn a_unique_part_of_a_name_is_enough() {
         ("lo", "`lo` is part of several names:\n  low\n  lowest"),
         ("law", "there is no lemma `law`; there are:\n  low\n  lowest\n  high"),
     ] {
-        let (Err(Failure::Input(message)), text) = run(&lemmas, &["--run", part]) else { panic!() };
+        let (Err(CliError::Input(message)), text) = run(&lemmas, &["--run", part]) else {
+            panic!()
+        };
         assert_eq!((message, text), (format!("--run: {cause}"), String::new()));
     }
     let sampled = ["--run", "high", "--choices", "0", "--engine", "sampled"];
-    let (Err(Failure::Input(message)), _) = run(&lemmas, &sampled) else { panic!() };
+    let (Err(CliError::Input(message)), _) = run(&lemmas, &sampled) else { panic!() };
     assert_eq!(message, "--engine: high is not sampled");
 }
 
@@ -338,7 +356,7 @@ fn a_theorem_is_listed_but_not_checked() {
     let last = "\n1 lemma, 4 cases within bounds; 1 theorem for every world\n";
     assert!(text.ends_with(last), "{text}");
     for also in [&["--run", "round"][..], &["--run", "all", "--run", "round"]] {
-        let (Err(Failure::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
+        let (Err(CliError::Input(message)), text) = run(&[true_lemma()], also) else { panic!() };
         let how = "is proved in Coq, for every world; run proofs/coq/check to check it";
         assert_eq!((message, text), (format!("--run: round {how}"), String::new()));
     }

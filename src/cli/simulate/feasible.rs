@@ -16,7 +16,8 @@ use toposlam_robot::{
     truth::angle,
 };
 
-use super::Failure;
+use super::CliError;
+use crate::cli::text::quoted;
 
 /// The free width that the robot needs in a hallway besides its clearance, in metres.
 const ROOM: f64 = 0.40;
@@ -57,7 +58,7 @@ pub(super) fn check(
     world: &NamedWorld,
     plan: &FloorPlan,
     facing: Dart,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let width = plan.hallway_width();
     let least = 2.0 * (RADIUS + CLEARANCE) + ROOM;
     if width < least {
@@ -65,11 +66,11 @@ pub(super) fn check(
             "its hallways are {width} m wide; a robot {:.2} m across needs {least:.2} m",
             2.0 * RADIUS
         );
-        return Err(Failure::in_file(path, cause));
+        return Err(CliError::in_file(path, cause));
     }
     if width > WIDEST {
         let cause = format!("its hallways are {width} m wide; sensing sees up to {WIDEST} m");
-        return Err(Failure::in_file(path, cause));
+        return Err(CliError::in_file(path, cause));
     }
     let junction = plan.junction(plan.graph().vertex(facing));
     let kind = match junction.kind {
@@ -79,12 +80,12 @@ pub(super) fn check(
     };
     let instead = match starts_of(plan).first() {
         Some(&start) => {
-            format!("as in --start {}", world.start_text(start))
+            format!("as in --start {}", quoted(&world.start_text(start)))
         }
         None => "and this plan has none".to_owned(),
     };
     let cause = format!("the start, {}, is {kind}; a run starts at an L, {instead}", junction.name);
-    Err(Failure::in_file(path, cause))
+    Err(CliError::in_file(path, cause))
 }
 
 /// Rejects a camera and colours with which the marker is not seen from the other door of its junction.
@@ -93,7 +94,7 @@ pub(super) fn check_marker(
     facing: Dart,
     eyes: &LearnedSensors,
     look: &'static BuildingLook,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let effects = Effects { body: 1.0, ..Effects::plain() };
     let building = Building::new(plan, look, Some(facing), &effects, 0);
     let onto = plan.direction(plan.graph().behind(facing, Door(1)));
@@ -107,8 +108,8 @@ pub(super) fn check_marker(
         Ok(_) => {
             let cause =
                 format!("with this camera and these colours, it is not seen from {BEFORE} m away");
-            Err(Failure::at("the marker", cause))
+            Err(CliError::at("the marker", cause))
         }
-        Err(error) => Err(Failure::at("the camera", error)),
+        Err(error) => Err(CliError::at("the camera", error)),
     }
 }

@@ -12,8 +12,8 @@ use toposlam_vision::{
     colour::ColourModel,
 };
 
-use super::{Failure, SimulateArguments, Simulation};
-use crate::cli::{output, text::quoted};
+use super::{CliError, SimulateArguments, Simulation};
+use crate::cli::{output, text::quoted, version};
 
 impl SimulateArguments {
     /// Opens the log, if one is wanted. Its head has the camera and the colours.
@@ -21,11 +21,11 @@ impl SimulateArguments {
         &self,
         simulation: &Simulation,
         eyes: Option<(&Camera, &ColourModel)>,
-    ) -> Result<Option<Recorder<File>>, Failure> {
+    ) -> Result<Option<Recorder<File>>, CliError> {
         let Some(path) = &self.log else { return Ok(None) };
         let run = messages::Run {
             stamp: messages::Stamp::default(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: version::VERSION.to_owned(),
             world: simulation.world.name.clone(),
             world_hash: world_hash(&simulation.world.graph, simulation.facing),
             start: simulation.world.start_text(simulation.facing),
@@ -42,9 +42,9 @@ impl SimulateArguments {
     }
 
     /// The failure if the log cannot be written.
-    pub(super) fn unwritten(&self, error: &LogWriteError) -> Failure {
+    pub(super) fn unwritten(&self, error: &LogWriteError) -> CliError {
         let path = self.log.clone().unwrap_or_default();
-        Failure::in_file(&path, format!("cannot be written: {error}"))
+        CliError::in_file(&path, format!("cannot be written: {error}"))
     }
 
     /// The command that repeats this run, without the options for its outputs.

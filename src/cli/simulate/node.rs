@@ -8,7 +8,7 @@ use toposlam_robot::{
     simulator::SimulatedRobot,
 };
 
-use super::{Failure, Outcome};
+use super::{CliError, Outcome};
 use crate::cli::progress::Progress;
 
 /// Serves the robot until Ctrl-C.
@@ -17,7 +17,7 @@ pub(super) fn run(
     master: &str,
     speed: f64,
     out: &mut dyn Write,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, CliError> {
     let progress = Progress::endless("serving", "pictures")?.hidden();
     let topics = RobotTopics::usual(master);
     let RobotTopics { wheels, odometry, pictures, .. } = &topics;
@@ -28,7 +28,7 @@ pub(super) fn run(
     let served = serve(robot, &topics, speed, || progress.stop());
     progress.finish();
     let ServeSummary { seconds, real_seconds, pictures } =
-        served.map_err(|error| Failure::at("--ros", error))?;
+        served.map_err(|error| CliError::at("--ros", error))?;
     writeln!(
         out,
         "{seconds:.0} s of simulated time in {real_seconds:.0} s ({:.1} times real time), \

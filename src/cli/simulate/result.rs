@@ -14,7 +14,7 @@ use toposlam_robot::{
     simulator::RobotFault,
 };
 
-use super::{Failure, Outcome};
+use super::{CliError, Outcome};
 use crate::cli::{
     json::print_line,
     text::{print_paragraph, sentence},
@@ -98,7 +98,7 @@ impl SimulationResult<'_> {
     }
 
     // paper: exp.multiplicative
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let run = self.run;
         let edges = self.world.graph.edge_count();
         writeln!(out)?;
@@ -130,11 +130,11 @@ impl SimulationResult<'_> {
                 "  computation       {seconds:.2} s off-line, {ratio:.0} times real time"
             )?;
         }
-        eprintln!("{:.1} s", self.wall_seconds);
+        remark!("{:.1} s", self.wall_seconds);
         Ok(())
     }
 
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let run = self.run;
         let divergence = run.divergence();
         let line = Line {

@@ -18,7 +18,7 @@ use toposlam_robot::{
 };
 use toposlam_vision::{annotate, camera::Camera};
 
-use super::{Failure, Story};
+use super::{CliError, Story};
 use crate::cli::{picture_file, progress::Progress, scene::in_words, story_lines::StoryLines};
 
 /// Observes a simulated run, and keeps what its page and its picture show.
@@ -32,7 +32,7 @@ pub(super) struct RunCapture<'o> {
     maps: Vec<PartialMap>,
     moves: u64,
     /// The first picture that could not be written.
-    failure: Option<Failure>,
+    failure: Option<CliError>,
 }
 
 /// Which annotated pictures are kept.
@@ -78,7 +78,7 @@ impl<'o> RunCapture<'o> {
         plan: &Arc<FloorPlan>,
         facing: Dart,
         run: &Run,
-    ) -> Result<Journal, Failure> {
+    ) -> Result<Journal, CliError> {
         self.progress.finish();
         let story = self.story.finish()?.into_text();
         if let Some(failure) = self.failure {

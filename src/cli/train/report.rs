@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use toposlam_vision::colour::{Confusion, ExampleError, PixelClass, Stripe, StripeKind, Training};
 
 use crate::cli::{
-    Failure,
+    CliError,
     json::print_line,
     text::{grouped, print_hanging, print_rows},
 };
@@ -35,7 +35,7 @@ pub(super) enum Validation {
 }
 
 impl TrainingReport<'_> {
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let kind = match self.stripe.kind {
             StripeKind::OnFloor => "a tape on the floor",
             StripeKind::OnWall => "a baseboard on the wall",
@@ -66,7 +66,7 @@ impl TrainingReport<'_> {
         [class.name().to_owned(), format!("{images:>6}"), format!("{pixels:>10}")]
     }
 
-    fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), Failure> {
+    fn print_confusion(&self, out: &mut dyn Write, confusion: &Confusion) -> Result<(), CliError> {
         let rows = PixelClass::LEARNED.map(|class| {
             let [name, images, pixels] = self.seen(class);
             let recall = confusion.recall(class);
@@ -86,7 +86,7 @@ impl TrainingReport<'_> {
         Ok(())
     }
 
-    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn print_json(&self, out: &mut dyn Write) -> Result<(), CliError> {
         let (folds, confusion, not_validated) = match &self.validation {
             Validation::Folds(folds, confusion) => (Some(*folds), Some(confusion), None),
             Validation::None { why } => (None, None, Some(why.as_str())),

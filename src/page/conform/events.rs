@@ -6,7 +6,7 @@ use toposlam_robot::conform::ConformVerdict;
 
 use super::{each, wording};
 use crate::{
-    page::clock,
+    moment::clock,
     picture::escaped,
     report::{EventLine, LogReport},
 };

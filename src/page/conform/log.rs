@@ -2,7 +2,7 @@
 
 use super::{Level, coverage, each, events, panel, short_list, wording};
 use crate::{
-    page::clock,
+    moment::clock,
     picture::escaped,
     report::{DivergenceReport, LogReport, SourceFile},
 };

@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use super::words;
 use crate::{
     journal::{FrameEntry, Journal, JunctionCall},
-    page::{clock, in_script},
+    moment::clock,
+    page::in_script,
     picture::Drawn,
 };
 

@@ -3,7 +3,7 @@
 use crate::{
     journal::Journal,
     model::driving::algorithm2::{Command, PathState},
-    page::clock,
+    moment::clock,
 };
 
 /// The result and the length of the run.
@@ -16,7 +16,7 @@ pub(super) fn about(journal: &Journal) -> String {
     let Some(last) = journal.rounds.last() else {
         return format!("{ending}. {frames}.");
     };
-    format!("{ending}. {frames}, {} min of simulated time.", clock(last.time))
+    format!("{ending}. {frames}, {} of simulated time.", clock(last.time))
 }
 
 pub(super) fn state(state: PathState) -> &'static str {

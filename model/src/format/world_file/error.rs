@@ -28,8 +28,11 @@ pub enum WorldFileErrorKind {
     /// A key or a value is not as it should be.
     #[error(transparent)]
     Document(DocumentErrorKind),
-    /// A name has other characters than names have.
-    #[error("`{name}` is not a name; a name has only the characters A-Z, a-z, 0-9, _ and -")]
+    /// This is not a name.
+    #[error(
+        "`{name}` is not a name; a name is printable, without quotes, / and \\, and without a space at its \
+             ends"
+    )]
     NotAName {
         /// The text.
         name: String,

@@ -7,7 +7,7 @@ mod read;
 mod write;
 
 pub use error::{WorldFileError, WorldFileErrorKind};
-pub use read::read;
+pub use read::{is_name, read};
 pub use write::{to_json, to_json_text, to_toml};
 
 #[cfg(test)]

@@ -233,9 +233,13 @@ fn key_name<'d>(entry: &DocumentEntry<'d>) -> Result<&'d str, WorldFileError> {
     if is_name(entry.key) { Ok(entry.key) } else { Err(not_a_name(entry.key).at(entry.position())) }
 }
 
-fn is_name(text: &str) -> bool {
-    let fits = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-';
-    !text.is_empty() && text.bytes().all(fits)
+/// Whether a text can be a name in a world file: printable characters, but no quotes, no `/` and no `\`,
+/// and no space at its ends.
+#[must_use]
+pub fn is_name(text: &str) -> bool {
+    // All that is not printable is escaped, and so are `'`, `"` and `\`.
+    let printable = text.escape_debug().eq(text.chars());
+    printable && !text.is_empty() && !text.contains(['`', '/']) && text.trim() == text
 }
 
 fn not_a_name(name: &str) -> WorldFileErrorKind {

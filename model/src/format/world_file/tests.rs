@@ -334,17 +334,42 @@ fn reads_back(world: &NamedWorld) {
     }
 }
 
+/// Names of all kinds.
+fn any_name() -> impl Strategy<Value = String> {
+    let letters =
+        |text: String| text.chars().filter(|letter| is_name(&letter.to_string())).collect();
+    "\\PC{0,9}".prop_map(letters)
+}
+
+#[test]
+fn names_are_printable_without_quotes_and_separators() {
+    for name in ["a", "Küche", "東口", "<b>&", "a b", "x:y", "e\u{301}", "🦀", "§ 3.1 (a), {b}"]
+    {
+        assert!(is_name(name), "{name}");
+    }
+    let wrong = [
+        "", " ", " a", "a ", "a/b", "a\\b", "'", "\"", "`", "\0", "\t", "\u{7f}", "\u{202e}",
+        "\u{301}",
+    ];
+    for name in wrong {
+        assert!(!is_name(name), "{name:?}");
+    }
+}
+
 proptest! {
     #[test]
     fn what_was_written_reads_back(
         graph in any_graph(Class::Multigraph, 30),
         start in proptest::option::of(any::<u32>()),
-        name in "[A-Za-z0-9_-]{0,9}",
+        name in any_name(),
+        vertex in any_name(),
         about in any::<String>(),
     ) {
         let darts = graph.dart_count() as u32;
         let start = start.map(|start| Dart(start % darts));
-        reads_back(&NamedWorld::numbered(&name, &about, graph, start));
+        let world = NamedWorld::numbered(&name, &about, graph, start);
+        let vertex_names = world.vertex_names.iter().map(|number| format!("{vertex}{number}"));
+        reads_back(&NamedWorld { vertex_names: vertex_names.collect(), ..world });
     }
 
     #[test]

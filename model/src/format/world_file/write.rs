@@ -50,8 +50,10 @@ fn toml_entries(table: &Value) -> String {
 }
 
 /// One line. JSON allows the character DEL in a text, TOML does not; everything else that JSON writes in
-/// a list, a text or a number means the same in TOML.
+/// a list, a text or a number means the same in TOML. A key with other characters than these is quoted.
 fn toml_entry(key: &str, value: &Value) -> String {
+    let is_bare = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-';
+    let key = if key.bytes().all(is_bare) { key.to_owned() } else { json!(key).to_string() };
     format!("{key} = {}\n", inline(value).replace('\x7f', "\\u007f"))
 }
 
