@@ -9,7 +9,9 @@ use std::path::PathBuf;
 
 use toposlam_robot::log::recorder::{CMD_VEL, IMAGE, ODOM};
 
-use super::{CliError, Outcome, exit_codes::help_end, mapping_marker::AlgorithmOption, simulate::MAX_DARTS};
+use super::{
+    CliError, Outcome, exit_codes::help_end, mapping_marker::AlgorithmOption, simulate::MAX_DARTS,
+};
 
 /// Let a live SuperScout map its building from camera images
 ///

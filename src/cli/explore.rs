@@ -25,7 +25,9 @@ use toposlam_model::{
 };
 
 use super::{
-    ChoicesOption, CliError, Outcome, exit_codes::help_end, input,
+    ChoicesOption, CliError, Outcome,
+    exit_codes::help_end,
+    input,
     mapping_marker::{AlgorithmOption, MappingMarker},
     output,
     text::print_paragraph,

@@ -316,8 +316,7 @@ mod tests {
         let world = named(["b:c", "a", "a:b"]);
         // From a to b:c, or from a:b to c: only one of them is there.
         assert_eq!(world.start_from_text("a:b:c"), Ok(Dart(1)));
-        let lists =
-            [("a", vec!["b:c", "x"]), ("a:b", vec!["c", "x"]), ("p", vec!["b:c", "c"])];
+        let lists = [("a", vec!["b:c", "x"]), ("a:b", vec!["c", "x"]), ("p", vec!["b:c", "c"])];
         let graph = EmbeddedGraph::from_edge_lists(&lists).unwrap();
         let edges = lists.iter().flat_map(|(_, edges)| edges);
         let world = NamedWorld {

@@ -9,6 +9,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
+    mapping::DirectionalAlgorithm,
     marker::Directional,
     percept::{Door, Percept, Sighting},
     trace::{WorldSearch, anywhere},
@@ -90,7 +91,8 @@ impl RunObserver for Log {
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let mut log = Log::default();
-    let run = run(plan, facing, robot, NoSensor, &mut log, DARTS);
+    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let run = run(plan, facing, robot, NoSensor, &mut log, algorithm, DARTS);
     assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
 }
