@@ -207,9 +207,10 @@ mod tests {
     fn a_recording_gives_the_same_map_off_line() {
         let (_, plan) = plans().unwrap().swap_remove(2);
         let facing = starts_of(&plan)[0];
+        let config = SimulationConfig::at_start(plan.clone(), facing, 5);
         for algorithm in DirectionalAlgorithm::ALL {
             let mut recording = Recording::default();
-            let robot = SimulationConfig::at_start(plan.clone(), facing, 5).by_scene();
+            let robot = config.by_scene();
             let run = run(&plan, facing, robot, NoSensor, &mut recording, algorithm, DARTS);
             assert_eq!(recording.len() as u64, run.pictures);
             let again = offline(&recording, NoSensor, (), algorithm, DARTS).unwrap();
