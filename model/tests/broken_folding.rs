@@ -101,9 +101,8 @@ impl Folding {
 
     /// The core darts that do not lead to a core place as far as is known.
     fn unresolved(&self) -> Vec<Dart> {
-        let leads_to_core = |dart: &Dart| {
-            self.trail.opposite(*dart).is_some_and(|far| self.is_in_core(far))
-        };
+        let leads_to_core =
+            |dart: &Dart| self.trail.opposite(*dart).is_some_and(|far| self.is_in_core(far));
         self.core_darts().into_iter().filter(|dart| !leads_to_core(dart)).collect()
     }
 
@@ -143,7 +142,12 @@ impl Folding {
 
     /// Goes to a place, and takes a way from there that would lead to the marker if the place were entered
     /// by the dart of the hypothesis.
-    fn test(&mut self, place: Dart, hypothesis: Dart, world: &mut ExplorerWorld) -> Result<(), Flaw> {
+    fn test(
+        &mut self,
+        place: Dart,
+        hypothesis: Dart,
+        world: &mut ExplorerWorld,
+    ) -> Result<(), Flaw> {
         if let Some(Broken::NotTested) = self.broken {
             return self.trail.unite(place, hypothesis).map_err(gave_up);
         }
@@ -174,7 +178,8 @@ impl Folding {
 
     /// Goes to the nearest open core dart, and takes it.
     fn explore_further(&mut self, world: &mut ExplorerWorld) -> Result<(), Flaw> {
-        let open = self.core_darts().into_iter().filter(|&dart| self.trail.opposite(dart).is_none());
+        let open =
+            self.core_darts().into_iter().filter(|&dart| self.trail.opposite(dart).is_none());
         let ways = open.filter_map(|dart| Some((self.way(self.trail.pose(), dart, false)?, dart)));
         let nearest = ways.min_by_key(|(way, _)| way.len());
         let (way, dart) = nearest.ok_or_else(|| gave_up("no dart of the core is open"))?;
@@ -227,11 +232,9 @@ fn without_a_flaw_every_start_is_mapped_right() {
 
 #[test]
 fn every_broken_variant_is_caught_on_a_small_start() {
-    let caught =
-        BROKEN.map(|broken| of_explorer(|| Folding::broken(broken), Class::Multigraph, 4));
-    let out_of_moves = |moves: u64| {
-        format!("after {moves} moves: no more than {moves} moves are allowed")
-    };
+    let caught = BROKEN.map(|broken| of_explorer(|| Folding::broken(broken), Class::Multigraph, 4));
+    let out_of_moves =
+        |moves: u64| format!("after {moves} moves: no more than {moves} moves are allowed");
     let expected = [
         (1, vec![new(2), 1], out_of_moves(408)),
         (

@@ -161,9 +161,8 @@ const FOLDED: [(Class, [usize; 3]); 4] = [
 fn folded(class: Class, edges: usize) -> String {
     let folding = tally(class, edges, MappingAlgorithm::Folding);
     let algorithm1 = tally(class, edges, MappingAlgorithm::Algorithm1);
-    let two_places = |total: u64, most: u64| {
-        format!("{:.2} / {most}", total as f64 / folding.starts as f64)
-    };
+    let two_places =
+        |total: u64, most: u64| format!("{:.2} / {most}", total as f64 / folding.starts as f64);
     format!(
         "| {class} | {edges} | {} | {} | {} | {} |",
         folding.starts,
@@ -178,9 +177,9 @@ fn check_folded(sizes: impl Fn([usize; 3]) -> RangeInclusive<usize>) {
     let printed = printed("docs/folding.md", "What every small start costs");
     let count: usize = FOLDED.iter().map(|(_, [first, _, last])| last + 1 - first).sum();
     assert_eq!(printed.len(), count);
-    let rows = FOLDED.iter().flat_map(|&(class, bounds)| {
-        sizes(bounds).map(move |edges| folded(class, edges))
-    });
+    let rows = FOLDED
+        .iter()
+        .flat_map(|&(class, bounds)| sizes(bounds).map(move |edges| folded(class, edges)));
     let wrong: Vec<String> = rows.filter(|row| !printed.contains(row)).collect();
     assert!(wrong.is_empty(), "these rows are right:\n{}", wrong.join("\n"));
 }

@@ -88,7 +88,8 @@ fn the_output_is_the_same_at_any_number_of_threads() {
 
 #[test]
 fn the_table_fits_80_columns() {
-    for arguments in [["--edges", "7", "--shard", "1/64"], ["--marker", "movable", "--edges", "5"]] {
+    for arguments in [["--edges", "7", "--shard", "1/64"], ["--marker", "movable", "--edges", "5"]]
+    {
         let table = stdout_of([&["check"][..], &arguments].concat());
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }

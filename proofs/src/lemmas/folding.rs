@@ -147,7 +147,8 @@ fn any_order_of_sightings<C: Choose, const MOST: usize, const MOVES: usize>(
     let Walk { percepts, doors, .. } = walk(choose, graph, FACING, MOVES);
     let (folded, _) = trail_of(&percepts, &doors)?;
     // The same walk of a robot that does not see the marker: nothing is identified.
-    let unseen = |&Percept { degree, .. }: &Percept| Percept { degree, sighting: Sighting::Nothing };
+    let unseen =
+        |&Percept { degree, .. }: &Percept| Percept { degree, sighting: Sighting::Nothing };
     let blind: Vec<Percept> = percepts.iter().map(unseen).collect();
     let (mut trail, poses) = trail_of(&blind, &doors)?;
     let mut sightings = Vec::new();

@@ -3,7 +3,9 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use toposlam_model::{embedded_graph::Dart, folding, format::named_world::NamedWorld, percept::Door};
+use toposlam_model::{
+    embedded_graph::Dart, folding, format::named_world::NamedWorld, percept::Door,
+};
 
 use crate::cli::text::{counted, print_hanging, print_paragraph};
 
