@@ -114,7 +114,7 @@ fn the_certificate_is_a_walk_whose_folded_trail_is_complete() {
     }
     let text = flat(&stdout_of(["explore", "worlds/shape-6.toml", "--certificate"]));
     let expected = "Certificate: the shortest walk that proves the map of this world takes 7 moves. \
-                    No robot can map the world in fewer. This run took 1.00 times as many. doors 0";
+                    No robot can map the world in fewer. This run took 1.00 times as many. doors 0 2 1 1 1 2 1";
     assert!(text.contains(expected), "{text}");
     let movable = run(["explore", "worlds/shape-6.toml", "--marker", "movable", "--certificate"]);
     assert_eq!(movable.status.code(), Some(2));
