@@ -9,6 +9,7 @@ use toposlam_model::{
     floor_plan::JunctionKind,
     format::world_file,
     mapping::{DEFAULT_DART_BOUND, DirectionalAlgorithm, Journey, MappingEvent},
+    percept::Door,
 };
 use toposlam_robot::{
     record::{Event, EventKind, NoSensor, RunObserver},
@@ -20,6 +21,7 @@ use toposlam_robot::{
 struct Keeper {
     journal: Journal,
     moves: u64,
+    door: Option<Door>,
     /// A few pictures. Each is used for as many rounds as there are pictures, then a round has none.
     pictures: Vec<Vec<u8>>,
 }
@@ -48,10 +50,14 @@ impl RunObserver for Keeper {
                 let last = journal.rounds.last_mut().unwrap();
                 (last.state, last.command) = (*state, *command);
             }
-            EventKind::Door { .. } => self.moves += 1,
+            EventKind::Door { door, .. } => {
+                self.moves += 1;
+                self.door = Some(*door);
+            }
             EventKind::Arrival(arrival) => {
                 let percept = arrival.percept().unwrap();
-                journal.calls.push(JunctionCall { rounds, pose, percept, conforms: true });
+                let door = self.door;
+                journal.calls.push(JunctionCall { rounds, pose, door, percept, conforms: true });
             }
             _ => {}
         }
@@ -102,7 +108,7 @@ pub(crate) fn journal(world: &str, pictures: Vec<Vec<u8>>) -> Journal {
         ending: String::new(),
     };
     let robot = SimulationConfig::at_start(plan.clone(), facing, 1).by_scene();
-    let mut keeper = Keeper { journal, moves: 0, pictures };
+    let mut keeper = Keeper { journal, moves: 0, door: None, pictures };
     let algorithm = DirectionalAlgorithm::Algorithm1;
     let run = run(&plan, facing, robot, NoSensor, &mut keeper, algorithm, DEFAULT_DART_BOUND);
     let mut journal = keeper.journal;

@@ -9,10 +9,11 @@ use toposlam_model::{
     embedded_graph::Dart,
     enumerate::Class,
     floor_plan::FloorPlan,
+    folding::WorldSearch,
     mapping::DirectionalAlgorithm,
     marker::Directional,
     percept::{Door, Percept, Sighting},
-    trace::{WorldSearch, anywhere},
+    trace::anywhere,
     world::GraphWorld,
 };
 
@@ -108,7 +109,7 @@ fn question(plan: &FloorPlan, facing: Option<Dart>) -> ConformConfig<'_> {
 }
 
 fn without_world() -> ConformConfig<'static> {
-    let search = WorldSearch { class: Class::Multigraph, max_edges: 12, steps: 1_000_000 };
+    let search = WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100_000 };
     ConformConfig {
         world: None,
         marker: &Directional,
