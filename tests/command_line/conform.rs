@@ -553,7 +553,10 @@ fn another_world_is_a_remark_of_the_report() {
     assert_eq!(report["recorded"]["same_world"], true);
     let map = json!({ "complete": true, "vertices": 6, "edges": 6, "unexplored": 0 });
     assert_eq!((&report["map"], &report["ending"]["how"]), (&map, &"mapped".into()));
-    assert_eq!(report["doors"], json!({ "choices": "default", "from_event": null }));
+    assert_eq!(
+        report["doors"],
+        json!({ "algorithm": "algorithm1", "choices": "default", "from_event": null })
+    );
     assert_eq!(report["remarks"], serde_json::json!([]));
 }
 
