@@ -216,7 +216,7 @@ impl Explorer for Folding {
     }
 
     fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        (4 * vertices * edges * (edges + 1) + 400) as u64
+        (4 * vertices * edges * (edges + 1)) as u64
     }
 }
 
