@@ -9,7 +9,7 @@ use toposlam_model::{
     enumerate::Class,
     floor_plan::FloorPlan,
     folding::{WorldSearch, fold, smallest_world},
-    mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
+    mapping::{DirectionalAlgorithm, Exploration, Journey, MappingEvent, Nearest, map_world},
     marker::Directional,
     percept::Percept,
     trace::{Trace, TraceEvent, TraceEventKind, anywhere},
@@ -64,7 +64,7 @@ fn in_known_world(plan: &FloorPlan) -> ConformConfig<'_> {
     ConformConfig {
         world: Some(KnownWorld { graph: plan.graph(), states }),
         marker: &Directional,
-        driver: RunDriver::Algorithm1,
+        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
         search,
         dart_bound: 1000,
     }

@@ -25,6 +25,7 @@ use toposlam_model::{
     enumerate::{Class, Watch},
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
     marker::{Directional, Marker, NoMarker},
     percept::Sighting,
 };
@@ -38,6 +39,7 @@ use super::{
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     input,
+    mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
     output,
@@ -54,8 +56,8 @@ use known_world::Known;
 /// A log is a ROS 1 bag or an MCAP file. If it records percepts and doors, these are checked. Otherwise
 /// they are inferred from its scenes or images and its odometry. They must fit the known world. Without
 /// one, a log diverges at the first event that no world of any size explains, and the command searches
-/// for the smallest world that explains the log. The doors must be doors that Algorithm 1 takes, or may
-/// take.
+/// for the smallest world that explains the log. The doors must be doors that the algorithm takes, or may
+/// take: the one that the log names, or else Algorithm 1.
 ///
 /// The command also reports whether the log determines its world. If it does not, some doors were never
 /// followed, and different worlds explain the log.
@@ -88,8 +90,11 @@ pub(super) struct ConformArguments {
     #[arg(long, value_enum, value_name = "MARKER")]
     marker: Option<RobotMarker>,
     /// What chose the doors
-    #[arg(long, value_enum, default_value = "algorithm1", value_name = "WHO")]
+    #[arg(long, value_enum, default_value = "algorithm", value_name = "WHO")]
     driver: Who,
+    /// The algorithm that chose the doors: algorithm1 or folding [default: from the log, or else algorithm1]
+    #[arg(long, hide_possible_values = true)]
+    algorithm: Option<AlgorithmOption>,
     /// Without --world: the class of worlds to search
     #[arg(long, default_value_t = Class::Multigraph, value_name = "CLASS", conflicts_with = "world")]
     class: Class,
@@ -108,7 +113,7 @@ pub(super) struct ConformArguments {
     /// A file of known divergences to tolerate
     #[arg(long, value_name = "FILE")]
     quirks: Option<PathBuf>,
-    /// Follow Algorithm 1 until more edge ends are known
+    /// Follow the algorithm until more edge ends are known
     #[arg(long, value_name = "N", default_value_t = 1000)]
     max_darts: usize,
     /// Cases that the logs must cover together, such as confirmed,dead-end; if one is missing, exit with 3
@@ -138,8 +143,8 @@ const LISTED: usize = 8;
 /// What chose the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Who {
-    /// Algorithm 1, with any of its choices
-    Algorithm1,
+    /// The algorithm; Algorithm 1 with any of its choices
+    Algorithm,
     /// Anything, in any way
     Anyone,
 }
@@ -199,9 +204,19 @@ struct Judged<'w> {
     judgement: Judgement,
     known: Option<Known<'w>>,
     marker: &'static dyn Marker,
+    /// The algorithm with which the doors are compared, unless anyone may have chosen them.
+    algorithm: DirectionalAlgorithm,
     /// The limits of the check.
     search: WorldSearch,
     dart_bound: usize,
+}
+
+impl Judged<'_> {
+    /// Whether the doors were compared with the folding explorer.
+    fn is_folding(&self) -> bool {
+        let compared = self.judgement.algorithm.as_ref().map(|followed| followed.algorithm);
+        compared == Some(DirectionalAlgorithm::Folding)
+    }
 }
 
 impl SensingProgress for Progress {
@@ -229,6 +244,7 @@ impl ConformArguments {
         }
         let mut reports = Vec::new();
         let mut all = RunCoverage::default();
+        let mut any_algorithm1 = false;
         let mut logs = SeveralInputs::new();
         let mut cases = Vec::new();
         for path in &self.logs {
@@ -241,6 +257,7 @@ impl ConformArguments {
                 continue;
             };
             all.include(&judged.judgement.coverage);
+            any_algorithm1 |= !judged.is_folding();
             let report = self.report(out, path, &judged, &quirks)?;
             cases.push(ci_case(path, &report));
             reports.push(report);
@@ -249,7 +266,8 @@ impl ConformArguments {
             report_lines::together(out, self.logs.len(), &reports, self.json)?;
         }
         if !self.require_coverage.is_empty() && !reports.is_empty() {
-            let required = required::report(out, &self.require_coverage, &all, self.json)?;
+            let required =
+                required::report(out, &self.require_coverage, &all, any_algorithm1, self.json)?;
             logs.add(Ok(((), required)));
             cases.push(required_case(required));
         }
@@ -301,9 +319,13 @@ impl ConformArguments {
     }
 
     fn check_marker(&self) -> Result<(), CliError> {
-        if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm1 {
-            let cause = "Algorithm 1 needs the directional marker; add --driver anyone";
+        if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm {
+            let cause = "the algorithms need the directional marker; add --driver anyone";
             return Err(CliError::at("--marker none", cause));
+        }
+        if self.algorithm.is_some() && self.driver == Who::Anyone {
+            let cause = "with --driver anyone the doors are compared with no algorithm";
+            return Err(CliError::at("--algorithm", cause));
         }
         Ok(())
     }
@@ -328,8 +350,13 @@ impl ConformArguments {
             Some(marker) => marker.marker(),
             None => opened.marker()?,
         };
+        let algorithm = match self.driver {
+            Who::Algorithm => opened.algorithm(path, self.algorithm)?,
+            Who::Anyone => DirectionalAlgorithm::default(),
+        };
         let run = opened.run.as_ref();
-        let known = world.map(|world| Known::new(world, self.start.as_deref(), marker, run));
+        let start = self.start.as_deref();
+        let known = world.map(|world| Known::new(world, start, marker, run, algorithm));
         let known = known.transpose()?;
         let progress = Progress::endless("reading", "pictures")?;
         let sensor = opened.sensor();
@@ -341,11 +368,12 @@ impl ConformArguments {
             error => CliError::in_file(path, error),
         })?;
         let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
-        if assumed && self.driver == Who::Algorithm1 && !shows_marker(&gathered.events) {
-            let cause = "no percept in it shows a marker, which Algorithm 1 needs";
+        if assumed && self.driver == Who::Algorithm && !shows_marker(&gathered.events) {
+            let needs = algorithm.in_words();
+            let cause = format!("no percept in it shows a marker, which {needs} needs");
             return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
-        let question = self.question(known.as_ref(), marker);
+        let question = self.question(known.as_ref(), marker, algorithm);
         let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
         progress.finish();
@@ -354,24 +382,25 @@ impl ConformArguments {
                 path,
                 format!("no junction is visited in its {} images", gathered.pictures),
             ),
-            error @ (JudgeError::Marker(_) | JudgeError::Algorithm(_)) => {
+            error @ (JudgeError::Marker(_) | JudgeError::Algorithm { .. }) => {
                 CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
             }
             error => CliError::in_file(path, error),
         })?;
-        Ok(Judged { opened, gathered, judgement, known, marker, search, dart_bound })
+        Ok(Judged { opened, gathered, judgement, known, marker, algorithm, search, dart_bound })
     }
 
     fn question<'k>(
         &self,
         known: Option<&'k Known>,
         marker: &'static dyn Marker,
+        algorithm: DirectionalAlgorithm,
     ) -> ConformConfig<'k> {
         ConformConfig {
             world: known.map(Known::question),
             marker,
             driver: match self.driver {
-                Who::Algorithm1 => RunDriver::Algorithm1,
+                Who::Algorithm => RunDriver::Algorithm(algorithm),
                 Who::Anyone => RunDriver::Anyone,
             },
             search: WorldSearch {

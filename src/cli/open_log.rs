@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use toposlam_model::marker::{self, Marker};
+use toposlam_model::{
+    mapping::DirectionalAlgorithm,
+    marker::{self, Marker},
+};
 use toposlam_robot::{
     conform::{Evidence, ExtractError},
     log::{
@@ -20,7 +23,7 @@ use toposlam_vision::{
     sensing::{Sensor, WrongSize},
 };
 
-use super::{CliError, input};
+use super::{CliError, input, mapping_marker::AlgorithmOption};
 
 /// What the log itself may not contain.
 #[derive(clap::Args)]
@@ -143,6 +146,23 @@ impl OpenLog {
         let name = self.run.as_ref().map_or("", |run| &run.marker);
         let name = if name.is_empty() { "directional" } else { name };
         marker::named(name).map_err(|error| CliError::at("the log", error))
+    }
+
+    /// The algorithm that was asked for, or that of the log; without either Algorithm 1.
+    pub(super) fn algorithm(
+        &self,
+        path: &Path,
+        option: Option<AlgorithmOption>,
+    ) -> Result<DirectionalAlgorithm, CliError> {
+        let recorded = self.run.as_ref().map_or("", |run| &run.algorithm);
+        match (option, recorded) {
+            (Some(option), _) => Ok(option.directional()),
+            (None, "") => Ok(DirectionalAlgorithm::Algorithm1),
+            (None, name) => name.parse().map_err(|_| {
+                let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
+                CliError::in_file(path, cause)
+            }),
+        }
     }
 
     /// The error for a topic map that does not fit its log.

@@ -5,7 +5,7 @@ use std::{io::Write, path::PathBuf, time::Instant};
 use serde::Serialize;
 use toposlam_model::{
     format::named_world::NamedWorld,
-    mapping::{DirectionalAlgorithm, FACING, MappingError},
+    mapping::{FACING, MappingError},
 };
 use toposlam_robot::replay::{Agreement, Replay, ReplayDifference, ReplayError, replay};
 
@@ -93,7 +93,7 @@ impl ReplayArguments {
         }
         let opened = OpenLog::new(&self.log, &self.sources)?;
         let begun = Instant::now();
-        let algorithm = self.algorithm(&opened)?;
+        let algorithm = opened.algorithm(&self.log, self.algorithm)?;
         let (log, topics) = (&opened.log, &opened.mapping);
         let replay = replay(log, topics, opened.sensor(), algorithm, self.max_darts);
         let seconds = begun.elapsed().as_secs_f64();
@@ -121,19 +121,6 @@ impl ReplayArguments {
             }
         }
         Ok(outcome(&replay))
-    }
-
-    /// The algorithm that was asked for, or that of the log; without either Algorithm 1.
-    fn algorithm(&self, opened: &OpenLog) -> Result<DirectionalAlgorithm, CliError> {
-        let recorded = opened.run.as_ref().map_or("", |run| &run.algorithm);
-        match (self.algorithm, recorded) {
-            (Some(option), _) => Ok(option.directional()),
-            (None, "") => Ok(DirectionalAlgorithm::Algorithm1),
-            (None, name) => name.parse().map_err(|_| {
-                let cause = format!("its algorithm `{name}` is unknown; use --algorithm");
-                CliError::in_file(&self.log, cause)
-            }),
-        }
     }
 
     fn line(&self, opened: &OpenLog, replay: &Replay, compute_seconds: f64) -> Line {

@@ -132,6 +132,56 @@ fn a_robot_that_was_carried_does_not_conform() {
 }
 
 #[test]
+fn a_log_is_compared_with_the_algorithm_that_it_names_or_with_another() {
+    let folder = folder("conform-folding");
+    let log = logged(&folder, SHAPE_6, &["--seed", "3", "--algorithm", "folding"]);
+    for arguments in [&["--world", SHAPE_6][..], &[], &["--algorithm", "folding"]] {
+        let (code, report) = judged(&log, arguments);
+        assert_eq!((code, &report["verdict"]), (Some(0), &"conforms".into()), "{report}");
+        let doors = json!({"algorithm": "folding", "choices": "default", "from_event": null});
+        assert_eq!(report["doors"], doors);
+        assert_eq!(report["facts"]["doors"], "those of the folding explorer");
+        assert_eq!(report["map"]["complete"], true);
+        // It has junctions, and not the cases of Algorithm 1.
+        assert_eq!(report["coverage"]["dead-end"], 1);
+        assert_eq!(report["coverage"].get("confirmed"), None);
+    }
+    let (code, report) = judged(&log, &["--max-darts", "3"]);
+    assert_eq!((code, &report["limits"][0]["option"]), (Some(3), &"--max-darts".into()));
+    let path = log.to_str().unwrap();
+    let output = run(["conform", path, "--require-coverage", "confirmed,dead-end"]);
+    assert_eq!(output.status.code(), Some(3));
+    let words = stdout(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("the folding explorer does not have these cases of Algorithm 1: confirmed"),
+        "{words}"
+    );
+    // The page shows it too.
+    let page = folder.join("report.html");
+    judged(&log, &["--html", page.to_str().unwrap()]);
+    assert!(fs::read_to_string(page).unwrap().contains("those of the folding explorer"));
+}
+
+#[test]
+fn a_log_of_algorithm_1_diverges_from_the_folding_explorer_at_a_door() {
+    let folder = folder("conform-not-folding");
+    let log = logged(&folder, "worlds/building-12.toml", &["--seed", "3"]);
+    assert_eq!(judged(&log, &[]).0, Some(0));
+    let short = folder.join("short.mcap");
+    let arguments = ["--algorithm", "folding", "--minimise", short.to_str().unwrap()];
+    let (code, report) = judged(&log, &arguments);
+    assert_eq!((code, &report["class"]), (Some(1), &"algorithm".into()), "{report}");
+    assert_eq!(report["cause"], "door");
+    assert_eq!(report["condition"], "the folding explorer does not take this door here");
+    let allowed = report["allowed"][0].as_str().unwrap();
+    assert!(allowed.starts_with("door ") && allowed.contains("dart"), "{allowed}");
+    let command = report["command"].as_str().unwrap();
+    assert!(command.ends_with("--algorithm folding"), "{command}");
+    let again = run(command.split(' ').skip(1).collect::<Vec<_>>());
+    assert_eq!(again.status.code(), Some(1), "{command}");
+}
+
+#[test]
 fn several_logs_are_reported_together() {
     let folder = folder("conform-several");
     let good = logged(&folder, SHAPE_6, &["--seed", "3"]);
@@ -195,6 +245,8 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
         (&[log, "--minimise", log], "this output would replace the input"),
         (&[log, "--marker", "movable"], "--marker"),
+        (&[log, "--driver", "anyone", "--algorithm", "folding"], "--algorithm: with --driver"),
+        (&[log, "--algorithm", "other"], "--algorithm"),
     ] {
         let output = run([&["conform"][..], arguments].concat());
         let stdout_of = stderr(&output);

@@ -1,20 +1,24 @@
-//! Recorded runs, checked against a known world, against all worlds, and against Algorithm 1.
+//! Recorded runs, checked against a known world, against all worlds, and against an algorithm.
 //! Sections 2.1 and 2.3.
 
 mod algorithm_match;
+mod choice_search;
 mod coverage;
+mod folding_match;
 mod known_world;
+mod match_end;
 mod shorten;
+mod trace_world;
 
 use thiserror::Error;
 
-pub use algorithm_match::{
-    AlgorithmMatch, AllowedStep, Departure, MatchEnd, MatchedChoices, StepPurpose, TraceClaim,
-    TraceWorld, TraceWorldError, match_algorithm,
-};
+pub use algorithm_match::{AlgorithmMatch, MatchedChoices, match_algorithm};
+pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};
+pub use match_end::{AllowedStep, Departure, MapDart, MatchEnd, StepPurpose};
 pub use shorten::shortened;
+pub use trace_world::{TraceWorld, TraceWorldError};
 
 use crate::percept::{Door, Percept};
 
@@ -168,7 +172,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         embedded_graph::{Dart, EmbeddedGraph},
-        mapping::{Exploration, Journey, MappingEvent, Nearest, map_world},
+        mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun},
         percept::Sighting,
         world::{GraphWorld, World},
     };
@@ -194,15 +198,23 @@ pub(crate) mod tests {
 
     /// A run of Algorithm 1.
     pub(crate) fn explored(graph: &EmbeddedGraph, facing: Dart) -> Trace {
+        explored_by(DirectionalAlgorithm::Algorithm1, graph, facing)
+    }
+
+    /// A run of an algorithm.
+    pub(crate) fn explored_by(
+        algorithm: DirectionalAlgorithm,
+        graph: &EmbeddedGraph,
+        facing: Dart,
+    ) -> Trace {
         let mut doors = Vec::new();
         let mut listen = |_: &mut GraphWorld, _: &Journey, event: MappingEvent| {
             if let MappingEvent::Moved { door, .. } = event {
                 doors.push(door);
             }
         };
-        let mut exploration = Exploration::new(graph.dart_count());
-        let mut world = GraphWorld::new(graph, facing);
-        map_world(&mut world, &mut Nearest, &mut exploration, &mut listen).unwrap();
+        let mut run = MappingRun::new(algorithm, graph.dart_count());
+        run.map_world(&mut GraphWorld::new(graph, facing), &mut listen).unwrap();
         walked(graph, facing, &doors)
     }
 

@@ -2,6 +2,9 @@
 
 use toposlam_model::{
     driving::visit::JunctionShape,
+    embedded_graph::EmbeddedGraph,
+    isomorphism::code,
+    mapping::FACING,
     trace::{AlgorithmMatch, MatchEnd, Trace},
 };
 
@@ -53,13 +56,13 @@ impl RunEvents {
         faults
     }
 
-    /// The contradictions between the recorded end and Algorithm 1.
+    /// The contradictions between the recorded end and the algorithm.
     pub(super) fn false_ending(
         &self,
         followed: &AlgorithmMatch,
         known: Option<&KnownWorld>,
     ) -> Vec<DivergenceCause> {
-        let map = followed.exploration.map();
+        let map = followed.run.map();
         let mapped = self.is_said_whole();
         let mut faults = Vec::new();
         match (&followed.reached, map.complete()) {
@@ -67,9 +70,12 @@ impl RunEvents {
                 faults.push(DivergenceCause::Unfinished { unexplored: map.unexplored_count() });
             }
             (MatchEnd::Mapped, Some(graph)) => {
-                let found = MapRecord::of(followed.exploration.journey());
-                if self.map.as_ref().is_some_and(|recorded| !recorded.same_map(&found)) {
-                    faults.push(DivergenceCause::Map);
+                let code_of = |graph: &EmbeddedGraph| code(graph, FACING);
+                let is_other = |recorded: &MapRecord| {
+                    recorded.graph().as_ref().map(code_of) != Some(code_of(graph))
+                };
+                if self.map.as_ref().is_some_and(is_other) {
+                    faults.push(DivergenceCause::Map { algorithm: followed.algorithm });
                 }
                 if known.is_some_and(|known| !known.has(graph)) {
                     faults.push(DivergenceCause::WrongMap);
@@ -92,7 +98,7 @@ impl RunEvents {
         (made as u64 != recorded).then_some(DivergenceCause::Moves { made, recorded })
     }
 
-    /// Whether the log has the whole run; if Algorithm 1 drives, until its map is complete.
+    /// Whether the log has the whole run; if an algorithm drives, until its map is complete.
     pub(super) fn is_whole(&self, driven: bool) -> bool {
         let ended = match &self.end {
             Some(_) => self.is_said_whole() || !driven,

@@ -2,7 +2,10 @@
 
 use std::{f64::consts::FRAC_PI_6, fmt};
 
-use toposlam_model::trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError};
+use toposlam_model::{
+    mapping::DirectionalAlgorithm,
+    trace::{Departure, Misfit, TraceEvent, TraceEventKind, TraceOrderError},
+};
 
 use super::impossible::Impossibility;
 
@@ -24,7 +27,7 @@ pub enum FaultClass {
     Perception,
     /// The robot did not drive as commanded.
     Motion,
-    /// A door that Algorithm 1 does not take, or a wrong map.
+    /// A door that the algorithm does not take, or a wrong map.
     Algorithm,
     /// The log contradicts itself.
     Log,
@@ -97,16 +100,19 @@ pub enum DivergenceCause {
         /// Why there is none.
         why: Impossibility,
     },
-    /// No run of Algorithm 1 has it.
+    /// No run of the algorithm has it.
     Algorithm(Departure),
     /// The log says that the map is complete, and it is not.
     Unfinished {
         /// The number of unexplored edge ends.
         unexplored: u32,
     },
-    /// The recorded map is not the map of Algorithm 1.
-    Map,
-    /// The map of Algorithm 1 is not the known world.
+    /// The recorded map is not the map of the algorithm.
+    Map {
+        /// The algorithm.
+        algorithm: DirectionalAlgorithm,
+    },
+    /// The map of the algorithm is not the known world.
     WrongMap,
     /// The recorded number of moves is wrong.
     Moves {
@@ -127,7 +133,7 @@ impl DivergenceCause {
             }
             Self::Aside { .. } | Self::TurnedBack => FaultClass::Motion,
             Self::Entry { .. } | Self::Undecided => FaultClass::Perception,
-            Self::Unfinished { .. } | Self::Map | Self::WrongMap => FaultClass::Algorithm,
+            Self::Unfinished { .. } | Self::Map { .. } | Self::WrongMap => FaultClass::Algorithm,
             Self::World(Misfit { event, .. })
             | Self::Algorithm(Departure { event, .. })
             | Self::NoWorld { event, .. } => match event.kind {
@@ -158,7 +164,7 @@ impl DivergenceCause {
                 TraceEventKind::Door(_) => "door",
             },
             Self::Unfinished { .. } => "unfinished",
-            Self::Map => "map",
+            Self::Map { .. } => "map",
             Self::WrongMap => "wrong-map",
             Self::Moves { .. } => "moves",
         }
@@ -219,17 +225,28 @@ impl fmt::Display for DivergenceCause {
             Self::NoWorld { why, .. } => {
                 write!(out, "no world of any size explains the log up to here: {why}")
             }
-            Self::Algorithm(departure) => out.write_str(match departure.event.kind {
-                TraceEventKind::Percept(_) => "this percept contradicts the percepts before it",
-                TraceEventKind::Door(_) => "no run of Algorithm 1 takes this door here",
-            }),
+            Self::Algorithm(departure) => {
+                out.write_str(match (departure.event.kind, departure.algorithm) {
+                    (TraceEventKind::Percept(_), _) => {
+                        "this percept contradicts the percepts before it"
+                    }
+                    (TraceEventKind::Door(_), DirectionalAlgorithm::Algorithm1) => {
+                        "no run of Algorithm 1 takes this door here"
+                    }
+                    (TraceEventKind::Door(_), DirectionalAlgorithm::Folding) => {
+                        "the folding explorer does not take this door here"
+                    }
+                })
+            }
             Self::Unfinished { unexplored } => {
                 write!(
                     out,
                     "the log says that the map is complete; {unexplored} edge ends are unexplored"
                 )
             }
-            Self::Map => write!(out, "the recorded map is not the map of Algorithm 1"),
+            Self::Map { algorithm } => {
+                write!(out, "the recorded map is not the map of {}", algorithm.in_words())
+            }
             Self::WrongMap => write!(out, "the map is not the known world"),
             Self::Moves { made, recorded } => {
                 write!(out, "the log says that {recorded} moves were made; it has {made}")

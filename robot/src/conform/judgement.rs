@@ -1,4 +1,4 @@
-//! Judges a recorded run: its consistency, a known world or the smallest one, and Algorithm 1.
+//! Judges a recorded run: its consistency, a known world or the smallest one, and its algorithm.
 //! Sections 2.1 and 2.3.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,6 +8,7 @@ use toposlam_model::{
     driving::visit::JunctionShape,
     enumerate::Watch,
     folding::{FoldedTrail, SearchLimit, SmallestWorld, WorldSearch, smallest_world},
+    mapping::DirectionalAlgorithm,
     marker::{Directional, Marker},
     trace::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceClaim, TraceOrderError,
@@ -35,15 +36,15 @@ pub struct ConformConfig<'w> {
     pub driver: RunDriver,
     /// The worlds to search if none is known.
     pub search: WorldSearch,
-    /// The largest number of darts that Algorithm 1 may know.
+    /// The largest number of darts that the algorithm may know.
     pub dart_bound: usize,
 }
 
 /// What chooses the doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunDriver {
-    /// Algorithm 1, with any choices.
-    Algorithm1,
+    /// An algorithm; Algorithm 1 with any choices.
+    Algorithm(DirectionalAlgorithm),
     /// Anything, in any way.
     Anyone,
 }
@@ -64,7 +65,7 @@ pub struct Judgement {
     pub poses: Option<Poses>,
     /// The smallest world that explains the log, if none is known and one of any size may.
     pub smallest: Option<SmallestWorld>,
-    /// How far Algorithm 1 follows the log.
+    /// How far the algorithm follows the log.
     pub algorithm: Option<AlgorithmMatch>,
     /// The cases that the run covers.
     pub coverage: RunCoverage,
@@ -126,9 +127,14 @@ pub enum JudgeError {
     /// The percepts do not record the marker.
     #[error(transparent)]
     Marker(#[from] MarkerNotRecorded),
-    /// Algorithm 1 does not run with this marker.
-    #[error("Algorithm 1 needs the directional marker, not `{0}`")]
-    Algorithm(&'static str),
+    /// The algorithm does not run with this marker.
+    #[error("{} needs the directional marker, not `{marker}`", algorithm.in_words())]
+    Algorithm {
+        /// The algorithm.
+        algorithm: DirectionalAlgorithm,
+        /// The name of the marker.
+        marker: &'static str,
+    },
 }
 
 /// A limit that was reached before everything was checked.
@@ -138,10 +144,14 @@ pub enum ReachedLimit {
     SmallerWorld(SearchLimit),
     /// The search ended before a world of the class was found.
     World(SearchLimit),
-    /// Algorithm 1 would know more darts than the bound allows.
+    /// The algorithm would know more darts than a bound allows.
     Darts {
+        /// The algorithm.
+        algorithm: DirectionalAlgorithm,
         /// The index of the event.
         event: usize,
+        /// The bound.
+        bound: usize,
     },
 }
 
@@ -149,7 +159,7 @@ pub enum ReachedLimit {
 ///
 /// # Errors
 /// Returns an error if there is no event, if they are out of order, if they do not record the marker, or if
-/// Algorithm 1 does not run with the marker.
+/// the algorithm does not run with the marker.
 pub fn judge(
     mut events: RunEvents,
     question: &ConformConfig,
@@ -158,8 +168,11 @@ pub fn judge(
 ) -> Result<Judgement, JudgeError> {
     events.check_order()?;
     events.complete_sightings(question.marker)?;
-    if question.driver == RunDriver::Algorithm1 && question.marker.name() != Directional.name() {
-        return Err(JudgeError::Algorithm(question.marker.name()));
+    let marker = question.marker.name();
+    if let RunDriver::Algorithm(algorithm) = question.driver
+        && marker != Directional.name()
+    {
+        return Err(JudgeError::Algorithm { algorithm, marker });
     }
     let mut tolerance = Tolerance::new(events, quirks, question.world.as_ref(), question.marker);
     loop {
@@ -218,9 +231,9 @@ impl Judgement {
             }
             judgement.poses = Some(poses);
         }
-        if question.driver == RunDriver::Algorithm1 {
+        if let RunDriver::Algorithm(algorithm) = question.driver {
             let claim = if events.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part };
-            let followed = match_algorithm(trace, claim, question.dart_bound);
+            let followed = match_algorithm(algorithm, trace, claim, question.dart_bound);
             match &followed.reached {
                 MatchEnd::Departure(departure) => {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));
@@ -294,10 +307,12 @@ impl Judgement {
             Some(SmallestWorld::NotFound { limit }) => limits.push(ReachedLimit::World(limit)),
             _ => {}
         }
-        if let Some(MatchEnd::Bound { event }) =
-            self.algorithm.as_ref().map(|followed| &followed.reached)
+        if let Some(AlgorithmMatch {
+            algorithm, reached: MatchEnd::Bound { event, bound }, ..
+        }) = &self.algorithm
         {
-            limits.push(ReachedLimit::Darts { event: event.id });
+            let (algorithm, event, bound) = (*algorithm, event.id, *bound);
+            limits.push(ReachedLimit::Darts { algorithm, event, bound });
         }
         limits
     }

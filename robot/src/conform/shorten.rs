@@ -67,7 +67,7 @@ pub fn shorten_run(
             (found.event == event).then_some(ShortenedRun { events, event, by_itself: false })
         }
         DivergenceCause::Unfinished { .. }
-        | DivergenceCause::Map
+        | DivergenceCause::Map { .. }
         | DivergenceCause::WrongMap
         | DivergenceCause::Moves { .. } => None,
         _ => {

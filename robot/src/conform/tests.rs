@@ -29,6 +29,7 @@ use crate::{
     simulator::SimulationConfig,
 };
 
+mod folding;
 mod oracle;
 mod tolerance;
 mod verdicts;
@@ -88,11 +89,15 @@ impl RunObserver for Log {
     }
 }
 
-/// A good run.
+/// A good run of Algorithm 1.
 fn log(plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
+    log_of(DirectionalAlgorithm::Algorithm1, plan, facing, seed)
+}
+
+/// A good run of an algorithm.
+fn log_of(algorithm: DirectionalAlgorithm, plan: &Arc<FloorPlan>, facing: Dart, seed: u64) -> Log {
     let robot = SimulationConfig::at_start(plan.clone(), facing, seed).by_scene();
     let mut log = Log::default();
-    let algorithm = DirectionalAlgorithm::Algorithm1;
     let run = run(plan, facing, robot, NoSensor, &mut log, algorithm, DARTS);
     assert_eq!(run.outcome(), crate::run::RunOutcome::Right);
     log
@@ -113,7 +118,7 @@ fn without_world() -> ConformConfig<'static> {
     ConformConfig {
         world: None,
         marker: &Directional,
-        driver: RunDriver::Algorithm1,
+        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
         search,
         dart_bound: DARTS,
     }
@@ -369,7 +374,10 @@ fn a_log_with_a_wrong_number_of_moves_or_a_wrong_map_diverges_at_its_end() {
         robot: Dart(0),
     });
     let divergence = judged(&events, &question).divergence.unwrap();
-    assert_eq!((divergence.event, divergence.cause), (end, DivergenceCause::Map));
+    assert_eq!(
+        (divergence.event, divergence.cause),
+        (end, DivergenceCause::Map { algorithm: DirectionalAlgorithm::Algorithm1 })
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A map as a log records it.
 
 use toposlam_model::{
-    embedded_graph::Dart,
+    embedded_graph::{Dart, EmbeddedGraph},
     mapping::{Journey, PartialMap},
 };
 
@@ -35,6 +35,23 @@ impl MapRecord {
             opposite: darts.map(|dart| map.opposite(dart)).collect(),
             robot,
         }
+    }
+
+    /// The embedded graph with these darts; `None` if the map is not complete, or not a map.
+    #[must_use]
+    pub fn graph(&self) -> Option<EmbeddedGraph> {
+        let darts: u64 = self.degrees.iter().map(|&degree| u64::from(degree)).sum();
+        if darts != self.opposite.len() as u64 || self.degrees.contains(&0) {
+            return None;
+        }
+        let opposite: Option<Vec<_>> =
+            self.opposite.iter().map(|other| Some((*other)?.0)).collect();
+        let mut clockwise = Vec::with_capacity(self.opposite.len());
+        for &degree in &self.degrees {
+            let first = clockwise.len() as u32;
+            clockwise.extend((1..=degree).map(|index| first + index % degree));
+        }
+        EmbeddedGraph::from_permutations(&opposite?, &clockwise).ok().map(|(graph, _)| graph)
     }
 
     /// Whether the maps are the same, wherever the robot is.

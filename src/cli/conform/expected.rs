@@ -1,9 +1,9 @@
-//! The cases that a complete run has: Algorithm 1 with its default choices, in a known world from a known
+//! The cases that a complete run has: the algorithm with its default choices, in a known world from a known
 //! start.
 
 use toposlam_model::{
     embedded_graph::{Dart, EmbeddedGraph},
-    mapping::{Exploration, Journey, MappingEvent, Nearest, Observer, map_world},
+    mapping::{DirectionalAlgorithm, Journey, MappingEvent, MappingRun, Observer},
     trace::AlgorithmCoverage,
     world::GraphWorld,
 };
@@ -16,12 +16,12 @@ pub(super) struct ExpectedRun {
 }
 
 impl ExpectedRun {
-    pub(super) fn of(graph: &EmbeddedGraph, start: Dart) -> Self {
+    pub(super) fn of(algorithm: DirectionalAlgorithm, graph: &EmbeddedGraph, start: Dart) -> Self {
         let mut expected = Self::default();
         let mut world = GraphWorld::new(graph, start);
-        let mut exploration = Exploration::new(2 * graph.dart_count());
+        let mut run = MappingRun::new(algorithm, 2 * graph.dart_count());
         // In a world of this size the run ends.
-        let _ = map_world(&mut world, &mut Nearest, &mut exploration, &mut expected);
+        let _ = run.map_world(&mut world, &mut expected);
         expected
     }
 }

@@ -78,15 +78,16 @@ struct NeverFollowed {
     toward: Option<String>,
 }
 
-/// The choices of Algorithm 1 that explain the doors.
+/// The algorithm with which the doors were compared, and its choices that explain them.
 #[derive(Serialize)]
 struct Doors {
+    algorithm: &'static str,
     choices: &'static str,
     /// The first event that the default choices would not have.
     from_event: Option<usize>,
 }
 
-/// The map at the last event that Algorithm 1 explains.
+/// The map at the last event that the algorithm explains.
 #[derive(Serialize)]
 struct Map {
     complete: bool,
@@ -166,13 +167,14 @@ impl Doors {
             MatchedChoices::Default => ("default", None),
             MatchedChoices::Other { from } => ("other", from),
         };
-        Self { choices, from_event: from.map(|event| event + 1) }
+        let algorithm = followed.algorithm.name();
+        Self { algorithm, choices, from_event: from.map(|event| event + 1) }
     }
 }
 
 impl Map {
     fn of(followed: &AlgorithmMatch) -> Self {
-        let map = followed.exploration.map();
+        let map = followed.run.map();
         let unexplored = map.unexplored_count() as usize;
         Self {
             complete: map.complete().is_some(),

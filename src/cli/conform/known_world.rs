@@ -5,6 +5,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
+    mapping::DirectionalAlgorithm,
     marker::Marker,
     trace::{self, anywhere},
     world::{GraphWorld, State},
@@ -51,6 +52,7 @@ impl<'w> Known<'w> {
         start: Option<&str>,
         marker: &'static dyn Marker,
         run: Option<&Run>,
+        algorithm: DirectionalAlgorithm,
     ) -> Result<Self, CliError> {
         let start = match start {
             Some(ANY) => None,
@@ -63,16 +65,16 @@ impl<'w> Known<'w> {
         };
         let reachable = trace::reachable(&world.graph);
         let forms = forms(world);
-        let expected = start.map(|start| ExpectedRun::of(&world.graph, start));
+        let expected = start.map(|start| ExpectedRun::of(algorithm, &world.graph, start));
         Ok(Self { world, start, states, reachable, forms, expected })
     }
 
-    /// Whether a complete run of Algorithm 1 has a case.
+    /// Whether a complete run of the algorithm has a case of Algorithm 1.
     pub(super) fn expects_case(&self, case: trace::AlgorithmCase) -> bool {
         self.expected.as_ref().is_some_and(|expected| expected.coverage.count(case) > 0)
     }
 
-    /// Whether the robot enters a junction of a shape in a complete run of Algorithm 1.
+    /// Whether the robot enters a junction of a shape in a complete run of the algorithm.
     pub(super) fn expects_form(&self, form: JunctionShape) -> bool {
         let (Some(expected), Some(plan)) = (&self.expected, &self.world.plan) else { return false };
         expected.poses.iter().any(|&pose| form_of(plan, pose) == Some(form))

@@ -41,7 +41,7 @@ const DISTANCE: f64 = 2.0;
 impl ConformArguments {
     /// A shorter log, written to the file of `--minimise`.
     pub(super) fn shorter(&self, judged: &Judged) -> Result<Option<Minimised>, CliError> {
-        let question = self.question(judged.known.as_ref(), judged.marker);
+        let question = self.question(judged.known.as_ref(), judged.marker, judged.algorithm);
         let shorter = shorten_run(&judged.judgement, &question, &());
         let Some(path) = &self.minimise else {
             return Ok(
@@ -97,6 +97,9 @@ impl ConformArguments {
         }
         if self.driver == super::Who::Anyone {
             words.extend(["--driver", "anyone"].map(str::to_owned));
+        }
+        if self.algorithm.is_some() {
+            words.extend(["--algorithm", judged.algorithm.name()].map(str::to_owned));
         }
         words.join(" ")
     }

@@ -10,7 +10,7 @@ use toposlam_model::{
     embedded_graph::Dart,
     folding::{SearchLimit, SmallestWorld},
     format::named_world::NamedWorld,
-    mapping::PartialMap,
+    mapping::{DirectionalAlgorithm, PartialMap},
     percept::{Percept, Sighting},
     trace::{AlgorithmCase, MatchEnd, MatchedChoices, MisfitReason},
 };
@@ -123,11 +123,12 @@ impl Judged<'_> {
                 let class = self.search.class;
                 format!("no world of class {class} was found: {}", search(limit))
             }
-            ReachedLimit::Darts { event } => {
-                let darts = counted(self.dart_bound, "edge end");
+            ReachedLimit::Darts { algorithm, event, bound } => {
+                let darts = counted(bound, "edge end");
+                let option = if bound == self.dart_bound { " (--max-darts)" } else { "" };
                 format!(
-                    "Algorithm 1 was followed up to event {}: its map has more than {darts} there \
-                     (--max-darts)",
+                    "{} was followed up to event {}: its map has more than {darts} there{option}",
+                    algorithm.in_words(),
                     event + 1
                 )
             }
@@ -171,17 +172,20 @@ impl Judged<'_> {
             facts.push(("unique", folded::in_words(&doors)));
         }
         if let Some(followed) = &judgement.algorithm {
-            let choices = match followed.choices {
-                MatchedChoices::Default => {
+            let choices = match (followed.choices, followed.algorithm) {
+                (_, DirectionalAlgorithm::Folding) => "those of the folding explorer".to_owned(),
+                (MatchedChoices::Default, DirectionalAlgorithm::Algorithm1) => {
                     "those of Algorithm 1 with its default choices".to_owned()
                 }
-                MatchedChoices::Other { from: None } => {
+                (MatchedChoices::Other { from: None }, DirectionalAlgorithm::Algorithm1) => {
                     "allowed by Algorithm 1; with its default choices it would continue".to_owned()
                 }
-                MatchedChoices::Other { from: Some(event) } => format!(
-                    "allowed by Algorithm 1; not its default choices from event {} on",
-                    event + 1
-                ),
+                (MatchedChoices::Other { from: Some(event) }, DirectionalAlgorithm::Algorithm1) => {
+                    format!(
+                        "allowed by Algorithm 1; not its default choices from event {} on",
+                        event + 1
+                    )
+                }
             };
             let doors = match &followed.reached {
                 MatchEnd::Departure(departure) => {
@@ -190,7 +194,7 @@ impl Judged<'_> {
                 _ => choices,
             };
             facts.push(("doors", doors));
-            facts.push(("map", map_in_words(followed.exploration.map())));
+            facts.push(("map", map_in_words(followed.run.map())));
         }
         facts
     }
@@ -280,7 +284,9 @@ impl Judged<'_> {
         let run = known.as_ref().filter(|_| default);
         // Percepts of other robots may have no shapes.
         let shaped = run.filter(|_| !judgement.coverage.junctions.is_empty());
-        let cases = AlgorithmCase::ALL.into_iter().map(|case| CoveredCase {
+        // The folding explorer does not have the cases of Algorithm 1.
+        let of_algorithm1 = if self.is_folding() { &[][..] } else { &AlgorithmCase::ALL };
+        let cases = of_algorithm1.iter().map(|&case| CoveredCase {
             case: case.name().to_owned(),
             count: judgement.coverage.algorithm.count(case),
             reachable: known.as_ref().map(|known| known.reachable.count(case) > 0),

@@ -128,8 +128,10 @@ fn limit(reached: ReachedLimit, judged: &Judged) -> Limit {
     match reached {
         ReachedLimit::SmallerWorld(limit) => Limit { decides: false, ..search(limit) },
         ReachedLimit::World(limit) => search(limit),
-        ReachedLimit::Darts { event } => {
-            Limit { event: Some(event + 1), ..of("--max-darts", judged.dart_bound as u64) }
+        ReachedLimit::Darts { event, bound, .. } => {
+            let option = (bound == judged.dart_bound).then_some("--max-darts");
+            let value = Some(bound as u64);
+            Limit { option, value, event: Some(event + 1), ..none }
         }
     }
 }

@@ -18,6 +18,8 @@ use crate::cli::{
 struct Line<'r> {
     required: &'r [String],
     not_covered: Vec<&'r str>,
+    /// The cases of Algorithm 1, if all logs are compared with the folding explorer.
+    not_applicable: Vec<&'r str>,
 }
 
 /// Parses the name of a case.
@@ -27,24 +29,35 @@ pub(super) fn cases() -> impl TypedValueParser<Value = String> {
     PossibleValuesParser::new(algorithm.chain(junctions))
 }
 
-/// Prints which required cases are not covered.
+/// Prints which required cases are not covered. If all logs are compared with the folding explorer, the cases
+/// of Algorithm 1 do not apply.
 pub(super) fn report(
     out: &mut dyn Write,
     required: &[String],
     coverage: &RunCoverage,
+    any_algorithm1: bool,
     as_json: bool,
 ) -> Result<Outcome, CliError> {
     let not_covered: Vec<_> =
         required.iter().map(String::as_str).filter(|case| !covers(coverage, case)).collect();
+    let of_algorithm1 = |case: &&str| AlgorithmCase::ALL.iter().any(|one| one.name() == *case);
+    let foreign = not_covered.iter().copied().filter(|case| !any_algorithm1 && of_algorithm1(case));
+    let not_applicable: Vec<_> = foreign.collect();
     let outcome = if not_covered.is_empty() { Outcome::Holds } else { Outcome::Incomplete };
     if as_json {
-        print_line(out, "required-coverage", &Line { required, not_covered })?;
+        print_line(out, "required-coverage", &Line { required, not_covered, not_applicable })?;
     } else {
         let cases = counted(required.len(), "required case");
-        let text = match &not_covered[..] {
+        let mut text = match &not_covered[..] {
             [] => "all are covered".to_owned(),
             not => format!("not covered: {}", not.join(", ")),
         };
+        if !not_applicable.is_empty() {
+            let cases = not_applicable.join(", ");
+            text += &format!(
+                "; the folding explorer does not have these cases of Algorithm 1: {cases}"
+            );
+        }
         print_hanging(out, &format!("{cases}: "), &text)?;
     }
     Ok(outcome)

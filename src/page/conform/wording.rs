@@ -80,7 +80,7 @@ pub(super) fn did(fault: FaultClass) -> &'static str {
     match fault {
         FaultClass::Perception => "a wrong percept",
         FaultClass::Motion => "the robot did not drive as commanded",
-        FaultClass::Algorithm => "a door that Algorithm 1 does not take, or a wrong map",
+        FaultClass::Algorithm => "a door that the algorithm does not take, or a wrong map",
         FaultClass::Log => "the log contradicts itself",
     }
 }

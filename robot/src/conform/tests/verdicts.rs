@@ -35,7 +35,11 @@ struct Options {
 
 fn options() -> impl Strategy<Value = Options> {
     let world = prop::sample::select(vec![None, Some(true), Some(false)]);
-    let drivers = prop::sample::select(vec![RunDriver::Algorithm1, RunDriver::Anyone]);
+    let drivers = prop::sample::select(vec![
+        RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        RunDriver::Algorithm(DirectionalAlgorithm::Folding),
+        RunDriver::Anyone,
+    ]);
     let limits = (prop::sample::select(vec![0, 30, 2_000]), 3_usize..40);
     let class = prop::sample::select(Class::ALL.to_vec());
     (0_u64..1000, 2_usize..9, world, class, limits, drivers, any::<[bool; 2]>()).prop_map(
@@ -54,6 +58,15 @@ fn options() -> impl Strategy<Value = Options> {
 }
 
 impl Options {
+    /// A good run of the algorithm that it is judged with.
+    fn log(&self, plan: &Arc<FloorPlan>, facing: Dart) -> Log {
+        let algorithm = match self.driver {
+            RunDriver::Algorithm(algorithm) => algorithm,
+            RunDriver::Anyone => DirectionalAlgorithm::Algorithm1,
+        };
+        log_of(algorithm, plan, facing, self.seed)
+    }
+
     fn question<'p>(&self, plan: &'p FloorPlan, facing: Dart) -> ConformConfig<'p> {
         let known = self.world.map(|known| question(plan, known.then_some(facing)).world.unwrap());
         ConformConfig {
@@ -149,7 +162,7 @@ proptest! {
     fn a_good_log_never_diverges(options in options(), cut in any::<prop::sample::Index>()) {
         let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
         let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
-        let log = log(&plan, facing, options.seed);
+        let log = options.log(&plan, facing);
         let whole = options.recorded(&log);
         let last = cut.index(2 * whole.events.len());
         let is_cut = last < whole.events.len();
@@ -178,7 +191,7 @@ proptest! {
     ) {
         let plan = Arc::new(random_plan_with(options.seed, options.junctions).unwrap());
         let Some(&facing) = starts_of(&plan).first() else { return Ok(()) };
-        let good = log(&plan, facing, options.seed);
+        let good = options.log(&plan, facing);
         let mut mutated = good.clone();
         let shows = mutated.mutate(event.index(good.places().len()), mutation, by);
         if shows == Shows::NotOne {
@@ -353,7 +366,10 @@ fn the_marker_is_honoured_without_a_world() {
     let DivergenceCause::NoWorld { why, .. } = divergence.cause else { panic!() };
     assert_eq!(why, Impossibility::Marker);
     // Algorithm 1 needs one.
-    let algorithm = ConformConfig { driver: RunDriver::Algorithm1, ..unmarked.clone() };
+    let algorithm = ConformConfig {
+        driver: RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1),
+        ..unmarked.clone()
+    };
     let judged =
         |question: &ConformConfig| judge(events.clone(), question, &Quirks::default(), &());
     assert_eq!(judged(&algorithm).unwrap_err(), JudgeError::Algorithm("none"));

@@ -1,0 +1,188 @@
+//! The runs of Algorithm 1 with any choices that match a trace. Section 2.3.
+
+use std::{collections::HashSet, mem};
+
+use super::{
+    Trace, TraceWorld,
+    match_end::{AllowedStep, Departure, MapDart, MatchEnd, RunStop, StepPurpose},
+};
+use crate::{
+    embedded_graph::Dart,
+    mapping::{DirectionalAlgorithm, Exploration, MappingChoice, PartialMap, step},
+};
+
+/// What a trace claims to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceClaim {
+    /// A complete run: choices that end with the trace are preferred.
+    Whole,
+    /// Possibly a part of a run.
+    Part,
+}
+
+/// A run that matches the trace so far.
+#[derive(Clone)]
+struct Way {
+    exploration: Exploration,
+    moves: usize,
+    /// The choices made so far.
+    script: Vec<MappingChoice>,
+}
+
+impl Way {
+    /// The purpose of a choice.
+    fn purpose(&self, choice: MappingChoice) -> StepPurpose {
+        let named = |dart| MapDart::of(self.exploration.map(), dart);
+        match choice {
+            MappingChoice::Edge(edge) => StepPurpose::Explore(named(edge)),
+            MappingChoice::Hypothesis(place) => {
+                StepPurpose::Try(named(self.exploration.hypotheses()[place]))
+            }
+        }
+    }
+}
+
+/// What distinguishes runs: the moves, the line, the map, the robot in it, and H.
+type Known = (usize, bool, PartialMap, Dart, Vec<Dart>);
+
+/// All choices, depth first.
+pub(super) struct Search {
+    claim: TraceClaim,
+    /// The choices of the first run that matches the trace without completing the map.
+    part: Option<Vec<MappingChoice>>,
+    seen: HashSet<Known>,
+    /// The index of the first event that none of the longest runs has,
+    farthest: usize,
+    /// what they have instead,
+    allowed: Vec<AllowedStep>,
+    /// and the choices of the first of them.
+    script: Vec<MappingChoice>,
+    /// Of the longest run that reached the bound on known darts: the index of the event, and the choices.
+    bound: Option<(usize, Vec<MappingChoice>)>,
+    /// The largest number of darts that may become known.
+    dart_bound: usize,
+}
+
+impl Search {
+    pub(super) fn new(claim: TraceClaim, dart_bound: usize) -> Self {
+        Self {
+            claim,
+            part: None,
+            seen: HashSet::new(),
+            farthest: 0,
+            allowed: Vec::new(),
+            script: Vec::new(),
+            bound: None,
+            dart_bound,
+        }
+    }
+
+    /// A run that matches the whole trace.
+    pub(super) fn run(&mut self, trace: &Trace) -> Option<(MatchEnd, Vec<MappingChoice>)> {
+        let mut exploration = Exploration::new(self.dart_bound);
+        let begun = exploration.begin(&mut TraceWorld::after(trace, 0), &mut ());
+        let way = Way { exploration, moves: 0, script: Vec::new() };
+        if let Err(error) = begun {
+            self.ended(RunStop::of(&error, 0, StepPurpose::Done), way.script);
+            return None;
+        }
+        let mut ways = vec![way];
+        while let Some(way) = ways.pop() {
+            let known = (
+                way.moves,
+                way.exploration.is_at_line_8(),
+                way.exploration.map().clone(),
+                way.exploration.robot(),
+                way.exploration.hypotheses().to_vec(),
+            );
+            if !self.seen.insert(known) {
+                continue;
+            }
+            if way.exploration.map().unexplored_is_empty() {
+                if way.moves == trace.doors().len() {
+                    return Some((MatchEnd::Mapped, way.script));
+                }
+                let allowed = AllowedStep { door: None, purpose: StepPurpose::Done };
+                let event = 2 * way.moves + 1;
+                self.ended(RunStop::Departure { event, allowed }, way.script.clone());
+            }
+            // The first choice is tried first.
+            ways.extend(self.next(trace, &way).into_iter().rev());
+            if self.claim == TraceClaim::Part && self.part.is_some() {
+                break;
+            }
+        }
+        self.part.take().map(|part| (MatchEnd::EndOfTrace, part))
+    }
+
+    /// Every choice that matches the trace.
+    fn next(&mut self, trace: &Trace, way: &Way) -> Vec<Way> {
+        let mut choices: Vec<_> = way.exploration.open_choices().collect();
+        let tries_hypotheses = way.exploration.is_at_line_8();
+        if tries_hypotheses {
+            // The default is the last.
+            choices.reverse();
+        }
+        let mut next = Vec::new();
+        let mut rejected = false;
+        for choice in choices {
+            let purpose = way.purpose(choice);
+            let mut way = way.clone();
+            way.script.push(choice);
+            let mut world = TraceWorld::after(trace, way.moves);
+            let stepped = step(&mut way.exploration, choice, &mut world, &mut ());
+            way.moves = world.moves();
+            if let Err(error) = stepped {
+                self.ended(RunStop::of(&error, way.moves, purpose), way.script);
+                continue;
+            }
+            // Rejected hypotheses are rejected after the same moves: the way back begins with door 0,
+            // which no shortest path takes. So one of them is enough: another one is rejected after the
+            // same moves again.
+            let falls = tries_hypotheses && way.exploration.is_at_line_8();
+            if !falls || !mem::replace(&mut rejected, true) {
+                next.push(way);
+            }
+        }
+        next
+    }
+
+    /// A run ended before its map was complete, or before the trace.
+    fn ended(&mut self, stop: RunStop, script: Vec<MappingChoice>) {
+        match stop {
+            RunStop::EndOfTrace => {
+                self.part.get_or_insert(script);
+            }
+            RunStop::Bound { event, .. } => {
+                if self.bound.as_ref().is_none_or(|(farthest, _)| event > *farthest) {
+                    self.bound = Some((event, script));
+                }
+            }
+            RunStop::Departure { event, allowed } => {
+                if self.allowed.is_empty() || event > self.farthest {
+                    self.farthest = event;
+                    self.allowed.clear();
+                    self.script = script;
+                }
+                if event == self.farthest && !self.allowed.contains(&allowed) {
+                    self.allowed.push(allowed);
+                }
+            }
+        }
+    }
+
+    /// The bound, if a run reached it: that run may be longer than all others. Otherwise the departure of
+    /// the longest runs.
+    pub(super) fn end(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
+        if let Some((event, script)) = self.bound {
+            let (event, bound) = (trace.event(event), self.dart_bound);
+            return (MatchEnd::Bound { event, bound }, script);
+        }
+        let departure = Departure {
+            algorithm: DirectionalAlgorithm::Algorithm1,
+            event: trace.event(self.farthest),
+            allowed: self.allowed,
+        };
+        (MatchEnd::Departure(departure), self.script)
+    }
+}
