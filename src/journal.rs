@@ -1,5 +1,5 @@
 //! What a person sees of a simulated run: every frame, every junction that the robot called, the map as
-//! it grew, and the story of Algorithm 1. Section 6, Figure 11.
+//! it grew, and the story of the mapping algorithm. Section 6, Figure 11.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub struct Journal {
     pub rounds: Vec<FrameEntry>,
     /// The junctions that the robot came to, in order; the start first.
     pub calls: Vec<JunctionCall>,
-    /// The story of Algorithm 1, line by line.
+    /// The story of the mapping algorithm, line by line.
     pub story: Vec<String>,
     /// The map whenever it grew, in order.
     pub maps: Vec<PartialMap>,

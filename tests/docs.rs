@@ -49,6 +49,7 @@ fn the_documents_show_what_the_commands_print() {
                 .map(|command| run(command, &folder))
                 .fold(String::new(), |_, printed| printed);
             if let Some((_, expected)) = expected {
+                let [expected, printed] = [expected, &printed].map(without_bytes);
                 assert_eq!(expected, printed, "{page}: {commands}");
             }
         }
@@ -60,6 +61,15 @@ fn the_documents_show_what_the_commands_print() {
         let same = fs::read(shown.join(&name)).unwrap() == fs::read(drawn.join(&name)).unwrap();
         assert!(same, "docs/sensing/{} is not what is drawn", name.display());
     }
+}
+
+/// A text without places in a log: a log names the revision of its program, and not every build has one.
+fn without_bytes(text: &str) -> String {
+    let mut parts = text.split("at byte ");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        text + "at byte N" + part.trim_start_matches(|digit: char| digit.is_ascii_digit())
+    })
 }
 
 /// The fenced blocks of a page: kind and content.
@@ -111,19 +121,20 @@ fn the_moves_in_the_table_of_worlds_are_those_of_the_specification() {
     let (table, _) = table.split_once("\n## ").unwrap();
     let rows: Vec<Vec<&str>> = table
         .lines()
-        .filter(|line| line.contains(" : ") && line.starts_with("| "))
-        .skip(1)
+        .filter(|line| line.starts_with("| "))
+        .skip(2)
         .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
         .collect();
     assert_eq!(rows.len(), 11);
     for row in rows {
-        let [name, start, cost] = [row[0], row[1], row[2]];
+        let [name, start, moves, edges] = [row[0], row[1], row[2], row[3]];
         let folders = ["worlds/shapes", "worlds"];
         let files = folders.map(|folder| format!("{folder}/{name}.toml"));
         let file = files.iter().find(|file| Path::new(file).exists()).unwrap();
         let result = toposlam(&["explore", file, "--start", start, "--json"]);
         let result: serde_json::Value = serde_json::from_str(&result).unwrap();
-        assert_eq!(format!("{} : {}", result["moves"], result["edges"]), cost, "{name}");
+        let expected = [&result["moves"], &result["edges"]].map(ToString::to_string);
+        assert_eq!(expected, [moves, edges], "{name}");
     }
 }
 

@@ -156,7 +156,7 @@ fn counterexamples(class: &str, edges: &str) -> String {
         "--json",
         "--class",
         class,
-        "--edges",
+        "--max-edges",
         edges,
     ]));
     let found = lines.iter().map(|line| {

@@ -22,14 +22,14 @@ fn read(path: &str) -> String {
     fs::read_to_string(folder.join(path)).unwrap()
 }
 
-/// The rows of the table that stands under a heading of a page.
+/// The rows of the table that stands under a heading of a page. Digits of large numbers are grouped there.
 fn printed(page: &str, heading: &str) -> Vec<String> {
     let page = read(page);
     let (_, section) = page.split_once(&format!("\n## {heading}\n")).unwrap();
     let section = section.split("\n## ").next().unwrap();
     let rows = section.lines().filter(|line| line.starts_with('|'));
     // After its head.
-    rows.skip(2).map(str::to_owned).collect()
+    rows.skip(2).map(|row| row.replace(',', "")).collect()
 }
 
 fn world(name: &str) -> NamedWorld {

@@ -361,7 +361,11 @@ mod tests {
     };
 
     fn recorded(seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
-        let (_, plan) = plans().unwrap().swap_remove(2);
+        recorded_in("shape-6", seed, algorithm)
+    }
+
+    fn recorded_in(world: &str, seed: u64, algorithm: DirectionalAlgorithm) -> (Log, MappingRun) {
+        let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == world).unwrap();
         let facing = starts_of(&plan)[0];
         let mut setting = SimulationConfig::at_start(plan.clone(), facing, seed);
         setting.keeps_track = true;
@@ -396,7 +400,7 @@ mod tests {
     #[test]
     fn another_algorithm_than_the_recorded_one_takes_another_door() {
         let [algorithm1, folding] = DirectionalAlgorithm::ALL;
-        let (log, _) = recorded(0, algorithm1);
+        let (log, _) = recorded_in("building-12", 0, algorithm1);
         let replay = replay(&log, &TopicMap::unambiguous(&log), None, folding, 200).unwrap();
         assert_eq!(replay.comparison.difference.unwrap().what, "door");
     }

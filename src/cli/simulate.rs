@@ -49,9 +49,10 @@ pub(super) use log::MAX_DARTS;
 /// Let a simulated SuperScout map a floor plan from rendered camera images
 ///
 /// The robot stands at the start, with its back to the facing hallway, and puts its marker down along
-/// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L. Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1
-/// or the folding explorer makes the map. Each move, each percept and the map are checked against the floor plan's embedded
-/// graph.
+/// it. If the plan's own start is not an L, where a marker can lie, the run starts at the nearest L.
+/// Sensing turns each rendered image into a scene, Algorithm 2 drives by the scenes, and Algorithm 1 or
+/// the folding explorer makes the map. Each move, each percept and the map are checked against the floor
+/// plan's embedded graph.
 #[derive(clap::Args)]
 #[command(after_help = after_help())]
 pub(super) struct SimulateArguments {

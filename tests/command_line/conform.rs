@@ -357,7 +357,7 @@ fn logs_without_evidence_are_an_error() {
     for (name, cause) in [
         ("example.bag", "2 topics could carry odometry: /turtle1/pose, /turtle2/pose"),
         ("example-unsorted-chunks.bag", "no topics are known for percepts and doors"),
-        ("no-messages.bag", "it is empty: there is no message in it"),
+        ("no-messages.bag", "the log is empty: it has no messages"),
     ] {
         let output = run(["conform", logs.join(name).to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(2), "{name}");

@@ -42,8 +42,55 @@ fn the_folding_explorer_maps_every_world_file_in_few_moves() {
 }
 
 #[test]
-fn the_story_tells_each_test_and_how_the_trail_folds() {
-    let story = "";
+fn the_story_has_each_test_and_each_folding_of_the_trail() {
+    let story = "\
+World shape-8. The robot starts at nw, with its back to the door to w.
+It puts its marker down here, at vertex v0 of the map. It senses 2 doors, marker
+along door 0.
+
+Round 1: the robot takes v0.0 (1 move) and senses 3 doors.
+  So v0.0 leads to a new vertex, v1.
+  Known: 2 vertices, 1 edge. Unexplored: 3 darts.
+
+Round 2: the robot takes v1.1 (1 move) and senses 3 doors.
+
+Round 3: may v1.1 and v1.2 be the two ends of one edge? Then a walk of 1 move
+         leads to the marker.
+  Candidate v1.2: rejected on the way: expected 2 doors, marker along door 0,
+    sensed 2 doors, no marker (1 move).
+  So v1.1 leads to a new vertex, v2.
+  Known: 3 vertices, 2 edges. Unexplored: 4 darts.
+  So v2.1 leads to a new vertex, v3.
+  Known: 4 vertices, 3 edges. Unexplored: 4 darts.
+
+Round 4: the robot takes v3.1 (1 move) and senses 2 doors, marker along door 1.
+  The marker is here: the trail folds from 5 vertices to 4.
+  So v0.1 and v3.1 are the two ends of one edge.
+  Known: 4 vertices, 4 edges. Unexplored: 2 darts.
+
+Round 5: the robot takes v1.2 (2 moves) and senses 2 doors.
+  So v1.2 leads to a new vertex, v4.
+  Known: 5 vertices, 5 edges. Unexplored: 2 darts.
+
+Round 6: the robot takes v4.1 (1 move) and senses 2 doors.
+  So v4.1 leads to a new vertex, v5.
+  Known: 6 vertices, 6 edges. Unexplored: 2 darts.
+
+Round 7: the robot takes v5.1 (1 move) and senses 3 doors.
+
+Round 8: may v5.1 and v2.2 be the two ends of one edge? Then a walk of 2 moves
+         leads to the marker.
+  Candidate v2.2: confirmed, the walk leads to the marker (2 moves).
+  The marker is here: the trail folds from 9 vertices to 6.
+  So v2.2 and v5.1 are the two ends of one edge.
+  Known: 6 vertices, 7 edges. Unexplored: 0 darts.
+
+The map is complete after 10 moves: 6 vertices, 7 edges. A run in this world
+takes at least 10 and at most 1,744 moves.
+It is isomorphic to the world:
+  v0 = nw, v1 = w, v2 = e, v3 = ne, v4 = sw, v5 = se
+The robot is where it believes to be: at v0, entered by dart v0.0.
+";
     let found = stdout_of([&["explore", "worlds/shape-8.toml"], &FOLDING[..]].concat());
     assert_eq!(found, story);
     assert!(found.lines().all(|line| line.len() <= 80), "{found}");

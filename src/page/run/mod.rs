@@ -1,5 +1,5 @@
 //! A page that shows the run of a simulated robot step by step: where it was, its camera image, its map,
-//! and the story of Algorithm 1. Section 6, Figure 11.
+//! and the story of the mapping algorithm. Section 6, Figure 11.
 
 mod data;
 mod folding;
