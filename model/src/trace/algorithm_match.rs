@@ -1,14 +1,18 @@
 //! Matches a trace with an algorithm: are the doors those that it takes, or may take? Section 2.3.
 
+use std::borrow::Cow;
+
 use super::{
     AlgorithmCoverage, Trace, TraceWorld, TraceWorldError,
     choice_search::{Search, TraceClaim},
     folding_match::follow,
     match_end::{Departure, MatchEnd},
 };
-use crate::mapping::{
-    DirectionalAlgorithm, Exploration, MappingChoice, MappingError, MappingRun, Nearest, map_world,
-    step,
+use crate::{
+    mapping::{
+        DirectionalAlgorithm, Exploration, MappingChoice, MappingError, MappingRun, Nearest, step,
+    },
+    percept::Percept,
 };
 
 /// How far an algorithm follows a trace.
@@ -49,7 +53,7 @@ pub fn match_algorithm(
     bound: usize,
 ) -> AlgorithmMatch {
     match algorithm {
-        DirectionalAlgorithm::Algorithm1 => match_algorithm1(trace, claim, bound),
+        DirectionalAlgorithm::Algorithm1 => match_choices(trace, claim, bound, None),
         DirectionalAlgorithm::Folding => {
             let (reached, exploration) = follow(trace, bound);
             AlgorithmMatch {
@@ -63,31 +67,114 @@ pub fn match_algorithm(
     }
 }
 
-fn match_algorithm1(trace: &Trace, claim: TraceClaim, bound: usize) -> AlgorithmMatch {
-    let algorithm = DirectionalAlgorithm::Algorithm1;
-    let mut world = TraceWorld::after(trace, 0);
-    let mut exploration = Exploration::new(bound);
-    let mut coverage = AlgorithmCoverage::default();
-    let run = map_world(&mut world, &mut Nearest, &mut exploration, &mut coverage);
-    let moves = world.moves();
-    let reached = match &run {
-        Ok(()) if moves == trace.doors().len() => Some(MatchEnd::Mapped),
-        Err(MappingError::World(TraceWorldError::End)) => Some(MatchEnd::EndOfTrace),
-        _ => None,
-    };
-    let to_the_end = reached == Some(MatchEnd::Mapped);
-    let part = reached == Some(MatchEnd::EndOfTrace);
-    let mut search = Search::new(claim, bound);
-    // Other choices may take the same doors and complete the map.
-    let found = if to_the_end || (part && claim == TraceClaim::Part) {
-        None
-    } else {
-        search.run(trace).filter(|(found, _)| !part || *found == MatchEnd::Mapped)
-    };
-    if let (Some(reached), None) = (reached, &found) {
-        let (choices, run) = (MatchedChoices::Default, MappingRun::Algorithm1(exploration));
-        return AlgorithmMatch { algorithm, choices, reached, run, coverage };
+/// A percept in place of one that contradicts Algorithm 1; `None` if it is not replaced.
+pub type Amendment<'a> = &'a mut dyn FnMut(&Departure) -> Option<Percept>;
+
+/// Matches a trace with Algorithm 1. At a contradiction, `amend` may replace the percept; the match then
+/// goes on from the step to it.
+pub fn match_amended(
+    trace: &Trace,
+    claim: TraceClaim,
+    bound: usize,
+    amend: Amendment,
+) -> AlgorithmMatch {
+    match_choices(trace, claim, bound, Some(amend))
+}
+
+/// The run with the default choices.
+#[derive(Clone)]
+struct DefaultRun {
+    exploration: Exploration,
+    coverage: AlgorithmCoverage,
+    moves: usize,
+    has_begun: bool,
+}
+
+impl DefaultRun {
+    /// Goes on until an error or the end, and returns the state before the last step, if it is kept.
+    fn go_on(
+        &mut self,
+        trace: &Trace,
+        is_kept: bool,
+    ) -> (Result<(), MappingError<TraceWorldError>>, Option<Self>) {
+        let mut before = None;
+        loop {
+            if is_kept {
+                before = Some(self.clone());
+            }
+            let mut world = TraceWorld::after(trace, self.moves);
+            let stepped = if self.has_begun {
+                let Some(choice) = self.exploration.choose(&mut Nearest) else {
+                    return (Ok(()), before);
+                };
+                step(&mut self.exploration, choice, &mut world, &mut self.coverage)
+            } else {
+                self.has_begun = true;
+                self.exploration.begin(&mut world, &mut self.coverage)
+            };
+            self.moves = world.moves();
+            if stepped.is_err() {
+                return (stepped, before);
+            }
+        }
     }
+}
+
+fn match_choices(
+    trace: &Trace,
+    claim: TraceClaim,
+    bound: usize,
+    mut amend: Option<Amendment>,
+) -> AlgorithmMatch {
+    let algorithm = DirectionalAlgorithm::Algorithm1;
+    let mut trace = Cow::Borrowed(trace);
+    let mut default = DefaultRun {
+        exploration: Exploration::new(bound),
+        coverage: AlgorithmCoverage::default(),
+        moves: 0,
+        has_begun: false,
+    };
+    let mut search = Search::new(claim, bound);
+    let mut amended_before = 0;
+    let (run, found) = loop {
+        let (run, before) = default.go_on(&trace, amend.is_some());
+        let reached = match &run {
+            Ok(()) if default.moves == trace.doors().len() => Some(MatchEnd::Mapped),
+            Err(MappingError::World(TraceWorldError::End)) => Some(MatchEnd::EndOfTrace),
+            _ => None,
+        };
+        let to_the_end = reached == Some(MatchEnd::Mapped);
+        let part = reached == Some(MatchEnd::EndOfTrace);
+        // Other choices may take the same doors and complete the map.
+        let found = if to_the_end || (part && claim == TraceClaim::Part) {
+            None
+        } else {
+            search.run(&trace).filter(|(found, _)| !part || *found == MatchEnd::Mapped)
+        };
+        if let (Some(reached), None) = (reached, &found) {
+            let DefaultRun { exploration, coverage, .. } = default;
+            let (choices, run) = (MatchedChoices::Default, MappingRun::Algorithm1(exploration));
+            return AlgorithmMatch { algorithm, choices, reached, run, coverage };
+        }
+        if let Some(found) = found {
+            break (run, found);
+        }
+        let end = search.end(&trace);
+        let amended = match (&end.0, &mut amend) {
+            (MatchEnd::Departure(departure), Some(amend))
+                if search.can_go_on() && search.farthest() >= amended_before =>
+            {
+                amend(departure)
+            }
+            _ => None,
+        };
+        let (Some(percept), Some(before)) = (amended, before) else { break (run, end) };
+        trace.to_mut().percepts[search.farthest() / 2] = percept;
+        // No percept is replaced twice.
+        amended_before = search.farthest() + 1;
+        default = before;
+    };
+    let (trace, moves) = (&*trace, default.moves);
     // If the default choices match the whole trace, they differ after its end.
     let from = match run {
         Err(MappingError::World(TraceWorldError::End)) => trace.len(),
@@ -95,7 +182,7 @@ fn match_algorithm1(trace: &Trace, claim: TraceClaim, bound: usize) -> Algorithm
         _ => 2 * moves + 1,
     };
     let from = (from < trace.len()).then(|| trace.event(from).id);
-    let (reached, script) = found.unwrap_or_else(|| search.end(trace));
+    let (reached, script) = found;
     let choices = match &reached {
         MatchEnd::Departure(Departure { event, .. }) | MatchEnd::Bound { event, .. }
             if Some(event.id) == from =>
@@ -140,7 +227,7 @@ mod tests {
             DirectionalAlgorithm::{Algorithm1, Folding},
             FACING, Journey, MappingEvent, PartialMap,
         },
-        percept::{Door, Percept, Sighting},
+        percept::{Door, Sighting},
         trace::{
             AllowedStep, StepPurpose, TraceEventKind,
             tests::{explored, explored_by, lollipop, walked},

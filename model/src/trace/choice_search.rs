@@ -59,6 +59,8 @@ pub(super) struct Search {
     script: Vec<MappingChoice>,
     /// Of the longest run that reached the bound on known darts: the index of the event, and the choices.
     bound: Option<(usize, Vec<MappingChoice>)>,
+    /// The runs that a percept contradicts at that event, before the step to it.
+    stuck: Vec<Way>,
     /// The largest number of darts that may become known.
     dart_bound: usize,
 }
@@ -73,12 +75,32 @@ impl Search {
             allowed: Vec::new(),
             script: Vec::new(),
             bound: None,
+            stuck: Vec::new(),
             dart_bound,
         }
     }
 
-    /// A run that matches the whole trace.
+    /// The index of the first event that none of the longest runs has.
+    pub(super) fn farthest(&self) -> usize {
+        self.farthest
+    }
+
+    /// Whether the longest runs can be continued with another percept.
+    pub(super) fn can_go_on(&self) -> bool {
+        !self.stuck.is_empty()
+    }
+
+    /// A run that matches the whole trace. After a search without one the percept that contradicts the
+    /// longest runs may be replaced; then they are continued.
     pub(super) fn run(&mut self, trace: &Trace) -> Option<(MatchEnd, Vec<MappingChoice>)> {
+        let stuck = mem::take(&mut self.stuck);
+        if !stuck.is_empty() {
+            self.allowed.clear();
+            let next = stuck.iter().flat_map(|way| self.next(trace, way));
+            let mut ways: Vec<_> = next.collect();
+            ways.reverse();
+            return self.search(trace, ways);
+        }
         let mut exploration = Exploration::new(self.dart_bound);
         let begun = exploration.begin(&mut TraceWorld::after(trace, 0), &mut ());
         let way = Way { exploration, moves: 0, script: Vec::new() };
@@ -86,7 +108,15 @@ impl Search {
             self.ended(RunStop::of(&error, 0, StepPurpose::Done), way.script);
             return None;
         }
-        let mut ways = vec![way];
+        self.search(trace, vec![way])
+    }
+
+    /// Continues these runs, the last one first.
+    fn search(
+        &mut self,
+        trace: &Trace,
+        mut ways: Vec<Way>,
+    ) -> Option<(MatchEnd, Vec<MappingChoice>)> {
         while let Some(way) = ways.pop() {
             let known = (
                 way.moves,
@@ -116,9 +146,9 @@ impl Search {
     }
 
     /// Every choice that matches the trace.
-    fn next(&mut self, trace: &Trace, way: &Way) -> Vec<Way> {
-        let mut choices: Vec<_> = way.exploration.open_choices().collect();
-        let tries_hypotheses = way.exploration.is_at_line_8();
+    fn next(&mut self, trace: &Trace, before: &Way) -> Vec<Way> {
+        let mut choices: Vec<_> = before.exploration.open_choices().collect();
+        let tries_hypotheses = before.exploration.is_at_line_8();
         if tries_hypotheses {
             // The default is the last.
             choices.reverse();
@@ -126,14 +156,21 @@ impl Search {
         let mut next = Vec::new();
         let mut rejected = false;
         for choice in choices {
-            let purpose = way.purpose(choice);
-            let mut way = way.clone();
+            let purpose = before.purpose(choice);
+            let mut way = before.clone();
             way.script.push(choice);
             let mut world = TraceWorld::after(trace, way.moves);
             let stepped = step(&mut way.exploration, choice, &mut world, &mut ());
             way.moves = world.moves();
             if let Err(error) = stepped {
-                self.ended(RunStop::of(&error, way.moves, purpose), way.script);
+                let stop = RunStop::of(&error, way.moves, purpose);
+                self.ended(stop, way.script);
+                if let RunStop::Departure { event, allowed } = stop
+                    && let (StepPurpose::Contradicted(_), true) =
+                        (allowed.purpose, event == self.farthest)
+                {
+                    self.stuck.push(before.clone());
+                }
                 continue;
             }
             // Rejected hypotheses are rejected after the same moves: the way back begins with door 0,
@@ -162,6 +199,7 @@ impl Search {
                 if self.allowed.is_empty() || event > self.farthest {
                     self.farthest = event;
                     self.allowed.clear();
+                    self.stuck.clear();
                     self.script = script;
                 }
                 if event == self.farthest && !self.allowed.contains(&allowed) {
@@ -173,16 +211,16 @@ impl Search {
 
     /// The bound, if a run reached it: that run may be longer than all others. Otherwise the departure of
     /// the longest runs.
-    pub(super) fn end(self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
-        if let Some((event, script)) = self.bound {
-            let (event, bound) = (trace.event(event), self.dart_bound);
-            return (MatchEnd::Bound { event, bound }, script);
+    pub(super) fn end(&self, trace: &Trace) -> (MatchEnd, Vec<MappingChoice>) {
+        if let Some((event, script)) = &self.bound {
+            let (event, bound) = (trace.event(*event), self.dart_bound);
+            return (MatchEnd::Bound { event, bound }, script.clone());
         }
         let departure = Departure {
             algorithm: DirectionalAlgorithm::Algorithm1,
             event: trace.event(self.farthest),
-            allowed: self.allowed,
+            allowed: self.allowed.clone(),
         };
-        (MatchEnd::Departure(departure), self.script)
+        (MatchEnd::Departure(departure), self.script.clone())
     }
 }

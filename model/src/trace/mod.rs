@@ -12,7 +12,9 @@ mod trace_world;
 
 use thiserror::Error;
 
-pub use algorithm_match::{AlgorithmMatch, MatchedChoices, match_algorithm};
+pub use algorithm_match::{
+    AlgorithmMatch, Amendment, MatchedChoices, match_algorithm, match_amended,
+};
 pub use choice_search::TraceClaim;
 pub use coverage::{AlgorithmCase, AlgorithmCoverage, reachable};
 pub use known_world::{Misfit, MisfitReason, Poses, anywhere, poses, poses_amended};

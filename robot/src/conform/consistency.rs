@@ -5,7 +5,7 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     isomorphism::code,
     mapping::FACING,
-    trace::{AlgorithmMatch, MatchEnd, Trace},
+    trace::{AlgorithmMatch, MatchEnd, Trace, TraceClaim},
 };
 
 use super::{
@@ -87,8 +87,13 @@ impl RunEvents {
     }
 
     /// Whether the log says that the map is complete at its end.
-    pub(super) fn is_said_whole(&self) -> bool {
+    fn is_said_whole(&self) -> bool {
         self.end.as_ref().is_some_and(|end| end.ending == RunEnding::Mapped)
+    }
+
+    /// What the log claims to be.
+    pub(super) fn claim(&self) -> TraceClaim {
+        if self.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part }
     }
 
     /// The recorded number of moves, if it is wrong.

@@ -7,47 +7,23 @@ use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
     enumerate::Watch,
-    folding::{FoldedTrail, SearchLimit, SmallestWorld, WorldSearch, smallest_world},
+    folding::{FoldedTrail, SearchLimit, SmallestWorld, smallest_world},
     mapping::DirectionalAlgorithm,
     marker::{Directional, Marker},
     trace::{
-        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceClaim, TraceOrderError,
+        AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError,
         match_algorithm, poses,
     },
 };
 
 use super::{
+    config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause, FaultClass},
     events::{CheckedEvent, CheckedKind, MarkerNotRecorded, OutOfOrder, RunEvents},
     impossible::{FoldedTrace, Impossibility, first_percept, folded_before},
-    known_world::KnownWorld,
     quirks::Quirks,
     tolerance::Tolerance,
 };
-
-/// What a run is checked against.
-#[derive(Clone, Debug)]
-pub struct ConformConfig<'w> {
-    /// The world, if it is known.
-    pub world: Option<KnownWorld<'w>>,
-    /// The kind of marker.
-    pub marker: &'static dyn Marker,
-    /// What chose the doors.
-    pub driver: RunDriver,
-    /// The worlds to search if none is known.
-    pub search: WorldSearch,
-    /// The largest number of darts that the algorithm may know.
-    pub dart_bound: usize,
-}
-
-/// What chooses the doors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RunDriver {
-    /// An algorithm; Algorithm 1 with any choices.
-    Algorithm(DirectionalAlgorithm),
-    /// Anything, in any way.
-    Anyone,
-}
 
 /// The result of checking a run.
 #[derive(Clone, Debug)]
@@ -174,7 +150,7 @@ pub fn judge(
     {
         return Err(JudgeError::Algorithm { algorithm, marker });
     }
-    let mut tolerance = Tolerance::new(events, quirks, question.world.as_ref(), question.marker);
+    let mut tolerance = Tolerance::new(events, quirks, question);
     loop {
         let judgement = Judgement::new(tolerance.events(), question, tolerance.noted(), watch)?;
         if !tolerance.grows(judgement.divergence.as_ref()) {
@@ -232,8 +208,7 @@ impl Judgement {
             judgement.poses = Some(poses);
         }
         if let RunDriver::Algorithm(algorithm) = question.driver {
-            let claim = if events.is_said_whole() { TraceClaim::Whole } else { TraceClaim::Part };
-            let followed = match_algorithm(algorithm, trace, claim, question.dart_bound);
+            let followed = match_algorithm(algorithm, trace, events.claim(), question.dart_bound);
             match &followed.reached {
                 MatchEnd::Departure(departure) => {
                     found.note(departure.event.id, DivergenceCause::Algorithm(departure.clone()));

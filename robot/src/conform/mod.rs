@@ -1,6 +1,7 @@
 //! Checks a recorded run against the specification: the first divergence, what the specification allows
 //! there instead, and the class of the fault. Sections 2 and 4 to 6.
 
+mod config;
 mod consistency;
 mod divergence;
 mod events;
@@ -17,6 +18,7 @@ mod tolerance;
 #[cfg(test)]
 mod tests;
 
+pub use config::{ConformConfig, RunDriver};
 pub use divergence::{Divergence, DivergenceCause, FaultClass};
 pub use events::{
     CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
@@ -26,10 +28,7 @@ pub use extract::{
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};
-pub use judgement::{
-    ConformConfig, ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, RunDriver,
-    judge,
-};
+pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::KnownWorld;
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use recorded_events::{RecordedEvents, direction};

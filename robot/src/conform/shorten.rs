@@ -10,10 +10,11 @@ use toposlam_model::{
 };
 
 use super::{
+    config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause},
     events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
     extract::{SensedScene, infer_events},
-    judgement::{ConformConfig, Judgement, RunDriver, judge},
+    judgement::{Judgement, judge},
     quirks::Quirks,
 };
 use crate::record::Arrival;

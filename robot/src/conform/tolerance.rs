@@ -1,30 +1,28 @@
 //! Tolerated divergences: each tolerated event is replaced by the expected one.
 //!
 //! A run is judged again after a divergence was tolerated. So that a run with many of them is not judged as
-//! often, the divergences that can be found without a judgement are tolerated together.
+//! often, the divergences that can be found without a judgement are tolerated together: contradictions of
+//! single events, percepts that do not fit the known world, and percepts that contradict Algorithm 1.
 
 use std::collections::BTreeSet;
 
 use toposlam_model::{
-    mapping::Contradiction,
-    marker::Marker,
+    mapping::{Contradiction, DirectionalAlgorithm},
     percept::Percept,
-    trace::{Departure, Misfit, MisfitReason, StepPurpose, poses_amended},
+    trace::{Departure, Misfit, MisfitReason, StepPurpose, match_amended, poses_amended},
 };
 
 use super::{
+    config::{ConformConfig, RunDriver},
     divergence::{Divergence, DivergenceCause},
     events::{CheckedEvent, CheckedKind, RunEvents},
-    known_world::KnownWorld,
     quirks::Quirks,
 };
 
 /// The divergences of a run that are tolerated so far.
 pub(super) struct Tolerance<'q> {
     quirks: &'q Quirks,
-    /// The known world, if there is one, and the marker.
-    world: Option<&'q KnownWorld<'q>>,
-    marker: &'static dyn Marker,
+    question: &'q ConformConfig<'q>,
     recorded: RunEvents,
     /// With the expected events in place of the tolerated ones.
     amended: RunEvents,
@@ -37,19 +35,10 @@ impl<'q> Tolerance<'q> {
     pub(super) fn new(
         recorded: RunEvents,
         quirks: &'q Quirks,
-        world: Option<&'q KnownWorld<'q>>,
-        marker: &'static dyn Marker,
+        question: &'q ConformConfig<'q>,
     ) -> Self {
         let amended = recorded.clone();
-        Self {
-            quirks,
-            world,
-            marker,
-            recorded,
-            amended,
-            tolerated: Vec::new(),
-            noted: BTreeSet::new(),
-        }
+        Self { quirks, question, recorded, amended, tolerated: Vec::new(), noted: BTreeSet::new() }
     }
 
     pub(super) fn events(&self) -> &RunEvents {
@@ -85,6 +74,8 @@ impl<'q> Tolerance<'q> {
         self.amend();
         let limit = self.own_faults();
         self.misfits(limit);
+        self.amend();
+        self.contradictions(limit);
         self.tolerated.sort_by_key(|(divergence, _)| divergence.event);
         self.amend();
         true
@@ -140,7 +131,8 @@ impl<'q> Tolerance<'q> {
 
     /// Tolerates the percepts before an event that do not fit the known world.
     fn misfits(&mut self, limit: usize) {
-        let (Some(known), Ok(trace)) = (self.world, self.amended.trace()) else { return };
+        let Some(known) = &self.question.world else { return };
+        let Ok(trace) = self.amended.trace() else { return };
         let mut tolerated = Vec::new();
         let amend = |misfit: &Misfit| {
             let event = misfit.event.id;
@@ -150,7 +142,28 @@ impl<'q> Tolerance<'q> {
             tolerated.push((divergence, quirk));
             expected_by(misfit)
         };
-        let _ = poses_amended(known.graph, &self.marker, &known.states, &trace, amend);
+        let _ = poses_amended(known.graph, &self.question.marker, &known.states, &trace, amend);
+        self.tolerated.extend(tolerated);
+    }
+
+    /// Tolerates the percepts before an event that contradict Algorithm 1.
+    fn contradictions(&mut self, limit: usize) {
+        let algorithm1 = RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1);
+        let Ok(trace) = self.amended.trace() else { return };
+        if self.question.driver != algorithm1 {
+            return;
+        }
+        let mut tolerated = Vec::new();
+        let mut amend = |departure: &Departure| {
+            let event = departure.event.id;
+            let cause = DivergenceCause::Algorithm(departure.clone());
+            let divergence = Divergence { event, fault: cause.fault(), cause };
+            let quirk = self.quirk(&divergence).filter(|_| event < limit)?;
+            tolerated.push((divergence, quirk));
+            expected_after(departure)
+        };
+        let bound = self.question.dart_bound;
+        let _ = match_amended(&trace, self.amended.claim(), bound, &mut amend);
         self.tolerated.extend(tolerated);
     }
 }

@@ -68,3 +68,45 @@ fn what_follows_a_divergence_is_not_tolerated() {
     assert_eq!(tolerated[..4], [1, 2, 3, 4]);
     assert!(tolerated.iter().all(|&event| event <= 5), "{tolerated:?}");
 }
+
+/// The events of a log, with one more door at each of these arrivals.
+fn with_wrong_degrees(good: &RunEvents, at: &[usize]) -> RunEvents {
+    let mut events = good.clone();
+    for &event in at {
+        let CheckedKind::Arrival { arrival, .. } = &mut events.events[event].kind else { panic!() };
+        arrival.degree += 1;
+        arrival.form = None;
+    }
+    events
+}
+
+#[test]
+fn all_contradictions_of_algorithm_1_need_two_judgements() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    let question = without_world();
+    let quirks = everywhere(&["contradiction"]);
+    // The arrivals whose percept is known to Algorithm 1 when another one contradicts its map.
+    let contradicted: Vec<usize> = (2..good.events.len())
+        .step_by(2)
+        .filter(|&event| {
+            let wrong = with_wrong_degrees(&good, &[event]);
+            let (_, judgement) = counted(&wrong, &question, &quirks);
+            let at: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
+            judgement.divergence.is_none() && at == [event]
+        })
+        .collect();
+    assert!(contradicted.len() > 10, "{contradicted:?}");
+    let events = with_wrong_degrees(&good, &contradicted);
+    let (count, judgement) = counted(&events, &question, &quirks);
+    assert_eq!((count, judgement.verdict()), (2, ConformVerdict::Conforms));
+    let tolerated: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
+    assert_eq!(tolerated, contradicted);
+    // With a quirk for one event the next one diverges.
+    let one = format!(
+        "[[quirk]]\nname = \"one\"\ncause = \"contradiction\"\nreason = \"known\"\nevent = {}",
+        contradicted[0] + 1
+    );
+    let judgement = judge(events, &question, &Quirks::read(&one).unwrap(), &()).unwrap();
+    assert_eq!(judgement.divergence.unwrap().event, contradicted[1]);
+}

@@ -1,0 +1,29 @@
+//! What a run is checked against.
+
+use toposlam_model::{folding::WorldSearch, mapping::DirectionalAlgorithm, marker::Marker};
+
+use super::known_world::KnownWorld;
+
+/// What a run is checked against.
+#[derive(Clone, Debug)]
+pub struct ConformConfig<'w> {
+    /// The world, if it is known.
+    pub world: Option<KnownWorld<'w>>,
+    /// The kind of marker.
+    pub marker: &'static dyn Marker,
+    /// What chose the doors.
+    pub driver: RunDriver,
+    /// The worlds to search if none is known.
+    pub search: WorldSearch,
+    /// The largest number of darts that the algorithm may know.
+    pub dart_bound: usize,
+}
+
+/// What chooses the doors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunDriver {
+    /// An algorithm; Algorithm 1 with any choices.
+    Algorithm(DirectionalAlgorithm),
+    /// Anything, in any way.
+    Anyone,
+}
