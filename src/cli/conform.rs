@@ -144,6 +144,7 @@ const LISTED: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Who {
     /// The algorithm; Algorithm 1 with any of its choices
+    #[value(alias = "algorithm1")]
     Algorithm,
     /// Anything, in any way
     Anyone,
