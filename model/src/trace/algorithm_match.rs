@@ -225,7 +225,7 @@ mod tests {
         mapping::{
             Choices, Contradiction,
             DirectionalAlgorithm::{Algorithm1, Folding},
-            FACING, Journey, MappingEvent, PartialMap,
+            FACING, Journey, MappingEvent, PartialMap, map_world,
         },
         percept::{Door, Sighting},
         trace::{
