@@ -94,6 +94,9 @@ pub(crate) struct OptimumSearch {
     known: HashMap<Vec<u32>, Total>,
 }
 
+/// A bound of the total after a decision, and what the robot may know then.
+type Decision = (u64, Vec<Belief>);
+
 impl OptimumSearch {
     /// The starts of a class with a number of edges, which is at most 64.
     ///
@@ -176,7 +179,7 @@ impl OptimumSearch {
     }
 
     /// For each open dart, a bound of the total if it is taken next, and what the robot may know then.
-    fn decisions(&self, belief: &Belief) -> Result<Vec<(u64, Vec<Belief>)>, Box<dyn Error>> {
+    fn decisions(&self, belief: &Belief) -> Result<Vec<Decision>, Box<dyn Error>> {
         let Belief { trail, candidates, .. } = belief;
         let mut decisions = Vec::new();
         // The ways to all vertices of the trail, as doors.

@@ -41,7 +41,7 @@ fn part(parents: &[usize], junction: usize) -> usize {
 
 /// A building with at most this number of junctions: those that the tree has reached from the first.
 fn building(junctions: usize, random: &mut Random) -> EmbeddedGraph {
-    let width = (1..).find(|width| width * width >= junctions).unwrap();
+    let width = (1..=junctions).find(|width| width * width >= junctions).unwrap();
     let right = |at: usize| (at % width + 1 < width).then_some(at + 1);
     let below = |at: usize| Some(at + width);
     let neighbours = |at| [right(at), below(at)].into_iter().flatten().map(move |to| (at, to));

@@ -50,6 +50,7 @@ const BROKEN: [Broken; 5] = [
     Broken::TestedElsewhere,
 ];
 
+#[allow(clippy::needless_pass_by_value, reason = "errors are mapped by value")]
 fn gave_up(reason: impl ToString) -> Flaw {
     Flaw::GaveUp(reason.to_string())
 }

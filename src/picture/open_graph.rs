@@ -69,7 +69,7 @@ impl OpenGraph {
         let count = self.dart_count();
         let mut clockwise = Vec::new();
         for around in self.firsts.windows(2) {
-            clockwise.extend((around[0] + 1..around[1]).chain(around[0]..around[0] + 1));
+            clockwise.extend((around[0] + 1..around[1]).chain([around[0]]));
         }
         let open: Vec<usize> = (0..count).filter(|&dart| self.opposite[dart].is_none()).collect();
         let mut ends = count..;

@@ -60,7 +60,7 @@ impl FromStr for DirectionalAlgorithm {
 #[derive(Clone, Debug)]
 pub enum MappingRun {
     /// Of Algorithm 1.
-    Algorithm1(Exploration),
+    Algorithm1(Box<Exploration>),
     /// Of the folding explorer.
     Folding(Box<FoldingExploration>),
 }
@@ -70,7 +70,7 @@ impl MappingRun {
     #[must_use]
     pub fn new(algorithm: DirectionalAlgorithm, bound: usize) -> Self {
         match algorithm {
-            DirectionalAlgorithm::Algorithm1 => Self::Algorithm1(Exploration::new(bound)),
+            DirectionalAlgorithm::Algorithm1 => Self::Algorithm1(Box::new(Exploration::new(bound))),
             DirectionalAlgorithm::Folding => {
                 Self::Folding(Box::new(FoldingExploration::new(bound)))
             }

@@ -153,7 +153,8 @@ fn match_choices(
         };
         if let (Some(reached), None) = (reached, &found) {
             let DefaultRun { exploration, coverage, .. } = default;
-            let (choices, run) = (MatchedChoices::Default, MappingRun::Algorithm1(exploration));
+            let (choices, run) =
+                (MatchedChoices::Default, MappingRun::Algorithm1(Box::new(exploration)));
             return AlgorithmMatch { algorithm, choices, reached, run, coverage };
         }
         if let Some(found) = found {
@@ -192,7 +193,7 @@ fn match_choices(
         _ => MatchedChoices::Other { from },
     };
     let (exploration, coverage) = with_choices(&script, trace, bound);
-    let run = MappingRun::Algorithm1(exploration);
+    let run = MappingRun::Algorithm1(Box::new(exploration));
     AlgorithmMatch { algorithm, choices, reached, run, coverage }
 }
 

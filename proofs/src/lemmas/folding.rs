@@ -116,9 +116,12 @@ fn trail_of(percepts: &[Percept], doors: &[Door]) -> Result<(FoldedTrail, Vec<Da
     Ok((trail, poses))
 }
 
+/// The other end of a dart: the number of its vertex, and the door; `None` if the dart is open.
+type FarEnd = Option<(usize, u32)>;
+
 /// A folded trail, whatever its roots are: for each vertex its degree and its darts, numbered breadth
 /// first from the first pose of the walk, each with the number of the other end.
-fn form(trail: &FoldedTrail) -> Vec<(u32, Vec<Option<(usize, u32)>>)> {
+fn form(trail: &FoldedTrail) -> Vec<(u32, Vec<FarEnd>)> {
     let first = trail.root_of(Dart(0));
     let mut number = HashMap::from([(trail.vertex(first), 0)]);
     let mut entries = vec![first];
@@ -281,12 +284,11 @@ fn explains(
         poses.push(pose);
     }
     poses.reverse();
-    let perceived = match marker {
-        Some(facing) => percepts_of(graph, facing, &poses),
-        None => {
-            let degrees = poses.iter().map(|&pose| graph.degree_around(pose));
-            degrees.map(|degree| Percept { degree, sighting: Sighting::Nothing }).collect()
-        }
+    let perceived = if let Some(facing) = marker {
+        percepts_of(graph, facing, &poses)
+    } else {
+        let degrees = poses.iter().map(|&pose| graph.degree_around(pose));
+        degrees.map(|degree| Percept { degree, sighting: Sighting::Nothing }).collect()
     };
     perceived == percepts
 }

@@ -73,7 +73,7 @@ impl FoldingExploration {
             let (door, entry) = self.to_marker.toward_root(self.map(), believed)?;
             let open = self.trail.behind(pose, door);
             match self.trail.opposite(open) {
-                None => return Some(HypothesisTest { edge, hypothesis, cost, open, entry }),
+                None => return Some(HypothesisTest { cost, hypothesis, open, edge, entry }),
                 Some(next) => (pose, believed) = (next, entry),
             }
         }
