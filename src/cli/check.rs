@@ -136,7 +136,7 @@ impl CheckArguments {
         let mut worst: Option<WorstStart> = None;
         let mut cases = Vec::new();
         let mut sizes = work.into_iter();
-        while let Some((edges, work)) = sizes.next() {
+        for (edges, work) in sizes.by_ref() {
             let tally = work.check(edges, &algorithm)?;
             let (class, from, shard) = (self.class(), self.from.as_deref(), self.shard);
             let result = SizeResult { edges, class, from, shard, tally: &tally };

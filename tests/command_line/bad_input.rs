@@ -113,106 +113,90 @@ fn a_truncated_plantri_code_is_an_error_with_its_byte() {
     }
 }
 
+/// Arguments, and what their error names.
+const BAD_ARGUMENTS: &[(&[&str], &str)] = &[
+    (&["check", "--edges", "0"], "a world has at least one edge"),
+    (&["check", "--edges", "0..=3"], "a world has at least one edge"),
+    (&["check", "--edges", "5..=3"], "the range is empty"),
+    (&["check", "--edges", "x"], "write a number as in 6, or several as in 1..=6, not `x`"),
+    (&["check", "--edges", "1.."], "not `1..`"),
+    (&["check", "--edges", "1..3"], "write 1..=3 for all sizes from 1 to 3"),
+    (&["check", "--edges", "..3"], "not `..3`"),
+    (&["check", "--edges", "99"], "--edges: worlds with 99 edges are too many to enumerate"),
+    (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
+    (&["check", "--shard", "3/2"], "`3/2` is not a shard; write i/n with i from 1 to n"),
+    (&["check", "--shard", "0/2"], "`0/2` is not a shard; write i/n with i from 1 to n"),
+    (&["check", "--class", "tree"], "the classes are multigraph, simple, corridor and planar"),
+    (
+        &["check", "--marker", "chalk"],
+        "no algorithm maps with `chalk`; choose directional or movable",
+    ),
+    (&["check", "--marker", "undirected"], "choose directional or movable"),
+    (
+        &["check", "--marker", "movable", "--choices", "all"],
+        "--choices: `all` needs --marker directional",
+    ),
+    (
+        &["check", "--marker", "movable", "--class", "multigraph"],
+        "--class: class multigraph has loops or parallel edges, and one movable marker does not \
+             suffice for them: no walk distinguishes [v0 = e0 e0 e1 e1] and [v0 = e0 e1 e0 e1]",
+    ),
+    (
+        &["check", "--marker", "movable", "--class", "multigraph"],
+        "(see toposlam counterexample --marker movable --class multigraph)",
+    ),
+    (
+        &["check", "--marker", "movable", "--from", "worlds/theta-plane.toml"],
+        "worlds/theta-plane.toml: world 1 has loops or parallel edges",
+    ),
+    (&["check", "--choices", "some"], "[possible values: default, all]"),
+    (&["check", "--threads", "0"], "0 is not in 1..=1024"),
+    (&["check", "--max-states", "5"], "--max-states: this needs --choices all"),
+    (&["explore", WORLD, "--max-states", "5"], "--max-states: this needs --choices all"),
+    (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
+    (&["explore", WORLD, "--start", "corner"], "--start: `corner` is not a start"),
+    (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),
+    (
+        &["explore", WORLD, "--start", "corner:sw"],
+        "--start: vertex `corner` has no neighbour `sw`; it has end, tee",
+    ),
+    (&["draw", WORLD, "--start", "corner:sw"], "--start: vertex `corner` has no neighbour"),
+    (&["draw", WORLD, "--out", "w.jpg"], "w.jpg: the name must end in .svg or .png or .dot"),
+    (&["compare", WORLD, WORLD, "--marker", "chalk"], "[possible values: none, undirected,"),
+    (&["draw", WORLD, "--marker", "chalk"], "invalid value 'chalk' for '--marker <KIND>'"),
+    (&["counterexample", "--marker", "chalk"], "two-identical, two-distinct, movable]"),
+    (&["compare", WORLD, WORLD, "--start", "corner"], "--start: `corner` is not a start"),
+    (&["compare", WORLD, WORLD, "--start", "corner:sw"], "`corner` has no neighbour `sw`; it has"),
+    (
+        &["compare", WORLD, WORLD, "--start", "sw:se", "--start", "sw:se", "--start", "sw:se"],
+        "--start: there are two worlds; give it at most twice",
+    ),
+    (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is not an action"),
+    (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
+    (&["compare", WORLD, WORLD, "--walk", "pick-up"], "action 1: there is no marker here that"),
+    (&["counterexample", "--max-edges", "0"], "--max-edges: a world has at least one edge"),
+    (&["counterexample", "--max-edges", "33"], "--max-edges: worlds with 33 edges are too many"),
+    (&["counterexample", "--expect", "some"], "[possible values: none]"),
+    (&["counterexample", "--html", "page.html"], "--html: a page shows one marker; choose it with"),
+    (&["counterexample", "--atlas", "x", "--json"], "cannot be used with"),
+    (&["proofs", "--choices", "1"], "--run <NAME>"),
+    (&["proofs", "--run", "all", "--choices", "1"], "--choices: choices make a case of one lemma"),
+    (
+        &["proofs", "--run", "a", "--run", "b", "--choices", "1"],
+        "--choices: choices make a case of one lemma; choose it with one",
+    ),
+    (&["proofs", "--run", "all", "--choices", "0,300"], "`300` is not a choice; write numbers"),
+    (&["proofs", "--run", "all", "--choices", "-1"], "`-1` is not a choice; write numbers from 0"),
+    (&["proofs", "--run", "all", "--choices", "0,,1"], "`` is not a choice; write numbers from 0"),
+    (&["proofs", "--run", "all", "--engine", "sampled"], "--choices <NUMBERS>"),
+    (&["proofs", "--run", "all", "--choices", "1", "--engine", "kani"], "[possible values: "),
+    (&["chekc"], "a similar subcommand exists: 'check'"),
+    (&["fly"], "unrecognized subcommand 'fly'"),
+];
+
 #[test]
 fn a_bad_argument_is_an_error_that_names_what_is_expected() {
-    let cases: [(&[&str], &str); 52] = [
-        (&["check", "--edges", "0"], "a world has at least one edge"),
-        (&["check", "--edges", "0..=3"], "a world has at least one edge"),
-        (&["check", "--edges", "5..=3"], "the range is empty"),
-        (&["check", "--edges", "x"], "write a number as in 6, or several as in 1..=6, not `x`"),
-        (&["check", "--edges", "1.."], "not `1..`"),
-        (&["check", "--edges", "1..3"], "write 1..=3 for all sizes from 1 to 3"),
-        (&["check", "--edges", "..3"], "not `..3`"),
-        (&["check", "--edges", "99"], "--edges: worlds with 99 edges are too many to enumerate"),
-        (&["check", "--edges", "1..=99"], "too many to enumerate; the limit is 32"),
-        (&["check", "--shard", "3/2"], "`3/2` is not a shard; write i/n with i from 1 to n"),
-        (&["check", "--shard", "0/2"], "`0/2` is not a shard; write i/n with i from 1 to n"),
-        (&["check", "--class", "tree"], "the classes are multigraph, simple, corridor and planar"),
-        (
-            &["check", "--marker", "chalk"],
-            "no algorithm maps with `chalk`; choose directional or movable",
-        ),
-        (&["check", "--marker", "undirected"], "choose directional or movable"),
-        (
-            &["check", "--marker", "movable", "--choices", "all"],
-            "--choices: `all` needs --marker directional",
-        ),
-        (
-            &["check", "--marker", "movable", "--class", "multigraph"],
-            "--class: class multigraph has loops or parallel edges, and one movable marker does not \
-             suffice for them: no walk distinguishes [v0 = e0 e0 e1 e1] and [v0 = e0 e1 e0 e1]",
-        ),
-        (
-            &["check", "--marker", "movable", "--class", "multigraph"],
-            "(see toposlam counterexample --marker movable --class multigraph)",
-        ),
-        (
-            &["check", "--marker", "movable", "--from", "worlds/theta-plane.toml"],
-            "worlds/theta-plane.toml: world 1 has loops or parallel edges",
-        ),
-        (&["check", "--choices", "some"], "[possible values: default, all]"),
-        (&["check", "--threads", "0"], "0 is not in 1..=1024"),
-        (&["check", "--max-states", "5"], "--max-states: this needs --choices all"),
-        (&["explore", WORLD, "--max-states", "5"], "--max-states: this needs --choices all"),
-        (&["check", "--edges", "6", "--from", WORLD], "cannot be used with"),
-        (&["explore", WORLD, "--start", "corner"], "--start: `corner` is not a start"),
-        (&["explore", WORLD, "--start", "hall:tee"], "--start: there is no vertex `hall`"),
-        (
-            &["explore", WORLD, "--start", "corner:sw"],
-            "--start: vertex `corner` has no neighbour `sw`; it has end, tee",
-        ),
-        (&["draw", WORLD, "--start", "corner:sw"], "--start: vertex `corner` has no neighbour"),
-        (&["draw", WORLD, "--out", "w.jpg"], "w.jpg: the name must end in .svg or .png or .dot"),
-        (&["compare", WORLD, WORLD, "--marker", "chalk"], "[possible values: none, undirected,"),
-        (&["draw", WORLD, "--marker", "chalk"], "invalid value 'chalk' for '--marker <KIND>'"),
-        (&["counterexample", "--marker", "chalk"], "two-identical, two-distinct, movable]"),
-        (&["compare", WORLD, WORLD, "--start", "corner"], "--start: `corner` is not a start"),
-        (
-            &["compare", WORLD, WORLD, "--start", "corner:sw"],
-            "`corner` has no neighbour `sw`; it has",
-        ),
-        (
-            &["compare", WORLD, WORLD, "--start", "sw:se", "--start", "sw:se", "--start", "sw:se"],
-            "--start: there are two worlds; give it at most twice",
-        ),
-        (&["compare", WORLD, WORLD, "--walk", "0,left"], "`left` is not an action"),
-        (&["compare", WORLD, WORLD, "--walk", "0,9"], "--walk: action 2: door 9 was taken at a"),
-        (&["compare", WORLD, WORLD, "--walk", "pick-up"], "action 1: there is no marker here that"),
-        (&["counterexample", "--max-edges", "0"], "--max-edges: a world has at least one edge"),
-        (
-            &["counterexample", "--max-edges", "33"],
-            "--max-edges: worlds with 33 edges are too many",
-        ),
-        (&["counterexample", "--expect", "some"], "[possible values: none]"),
-        (
-            &["counterexample", "--html", "page.html"],
-            "--html: a page shows one marker; choose it with",
-        ),
-        (&["counterexample", "--atlas", "x", "--json"], "cannot be used with"),
-        (&["proofs", "--choices", "1"], "--run <NAME>"),
-        (
-            &["proofs", "--run", "all", "--choices", "1"],
-            "--choices: choices make a case of one lemma",
-        ),
-        (
-            &["proofs", "--run", "a", "--run", "b", "--choices", "1"],
-            "--choices: choices make a case of one lemma; choose it with one",
-        ),
-        (&["proofs", "--run", "all", "--choices", "0,300"], "`300` is not a choice; write numbers"),
-        (
-            &["proofs", "--run", "all", "--choices", "-1"],
-            "`-1` is not a choice; write numbers from 0",
-        ),
-        (
-            &["proofs", "--run", "all", "--choices", "0,,1"],
-            "`` is not a choice; write numbers from 0",
-        ),
-        (&["proofs", "--run", "all", "--engine", "sampled"], "--choices <NUMBERS>"),
-        (&["proofs", "--run", "all", "--choices", "1", "--engine", "kani"], "[possible values: "),
-        (&["chekc"], "a similar subcommand exists: 'check'"),
-        (&["fly"], "unrecognized subcommand 'fly'"),
-    ];
-    for (arguments, cause) in cases {
+    for (arguments, cause) in BAD_ARGUMENTS {
         let error = error_of(arguments);
         assert!(error.contains(cause), "{arguments:?}: {error}");
     }

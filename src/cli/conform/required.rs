@@ -54,9 +54,8 @@ pub(super) fn report(
         };
         if !not_applicable.is_empty() {
             let cases = not_applicable.join(", ");
-            text += &format!(
-                "; the folding explorer does not have these cases of Algorithm 1: {cases}"
-            );
+            text += "; the folding explorer does not have these cases of Algorithm 1: ";
+            text += &cases;
         }
         print_hanging(out, &format!("{cases}: "), &text)?;
     }

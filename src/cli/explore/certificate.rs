@@ -29,13 +29,13 @@ impl CertificateOfStart {
 
     pub(super) fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let moves = counted(self.moves, "move");
-        let mut text = format!(
+        let ratio = self
+            .ratio
+            .map_or(String::new(), |ratio| format!(" This run took {ratio:.2} times as many."));
+        let text = format!(
             "Certificate: the shortest walk that proves the map of this world takes {moves}. No \
-             robot can map the world in fewer."
+             robot can map the world in fewer.{ratio}"
         );
-        if let Some(ratio) = self.ratio {
-            text += &format!(" This run took {ratio:.2} times as many.");
-        }
         writeln!(out)?;
         print_paragraph(out, &text)?;
         let doors: Vec<String> = self.doors.iter().map(ToString::to_string).collect();
