@@ -8,9 +8,11 @@ use toposlam_model::{
     mapping::{
         Contradiction, Exploration, Journey, MappingError, MappingEvent, Nearest, map_world,
     },
-    percept::{Door, Percept, Sighting},
+    percept::{Door, Percept},
     world::{GraphWorld, Refused, World},
 };
+
+use crate::scripted_world::{ScriptedWorld, marked, plain};
 
 const BOUND: usize = 60;
 
@@ -19,35 +21,8 @@ fn map(world: &mut impl World<Error = Refused>) -> Result<u64, MappingError<Refu
     map_world(world, &mut Nearest, &mut exploration, &mut ()).map(|()| exploration.moves())
 }
 
-fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
-}
-
-fn marked(degree: u32, door: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
-}
-
-/// A sensor with scripted percepts. The last one repeats.
-struct Script<'s> {
-    percepts: &'s [Percept],
-    moves: usize,
-}
-
-impl World for Script<'_> {
-    type Error = Refused;
-
-    fn percept(&mut self) -> Result<Percept, Refused> {
-        Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
-    }
-
-    fn traverse(&mut self, _: Door) -> Result<(), Refused> {
-        self.moves += 1;
-        Ok(())
-    }
-}
-
 fn scripted(percepts: &[Percept]) -> MappingError<Refused> {
-    map(&mut Script { percepts, moves: 0 }).unwrap_err()
+    map(&mut ScriptedWorld::new(percepts)).unwrap_err()
 }
 
 // paper: alg1.1, alg1.terminates
@@ -61,7 +36,7 @@ fn a_world_without_end_runs_into_the_bound() {
 #[test]
 fn the_bound_is_never_more_than_the_darts_that_can_be_numbered() {
     let begin = |mut exploration: Exploration| {
-        exploration.begin(&mut Script { percepts: &[marked(u32::MAX, 0)], moves: 0 }, &mut ())
+        exploration.begin(&mut ScriptedWorld::new(&[marked(u32::MAX, 0)]), &mut ())
     };
     let exploration = Exploration::new(usize::MAX);
     assert_eq!(begin(exploration), Err(MappingError::Bound { bound: 2 * MAX_EDGES }));
@@ -154,7 +129,7 @@ proptest! {
                 if door < degree { marked(degree, door) } else { plain(degree) }
             }))
             .collect();
-        let _ = map(&mut Script { percepts: &percepts, moves: 0 });
+        let _ = map(&mut ScriptedWorld::new(&percepts));
     }
 }
 

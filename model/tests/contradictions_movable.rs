@@ -13,6 +13,8 @@ use toposlam_model::{
     world::{MovableMarkerWorld, Refused, World},
 };
 
+use crate::scripted_world::{ScriptedWorld, plain};
+
 const BOUND: usize = 60;
 
 fn map(world: &mut impl MovableMarkerWorld<Error = Refused>) -> Result<u64, MappingError<Refused>> {
@@ -20,46 +22,12 @@ fn map(world: &mut impl MovableMarkerWorld<Error = Refused>) -> Result<u64, Mapp
     map_with_movable_marker(world, &mut Nearest, &mut search, &mut ()).map(|()| search.moves())
 }
 
-fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
-}
-
 fn lying(degree: u32) -> Percept {
     Percept { degree, sighting: Sighting::Lying(1) }
 }
 
-/// A sensor with scripted percepts, one a move. The last one repeats. Dropping and picking up the marker
-/// always succeeds.
-struct Script<'s> {
-    percepts: &'s [Percept],
-    moves: usize,
-}
-
-impl World for Script<'_> {
-    type Error = Refused;
-
-    fn percept(&mut self) -> Result<Percept, Refused> {
-        Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
-    }
-
-    fn traverse(&mut self, _: Door) -> Result<(), Refused> {
-        self.moves += 1;
-        Ok(())
-    }
-}
-
-impl MovableMarkerWorld for Script<'_> {
-    fn pick_up(&mut self) -> Result<(), Refused> {
-        Ok(())
-    }
-
-    fn drop(&mut self) -> Result<(), Refused> {
-        Ok(())
-    }
-}
-
 fn scripted(percepts: &[Percept]) -> MappingError<Refused> {
-    map(&mut Script { percepts, moves: 0 }).unwrap_err()
+    map(&mut ScriptedWorld::new(percepts)).unwrap_err()
 }
 
 /// The percepts with the last of them replaced.
@@ -223,7 +191,8 @@ fn the_worlds_own_error_is_passed_on() {
 #[test]
 fn a_step_out_of_order_is_an_error() {
     let error = |step| Err(MappingError::InvalidStep(step));
-    let mut world = Script { percepts: &[lying(2), plain(1)], moves: 0 };
+    let percepts = [lying(2), plain(1)];
+    let mut world = ScriptedWorld::new(&percepts);
     let mut search = MarkerSearch::new(BOUND);
     assert_eq!(search.choose_edge(&mut Nearest), None);
     assert_eq!((search.next_candidate(), search.next_back_link()), (None, None));
@@ -263,7 +232,7 @@ proptest! {
                 if marked == 0 { lying(degree) } else { plain(degree) }
             }))
             .collect();
-        let _ = map(&mut Script { percepts: &percepts, moves: 0 });
+        let _ = map(&mut ScriptedWorld::new(&percepts));
     }
 
     /// Also one that never lies about the marker while the robot carries it or looks for it in vain.
@@ -273,6 +242,6 @@ proptest! {
     ) {
         let percepts: Vec<_> =
             std::iter::once(lying(2)).chain(percepts.into_iter().map(plain)).collect();
-        let _ = map(&mut Script { percepts: &percepts, moves: 0 });
+        let _ = map(&mut ScriptedWorld::new(&percepts));
     }
 }

@@ -1,4 +1,5 @@
-//! The folding explorer tells its story, ends on every world, and maps right whatever its ties.
+//! The folding explorer reports its steps, ends on every world, and maps right however its ties are
+//! broken.
 
 use std::ops::ControlFlow;
 
@@ -16,38 +17,13 @@ use toposlam_model::{
     world::{GraphWorld, Refused, World},
 };
 
+use crate::scripted_world::{ScriptedWorld, marked, plain};
+
 const BOUND: usize = 60;
-
-fn plain(degree: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Nothing }
-}
-
-fn marked(degree: u32, door: u32) -> Percept {
-    Percept { degree, sighting: Sighting::Pointing(Door(door)) }
-}
-
-/// A sensor with scripted percepts. The last one repeats.
-struct Script<'s> {
-    percepts: &'s [Percept],
-    moves: usize,
-}
-
-impl World for Script<'_> {
-    type Error = Refused;
-
-    fn percept(&mut self) -> Result<Percept, Refused> {
-        Ok(self.percepts[self.moves.min(self.percepts.len() - 1)])
-    }
-
-    fn traverse(&mut self, _: Door) -> Result<(), Refused> {
-        self.moves += 1;
-        Ok(())
-    }
-}
 
 fn scripted(percepts: &[Percept]) -> Result<(), MappingError<Refused>> {
     let mut exploration = FoldingExploration::new(BOUND);
-    map_by_folding(&mut Script { percepts, moves: 0 }, &mut exploration, &mut ())
+    map_by_folding(&mut ScriptedWorld::new(percepts), &mut exploration, &mut ())
 }
 
 fn contradiction(percepts: &[Percept]) -> Contradiction {

@@ -19,6 +19,7 @@ mod markers;
 mod movable;
 mod optimum;
 mod perception;
+mod scripted_world;
 mod smallest_failure;
 mod verdicts;
 mod worlds;

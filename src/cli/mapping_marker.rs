@@ -5,7 +5,7 @@ use std::{fmt::Display, path::Path, str::FromStr};
 use clap::ValueEnum;
 use toposlam_model::{
     ambiguity::{AmbiguitySearch, PlacedWorld},
-    check::{Algorithm1, AllChoices, AllTies, MappingAlgorithm},
+    check::{Algorithm1, AllChoices, Folding, MappingAlgorithm},
     embedded_graph::EmbeddedGraph,
     enumerate::Class,
     format::named_world::NamedWorld,
@@ -111,7 +111,7 @@ impl AlgorithmOption {
                 Err(CliError::at("--algorithm", cause))
             }
             (Self::Folding, MappingMarker::Directional, RunChoices::All { budget }) => {
-                Ok(MappingAlgorithm::AllTies(AllTies { budget }))
+                Ok(MappingAlgorithm::FoldingAllChoices(AllChoices { algorithm: Folding, budget }))
             }
             (Self::Folding, MappingMarker::Directional, RunChoices::Default) => {
                 Ok(MappingAlgorithm::Folding)

@@ -45,7 +45,7 @@ pub trait Algorithm: Sync {
     ) -> Result<(), MappingError<Refused>>;
 
     /// Makes and judges the other runs of a start. There are some with [`AllChoices`](super::AllChoices)
-    /// and [`AllTies`](super::AllTies) only.
+    /// only.
     ///
     /// # Errors
     /// Returns the first [`Flaw`].

@@ -1,56 +1,13 @@
 //! The folding explorer with every way to break its ties.
 
-use super::{Algorithm, ChoicesLimit, CostOrder, Costs, EveryWay, Flaw, Folding, judge};
+use super::{ChoicesLimit, Costs, EveryWay, Flaw, Folding, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{FoldingExploration, MappingError, Observer},
-    marker::Directional,
-    world::{GraphWorld, Refused},
+    mapping::FoldingExploration,
+    world::GraphWorld,
 };
-
-/// The folding explorer, and then its runs in which ties are broken in another way.
-#[derive(Clone, Copy, Debug)]
-pub struct AllTies {
-    /// The number of states of one start that may be explored.
-    pub budget: u64,
-}
-
-impl Algorithm for AllTies {
-    type Marker = Directional;
-    type State = FoldingExploration;
-
-    fn name(&self) -> &'static str {
-        Folding.name()
-    }
-
-    fn order(&self) -> CostOrder {
-        Folding.order()
-    }
-
-    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        Folding.move_bound(edges, vertices)
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g>,
-        exploration: &mut FoldingExploration,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
-        Folding.run(world, exploration, observer)
-    }
-
-    fn other_runs(
-        &self,
-        graph: &EmbeddedGraph,
-        facing: Dart,
-        watch: &dyn Watch,
-    ) -> Result<Option<EveryWay>, Flaw> {
-        every_tie(graph, facing, self.budget, watch).map(Some)
-    }
-}
 
 /// Runs the folding explorer on a start with every way to break its ties, and judges the end of every
 /// run. States are not compared: two runs that come to the same state are both followed.

@@ -3,65 +3,17 @@
 
 use std::{collections::HashMap, vec};
 
-use super::{Algorithm, ChoicesLimit, CostOrder, Costs, EveryWay, Flaw, OpenChoices, judge};
+use super::{ChoicesLimit, Costs, EveryWay, Flaw, OpenChoices, judge};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, Vertex},
     enumerate::Watch,
     isomorphism::Candidate,
-    mapping::{Exploration, MappingChoice, MappingError, Observer, PartialMap},
-    marker::Directional,
-    world::{GraphWorld, Refused},
+    mapping::{Exploration, MappingChoice, PartialMap},
+    world::GraphWorld,
 };
-
-/// The default number of states of one start that may be explored.
-pub const DEFAULT_STATE_BUDGET: u64 = 1_000_000;
 
 /// The memory that the states of one start may take, in bytes by a generous estimate.
 const MAX_BYTES: usize = 1 << 30;
-
-/// Algorithm 1, or a variant of it, with the default choices, and then with all choices.
-#[derive(Clone, Copy, Debug)]
-pub struct AllChoices<A> {
-    /// The algorithm.
-    pub algorithm: A,
-    /// The number of states of one start that may be explored.
-    pub budget: u64,
-}
-
-impl<A: OpenChoices> Algorithm for AllChoices<A> {
-    type Marker = Directional;
-    type State = Exploration;
-
-    fn name(&self) -> &'static str {
-        self.algorithm.name()
-    }
-
-    fn order(&self) -> CostOrder {
-        self.algorithm.order()
-    }
-
-    fn move_bound(&self, edges: usize, vertices: usize) -> u64 {
-        self.algorithm.move_bound(edges, vertices)
-    }
-
-    fn run<'g>(
-        &self,
-        world: &mut GraphWorld<'g>,
-        exploration: &mut Exploration,
-        observer: &mut impl Observer<GraphWorld<'g>>,
-    ) -> Result<(), MappingError<Refused>> {
-        self.algorithm.run(world, exploration, observer)
-    }
-
-    fn other_runs(
-        &self,
-        graph: &EmbeddedGraph,
-        facing: Dart,
-        watch: &dyn Watch,
-    ) -> Result<Option<EveryWay>, Flaw> {
-        every_way(&self.algorithm, graph, facing, self.budget, watch).map(Some)
-    }
-}
 
 /// Runs an algorithm on a start with all choices, and judges the end of every run. States are
 /// explored once, runs are counted. The search stops after `budget` states, including those within a

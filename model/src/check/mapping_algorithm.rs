@@ -1,8 +1,8 @@
 //! The algorithms of this crate, to choose from at run time. Section 2.3.
 
 use super::{
-    Algorithm, Algorithm1, AllChoices, AllTies, CostOrder, EveryWay, Flaw, Folding, MovableMarker,
-    Sweep, Tally, check_worlds,
+    Algorithm, Algorithm1, AllChoices, CostOrder, EveryWay, Flaw, Folding, MovableMarker, Sweep,
+    Tally, check_worlds,
 };
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph},
@@ -22,10 +22,10 @@ pub enum MappingAlgorithm {
     AllChoices(AllChoices<Algorithm1>),
     /// The movable marker algorithm with the default choices.
     MovableMarker,
-    /// The folding explorer.
+    /// The folding explorer with the default choices.
     Folding,
     /// The folding explorer with every way to break its ties.
-    AllTies(AllTies),
+    FoldingAllChoices(AllChoices<Folding>),
 }
 
 impl MappingAlgorithm {
@@ -35,7 +35,7 @@ impl MappingAlgorithm {
         match self {
             Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.name(),
             Self::MovableMarker => MovableMarker.name(),
-            Self::Folding | Self::AllTies(_) => Folding.name(),
+            Self::Folding | Self::FoldingAllChoices(_) => Folding.name(),
         }
     }
 
@@ -43,7 +43,7 @@ impl MappingAlgorithm {
     #[must_use]
     pub fn marker(&self) -> &'static dyn Marker {
         match self {
-            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding | Self::AllTies(_) => {
+            Self::Algorithm1 | Self::AllChoices(_) | Self::Folding | Self::FoldingAllChoices(_) => {
                 &Directional
             }
             Self::MovableMarker => &Movable,
@@ -56,7 +56,7 @@ impl MappingAlgorithm {
         match self {
             Self::Algorithm1 | Self::AllChoices(_) => Algorithm1.order(),
             Self::MovableMarker => MovableMarker.order(),
-            Self::Folding | Self::AllTies(_) => Folding.order(),
+            Self::Folding | Self::FoldingAllChoices(_) => Folding.order(),
         }
     }
 
@@ -68,7 +68,7 @@ impl MappingAlgorithm {
             Self::AllChoices(algorithm) => sweep.run(algorithm, watch),
             Self::MovableMarker => sweep.run(&MovableMarker, watch),
             Self::Folding => sweep.run(&Folding, watch),
-            Self::AllTies(algorithm) => sweep.run(algorithm, watch),
+            Self::FoldingAllChoices(algorithm) => sweep.run(algorithm, watch),
         }
     }
 
@@ -80,7 +80,7 @@ impl MappingAlgorithm {
             Self::AllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
             Self::MovableMarker => check_worlds(graphs, &MovableMarker, watch),
             Self::Folding => check_worlds(graphs, &Folding, watch),
-            Self::AllTies(algorithm) => check_worlds(graphs, algorithm, watch),
+            Self::FoldingAllChoices(algorithm) => check_worlds(graphs, algorithm, watch),
         }
     }
 
@@ -96,7 +96,7 @@ impl MappingAlgorithm {
     ) -> Result<Option<EveryWay>, Flaw> {
         match self {
             Self::AllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
-            Self::AllTies(algorithm) => algorithm.other_runs(graph, facing, watch),
+            Self::FoldingAllChoices(algorithm) => algorithm.other_runs(graph, facing, watch),
             Self::Algorithm1 | Self::MovableMarker | Self::Folding => Ok(None),
         }
     }

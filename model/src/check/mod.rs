@@ -1,6 +1,7 @@
 //! The exhaustive check: an algorithm run on every start of every small world, and judged.
 
 mod algorithm;
+mod all_choices;
 mod costs;
 mod every_tie;
 mod every_way;
@@ -15,9 +16,10 @@ mod tally;
 pub use algorithm::{
     Algorithm, Algorithm1, CostOrder, Folding, MovableMarker, OpenChoices, RunState,
 };
+pub use all_choices::{AllChoices, DEFAULT_STATE_BUDGET, EveryRun};
 pub use costs::{ChoicesLimit, Costs, EveryWay};
-pub use every_tie::{AllTies, every_tie};
-pub use every_way::{AllChoices, DEFAULT_STATE_BUDGET, every_way};
+pub use every_tie::every_tie;
+pub use every_way::every_way;
 pub use explorer::{AlgorithmExplorer, DEFAULT_MOVE_BOUND, Explorer, ExplorerWorld, judge_start};
 pub use flaw::Flaw;
 pub use folding_explorer::FoldingExplorer;
