@@ -1,6 +1,6 @@
 //! The entries of a log by a topic map, in the order of time.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
@@ -13,6 +13,7 @@ use super::{
     error::{LogError, LogErrorKind},
     from_value::FromValue,
     image::image_of,
+    laser_scan,
     merge::{RawMessage, RawMessages},
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
@@ -46,7 +47,7 @@ pub enum Content {
     Run(Run),
     /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
-    /// Any other event. A frame has an image or a scene, and the last odometry before it.
+    /// Any other event. A frame has an image, a scan or a scene, and the last odometry before it.
     Event(EventKind),
 }
 
@@ -125,6 +126,10 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         Role::Run => return Ok(Content::Run(own(value)?)),
         Role::Hypothesis => return Ok(Content::Hypothesis(own(value)?)),
         Role::Image => EventKind::Frame(Frame { image: Some(image_of(value)?), ..frame }),
+        Role::Scan => {
+            let scan = laser_scan::scan_of(value)?;
+            EventKind::Frame(Frame { scan: Some(Arc::new(scan)), ..frame })
+        }
         Role::Scene => {
             let scene = encode::scene_of(&own(value)?).ok_or("there is no such scene")?;
             EventKind::Frame(Frame { scene: Some(scene), ..frame })

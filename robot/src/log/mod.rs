@@ -8,6 +8,7 @@ pub mod entries;
 pub mod error;
 mod from_value;
 mod image;
+mod laser_scan;
 mod mcap_writer;
 mod merge;
 pub mod message;

@@ -70,7 +70,7 @@ impl LiveRobot {
             let taken = base.seconds(photograph.stamp);
             behind = Some(ended - taken);
             let image = Some(CameraImage::encoded(photograph.file));
-            (taken > ended).then_some(Frame { id, taken, odometry, image, scene: None })
+            (taken > ended).then_some(Frame { id, taken, odometry, image, ..Frame::default() })
         };
         let picture = self.pictures.wait(base.patience(), base.stop(), fresh);
         picture.map_err(|error| match (error, behind) {

@@ -6,6 +6,8 @@
 pub enum Role {
     /// Pictures of the robot's camera.
     Image,
+    /// Scans of the robot's laser scanner.
+    Scan,
     /// Odometry.
     Odometry,
     /// Commands to the wheels.
@@ -132,8 +134,9 @@ impl MessagePart {
 
 impl Role {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Image,
+        Self::Scan,
         Self::Odometry,
         Self::Motion,
         Self::Percept,
@@ -151,6 +154,7 @@ impl Role {
     pub fn name(self) -> &'static str {
         match self {
             Self::Image => "image",
+            Self::Scan => "scan",
             Self::Odometry => "odometry",
             Self::Motion => "motion",
             Self::Percept => "percept",
@@ -188,7 +192,7 @@ impl Role {
             Self::Hypothesis => Some("toposlam_msgs/Hypothesis"),
             Self::Map => Some("toposlam_msgs/Map"),
             Self::End => Some("toposlam_msgs/End"),
-            Self::Image | Self::Odometry | Self::Motion => None,
+            Self::Image | Self::Scan | Self::Odometry | Self::Motion => None,
         }
     }
 
@@ -198,7 +202,8 @@ impl Role {
             return Some(&[]);
         }
         Some(match (self, type_name) {
-            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image") => &[],
+            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
+            | (Self::Scan, "sensor_msgs/LaserScan") => &[],
             (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
                 (MessagePart::X, "pose.pose.position.x"),
                 (MessagePart::Y, "pose.pose.position.y"),
