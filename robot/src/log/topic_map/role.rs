@@ -1,6 +1,15 @@
 //! What a topic can carry, of which parts that is, in which units, and where it stands in messages of
 //! the usual types.
 
+use crate::log::{
+    container::EVENT,
+    transforms::{OLD_TYPE as OLD_TRANSFORMS, TYPE as TRANSFORMS},
+};
+
+const CARMEN_FRONT: &str = "carmen/FLASER";
+const CARMEN_REAR: &str = "carmen/RLASER";
+const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
+
 /// The role of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
@@ -203,7 +212,10 @@ impl Role {
         }
         Some(match (self, type_name) {
             (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
-            | (Self::Scan, "sensor_msgs/LaserScan") => &[],
+            | (Self::Scan, "sensor_msgs/LaserScan")
+            | (Self::Scan | Self::Odometry, CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT)
+            | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)
+            | (Self::Percept | Self::Door, EVENT) => &[],
             (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
                 (MessagePart::X, "pose.pose.position.x"),
                 (MessagePart::Y, "pose.pose.position.y"),
@@ -214,7 +226,7 @@ impl Role {
                 (MessagePart::Y, "pose.position.y"),
                 (MessagePart::Quaternion, "pose.orientation"),
             ],
-            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose") => {
+            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose" | "carmen/ODOM") => {
                 &[(MessagePart::X, "x"), (MessagePart::Y, "y"), (MessagePart::Heading, "theta")]
             }
             (Self::Motion, "geometry_msgs/Twist") => {
@@ -225,5 +237,16 @@ impl Role {
             }
             _ => return None,
         })
+    }
+
+    /// How well messages of a usual type carry it: a topic of a lower rank is preferred.
+    pub(super) fn rank(self, type_name: &str) -> u32 {
+        match (self, type_name) {
+            (Self::Odometry, "nav_msgs/Odometry" | "carmen/ODOM")
+            | (Self::Scan, "sensor_msgs/LaserScan" | CARMEN_ROBOT) => 0,
+            (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS) | (_, CARMEN_REAR) => 2,
+            (Self::Odometry | Self::Scan, _) => 1,
+            _ => 0,
+        }
     }
 }
