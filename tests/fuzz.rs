@@ -24,6 +24,7 @@ use toposlam_robot::log::{
     decode::decode,
     definition::{Definition, Dialect},
     reader::Log,
+    rosbag2,
     topic_map::TopicMap,
 };
 use toposlam_vision::{camera::calibration, colour::ColourModel, image_file::ImageFile};
@@ -292,6 +293,26 @@ fn mappings_of_logs_hold() {
 }
 
 #[test]
+fn carmen_logs_hold() {
+    holds("carmen", 10_000);
+}
+
+#[test]
+fn events_hold() {
+    holds("events", 10_000);
+}
+
+#[test]
+fn metadata_of_rosbag2_hold() {
+    holds("rosbag2_metadata", 20_000);
+}
+
+#[test]
+fn rows_of_databases_hold() {
+    holds("database_rows", 1_000);
+}
+
+#[test]
 fn every_target_has_a_body_and_seeds_and_is_run() {
     let targets = targets();
     let names: BTreeSet<String> = targets.iter().map(|target| target.name.to_owned()).collect();
@@ -338,8 +359,18 @@ fn the_names_of_seeds_show_whether_they_are_valid() {
                     calibration::read(toml, &mut read).is_ok()
                 }
                 "colours" => ColourModel::read(&bytes).is_ok(),
-                "bag" | "mcap" => Log::of_bytes(bytes)
-                    .is_ok_and(|log| log.read_all().all(|message| message.is_ok())),
+                "bag" | "mcap" => is_log(&bytes),
+                "carmen" | "events" => Log::of_bytes(bytes).is_ok_and(|log| {
+                    let bound = TopicMap::unambiguous(&log).bind(&log).unwrap();
+                    log.entries(&bound).all(|entry| entry.is_ok())
+                }),
+                "rosbag2_metadata" => rosbag2::file_names(&bytes).is_ok(),
+                #[cfg(feature = "sqlite")]
+                "database_rows" => {
+                    is_log(&toposlam_robot::fuzz::database::of_rows(&bytes).unwrap())
+                }
+                #[cfg(not(feature = "sqlite"))]
+                "database_rows" => !name.starts_with("error-"),
                 "ros1_message" => is_message(Dialect::Ros1, &bytes),
                 "cdr_message" => is_message(Dialect::Ros2, &bytes),
                 "log_mapping" => TopicMap::read(&bytes).is_ok(),
@@ -349,6 +380,11 @@ fn the_names_of_seeds_show_whether_they_are_valid() {
             assert_eq!(is_read, !name.starts_with("error-"), "{target}/{name}");
         }
     }
+}
+
+/// Whether bytes are a log of which each message can be read.
+fn is_log(bytes: &[u8]) -> bool {
+    Log::of_bytes(bytes.to_vec()).is_ok_and(|log| log.read_all().all(|message| message.is_ok()))
 }
 
 /// Whether bytes are a definition, a zero byte and a message of that definition.

@@ -6,9 +6,11 @@
 use std::fmt;
 
 use crate::log::{
+    Format,
     decode::decode,
     definition::{Definition, Dialect},
     reader::Log,
+    rosbag2,
     topic_map::TopicMap,
     value::Value,
 };
@@ -23,6 +25,10 @@ pub const TARGETS: &[RobotFuzzTarget] = &[
     ("ros1_message", ros1_message),
     ("cdr_message", cdr_message),
     ("log_mapping", log_mapping),
+    ("carmen", carmen),
+    ("events", events),
+    ("rosbag2_metadata", rosbag2_metadata),
+    ("database_rows", database_rows),
 ];
 
 /// Any bytes are read as a ROS 1 bag, as in [`mcap()`].
@@ -36,7 +42,6 @@ pub fn bag(bytes: &[u8]) {
 /// Any bytes are read as an MCAP file, whole or truncated. Its messages come in the order of their
 /// times with consecutive numbers, and the run in it can be read up to its end; or there is one
 /// error message.
-/// why not.
 ///
 /// # Panics
 /// Panics if the property is violated.
@@ -61,19 +66,74 @@ fn log(bytes: &[u8]) {
         number += 1;
         assert_eq!(message.number, number);
         assert!(message.time >= last, "{} comes after {last}", message.time);
-        assert!(message.offset < log.size());
+        // Offsets are those of the decompressed file, and lines and rows are no bytes.
+        let is_plain =
+            matches!(log.format(), Format::Bag | Format::Mcap) && log.compression().is_none();
+        assert!(!is_plain || message.offset < log.size());
         last = message.time;
-        if let Some(Ok(definition)) = log.topics().get(message.topic).map(|topic| &topic.definition)
+        if let Some(Err(error)) =
+            log.topics().get(message.topic).and_then(|topic| topic.decode(&message.bytes))
         {
-            message_of(definition, &message.bytes);
+            assert_is_a_message(&error);
         }
     }
     if let Some(truncation) = log.truncation() {
-        assert!(truncation.offset <= log.size());
         assert_is_a_message(truncation);
     }
     read_run(&log, &TopicMap::unambiguous(&log));
 }
+
+/// Any bytes are read as a CARMEN log, perhaps compressed, as in [`mcap()`].
+///
+/// # Panics
+/// Panics if the property is violated.
+pub fn carmen(bytes: &[u8]) {
+    log(bytes);
+}
+
+/// Any bytes are read as events in JSON lines or CSV, as in [`mcap()`].
+///
+/// # Panics
+/// Panics if the property is violated.
+pub fn events(bytes: &[u8]) {
+    log(bytes);
+}
+
+/// Any bytes are the metadata of a rosbag2 folder: they name files in it, and no others; or there is one
+/// error message.
+///
+/// # Panics
+/// Panics if the property is violated.
+pub fn rosbag2_metadata(bytes: &[u8]) {
+    match rosbag2::file_names(bytes) {
+        Ok(names) => {
+            assert!(!names.is_empty());
+            assert!(
+                names.iter().all(|name| !name.contains(['/', '\\']) && name != ".."),
+                "{names:?}"
+            );
+        }
+        Err(error) => assert_is_a_message(&error),
+    }
+}
+
+/// Any bytes are rows of the table of messages in a database of rosbag2: a number, a topic, a time and a
+/// length of a byte each, and the message. They are read as in [`mcap()`].
+///
+/// # Panics
+/// Panics if the property is violated.
+pub fn database_rows(bytes: &[u8]) {
+    #[cfg(feature = "sqlite")]
+    match database::of_rows(bytes) {
+        Ok(file) => log(&file),
+        Err(error) => panic!("the database of the rows: {error}"),
+    }
+    #[cfg(not(feature = "sqlite"))]
+    let _ = bytes;
+}
+
+#[cfg(feature = "sqlite")]
+pub mod database;
 
 /// Reads the run in a log, or returns the error.
 fn read_run(log: &Log, mapping: &TopicMap) {

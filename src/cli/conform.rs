@@ -53,8 +53,9 @@ use known_world::Known;
 /// the first event at which it diverges, why, and the class of the fault: perception, motion, algorithm
 /// or log. If a limit was reached first, or the run did not end, the log is incomplete.
 ///
-/// A log is a ROS 1 bag or an MCAP file. If it records percepts and doors, these are checked. Otherwise
-/// they are inferred from its scenes or images and its odometry. They must fit the known world. Without
+/// A log is a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events as JSON lines
+/// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes
+/// or images and its odometry. They must fit the known world. Without
 /// one, a log diverges at the first event that no world of any size explains, and the command searches
 /// for the smallest world that explains the log. The doors must be doors that the algorithm takes, or may
 /// take: the one that the log names, or else Algorithm 1.

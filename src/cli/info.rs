@@ -8,7 +8,7 @@ use std::{
 
 use serde::Serialize;
 use toposlam_robot::log::{
-    Format,
+    FileCompression, Format, SkippedLines,
     error::LogError,
     reader::Log,
     topic::{Encoding, Topic},
@@ -29,9 +29,9 @@ use super::{
 
 /// Show the contents of logs: times, completeness and topics
 ///
-/// A log is a ROS 1 bag (version 2.0) or an MCAP file, from this program or any other. The command also
-/// lists the topics that could carry images, odometry, motion, percepts and doors. If several topics
-/// could, or none is recognised, a mapping file selects the topic.
+/// A log is a ROS 1 bag (version 2.0), an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events
+/// as JSON lines or CSV, from this program or any other. The command also lists the topics that could carry images, scans, odometry, motion,
+/// percepts and doors. If several topics could, or none is recognised, a mapping file selects the topic.
 ///
 /// A log is listed from its index, if it has one. --verify reads all of it, and compares it with its
 /// checksums and its index.
@@ -73,6 +73,7 @@ pub(super) struct InfoArguments {
 struct Line<'l> {
     log: String,
     format: &'static str,
+    compression: Option<&'static str>,
     bytes: u64,
     /// Nanoseconds.
     start: Option<u64>,
@@ -83,10 +84,19 @@ struct Line<'l> {
     truncated: Option<TruncatedLine>,
     /// Whether it has an index.
     indexed: bool,
+    skipped: Option<SkippedLine<'l>>,
     verification: Option<VerificationLine>,
     topics: Vec<TopicLine<'l>>,
     /// For each role, the topics that could carry it, or the one in the mapping file.
     mapping: BTreeMap<&'static str, Vec<&'l str>>,
+}
+
+/// The lines of a log of lines that are not read.
+#[derive(Serialize)]
+struct SkippedLine<'l> {
+    unknown: &'l BTreeMap<String, u64>,
+    other_kinds: u64,
+    off_clock: u64,
 }
 
 /// With `--verify`.
@@ -280,6 +290,10 @@ fn format(log: &Log) -> &'static str {
     match log.format() {
         Format::Bag => "bag",
         Format::Mcap => "mcap",
+        Format::Carmen => "carmen",
+        Format::Events => "events",
+        Format::Database => "db3",
+        Format::Folder => "rosbag2",
     }
 }
 
@@ -308,6 +322,7 @@ fn line<'l>(
     Line {
         log: path.display().to_string(),
         format: format(log),
+        compression: log.compression().map(FileCompression::name),
         bytes: log.size(),
         start: log.start(),
         end: log.end(),
@@ -315,6 +330,11 @@ fn line<'l>(
         messages: log.messages_total(),
         truncated: log.truncation().map(TruncatedLine::from),
         indexed: log.is_indexed(),
+        skipped: log.skipped().map(|skipped| SkippedLine {
+            unknown: skipped.unknown(),
+            other_kinds: skipped.others(),
+            off_clock: skipped.off_clock(),
+        }),
         verification: verification.map(verification_line),
         topics: log
             .topics()
@@ -325,6 +345,8 @@ fn line<'l>(
                 encoding: match &topic.encoding {
                     Encoding::Ros1 => "ros1",
                     Encoding::Cdr => "cdr",
+                    Encoding::Carmen => "carmen",
+                    Encoding::Event => "event",
                     Encoding::Other(other) => other,
                 },
                 messages: topic.messages,
@@ -334,6 +356,21 @@ fn line<'l>(
             .collect(),
         mapping: carriers.into_iter().collect(),
     }
+}
+
+/// The lines that are skipped, in words.
+fn skipped_text(skipped: &SkippedLines) -> String {
+    let kinds = skipped.unknown().iter();
+    let mut parts: Vec<_> =
+        kinds.map(|(kind, count)| format!("{} {kind}", grouped((*count).into()))).collect();
+    if skipped.others() > 0 {
+        parts.push(format!("{} of other kinds", grouped(skipped.others().into())));
+    }
+    if skipped.off_clock() > 0 {
+        let count = grouped(skipped.off_clock().into());
+        parts.push(format!("{count} whose time is far from that of their neighbours"));
+    }
+    format!("lines: {}", parts.join(", "))
 }
 
 /// A name out of a log, as it can be printed.
@@ -351,8 +388,15 @@ fn print(
     let format = match log.format() {
         Format::Bag => "ROS 1 bag",
         Format::Mcap => "MCAP",
+        Format::Carmen => "CARMEN log",
+        Format::Events => "events",
+        Format::Database => "rosbag2 database",
+        Format::Folder => "rosbag2 folder",
     };
-    writeln!(out, "{}: {format}, {} bytes", path.display(), grouped(log.size().into()))?;
+    let compression = log.compression();
+    let compression = compression.map_or(String::new(), |known| format!(", {}", known.name()));
+    let size = grouped(log.size().into());
+    writeln!(out, "{}: {format}{compression}, {size} bytes", path.display())?;
     if let Some(truncation) = log.truncation() {
         print_hanging(out, "", &truncation.to_string())?;
     }
@@ -365,7 +409,11 @@ fn print(
         let duration = if duration < 60.0 { exact } else { duration_text(duration) };
         writeln!(out, "from {}, for {duration}", moment(start))?;
     }
-    writeln!(out, "{} messages\n", grouped(log.messages_total().into()))?;
+    writeln!(out, "{} messages", grouped(log.messages_total().into()))?;
+    if let Some(skipped) = log.skipped() {
+        print_hanging(out, "", &format!("skipped {}", skipped_text(skipped)))?;
+    }
+    writeln!(out)?;
     let rows: Vec<_> = log
         .topics()
         .iter()

@@ -145,13 +145,36 @@ pub(crate) fn log_or_cause(path: &Path) -> Result<Result<Log, LogError>, CliErro
         return Ok(Log::new(Cursor::new(standard_input()?)));
     }
     files().read(path)?;
+    for file in folder_files(path).unwrap_or_default() {
+        files().read(&file)?;
+    }
     Ok(Log::open(path))
 }
 
-/// Opens a file that was read before, to read it in pieces.
+/// The files in a folder by their names; none if it is not a folder.
+fn folder_files(path: &Path) -> io::Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(Vec::new());
+    }
+    let files: io::Result<Vec<_>> =
+        fs::read_dir(path)?.map(|entry| entry.map(|entry| entry.path())).collect();
+    let mut files = files?;
+    files.retain(|file| file.is_file());
+    files.sort();
+    Ok(files)
+}
+
+/// Opens a file that was read before, to read it in pieces. A folder is its files, one after the other.
 pub(crate) fn open_again(path: &Path) -> io::Result<Box<dyn Read>> {
     match STANDARD_INPUT.get().filter(|_| is_standard(path)) {
         Some(bytes) => Ok(Box::new(Cursor::new(bytes.clone()))),
+        None if path.is_dir() => {
+            let nothing: Box<dyn Read> = Box::new(io::empty());
+            folder_files(path)?.into_iter().try_fold(nothing, |before, file| {
+                let all: Box<dyn Read> = Box::new(before.chain(fs::File::open(file)?));
+                Ok(all)
+            })
+        }
         None => Ok(Box::new(fs::File::open(path)?)),
     }
 }

@@ -65,7 +65,7 @@ fn an_error_is_one_message_with_file_and_place() {
     for (log, message) in [
         (
             "README.md",
-            "README.md: byte 0: this is not a log; it must be a ROS 1 bag or an MCAP file",
+            "README.md: byte 0: this is not a log; it must be a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events as JSON lines or CSV",
         ),
         ("nowhere.bag", "nowhere.bag: cannot be read: No such file or directory (os error 2)"),
         (

@@ -15,6 +15,7 @@ mod files;
 mod folding;
 mod help;
 mod info;
+mod lines;
 mod log;
 mod names;
 mod options;

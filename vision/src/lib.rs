@@ -14,6 +14,8 @@
 //! * [`marker`]: whether the marker is there, and its direction;
 //! * [`sensing`]: all of these steps;
 //! * [`annotate`]: a picture of each step.
+//!
+//! And [`laser`]: sensing with a laser scanner.
 
 // Tests compare numbers exactly and list many wrong files.
 #![cfg_attr(test, allow(clippy::float_cmp, clippy::too_many_lines))]
@@ -31,6 +33,7 @@ pub mod ground_view;
 pub mod hallway;
 pub mod image_file;
 pub mod junction;
+pub mod laser;
 mod least_squares;
 pub mod line;
 pub mod marker;

@@ -50,6 +50,15 @@ pub enum DecodeErrorKind {
         /// How long it may be.
         most: u32,
     },
+    /// A line ends before a field.
+    #[error("the line ends before it")]
+    NoWord,
+    /// A word of a line is not a number, or not one of the right kind.
+    #[error("\"{0}\" is not a number of its kind")]
+    NotANumber(String),
+    /// A line is longer than its definition.
+    #[error("{0} words are left over")]
+    WordsLeft(usize),
     /// The first bytes name an unknown encoding.
     #[error("the encapsulation {0:#06x} is not known; known are 0x0000 and 0x0001, plain CDR")]
     Encapsulation(u16),

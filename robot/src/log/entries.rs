@@ -1,6 +1,6 @@
 //! The entries of a log by a topic map, in the order of time.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
@@ -8,16 +8,21 @@ use toposlam_model::{
 };
 
 use super::{
-    decode::decode,
+    carmen::{self, RecordedScan},
+    container::LogFile,
     encode,
     error::{LogError, LogErrorKind},
+    event_line::{self, Parsed},
     from_value::FromValue,
     image::image_of,
+    laser_scan,
     merge::{RawMessage, RawMessages},
     messages::{Hypothesis, Run, Stamp},
     reader::Log,
     standard::Quaternion,
+    topic::{Encoding, Topic},
     topic_map::{BoundTopicMap, Carried, MessagePart, Role},
+    transforms::{self, Mounts},
     value::Value,
 };
 use crate::record::{Arrival, EventId, EventKind, Frame};
@@ -27,13 +32,14 @@ use crate::record::{Arrival, EventId, EventKind, Frame};
 pub struct Entry {
     /// When it was recorded, in nanoseconds.
     pub time: u64,
-    /// Where it is in the file: see [`RawMessage::offset`].
+    /// Where it is in its file: see [`RawMessage::offset`].
     pub offset: u64,
     /// The number of its message in the log, counted from 1.
     pub id: EventId,
     /// The index of its topic.
     pub topic: usize,
-    /// The `stamp` or `header.stamp` of the message; without one, when it was recorded.
+    /// The `stamp` or `header.stamp` of the message, or that of its transform; without one, when it was
+    /// recorded.
     pub stamp: Stamp,
     /// What is recorded.
     pub content: Content,
@@ -46,7 +52,7 @@ pub enum Content {
     Run(Run),
     /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
-    /// Any other event. A frame has an image or a scene, and the last odometry before it.
+    /// Any other event. A frame has an image, a scan or a scene, and the last odometry before it.
     Event(EventKind),
 }
 
@@ -55,6 +61,7 @@ pub struct Entries<'l> {
     log: &'l Log,
     bound: BoundTopicMap,
     messages: RawMessages<'l>,
+    mounts: Mounts<'l>,
     /// The last odometry.
     odometry: Odometry,
     /// What the last message carries beyond its first.
@@ -67,7 +74,8 @@ impl Log {
     pub fn entries(&self, mapping: &BoundTopicMap) -> Entries<'_> {
         let messages = self.read(&mapping.topics());
         let (odometry, next) = (Odometry::default(), VecDeque::new());
-        Entries { log: self, bound: mapping.clone(), messages, odometry, next }
+        let mounts = Mounts::new(self);
+        Entries { log: self, bound: mapping.clone(), messages, mounts, odometry, next }
     }
 }
 
@@ -89,30 +97,111 @@ impl Iterator for Entries<'_> {
 impl Entries<'_> {
     /// Appends the entries of a message.
     fn decode(&mut self, message: &RawMessage) -> Result<(), LogError> {
-        let Some(topic) = self.log.topics().get(message.topic) else { return Ok(()) };
-        let Ok(definition) = &topic.definition else { return Ok(()) };
+        let log = self.log;
+        let Some(topic) = log.topics().get(message.topic) else { return Ok(()) };
+        let Some(file) = log.files.get(message.file) else { return Ok(()) };
         let RawMessage { time, offset, number, .. } = *message;
-        let value = decode(definition, &message.bytes).map_err(|error| {
+        let wrong = |what| {
             let topic = topic.name.clone();
-            LogErrorKind::Message { number, topic, error: Box::new(error) }.at(offset)
+            file.error(LogErrorKind::Content { number, topic, what }, offset)
+        };
+        if topic.encoding == Encoding::Event {
+            let (stamp, contents) = self.event(file, message).map_err(wrong)?;
+            for content in contents {
+                self.add(message, stamp.unwrap_or(Stamp::of(time)), content);
+            }
+            return Ok(());
+        }
+        let Some(value) = topic.decode(&message.bytes) else { return Ok(()) };
+        let value = value.map_err(|error| {
+            let topic = topic.name.clone();
+            file.error(LogErrorKind::Message { number, topic, error: Box::new(error) }, offset)
         })?;
         let stamp = stamp(&value, time);
-        let since_start = stamp.nanoseconds().saturating_sub(self.log.start().unwrap_or(0));
+        let since_start = stamp.nanoseconds().saturating_sub(log.start().unwrap_or(0));
         let taken = since_start as f64 / 1e9;
-        for carried in self.bound.carried.iter().filter(|carried| carried.topic == message.topic) {
+        let of_topic = |carried: &&Carried| carried.topic == message.topic;
+        let all: Vec<_> = self.bound.carried.iter().filter(of_topic).cloned().collect();
+        for carried in all {
             let frame = Frame { id: number, taken, odometry: self.odometry, ..Frame::default() };
-            let content = content(carried, &value, frame).map_err(|what| {
-                let topic = topic.name.clone();
-                LogErrorKind::Content { number, topic, what }.at(offset)
-            })?;
-            if let Content::Event(EventKind::Odometry(odometry)) = content {
-                self.odometry = odometry;
+            match (carried.role, &*carried.type_name) {
+                (Role::Scan, "sensor_msgs/LaserScan") => {
+                    let mount = self.mounts.of(&laser_scan::frame(&value))?;
+                    let scan = mount.and_then(|mount| laser_scan::scan_of(&value, &mount));
+                    let scan = Some(Arc::new(scan.map_err(wrong)?));
+                    self.add(message, stamp, EventKind::Frame(Frame { scan, ..frame }).into());
+                }
+                (role @ (Role::Scan | Role::Odometry), _) if carried.own && is_carmen(topic) => {
+                    let recorded = carmen::reading(&topic.type_name, &value, &file.text.parameters);
+                    let RecordedScan { scan, odometry } = recorded.map_err(wrong)?;
+                    if role == Role::Odometry || self.bound.carries(Role::Odometry) {
+                        self.add(message, stamp, EventKind::Odometry(odometry).into());
+                    }
+                    if role == Role::Scan {
+                        let scan = Some(Arc::new(scan));
+                        let frame = Frame { odometry, scan, ..frame };
+                        self.add(message, stamp, EventKind::Frame(frame).into());
+                    }
+                }
+                (Role::Odometry, _) if carried.own => {
+                    if let Some((odometry, stamped)) = transforms::odometry(&value) {
+                        let stamp = stamped.unwrap_or(stamp);
+                        self.add(message, stamp, EventKind::Odometry(odometry).into());
+                    }
+                }
+                _ => {
+                    let content = content(&carried, &value, frame).map_err(wrong)?;
+                    self.add(message, stamp, content);
+                }
             }
-            let (id, topic) = (EventId(number), message.topic);
-            self.next.push_back(Entry { time, offset, id, topic, stamp, content });
         }
         Ok(())
     }
+
+    /// The time and the contents of a line with an event.
+    fn event(
+        &self,
+        file: &LogFile,
+        message: &RawMessage,
+    ) -> Result<(Option<Stamp>, Vec<Content>), String> {
+        let parsed = event_line::parse(&message.bytes, file.text.columns.as_ref())?;
+        let Parsed::Event(event, degree) = parsed else { return Ok((None, Vec::new())) };
+        let moves = match event.index.map(|index| index.checked_sub(file.text.first_event)) {
+            Some(None) => return Err("its index is before that of the first event".to_owned()),
+            Some(moves) => moves,
+            None => None,
+        };
+        let sighting = event.marker.map(encode::sighting_of);
+        let arrival = Arrival { number: moves, degree, sighting, form: None, entry: None };
+        let mut contents = Vec::new();
+        if self.bound.carries(Role::Percept) {
+            contents.push(EventKind::Arrival(arrival).into());
+        }
+        if let Some(door) = event.door.filter(|_| self.bound.carries(Role::Door)) {
+            let number = moves.map(|moves| moves.saturating_add(1));
+            contents.push(EventKind::Door { number, door: Door(door) }.into());
+        }
+        let stamp = event.stamp.map(|seconds| Stamp::of((seconds * 1e9).round() as u64));
+        Ok((stamp, contents))
+    }
+
+    fn add(&mut self, message: &RawMessage, stamp: Stamp, content: Content) {
+        if let Content::Event(EventKind::Odometry(odometry)) = content {
+            self.odometry = odometry;
+        }
+        let RawMessage { time, offset, number, topic, .. } = *message;
+        self.next.push_back(Entry { time, offset, id: EventId(number), topic, stamp, content });
+    }
+}
+
+impl From<EventKind> for Content {
+    fn from(kind: EventKind) -> Self {
+        Self::Event(kind)
+    }
+}
+
+fn is_carmen(topic: &Topic) -> bool {
+    topic.encoding == Encoding::Carmen
 }
 
 fn stamp(value: &Value<'_>, time: u64) -> Stamp {
@@ -125,6 +214,8 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         Role::Run => return Ok(Content::Run(own(value)?)),
         Role::Hypothesis => return Ok(Content::Hypothesis(own(value)?)),
         Role::Image => EventKind::Frame(Frame { image: Some(image_of(value)?), ..frame }),
+        // A scan is read by its type.
+        Role::Scan => return Err("it is not a scan".to_owned()),
         Role::Scene => {
             let scene = encode::scene_of(&own(value)?).ok_or("there is no such scene")?;
             EventKind::Frame(Frame { scene: Some(scene), ..frame })

@@ -8,20 +8,54 @@ use super::decode::DecodeError;
 
 /// Why a log cannot be read, or not further.
 #[derive(Debug, Error)]
-#[error("{}{cause}", place(*.offset, .cause))]
+#[error("{}{cause}", self.place())]
 pub struct LogError {
-    /// The offset of the record or chunk in the file.
+    /// The offset of the record or chunk in the file, in bytes, lines or rows.
     pub offset: u64,
+    /// What the offset counts.
+    pub unit: OffsetUnit,
+    /// The name of the file, if the log has several.
+    pub file: Option<String>,
     /// The error.
     #[source]
     pub cause: LogErrorKind,
 }
 
-/// The offset for the message. A file that cannot be read has none.
-fn place(offset: u64, cause: &LogErrorKind) -> String {
-    match cause {
-        LogErrorKind::Unreadable(_) => String::new(),
-        _ => format!("byte {offset}: "),
+impl LogError {
+    /// The place for the message. A file that cannot be read has no offset.
+    fn place(&self) -> String {
+        let file = self.file.as_ref().map_or(String::new(), |file| format!("{file}: "));
+        match self.cause {
+            LogErrorKind::Unreadable(_)
+            | LogErrorKind::NoBagFiles
+            | LogErrorKind::NoDatabases
+            | LogErrorKind::Metadata { .. } => file,
+            _ => format!("{file}{} {}: ", self.unit.name(), self.offset),
+        }
+    }
+}
+
+/// What the offsets in a file count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OffsetUnit {
+    /// Bytes, from 0.
+    #[default]
+    Byte,
+    /// Lines, from 1.
+    Line,
+    /// Rows of the table of messages, by their number in the database.
+    Row,
+}
+
+impl OffsetUnit {
+    /// Its name in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Byte => "byte",
+            Self::Line => "line",
+            Self::Row => "row",
+        }
     }
 }
 
@@ -56,7 +90,10 @@ pub enum LogErrorKind {
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
     /// The file is not a log.
-    #[error("this is not a log; it must be a ROS 1 bag or an MCAP file")]
+    #[error(
+        "this is not a log; it must be a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN \
+         log, or events as JSON lines or CSV"
+    )]
     NotALog,
     /// The bag has another version.
     #[error("this is a bag of version {0}; only version 2.0 can be read")]
@@ -104,6 +141,39 @@ pub enum LogErrorKind {
     /// A message lies outside of the times of its chunk.
     #[error("the time of a message is outside of the times of its chunk")]
     OutsideTimes,
+    /// A folder has no files of rosbag2.
+    #[error("this folder has no metadata.yaml, and no .db3 or .mcap file")]
+    NoBagFiles,
+    /// The metadata of a folder are not as they should be.
+    #[error("line {line}: {what}")]
+    Metadata {
+        /// The line.
+        line: usize,
+        /// What is wrong there.
+        what: String,
+    },
+    /// Databases cannot be read.
+    #[error(
+        "this is a .db3 file; this program was built without the feature `sqlite`, which reads them"
+    )]
+    NoDatabases,
+    /// A database cannot be read.
+    #[error("the database: {0}")]
+    Database(String),
+    /// A line is not as it should be.
+    #[error("{0}")]
+    Line(String),
+    /// A line is too long.
+    #[error("the line is longer than {0} bytes")]
+    LongLine(usize),
+    /// The clock of a log of lines jumps, and stays there.
+    #[error("the clock jumps from {from:.3} s to {to:.3} s, and stays there")]
+    ClockJump {
+        /// The time before, in seconds.
+        from: f64,
+        /// The time of the line, in seconds.
+        to: f64,
+    },
     /// The topic of a message is unknown.
     #[error("a message of connection {0}, which has no record")]
     UnknownConnection(u32),
@@ -139,24 +209,39 @@ impl LogErrorKind {
     pub fn is_damage(&self) -> bool {
         !matches!(
             self,
-            Self::Unreadable(_) | Self::NotALog | Self::Version(_) | Self::Compression(..)
+            Self::Unreadable(_)
+                | Self::NotALog
+                | Self::Version(_)
+                | Self::Compression(..)
+                | Self::NoDatabases
+                | Self::NoBagFiles
         )
     }
 
     pub(super) fn at(self, offset: u64) -> LogError {
-        LogError { offset, cause: self }
+        LogError { offset, unit: OffsetUnit::Byte, file: None, cause: self }
     }
 }
 
 /// Where a log is truncated.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("truncated at byte {offset}: {cause}")]
+#[error("{}truncated at {} {offset}: {cause}", file.as_ref().map_or(String::new(), |file| format!("{file}: ")), .unit.name())]
 pub struct Truncation {
     /// The offset up to which it can be read.
     pub offset: u64,
+    /// What the offset counts.
+    pub unit: OffsetUnit,
+    /// The name of the file, if the log has several.
+    pub file: Option<String>,
     /// What is missing.
     #[source]
     pub cause: TruncationKind,
+}
+
+impl Truncation {
+    pub(super) fn at_byte(offset: u64, cause: TruncationKind) -> Self {
+        Self { offset, unit: OffsetUnit::Byte, file: None, cause }
+    }
 }
 
 /// What is missing at the end of a log.
@@ -168,6 +253,9 @@ pub enum TruncationKind {
     /// The end of the file.
     #[error("its end is missing")]
     End,
+    /// The end of the compressed data.
+    #[error("its compressed data end too early")]
+    Compressed,
     /// The index: the log was not closed.
     #[error("it was not closed, and has no index")]
     Index,

@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    container::{Record, Section},
+    container::{LogFile, PlacedRecord, Record, Section},
     error::{LogError, LogErrorKind},
     reader::Log,
 };
@@ -19,8 +19,10 @@ pub struct RawMessage {
     pub topic: usize,
     /// When it was recorded, in nanoseconds.
     pub time: u64,
-    /// The offset of its record in the file, or of its compressed chunk.
+    /// The offset of its record in its file, or of its compressed chunk; or its line.
     pub offset: u64,
+    /// The index of its file in the log.
+    pub(super) file: usize,
     /// Its number in the order of time, counted from 1.
     pub number: u64,
     /// Its bytes.
@@ -53,6 +55,7 @@ struct Waiting {
     section: usize,
     /// The place of its record in the section.
     at: usize,
+    place: u64,
     start: usize,
     end: usize,
     topic: usize,
@@ -75,6 +78,12 @@ impl Log {
         RawMessages::new(self, topics)
     }
 
+    /// A section and its file.
+    pub(super) fn section(&self, index: usize) -> Option<(&Section, &LogFile)> {
+        let section = self.sections.get(index)?;
+        Some((section, self.files.get(section.file)?))
+    }
+
     /// The messages of all topics.
     #[must_use]
     pub fn read_all(&self) -> RawMessages<'_> {
@@ -84,7 +93,9 @@ impl Log {
 
 impl<'l> RawMessages<'l> {
     fn new(log: &'l Log, topics: &[usize]) -> Self {
-        let mut ahead: Vec<usize> = (0..log.sections.len()).collect();
+        // Without topics there is nothing to read.
+        let sections = if topics.is_empty() { 0 } else { log.sections.len() };
+        let mut ahead: Vec<usize> = (0..sections).collect();
         let start = |section: usize| log.sections.get(section).and_then(|section| section.times);
         ahead.sort_by_key(|section| Reverse((start(*section).map(|[start, _]| start), *section)));
         Self {
@@ -124,7 +135,13 @@ impl<'l> RawMessages<'l> {
             let Some(Reverse(next)) = self.waiting.pop() else { return Ok(None) };
             self.number += 1;
             let bytes = if self.wanted.get(next.topic).copied().unwrap_or_default() {
-                Some(self.take(next.section, next.start..next.end)?)
+                let bytes = self.take(next.section, next.start..next.end)?;
+                match self.log.section(next.section) {
+                    Some((_, file)) => {
+                        Some(file.message(bytes).map_err(|cause| file.error(cause, next.place))?)
+                    }
+                    None => None,
+                }
             } else {
                 None
             };
@@ -134,7 +151,8 @@ impl<'l> RawMessages<'l> {
             return Ok(Some(RawMessage {
                 topic: next.topic,
                 time: next.time,
-                offset: section.map_or(0, |section| section.place(next.at)),
+                offset: next.place,
+                file: section.map_or(0, |section| section.file),
                 number: self.number,
                 bytes,
             }));
@@ -144,19 +162,21 @@ impl<'l> RawMessages<'l> {
     /// Adds the messages of a section to those that wait.
     fn read_section(&mut self, index: usize, start: u64) -> Result<(), LogError> {
         let log = self.log;
-        let Some(section) = log.sections.get(index) else { return Ok(()) };
-        let bytes = section.load(&log.source)?;
+        let Some((section, file)) = log.section(index) else { return Ok(()) };
+        let bytes = section.load(file)?;
         let mut waiting = 0;
-        for read in section.records(log.format, &bytes) {
-            let (at, Record::Message { connection, time, bytes }) = read? else { continue };
-            let wrong = |cause: LogErrorKind| cause.at(section.place(at));
-            let topic = log.connections.get(&connection).copied();
+        for read in section.records(file, &bytes) {
+            let PlacedRecord { at, place, record } = read?;
+            let Record::Message { connection, time, bytes } = record else { continue };
+            let wrong = |cause: LogErrorKind| file.error(cause, place);
+            let topic = log.connections.get(&(section.file, connection)).copied();
             let topic = topic.ok_or_else(|| wrong(LogErrorKind::UnknownConnection(connection)))?;
             if time < start {
                 return Err(wrong(LogErrorKind::TooOld));
             }
             let [start, end] = [bytes.start, bytes.end].map(|within| at + within);
-            self.waiting.push(Reverse(Waiting { time, section: index, at, start, end, topic }));
+            let section = index;
+            self.waiting.push(Reverse(Waiting { time, section, at, place, start, end, topic }));
             waiting += 1;
         }
         if waiting > 0 {
@@ -170,7 +190,7 @@ impl<'l> RawMessages<'l> {
 
     /// A part of a section, which is read again if it was released.
     fn take(&mut self, index: usize, part: Range<usize>) -> Result<Vec<u8>, LogError> {
-        let Some(section) = self.log.sections.get(index) else { return Ok(Vec::new()) };
+        let Some((section, file)) = self.log.section(index) else { return Ok(Vec::new()) };
         let Some(held) = self.held.get_mut(&index) else { return Ok(Vec::new()) };
         self.asked += 1;
         held.asked = self.asked;
@@ -178,7 +198,7 @@ impl<'l> RawMessages<'l> {
             Some(bytes) => bytes,
             gone => {
                 self.held_bytes += section.size();
-                gone.insert(section.load(&self.log.source)?)
+                gone.insert(section.load(file)?)
             }
         };
         let taken = bytes.get(part).unwrap_or_default().to_vec();

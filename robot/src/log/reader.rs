@@ -3,8 +3,14 @@
 use std::{collections::BTreeMap, fs::File, io::Cursor, path::Path};
 
 use super::{
-    container::{self, BAG_MAGIC, Format, MCAP_MAGIC, Record, Section},
-    error::{LogError, LogErrorKind, Truncation},
+    compressed::FileCompression,
+    container::{
+        self, BAG_MAGIC, Database, Format, LogFile, MCAP_MAGIC, PlacedRecord, Record, Section,
+        TEXT_HEAD, TextState,
+    },
+    error::{LogError, LogErrorKind, OffsetUnit, Truncation},
+    rosbag2::{self, BagFile},
+    skipped::SkippedLines,
     source::{Source, Storage},
     topic::{Topic, Topics},
 };
@@ -13,12 +19,13 @@ use super::{
 ///
 /// Its messages stay in the file until they are asked for.
 pub struct Log {
-    pub(super) source: Source,
+    /// At least one.
+    pub(super) files: Vec<LogFile>,
     pub(super) format: Format,
     pub(super) topics: Vec<Topic>,
-    /// The topic of each connection.
-    pub(super) connections: BTreeMap<u32, usize>,
-    /// Those with messages, in the order of the file.
+    /// The topic of each connection of each file.
+    pub(super) connections: BTreeMap<(usize, u32), usize>,
+    /// Those with messages, in the order of the files.
     pub(super) sections: Vec<Section>,
     truncation: Option<Truncation>,
     times: Option<[u64; 2]>,
@@ -26,12 +33,23 @@ pub struct Log {
 }
 
 impl Log {
-    /// Opens a file.
+    /// Opens a file, or a folder of rosbag2.
     ///
     /// # Errors
     /// As [`Log::new`].
     pub fn open(path: &Path) -> Result<Self, LogError> {
-        Self::new(File::open(path).map_err(|error| LogErrorKind::from(error).at(0))?)
+        if path.is_dir() {
+            let files = rosbag2::open(path)?.into_iter().map(|BagFile { name, path, storage }| {
+                let opened = open(storage, Some(&path));
+                let (source, format, database) =
+                    opened.map_err(|error| LogError { file: Some(name.clone()), ..error })?;
+                let (name, text) = (Some(name), TextState::default());
+                Ok(LogFile { name, format, source, database, text })
+            });
+            return Self::of_files(files.collect::<Result<_, _>>()?, Format::Folder);
+        }
+        let file = File::open(path).map_err(|error| LogErrorKind::from(error).at(0))?;
+        Self::of_file(Box::new(file), Some(path))
     }
 
     /// A log that is in memory.
@@ -51,31 +69,51 @@ impl Log {
     /// Returns an error if the file is not a log, cannot be read, or is damaged. A truncated log is not an
     /// error.
     pub fn new(storage: impl Storage + 'static) -> Result<Self, LogError> {
-        let source =
-            Source::new(Box::new(storage)).map_err(|error| LogErrorKind::from(error).at(0))?;
-        let format = format(&source)?;
+        Self::of_file(Box::new(storage), None)
+    }
+
+    fn of_file(storage: Box<dyn Storage>, path: Option<&Path>) -> Result<Self, LogError> {
+        let (source, format, database) = open(storage, path)?;
+        let file = LogFile { name: None, format, source, database, text: TextState::default() };
+        Self::of_files(vec![file], format)
+    }
+
+    /// Scans the files of a log.
+    fn of_files(mut files: Vec<LogFile>, format: Format) -> Result<Self, LogError> {
         let mut topics = Topics::default();
-        let scan = container::scan(format, &source, &mut |record| topics.add_record(record))?;
-        let mut sections = scan.sections;
+        let mut all_sections = Vec::new();
+        let mut truncation = None;
         let mut indexed = true;
-        for section in &mut sections {
-            let known = section.counts.as_ref().is_some_and(|counts| {
-                let declared = counts.keys().all(|id| topics.connections.contains_key(id));
-                declared && (section.times.is_some() || counts.values().all(|count| *count == 0))
-            });
-            if !known {
-                indexed = false;
-                scan_section(section, format, &source, &mut topics)?;
+        for (index, file) in files.iter_mut().enumerate() {
+            let topics = topics.in_file(index);
+            let scanned = container::scan(file, &mut |record| topics.add_record(record));
+            let (scan, text) = scanned.map_err(|error| file.in_file(error))?;
+            file.text = text;
+            let ended = scan.truncation.map(|end| Truncation { file: file.name.clone(), ..end });
+            truncation = truncation.or(ended);
+            for mut section in scan.sections {
+                section.file = index;
+                let known = section.counts.as_ref().is_some_and(|counts| {
+                    let mut ids = counts.keys();
+                    let declared = ids.all(|id| topics.connections.contains_key(&(index, *id)));
+                    let empty = counts.values().all(|count| *count == 0);
+                    declared && (section.times.is_some() || empty)
+                });
+                if !known {
+                    indexed &= file.format.unit() == OffsetUnit::Line;
+                    scan_section(&mut section, file, topics)?;
+                }
+                all_sections.push(section);
             }
         }
         let Topics { list: topics, connections, .. } = topics;
         let mut log = Self {
-            source,
+            files,
             format,
             topics,
             connections,
-            sections,
-            truncation: scan.truncation,
+            sections: all_sections,
+            truncation,
             times: None,
             indexed,
         };
@@ -87,7 +125,10 @@ impl Log {
     fn count(&mut self) {
         for section in &self.sections {
             for (id, count) in section.counts.iter().flatten() {
-                let topic = self.connections.get(id).and_then(|topic| self.topics.get_mut(*topic));
+                let topic = self
+                    .connections
+                    .get(&(section.file, *id))
+                    .and_then(|topic| self.topics.get_mut(*topic));
                 if let Some(topic) = topic {
                     topic.messages = topic.messages.saturating_add(*count);
                 }
@@ -106,10 +147,22 @@ impl Log {
         self.format
     }
 
-    /// Its size, in bytes.
+    /// The size of its files, in bytes.
     #[must_use]
     pub fn size(&self) -> u64 {
-        self.source.length()
+        self.files.iter().fold(0, |sum, file| sum.saturating_add(file.source.size))
+    }
+
+    /// How its first file is compressed, if it is.
+    #[must_use]
+    pub fn compression(&self) -> Option<FileCompression> {
+        self.files.first().and_then(|file| file.source.compression)
+    }
+
+    /// The lines that are skipped, of a log of lines; `None` if there are none.
+    #[must_use]
+    pub fn skipped(&self) -> Option<&SkippedLines> {
+        self.files.first().map(|file| &file.text.skipped).filter(|skipped| !skipped.is_empty())
     }
 
     /// Its topics, in the order of the file.
@@ -149,15 +202,37 @@ impl Log {
     }
 }
 
+/// Opens a file, and recognises its format.
+fn open(
+    storage: Box<dyn Storage>,
+    path: Option<&Path>,
+) -> Result<(Source, Format, Option<Database>), LogError> {
+    let wrong = |cause: LogErrorKind| cause.at(0);
+    let source = Source::new(storage).map_err(|error| wrong(error.into()))?;
+    let format = format(&source)?;
+    let database = match format {
+        Format::Database => Some(Database::open(&source, path).map_err(wrong)?),
+        _ => None,
+    };
+    Ok((source, format, database))
+}
+
 fn format(source: &Source) -> Result<Format, LogError> {
-    let head =
-        source.read(0..source.length().min(16)).map_err(|error| LogErrorKind::from(error).at(0))?;
+    let head = source.read(0..source.length().min(TEXT_HEAD));
+    let head = head.map_err(|error| LogErrorKind::from(error).at(0))?;
     if head.starts_with(MCAP_MAGIC) {
         return Ok(Format::Mcap);
     }
     if head.starts_with(BAG_MAGIC) {
         return Ok(Format::Bag);
     }
+    if head.starts_with(b"SQLite format 3\0") {
+        return Ok(Format::Database);
+    }
+    if let Some(format) = container::recognise(&head) {
+        return Ok(format);
+    }
+    let head = head.get(..16).unwrap_or(&head);
     let version =
         head.strip_prefix(b"#ROSBAG V").and_then(|rest| rest.split(|&byte| byte == b'\n').next());
     Err(match version {
@@ -172,19 +247,18 @@ fn format(source: &Source) -> Result<Format, LogError> {
 /// Scans a section that has no index.
 fn scan_section(
     section: &mut Section,
-    format: Format,
-    source: &Source,
+    file: &LogFile,
     topics: &mut Topics,
 ) -> Result<(), LogError> {
-    let bytes = section.load(source)?;
+    let bytes = section.load(file)?;
     let mut counts = BTreeMap::new();
     let mut times: Option<[u64; 2]> = None;
-    for read in section.records(format, &bytes) {
-        let (at, record) = read?;
+    for read in section.records(file, &bytes) {
+        let PlacedRecord { place, record, .. } = read?;
         topics.add_record(&record);
         let Record::Message { connection, time, .. } = record else { continue };
-        if !topics.connections.contains_key(&connection) {
-            return Err(LogErrorKind::UnknownConnection(connection).at(section.place(at)));
+        if !topics.connections.contains_key(&(section.file, connection)) {
+            return Err(file.error(LogErrorKind::UnknownConnection(connection), place));
         }
         *counts.entry(connection).or_default() += 1;
         let [first, last] = times.unwrap_or([time; 2]);

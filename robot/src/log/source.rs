@@ -6,21 +6,39 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use super::compressed::{Decompressed, FileCompression};
+
 /// A source of bytes.
 pub trait Storage: Read + Seek + Send {}
 
 impl<S: Read + Seek + Send> Storage for S {}
 
-/// A file with random access.
+/// A file with random access, perhaps compressed.
 pub(super) struct Source {
     storage: Mutex<Box<dyn Storage>>,
     length: u64,
+    /// The size of the file on the disk.
+    pub(super) size: u64,
+    pub(super) compression: Option<FileCompression>,
+    /// Whether the end of the compressed data is missing.
+    pub(super) is_cut: bool,
 }
 
 impl Source {
     pub(super) fn new(mut storage: Box<dyn Storage>) -> io::Result<Self> {
+        let size = storage.seek(SeekFrom::End(0))?;
+        storage.seek(SeekFrom::Start(0))?;
+        let mut head = Vec::new();
+        (&mut storage).take(4).read_to_end(&mut head)?;
+        let compression = FileCompression::of(&head);
+        let Some(known) = compression else {
+            let storage = Mutex::new(storage);
+            return Ok(Self { storage, length: size, size, compression, is_cut: false });
+        };
+        let (mut storage, is_cut) = Decompressed::new(storage, known)?;
         let length = storage.seek(SeekFrom::End(0))?;
-        Ok(Self { storage: Mutex::new(storage), length })
+        let storage: Box<dyn Storage> = Box::new(storage);
+        Ok(Self { storage: Mutex::new(storage), length, size, compression, is_cut })
     }
 
     pub(super) fn length(&self) -> u64 {

@@ -5,8 +5,11 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 
 use super::{
+    carmen,
     container::Record,
+    decode::{DecodeError, decode},
     definition::{Definition, DefinitionError, Dialect, short_name},
+    value::Value,
 };
 
 /// A topic of a log. One name may stand for several topics, of different types.
@@ -31,6 +34,10 @@ pub enum Encoding {
     Ros1,
     /// In CDR, as ROS 2 does.
     Cdr,
+    /// As a line of a CARMEN log.
+    Carmen,
+    /// As a line of a list of events.
+    Event,
     /// In another way, which is not read.
     Other(String),
 }
@@ -60,6 +67,19 @@ impl Topic {
     pub fn short_type(&self) -> String {
         short_name(&self.type_name)
     }
+
+    /// The value of a message; `None` if the messages of the topic cannot be decoded.
+    ///
+    /// # Errors
+    /// Returns an error if the bytes are not a message of the topic.
+    pub fn decode<'a>(&'a self, bytes: &'a [u8]) -> Option<Result<Value<'a>, DecodeError>> {
+        let definition = self.definition.as_ref().ok()?;
+        match self.encoding {
+            Encoding::Carmen => Some(carmen::decode(definition, bytes)),
+            Encoding::Event => None,
+            _ => Some(decode(definition, bytes)),
+        }
+    }
 }
 
 /// Collects the topics of a log from its records. Repetitions are ignored.
@@ -68,9 +88,11 @@ pub(super) struct Topics {
     pub(super) list: Vec<Topic>,
     /// Of each topic, the text that defines it.
     texts: Vec<Vec<u8>>,
-    /// The topic of each connection.
-    pub(super) connections: BTreeMap<u32, usize>,
+    /// The topic of each connection of each file.
+    pub(super) connections: BTreeMap<(usize, u32), usize>,
+    /// Of the present file.
     schemas: BTreeMap<u16, Schema>,
+    file: usize,
 }
 
 struct Schema {
@@ -80,13 +102,26 @@ struct Schema {
 }
 
 impl Topics {
+    /// Goes on with the records of a file.
+    pub(super) fn in_file(&mut self, file: usize) -> &mut Self {
+        if file != self.file {
+            self.file = file;
+            self.schemas.clear();
+        }
+        self
+    }
+
+    /// The index of the present file.
+    pub(super) fn present_file(&self) -> usize {
+        self.file
+    }
+
     pub(super) fn add_record(&mut self, record: &Record<'_>) {
         match *record {
-            Record::Connection { id, topic, type_name, definition } => {
-                if !self.connections.contains_key(&id) {
+            Record::Connection { id, topic, type_name, encoding, schema, definition } => {
+                if !self.connections.contains_key(&(self.file, id)) {
                     self.add(id, lossy(topic), lossy(type_name), definition, |name, text| {
-                        let read = Definition::read(Dialect::Ros1, name, text);
-                        (Encoding::Ros1, read.map_err(Undecodable::from))
+                        defined(lossy(encoding), lossy(schema), name, text)
                     });
                 }
             }
@@ -98,7 +133,7 @@ impl Topics {
                 });
             }
             Record::Channel { id, schema, topic, encoding } => {
-                if self.connections.contains_key(&id.into()) {
+                if self.connections.contains_key(&(self.file, id.into())) {
                     return;
                 }
                 let messages = lossy(encoding);
@@ -110,16 +145,7 @@ impl Topics {
                 };
                 let (name, schema, text) = (name.clone(), encoding.clone(), text.clone());
                 self.add(id.into(), lossy(topic), name, &text, |name, text| {
-                    let (encoding, dialect) = match (&*messages, &*schema) {
-                        ("ros1", "ros1msg") => (Encoding::Ros1, Dialect::Ros1),
-                        ("cdr", "ros2msg") => (Encoding::Cdr, Dialect::Ros2),
-                        _ => {
-                            let why = Undecodable::Encoding { messages: messages.clone(), schema };
-                            return (Encoding::Other(messages), Err(why));
-                        }
-                    };
-                    let read = Definition::read(dialect, name, text);
-                    (encoding, read.map_err(Undecodable::from))
+                    defined(messages, schema, name, text)
                 });
             }
             Record::Message { .. } | Record::Other => {}
@@ -145,8 +171,29 @@ impl Topics {
             self.texts.push(text.to_owned());
             self.list.len() - 1
         });
-        self.connections.insert(id, index);
+        self.connections.insert((self.file, id), index);
     }
+}
+
+/// The encoding of messages, and their definition.
+fn defined(
+    messages: String,
+    schema: String,
+    name: &str,
+    text: &str,
+) -> (Encoding, Result<Definition, Undecodable>) {
+    let (encoding, dialect) = match (&*messages, &*schema) {
+        ("ros1", "ros1msg") => (Encoding::Ros1, Dialect::Ros1),
+        ("cdr", "ros2msg") => (Encoding::Cdr, Dialect::Ros2),
+        ("carmen", "text") => (Encoding::Carmen, Dialect::Ros1),
+        ("event", "text") => (Encoding::Event, Dialect::Ros1),
+        (_, "") => return (Encoding::Other(messages), Err(Undecodable::NoSchema)),
+        _ => {
+            let why = Undecodable::Encoding { messages: messages.clone(), schema };
+            return (Encoding::Other(messages), Err(why));
+        }
+    };
+    (encoding, Definition::read(dialect, name, text).map_err(Undecodable::from))
 }
 
 fn lossy(bytes: &[u8]) -> String {

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, ops::Range};
 use toposlam_model::enumerate::Watch;
 
 use super::{
-    container::{self, Format, Record, Section, describe},
+    container::{self, Format, LogFile, PlacedRecord, Record, Section, describe},
     error::{LogError, LogErrorKind},
     reader::Log,
     topic::Topics,
@@ -54,33 +54,38 @@ impl Log {
 struct Verifier<'l> {
     log: &'l Log,
     topics: Topics,
-    /// The bytes that a checksum covers; they may overlap.
-    covered: Vec<Range<u64>>,
+    /// The bytes of each file that a checksum covers; they may overlap.
+    covered: Vec<(usize, Range<u64>)>,
     found: Verification,
 }
 
 impl Verifier<'_> {
     fn run(&mut self, watch: &dyn Watch) -> Result<(), LogError> {
-        let (format, source) = (self.log.format, &self.log.source);
-        let scan = container::scan(format, source, &mut |record| self.topics.add_record(record))?;
-        watch.parts(scan.sections.len());
-        for section in &scan.sections {
-            if watch.stop() {
-                return Ok(());
+        for (index, file) in self.log.files.iter().enumerate() {
+            let topics = self.topics.in_file(index);
+            let scanned = container::scan(file, &mut |record| topics.add_record(record));
+            let (scan, _) = scanned.map_err(|error| file.in_file(error))?;
+            watch.parts(scan.sections.len());
+            let before = self.found.messages;
+            for mut section in scan.sections {
+                if watch.stop() {
+                    return Ok(());
+                }
+                section.file = index;
+                self.section(&section, file)?;
+                watch.part_done(1);
             }
-            self.section(section)?;
-            watch.part_done(1);
-        }
-        if format == Format::Mcap && scan.truncation.is_none() {
-            self.mcap_end()?;
+            if file.format == Format::Mcap && scan.truncation.is_none() {
+                self.mcap_end(file, before)?;
+            }
         }
         self.found.complete = true;
         Ok(())
     }
 
     /// Reads a chunk, or messages outside of chunks.
-    fn section(&mut self, section: &Section) -> Result<(), LogError> {
-        let bytes = match section.load(&self.log.source) {
+    fn section(&mut self, section: &Section, file: &LogFile) -> Result<(), LogError> {
+        let bytes = match section.load(file) {
             Ok(bytes) => bytes,
             Err(error) if error.cause.is_damage() => {
                 self.found.damage.push(error);
@@ -89,10 +94,11 @@ impl Verifier<'_> {
             Err(error) => return Err(error),
         };
         self.found.chunks += u64::from(section.is_chunk());
-        self.covered.extend(section.covered(&self.log.source)?);
+        let covered = section.covered(file)?;
+        self.covered.extend(covered.map(|range| (section.file, range)));
         let mut counts: BTreeMap<u32, u64> = BTreeMap::new();
-        for read in section.records(self.log.format, &bytes) {
-            let (at, record) = match read {
+        for read in section.records(file, &bytes) {
+            let PlacedRecord { place, record, .. } = match read {
                 Ok(read) => read,
                 Err(error) => {
                     self.found.damage.push(error);
@@ -103,14 +109,14 @@ impl Verifier<'_> {
             let Record::Message { connection, time, .. } = record else { continue };
             self.found.messages += 1;
             *counts.entry(connection).or_default() += 1;
-            let wrong = if !self.topics.connections.contains_key(&connection) {
+            let wrong = if !self.topics.connections.contains_key(&(section.file, connection)) {
                 LogErrorKind::UnknownConnection(connection)
             } else if section.times.is_some_and(|[first, last]| time < first || time > last) {
                 LogErrorKind::OutsideTimes
             } else {
                 continue;
             };
-            self.found.damage.push(wrong.at(section.place(at)));
+            self.found.damage.push(file.error(wrong, place));
             return Ok(());
         }
         // An index need not list the topics without a message.
@@ -120,26 +126,30 @@ impl Verifier<'_> {
             indexed.iter().filter(|(_, count)| **count > 0).ne(counts.iter())
         });
         if let Some(indexed) = indexed.filter(|_| differs) {
-            self.found.damage.push(LogErrorKind::Count { indexed, found }.at(section.offset));
+            self.found
+                .damage
+                .push(file.error(LogErrorKind::Count { indexed, found }, section.first()));
         }
         Ok(())
     }
 
     /// The checksums of an MCAP file outside of its chunks, and its statistics.
-    fn mcap_end(&mut self) -> Result<(), LogError> {
-        let source = &self.log.source;
-        let wrong = |error| LogErrorKind::Unreadable(error).at(0);
+    fn mcap_end(&mut self, file: &LogFile, before: u64) -> Result<(), LogError> {
+        let source = &file.source;
+        let wrong = |error| file.error(LogErrorKind::Unreadable(error), 0);
         let description = describe(source).map_err(wrong)?;
         for checksum in description.checksums {
-            self.found.damage.extend(checksum.error(source).map_err(wrong)?);
-            self.covered.push(checksum.bytes);
+            let error = checksum.error(source).map_err(wrong)?;
+            self.found.damage.extend(error.map(|error| file.in_file(error)));
+            self.covered.push((self.topics.present_file(), checksum.bytes));
         }
         let whole = self.found.damage.is_empty();
-        self.found.damage.extend(description.damage);
-        let found = self.found.messages;
+        let damage = description.damage.into_iter().map(|error| file.in_file(error));
+        self.found.damage.extend(damage);
+        let found = self.found.messages - before;
         match description.messages {
             Some((offset, indexed)) if whole && indexed != found => {
-                self.found.damage.push(LogErrorKind::Count { indexed, found }.at(offset));
+                self.found.damage.push(file.error(LogErrorKind::Count { indexed, found }, offset));
             }
             _ => {}
         }
@@ -147,13 +157,14 @@ impl Verifier<'_> {
     }
 }
 
-/// The number of bytes in ranges that may overlap.
-fn total(mut ranges: Vec<Range<u64>>) -> u64 {
-    ranges.sort_by_key(|range| range.start);
-    let (mut sum, mut reached) = (0, 0);
-    for Range { start, end } in ranges {
-        sum += end.saturating_sub(start.max(reached));
-        reached = reached.max(end);
+/// The number of bytes in ranges of several files, which may overlap.
+fn total(mut ranges: Vec<(usize, Range<u64>)>) -> u64 {
+    ranges.sort_by_key(|(file, range)| (*file, range.start));
+    let (mut sum, mut reached) = (0, (0, 0));
+    for (file, Range { start, end }) in ranges {
+        let until = if reached.0 == file { reached.1 } else { 0 };
+        sum += end.saturating_sub(start.max(until));
+        reached = (file, until.max(end));
     }
     sum
 }
@@ -164,7 +175,8 @@ mod tests {
 
     #[test]
     fn bytes_that_two_checksums_cover_count_once() {
-        assert_eq!(total(vec![20..30, 0..10, 5..12, 6..7]), 22);
+        let ranges = [(0, 20..30), (0, 0..10), (1, 0..4), (0, 5..12), (0, 6..7)];
+        assert_eq!(total(ranges.into()), 26);
         assert_eq!(total(Vec::new()), 0);
     }
 }

@@ -7,7 +7,10 @@ use std::{
 
 use image::RgbImage;
 use toposlam_model::driving::{odometry::Odometry, scene::Scene};
-use toposlam_vision::image_file::{ImageFile, ImageFileError};
+use toposlam_vision::{
+    image_file::{ImageFile, ImageFileError},
+    laser::scan::Scan,
+};
 
 /// What the sensors gave at one moment. A clone is cheap, and shares the decoded pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,19 +23,20 @@ pub struct Frame {
     pub odometry: Odometry,
     /// The camera image, if there is one.
     pub image: Option<CameraImage>,
+    /// The scan of the laser scanner, if there is one.
+    pub scan: Option<Arc<Scan>>,
     /// The scene, once the frame has been sensed. A simulation without images supplies it.
     pub scene: Option<Scene>,
 }
 
 impl Frame {
-    /// Whether the sensors gave the same data: the same image, or without images the same capture.
+    /// Whether the sensors gave the same data: the same image or scan, or without both the same capture.
     #[must_use]
     pub fn same_data(&self, other: &Self) -> bool {
-        match (&self.image, &other.image) {
-            (Some(one), Some(two)) => one == two,
-            (None, None) => self.id == other.id,
-            _ => false,
+        if (&self.image, &self.scan) != (&other.image, &other.scan) {
+            return false;
         }
+        self.image.is_some() || self.scan.is_some() || self.id == other.id
     }
 
     /// The same frame without decoded pixels. They are decoded again when they are needed.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     robot::{Reckoned, RobotError, Sample},
-    superscout::{Base, PERIOD, Reading, WheelSpeeds},
+    superscout::{Base, PERIOD, WheelReading, WheelSpeeds},
 };
 
 /// Delay of a command in seconds, in addition to its period: odometry comes ten times a second,
@@ -86,7 +86,7 @@ impl LiveBase {
     }
 
     fn sample(&mut self, wheels: WheelSpeeds) {
-        let Reading { time, odometry } = self.reading();
+        let WheelReading { time, odometry } = self.reading();
         let reckoned = Reckoned { time, odometry };
         let (speed, turning) = (wheels.speed(), wheels.turn_rate());
         self.track.push(Sample { speed, turning, reckoned });
@@ -127,7 +127,7 @@ impl LiveBase {
 }
 
 impl Base for LiveBase {
-    fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError> {
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<WheelReading, RobotError> {
         match self.command(wheels) {
             Ok(()) => Ok(self.reading()),
             Err(error) => {
@@ -137,10 +137,10 @@ impl Base for LiveBase {
         }
     }
 
-    fn reading(&self) -> Reading {
+    fn reading(&self) -> WheelReading {
         let Reckoning { stamp, at, .. } = self.last;
         let Odometry { position, heading } = at;
-        Reading { time: self.seconds(stamp), odometry: Odometry { position, heading } }
+        WheelReading { time: self.seconds(stamp), odometry: Odometry { position, heading } }
     }
 
     fn lag(&self) -> f64 {

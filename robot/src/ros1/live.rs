@@ -12,7 +12,7 @@ use super::{
 use crate::{
     record::{CameraImage, Frame},
     robot::{Reckoned, Robot, RobotError, Sample},
-    superscout::{Base, Drive, Reading},
+    superscout::{Base, Drive, WheelReading},
 };
 
 /// A robot behind the topics of ROS 1.
@@ -62,7 +62,7 @@ impl LiveRobot {
     }
 
     fn picture(&mut self) -> Result<Frame, RobotError> {
-        let Reading { time: ended, odometry } = self.base.reading();
+        let WheelReading { time: ended, odometry } = self.base.reading();
         let id = self.asked;
         let mut behind = None;
         let base = &self.base;
@@ -70,7 +70,7 @@ impl LiveRobot {
             let taken = base.seconds(photograph.stamp);
             behind = Some(ended - taken);
             let image = Some(CameraImage::encoded(photograph.file));
-            (taken > ended).then_some(Frame { id, taken, odometry, image, scene: None })
+            (taken > ended).then_some(Frame { id, taken, odometry, image, ..Frame::default() })
         };
         let picture = self.pictures.wait(base.patience(), base.stop(), fresh);
         picture.map_err(|error| match (error, behind) {

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     pose::Pose,
     robot::{Reckoned, RobotError, Sample},
-    superscout::{Base, Odometer, PERIOD, Reading, WATCHDOG, WheelSpeeds, along_arc},
+    superscout::{Base, Odometer, PERIOD, WATCHDOG, WheelReading, WheelSpeeds, along_arc},
 };
 
 /// The differences of a simulated base from an ideal one.
@@ -72,7 +72,7 @@ pub struct SimulatedBase {
     chance: Xoshiro256PlusPlus,
     /// The number of commands that will be ignored.
     deaf: u32,
-    reading: Reading,
+    reading: WheelReading,
     /// The recorded wheel speeds, if they are recorded.
     track: Option<Vec<Sample>>,
 }
@@ -101,7 +101,7 @@ impl SimulatedBase {
             odometry,
             chance,
             deaf: 0,
-            reading: Reading { time: 0.0, odometry: odometer.reading() },
+            reading: WheelReading { time: 0.0, odometry: odometer.reading() },
             track: None,
         }
     }
@@ -131,7 +131,7 @@ impl SimulatedBase {
 
     fn sample(&mut self) {
         if let Some(track) = &mut self.track {
-            let Reading { time, odometry } = self.reading;
+            let WheelReading { time, odometry } = self.reading;
             let reckoned = Reckoned { time, odometry };
             let (speed, turning) = (self.wheels.speed(), self.wheels.turn_rate());
             track.push(Sample { speed, turning, reckoned });
@@ -221,12 +221,12 @@ impl SimulatedBase {
     }
 
     fn read(&mut self) {
-        self.reading = Reading { time: self.time, odometry: self.odometer.reading() };
+        self.reading = WheelReading { time: self.time, odometry: self.odometer.reading() };
     }
 }
 
 impl Base for SimulatedBase {
-    fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError> {
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<WheelReading, RobotError> {
         self.wheels = wheels;
         self.silent = PERIOD;
         self.advance(PERIOD);
@@ -235,7 +235,7 @@ impl Base for SimulatedBase {
         Ok(self.reading)
     }
 
-    fn reading(&self) -> Reading {
+    fn reading(&self) -> WheelReading {
         self.reading
     }
 

@@ -11,10 +11,10 @@ pub trait Base {
     ///
     /// # Errors
     /// Returns an error if the base does not answer.
-    fn drive(&mut self, wheels: WheelSpeeds) -> Result<Reading, RobotError>;
+    fn drive(&mut self, wheels: WheelSpeeds) -> Result<WheelReading, RobotError>;
 
     /// The last reading.
-    fn reading(&self) -> Reading;
+    fn reading(&self) -> WheelReading;
 
     /// How long a command acts after its period, in seconds. Readings are this old, and the last step of
     /// a motion is shorter by as much.
@@ -28,7 +28,7 @@ pub trait Base {
 
 /// A reading of the odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct WheelReading {
     /// In seconds since it was switched on.
     pub time: f64,
     /// Where the robot is by its wheels.

@@ -36,7 +36,8 @@ const PLAIN: Way = Way { compression: None, ..ZSTD };
 
 #[test]
 fn other_files_are_refused() {
-    let no_log = "byte 0: this is not a log; it must be a ROS 1 bag or an MCAP file";
+    let no_log = "byte 0: this is not a log; it must be a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 \
+        file, a CARMEN log, or events as JSON lines or CSV";
     for bytes in [&b""[..], b"name = \"x\"", b"\x89MCAP", b"\x89PNG\r\n\x1a\n", b"#ROSBAG"] {
         assert_eq!(read(bytes).unwrap_err(), no_log);
     }

@@ -7,8 +7,10 @@
 
 mod bag;
 mod broken;
+mod carmen;
 mod mcap_file;
 mod recorded;
 mod roles;
+mod rosbags;
 mod verified;
 mod written;

@@ -6,7 +6,7 @@
 
 use std::{collections::BTreeMap, ops::Range};
 
-use super::{Compression, Listener, Record, Scan, Section, u32_at, u64_at, unreadable};
+use super::{Compression, FileStructure, Listener, Record, Section, u32_at, u64_at, unreadable};
 use crate::log::{
     error::{LogError, LogErrorKind, Truncation, TruncationKind},
     source::{Source, Window},
@@ -77,6 +77,8 @@ fn connection<'a>(header: Fields<'a>, body: Fields<'a>) -> Result<Record<'a>, &'
             id: header.u32("conn")?,
             topic: header.get("topic")?,
             type_name: body.get("type")?,
+            encoding: b"ros1",
+            schema: b"ros1msg",
             definition: body.get("message_definition")?,
         })
     };
@@ -116,14 +118,17 @@ struct Head {
 }
 
 /// Looks through a bag.
-pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan, LogError> {
-    let mut scan = Scan::default();
+pub(super) fn scan(
+    source: &Source,
+    listener: &mut Listener<'_>,
+) -> Result<FileStructure, LogError> {
+    let mut scan = FileStructure::default();
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
     let mut head = None;
     let [mut connections, mut chunks] = [0, 0];
     while at < source.length() {
-        let truncated = |cause| Truncation { offset: at, cause };
+        let truncated = |cause| Truncation::at_byte(at, cause);
         // Lengths that go beyond the end of the file.
         let Some((header, body)) = lengths(&mut window, at).map_err(unreadable(at))? else {
             return Ok(scan.truncated(truncated(TruncationKind::RestOfRecord)));
@@ -153,7 +158,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
             return Ok(scan);
         }
     };
-    Ok(scan.truncated(Truncation { offset: at, cause }))
+    Ok(scan.truncated(Truncation::at_byte(at, cause)))
 }
 
 /// Whether a record is among the repeated connections.
@@ -187,7 +192,7 @@ fn one(
     at: u64,
     header_length: u32,
     body: Range<u64>,
-    scan: &mut Scan,
+    scan: &mut FileStructure,
     listener: &mut Listener<'_>,
 ) -> Result<Result<u8, &'static str>, LogError> {
     let header_bytes = window.get(at + 4, header_length.into()).map_err(unreadable(at))?;
@@ -225,6 +230,7 @@ fn one(
                 return Ok(Err("a chunk that is not compressed, and not as long as it says"));
             }
             scan.sections.push(Section {
+                file: 0,
                 offset: at,
                 bytes: body.clone(),
                 compression,
@@ -234,6 +240,7 @@ fn one(
                 // Of an empty one there is no index.
                 counts: (size == 0).then(BTreeMap::new),
                 in_chunk: true,
+                text: None,
             });
             Ok(op)
         }

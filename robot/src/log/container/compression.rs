@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use lz4_flex::frame::FrameDecoder as Lz4Decoder;
-use ruzstd::decoding::FrameDecoder;
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
 use crate::log::error::{CheckedPart, LogErrorKind};
 
@@ -102,6 +102,22 @@ pub(super) fn decompress(
     }
     if checksum != 0 && crc32fast::hash(&whole) != checksum {
         return Err(LogErrorKind::Checksum(CheckedPart::Chunk));
+    }
+    Ok(whole)
+}
+
+/// How a frame of Zstandard begins.
+pub(super) const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
+
+/// A message that is a frame of Zstandard.
+pub(super) fn decompress_message(bytes: &[u8]) -> Result<Vec<u8>, LogErrorKind> {
+    let compressed = bytes.len() as u64;
+    let most = compressed.saturating_mul(MOST_GROWTH);
+    let frame = StreamingDecoder::new(bytes).map_err(|error| fails(&error))?;
+    let whole = read(frame, most)?;
+    let size = whole.len() as u64;
+    if size > most {
+        return Err(LogErrorKind::Growth { compressed, size, most: MOST_GROWTH });
     }
     Ok(whole)
 }

@@ -2,7 +2,9 @@
 
 use std::{collections::BTreeMap, io, ops::Range};
 
-use super::{Compression, Listener, Record, Scan, Section, u16_at, u32_at, u64_at, unreadable};
+use super::{
+    Compression, FileStructure, Listener, Record, Section, u16_at, u32_at, u64_at, unreadable,
+};
 use crate::log::{
     error::{LogError, LogErrorKind, Truncation, TruncationKind},
     source::{Source, Window},
@@ -74,8 +76,11 @@ pub(super) fn record(bytes: &[u8]) -> Result<(Record<'_>, usize), &'static str> 
 }
 
 /// Looks through an MCAP file.
-pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan, LogError> {
-    let mut scan = Scan::default();
+pub(super) fn scan(
+    source: &Source,
+    listener: &mut Listener<'_>,
+) -> Result<FileStructure, LogError> {
+    let mut scan = FileStructure::default();
     let mut window = Window::new(source);
     let mut at = MAGIC.len() as u64;
     let mut total = None;
@@ -92,7 +97,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
             } else {
                 TruncationKind::RestOfRecord
             };
-            return Ok(scan.truncated(Truncation { offset: at, cause }));
+            return Ok(scan.truncated(Truncation::at_byte(at, cause)));
         };
         let record = at..content.end;
         let taken = one(&mut window, op, &record, &content, &mut scan, listener, &mut total);
@@ -104,7 +109,7 @@ pub(super) fn scan(source: &Source, listener: &mut Listener<'_>) -> Result<Scan,
     }
     let end = window.get(at, MAGIC.len() as u64).map_err(unreadable(at))?;
     if end != Some(MAGIC) {
-        return Ok(scan.truncated(Truncation { offset: at, cause: TruncationKind::End }));
+        return Ok(scan.truncated(Truncation::at_byte(at, TruncationKind::End)));
     }
     scan.end_loose();
     // An incomplete index is not used.
@@ -124,7 +129,7 @@ fn one(
     op: u8,
     record: &Range<u64>,
     content: &Range<u64>,
-    scan: &mut Scan,
+    scan: &mut FileStructure,
     listener: &mut Listener<'_>,
     total: &mut Option<u64>,
 ) -> io::Result<Result<(), LogErrorKind>> {
@@ -205,6 +210,7 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
     let length = u64_at(bytes, at)?;
     let end = start.checked_add(length).filter(|end| *end <= content.end)?;
     Some(Ok(Section {
+        file: 0,
         offset,
         bytes: start..end,
         compression,
@@ -214,5 +220,6 @@ fn chunk(offset: u64, content: &Range<u64>, bytes: &[u8]) -> Option<Result<Secti
         times: (size > 0 && times[0] <= times[1]).then_some(times),
         counts: (size == 0).then(BTreeMap::new),
         in_chunk: true,
+        text: None,
     }))
 }

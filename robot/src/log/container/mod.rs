@@ -1,27 +1,34 @@
-//! The containers of logs: ROS 1 bags and MCAP files. Both consist of records, most of them in chunks.
+//! The containers of logs. ROS 1 bags and MCAP files consist of records, most of them in chunks; other
+//! logs consist of lines.
 //!
-//! Either is first looked through from record to record, by their lengths, from which comes a list of
+//! Each is first looked through from record to record, by their lengths, from which comes a list of
 //! sections: chunks, and stretches of messages outside of chunks. What the indices at the ends of files
 //! say is not needed for that, so files without them are read the same way.
 
 mod bag;
 mod checksum;
+mod clock;
 mod compression;
+mod database;
+mod file;
 mod mcap;
 mod mcap_end;
+mod rows;
+mod text;
 
 use std::{collections::BTreeMap, io, ops::Range};
 
 pub(super) use bag::MAGIC as BAG_MAGIC;
+use clock::Clock;
 pub use compression::MOST_GROWTH;
 use compression::{Compression, decompress};
+pub(super) use database::Database;
+pub(super) use file::LogFile;
 pub(super) use mcap::MAGIC as MCAP_MAGIC;
 pub(super) use mcap_end::describe;
+pub(super) use text::{EVENT, HEAD as TEXT_HEAD, TextState, recognise};
 
-use super::{
-    error::{LogError, LogErrorKind, Truncation},
-    source::Source,
-};
+use super::error::{LogError, LogErrorKind, OffsetUnit, Truncation};
 
 /// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +37,40 @@ pub enum Format {
     Bag,
     /// MCAP.
     Mcap,
+    /// A CARMEN log.
+    Carmen,
+    /// Events as JSON lines or CSV.
+    Events,
+    /// A database of rosbag2, `.db3`.
+    Database,
+    /// A folder of rosbag2, with databases or MCAP files.
+    Folder,
+}
+
+impl Format {
+    /// What the offsets in a file count.
+    pub(super) fn unit(self) -> OffsetUnit {
+        match self {
+            Self::Bag | Self::Mcap | Self::Folder => OffsetUnit::Byte,
+            Self::Carmen | Self::Events => OffsetUnit::Line,
+            Self::Database => OffsetUnit::Row,
+        }
+    }
 }
 
 /// A record that is of use.
 pub(super) enum Record<'a> {
     /// A message, with the place of its bytes in the record.
     Message { connection: u32, time: u64, bytes: Range<usize> },
-    /// In a bag: a topic and the definition of its messages.
-    Connection { id: u32, topic: &'a [u8], type_name: &'a [u8], definition: &'a [u8] },
+    /// A topic, the encoding of its messages, and their definition in the language of a schema.
+    Connection {
+        id: u32,
+        topic: &'a [u8],
+        type_name: &'a [u8],
+        encoding: &'a [u8],
+        schema: &'a [u8],
+        definition: &'a [u8],
+    },
     /// In MCAP: the definition of messages.
     Schema { id: u16, name: &'a [u8], encoding: &'a [u8], text: &'a [u8] },
     /// In MCAP: a topic.
@@ -50,6 +83,8 @@ pub(super) enum Record<'a> {
 /// of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
+    /// The index of its file in the log.
+    pub(super) file: usize,
     /// The offset of its record, or of the first one.
     pub(super) offset: u64,
     /// The place of its records, perhaps compressed.
@@ -65,11 +100,13 @@ pub(super) struct Section {
     pub(super) counts: Option<BTreeMap<u32, u64>>,
     /// Whether it is a chunk.
     in_chunk: bool,
+    /// Of a log of lines: the number of its first line, and the clock before it.
+    text: Option<(u64, Clock)>,
 }
 
 /// The structure of a file.
 #[derive(Default)]
-pub(super) struct Scan {
+pub(super) struct FileStructure {
     pub(super) sections: Vec<Section>,
     pub(super) truncation: Option<Truncation>,
     /// The section of messages outside of chunks that is still growing.
@@ -81,20 +118,24 @@ pub(super) type Listener<'l> = dyn FnMut(&Record<'_>) + 'l;
 
 /// Scans a file.
 pub(super) fn scan(
-    format: Format,
-    source: &Source,
+    file: &LogFile,
     listener: &mut Listener<'_>,
-) -> Result<Scan, LogError> {
-    match format {
-        Format::Bag => bag::scan(source, listener),
-        Format::Mcap => mcap::scan(source, listener),
-    }
+) -> Result<(FileStructure, TextState), LogError> {
+    let LogFile { format, source, database, .. } = file;
+    let scan = match (format, database) {
+        (Format::Bag, _) => bag::scan(source, listener)?,
+        (Format::Mcap, _) => mcap::scan(source, listener)?,
+        (Format::Carmen | Format::Events, _) => return text::scan(*format, source, listener),
+        (Format::Database | Format::Folder, Some(database)) => database.scan(listener)?,
+        (Format::Database | Format::Folder, None) => FileStructure::default(),
+    };
+    Ok((scan, TextState::default()))
 }
 
 /// The largest size of a section outside of chunks.
 const LOOSE: u64 = 1 << 20;
 
-impl Scan {
+impl FileStructure {
     /// A message outside of chunks, or another record among those.
     fn add_loose(&mut self, record: Range<u64>, message: Option<(u32, u64)>) {
         let fits = |section: &Section| {
@@ -103,24 +144,8 @@ impl Scan {
         if self.loose.as_ref().is_some_and(|section| !fits(section)) {
             self.end_loose();
         }
-        let section = self.loose.get_or_insert_with(|| Section {
-            offset: record.start,
-            bytes: record.start..record.start,
-            compression: Compression::None,
-            size: 0,
-            checksum: 0,
-            times: None,
-            counts: Some(BTreeMap::new()),
-            in_chunk: false,
-        });
-        section.bytes.end = record.end;
-        section.size = section.bytes.end - section.bytes.start;
-        let Some((connection, time)) = message else { return };
-        let [first, last] = section.times.unwrap_or([time; 2]);
-        section.times = Some([first.min(time), last.max(time)]);
-        if let Some(counts) = &mut section.counts {
-            *counts.entry(connection).or_default() += 1;
-        }
+        let section = self.loose.get_or_insert_with(|| Section::loose(record.start));
+        section.extend(record.end, message);
     }
 
     /// Ends the section outside of chunks.
@@ -140,13 +165,49 @@ impl Scan {
 }
 
 impl Section {
+    /// An empty section outside of chunks.
+    fn loose(start: u64) -> Self {
+        Self {
+            file: 0,
+            offset: start,
+            bytes: start..start,
+            compression: Compression::None,
+            size: 0,
+            checksum: 0,
+            times: None,
+            counts: Some(BTreeMap::new()),
+            in_chunk: false,
+            text: None,
+        }
+    }
+
+    /// Adds a record, which may be a message of a connection.
+    fn extend(&mut self, end: u64, message: Option<(u32, u64)>) {
+        self.bytes.end = end;
+        self.size = self.bytes.end - self.bytes.start;
+        let Some((connection, time)) = message else { return };
+        let [first, last] = self.times.unwrap_or([time; 2]);
+        self.times = Some([first.min(time), last.max(time)]);
+        if let Some(counts) = &mut self.counts {
+            *counts.entry(connection).or_default() += 1;
+        }
+    }
+
     /// Its records, decompressed.
     ///
     /// Takes at most [`MOST_GROWTH`] bytes for each byte that it has in the file, and 16 MiB besides.
-    pub(super) fn load(&self, source: &Source) -> Result<Vec<u8>, LogError> {
-        let wrong = |cause: LogErrorKind| cause.at(self.offset);
-        let bytes = source.read(self.bytes.clone()).map_err(|error| wrong(error.into()))?;
+    pub(super) fn load(&self, file: &LogFile) -> Result<Vec<u8>, LogError> {
+        let wrong = |cause: LogErrorKind| file.error(cause, self.first());
+        if let Some(database) = &file.database {
+            return database.load(self.bytes.clone()).map_err(wrong);
+        }
+        let bytes = file.source.read(self.bytes.clone()).map_err(|error| wrong(error.into()))?;
         decompress(self.compression, bytes, self.size, self.checksum).map_err(wrong)
+    }
+
+    /// Its offset, or its first line.
+    pub(super) fn first(&self) -> u64 {
+        self.text.map_or(self.offset, |(line, _)| line)
     }
 
     /// Whether it is a chunk, and not a stretch of the file outside of chunks.
@@ -155,8 +216,12 @@ impl Section {
     }
 
     /// The bytes in the file that a checksum of its own covers, of the records or of their compression.
-    pub(super) fn covered(&self, source: &Source) -> Result<Option<Range<u64>>, LogError> {
+    pub(super) fn covered(&self, file: &LogFile) -> Result<Option<Range<u64>>, LogError> {
         let Range { start, end } = self.bytes;
+        let source = &file.source;
+        if file.database.is_some() {
+            return Ok(None);
+        }
         let head =
             source.read(start..end.min(start.saturating_add(5))).map_err(unreadable(start))?;
         let covers = self.checksum != 0 || self.compression.has_checksum(&head);
@@ -169,39 +234,63 @@ impl Section {
     }
 
     /// The offset in the file of a byte of its records; of the section if it is compressed.
-    pub(super) fn place(&self, at: usize) -> u64 {
+    fn place(&self, at: usize) -> u64 {
         match self.compression {
             Compression::None => self.bytes.start + at as u64,
             _ => self.offset,
         }
     }
 
-    /// Its records in order, with their places.
+    /// Its records in order.
     pub(super) fn records<'a>(
         &'a self,
-        format: Format,
+        file: &'a LogFile,
         bytes: &'a [u8],
-    ) -> impl Iterator<Item = Result<(usize, Record<'a>), LogError>> {
+    ) -> impl Iterator<Item = Result<PlacedRecord<'a>, LogError>> {
         let mut at = 0;
+        let mut text = self.text;
         std::iter::from_fn(move || {
             let rest = bytes.get(at..).filter(|rest| !rest.is_empty())?;
-            let read = match format {
-                Format::Bag => bag::record(rest),
-                Format::Mcap => mcap::record(rest),
-            };
             let start = at;
+            let mut place = self.place(start);
+            let read = match (file.format, &mut text) {
+                (Format::Bag, _) => bag::record(rest),
+                (Format::Mcap, _) => mcap::record(rest),
+                (Format::Carmen | Format::Events, Some((line, clock))) => {
+                    place = *line;
+                    *line += 1;
+                    Ok(text::record(file.format, &file.text, clock, rest))
+                }
+                (Format::Database, _) => match rows::row(rest) {
+                    Some((number, record, length)) => {
+                        place = number;
+                        Ok((record, length))
+                    }
+                    None => Err("a row is not whole"),
+                },
+                (Format::Carmen | Format::Events | Format::Folder, _) => return None,
+            };
             Some(match read {
                 Ok((record, length)) => {
                     at = at.saturating_add(length);
-                    Ok((start, record))
+                    Ok(PlacedRecord { at: start, place, record })
                 }
                 Err(what) => {
                     at = usize::MAX;
-                    Err(LogErrorKind::Malformed(what).at(self.place(start)))
+                    Err(file.error(LogErrorKind::Malformed(what), place))
                 }
             })
         })
     }
+}
+
+/// A record of a section.
+pub(super) struct PlacedRecord<'a> {
+    /// Where its bytes begin in the section.
+    pub(super) at: usize,
+    /// Its offset in the file: see [`LogError::offset`].
+    pub(super) place: u64,
+    pub(super) record: Record<'a>,
 }
 
 /// A number of four bytes, the lesser first.

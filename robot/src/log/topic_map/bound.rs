@@ -21,15 +21,22 @@ pub struct BoundTopicMap {
 pub(in crate::log) struct Carried {
     pub(in crate::log) role: Role,
     pub(in crate::log) topic: usize,
-    /// None for messages of the project's own.
+    /// None for messages that are read by their type.
     pub(in crate::log) paths: BTreeMap<MessagePart, String>,
-    /// Whether it is the project's own message.
+    /// Whether its messages are read by their type.
     pub(in crate::log) own: bool,
+    /// The type of its messages.
+    pub(in crate::log) type_name: String,
     pub(in crate::log) length: LengthUnit,
     pub(in crate::log) angle: AngleUnit,
 }
 
 impl BoundTopicMap {
+    /// Whether a role is carried.
+    pub(in crate::log) fn carries(&self, role: Role) -> bool {
+        self.carried.iter().any(|carried| carried.role == role)
+    }
+
     /// The topics of the log that carry something.
     #[must_use]
     pub fn topics(&self) -> Vec<usize> {
@@ -50,7 +57,7 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
     })?;
     let type_name = topic.short_type();
     let usual = role.usual(&type_name);
-    let own = role.own() == Some(type_name.as_str()) && carrier.paths.is_empty();
+    let own = usual.is_some_and(<[_]>::is_empty) && carrier.paths.is_empty();
     if usual.is_none() && role.parts().is_empty() {
         return Err(wrong(TopicMapErrorKind::WrongType { role, type_name }));
     }
@@ -82,7 +89,7 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
         }
     }
     let (length, angle) = (carrier.length, carrier.angle);
-    Ok(Carried { role, topic: index, paths, own, length, angle })
+    Ok(Carried { role, topic: index, paths, own, type_name, length, angle })
 }
 
 /// The parts without which there is nothing.

@@ -15,7 +15,8 @@ pub struct RoleGuess {
 /// For everything that could be carried, all topics with messages that could: those of the project's own
 /// types, also where they have come by way of ROS 1; and those of the types that are usual for it.
 ///
-/// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's.
+/// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's. Odometry comes from
+/// transforms, or from the lines of a scanner, if there is no other; `/tf_static` does not move.
 #[must_use]
 pub fn guess(topics: &[Topic]) -> Vec<RoleGuess> {
     let could = |role: Role, topic: &Topic| {
@@ -24,9 +25,13 @@ pub fn guess(topics: &[Topic]) -> Vec<RoleGuess> {
             && topic.definition.is_ok()
             && role.usual(&topic.short_type()).is_some()
             && !(role == Role::Image && annotated)
+            && !(role == Role::Odometry && topic.name.ends_with("tf_static"))
     };
     let guesses = Role::ALL.map(|role| {
-        let topics = topics.iter().enumerate().filter(|(_, topic)| could(role, topic));
+        let could = || topics.iter().enumerate().filter(|(_, topic)| could(role, topic));
+        let rank = |topic: &Topic| role.rank(&topic.short_type());
+        let best = could().map(|(_, topic)| rank(topic)).min();
+        let topics = could().filter(|(_, topic)| Some(rank(topic)) == best);
         RoleGuess { role, topics: topics.map(|(index, _)| index).collect() }
     });
     guesses.into_iter().filter(|guess| !guess.topics.is_empty()).collect()

@@ -1,11 +1,22 @@
 //! What a topic can carry, of which parts that is, in which units, and where it stands in messages of
 //! the usual types.
 
+use crate::log::{
+    container::EVENT,
+    transforms::{OLD_TYPE as OLD_TRANSFORMS, TYPE as TRANSFORMS},
+};
+
+const CARMEN_FRONT: &str = "carmen/FLASER";
+const CARMEN_REAR: &str = "carmen/RLASER";
+const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
+
 /// The role of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
     /// Pictures of the robot's camera.
     Image,
+    /// Scans of the robot's laser scanner.
+    Scan,
     /// Odometry.
     Odometry,
     /// Commands to the wheels.
@@ -132,8 +143,9 @@ impl MessagePart {
 
 impl Role {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Image,
+        Self::Scan,
         Self::Odometry,
         Self::Motion,
         Self::Percept,
@@ -151,6 +163,7 @@ impl Role {
     pub fn name(self) -> &'static str {
         match self {
             Self::Image => "image",
+            Self::Scan => "scan",
             Self::Odometry => "odometry",
             Self::Motion => "motion",
             Self::Percept => "percept",
@@ -188,7 +201,7 @@ impl Role {
             Self::Hypothesis => Some("toposlam_msgs/Hypothesis"),
             Self::Map => Some("toposlam_msgs/Map"),
             Self::End => Some("toposlam_msgs/End"),
-            Self::Image | Self::Odometry | Self::Motion => None,
+            Self::Image | Self::Scan | Self::Odometry | Self::Motion => None,
         }
     }
 
@@ -198,7 +211,11 @@ impl Role {
             return Some(&[]);
         }
         Some(match (self, type_name) {
-            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image") => &[],
+            (Self::Image, "sensor_msgs/CompressedImage" | "sensor_msgs/Image")
+            | (Self::Scan, "sensor_msgs/LaserScan")
+            | (Self::Scan | Self::Odometry, CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT)
+            | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)
+            | (Self::Percept | Self::Door, EVENT) => &[],
             (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
                 (MessagePart::X, "pose.pose.position.x"),
                 (MessagePart::Y, "pose.pose.position.y"),
@@ -209,7 +226,7 @@ impl Role {
                 (MessagePart::Y, "pose.position.y"),
                 (MessagePart::Quaternion, "pose.orientation"),
             ],
-            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose") => {
+            (Self::Odometry, "geometry_msgs/Pose2D" | "turtlesim/Pose" | "carmen/ODOM") => {
                 &[(MessagePart::X, "x"), (MessagePart::Y, "y"), (MessagePart::Heading, "theta")]
             }
             (Self::Motion, "geometry_msgs/Twist") => {
@@ -220,5 +237,16 @@ impl Role {
             }
             _ => return None,
         })
+    }
+
+    /// How well messages of a usual type carry it: a topic of a lower rank is preferred.
+    pub(super) fn rank(self, type_name: &str) -> u32 {
+        match (self, type_name) {
+            (Self::Odometry, "nav_msgs/Odometry" | "carmen/ODOM")
+            | (Self::Scan, "sensor_msgs/LaserScan" | CARMEN_ROBOT) => 0,
+            (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS) | (_, CARMEN_REAR) => 2,
+            (Self::Odometry | Self::Scan, _) => 1,
+            _ => 0,
+        }
     }
 }

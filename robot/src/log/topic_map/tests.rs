@@ -42,7 +42,7 @@ fn an_error_has_its_line_and_column() {
         ("image = 1", "line 1, column 9: image: expected a table"),
         (
             "[pictures]\ntopic = \"a\"",
-            "line 1, column 2: pictures: unknown key; expected one of: image, odometry, motion",
+            "line 1, column 2: pictures: unknown key; expected one of: image, scan, odometry, motion",
         ),
         ("[image]\ntopic = 1", "line 2, column 9: image.topic: expected the name of a topic"),
         ("[image]", "line 1, column 2: image: the key `topic` is missing"),

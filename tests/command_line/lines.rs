@@ -1,0 +1,105 @@
+//! Logs of lines: events as JSON lines or CSV, and CARMEN logs.
+
+use std::fs;
+
+use super::{folder, objects, run, stderr, stdout, stdout_of};
+
+/// From the dead end of shape 6 around its loop and back: degree and door of each visit.
+const AROUND: [(u32, Option<u32>); 9] = [
+    (1, Some(0)),
+    (2, Some(1)),
+    (3, Some(1)),
+    (2, Some(1)),
+    (2, Some(1)),
+    (2, Some(1)),
+    (3, Some(1)),
+    (2, Some(1)),
+    (1, None),
+];
+
+fn json(events: &[(u32, Option<u32>)]) -> String {
+    let line = |(index, (degree, door)): (usize, &(u32, Option<u32>))| {
+        let door = door.map_or("null".to_owned(), |door| door.to_string());
+        format!(
+            "{{\"kind\":\"event\",\"index\":{index},\"stamp\":{index}.5,\"degree\":{degree},\"door\":{door},\
+             \"marker\":null}}\n"
+        )
+    };
+    events.iter().enumerate().map(line).collect()
+}
+
+fn csv(events: &[(u32, Option<u32>)]) -> String {
+    let line = |(degree, door): &(u32, Option<u32>)| {
+        let door = door.map_or(String::new(), |door| door.to_string());
+        format!("{door},{degree}\n")
+    };
+    format!("door,degree\n{}", events.iter().map(line).collect::<String>())
+}
+
+#[test]
+fn events_as_json_lines_or_csv_are_checked() {
+    let folder = folder("event_lines");
+    let path = folder.join("events");
+    let check = |text: &str| {
+        fs::write(&path, text).unwrap();
+        let arguments = ["conform", path.to_str().unwrap(), "--world", "worlds/shape-6.toml"];
+        let options = ["--start", "any", "--driver", "anyone", "--marker", "none", "--json"];
+        let output = run([&arguments[..], &options[..]].concat());
+        (output.status.code(), objects(&stdout(&output)).first().cloned(), stderr(&output))
+    };
+    for text in [json(&AROUND), csv(&AROUND)] {
+        let (code, line, error) = check(&text);
+        assert_eq!(code, Some(0), "{error}");
+        assert_eq!(line.unwrap()["verdict"], "conforms");
+    }
+    // What conform prints after the events is skipped.
+    let (code, ..) = check(&(json(&AROUND) + "{\"kind\":\"conform\",\"verdict\":\"conforms\"}\n"));
+    assert_eq!(code, Some(0));
+    let mut wrong = AROUND;
+    wrong[4].0 = 3;
+    for text in [json(&wrong), csv(&wrong)] {
+        let (code, line, _) = check(&text);
+        let line = line.unwrap();
+        assert_eq!((code, &line["verdict"]), (Some(1), &"diverged".into()), "{line}");
+    }
+    // A visit was lost.
+    let lost: String = json(&AROUND)
+        .split_inclusive('\n')
+        .enumerate()
+        .filter(|(index, _)| *index != 3)
+        .map(|(_, line)| line)
+        .collect();
+    assert_eq!(check(&lost).0, Some(1));
+    let broken = json(&AROUND).replace("\"degree\":3,\"door\":1", "\"degree\":3.5,\"door\":1");
+    let (code, _, error) = check(&broken);
+    let expected = "line 3: invalid type: floating point `3.5`, expected u32\n";
+    assert!(code == Some(2) && error.ends_with(expected), "{error}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn info_lists_a_carmen_log() {
+    let folder = folder("carmen_log");
+    let path = folder.join("a.clf");
+    let text = "# a comment\nPARAM robot_frontlaser_offset 0.2 h 0\nODOM 0 0 0 0 0 0 10 h 10\n\
+        FLASER 3 1 2 3 0 0 0 0 0 0 12 h 12\nNEFF 3\nODOM 0 0 0 0 0 0 0 h 0\n";
+    fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let text = stdout_of(["info", path]);
+    for part in [
+        ": CARMEN log, 135 bytes\n",
+        "\n2 messages\nskipped lines: 1 NEFF, 1 whose time is far from that of their neighbours\n",
+        "\nscan      FLASER\nodometry  ODOM\n",
+        ", for 2.000 s\n",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let line = objects(&stdout_of(["info", path, "--json"])).remove(0);
+    assert_eq!((&line["format"], &line["compression"]), (&"carmen".into(), &().into()));
+    assert_eq!(line["skipped"]["unknown"], serde_json::json!({"NEFF": 1}));
+    assert_eq!(line["skipped"]["off_clock"], 1);
+    assert_eq!(line["mapping"], serde_json::json!({"scan": ["FLASER"], "odometry": ["ODOM"]}));
+    let verified = stdout_of(["info", path, "--verify"]);
+    assert!(verified.contains("contents verified: 2 messages, 0 chunks"), "{verified}");
+    fs::remove_dir_all(folder).unwrap();
+}

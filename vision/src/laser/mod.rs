@@ -1,0 +1,3 @@
+//! Sensing with a laser scanner.
+
+pub mod scan;
