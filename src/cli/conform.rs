@@ -54,9 +54,8 @@ use known_world::Known;
 /// or log. If a limit was reached first, or the run did not end, the log is incomplete.
 ///
 /// A log is a ROS 1 bag, an MCAP file, a rosbag2 folder or .db3 file, a CARMEN log, or events as JSON lines
-/// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes
-/// or images and its odometry. They must fit the known world. Without
-/// one, a log diverges at the first event that no world of any size explains, and the command searches
+/// or CSV. If it records percepts and doors, these are checked. Otherwise they are inferred from its scenes,
+/// images or laser scans, and its odometry. They must fit the known world. Without one, a log diverges at the first event that no world of any size explains, and the command searches
 /// for the smallest world that explains the log. The doors must be doors that the algorithm takes, or may
 /// take: the one that the log names, or else Algorithm 1.
 ///
@@ -130,7 +129,8 @@ pub(super) struct ConformArguments {
     /// Write the report as an HTML page
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Print one JSON object for each log, and one for all if there are several
+    /// Print one JSON object for each log, and one for all if there are several; with --events also one for
+    /// each junction that the robot visited
     #[arg(long)]
     json: bool,
 
@@ -188,6 +188,8 @@ enum Made {
     Scenes,
     /// Images and odometry
     Pictures,
+    /// Laser scans and odometry
+    Laser,
 }
 
 /// A largest number of edges.
@@ -294,6 +296,9 @@ impl ConformArguments {
             report.sources = origin::sources(path, self.world.as_deref())?;
         }
         if self.json {
+            if self.events.is_some() {
+                report_lines::events(out, &judged.gathered.events)?;
+            }
             report_lines::json(out, &report, judged)?;
         } else {
             report_lines::text(out, &report)?;
@@ -360,7 +365,7 @@ impl ConformArguments {
         let start = self.start.as_deref();
         let known = world.map(|world| Known::new(world, start, marker, run, algorithm));
         let known = known.transpose()?;
-        let progress = Progress::endless("reading", "pictures")?;
+        let progress = Progress::endless("reading", "images and scans")?;
         let sensor = opened.sensor();
         let marked = marker.name() == Directional.name();
         let gathered =
@@ -376,13 +381,22 @@ impl ConformArguments {
             return Err(CliError::in_file(path, format!("{cause}{WITHOUT_MARKER}")));
         }
         let question = self.question(known.as_ref(), marker, algorithm);
-        let judgement = judge(gathered.events.clone(), &question, quirks, &progress);
+        // Whoever drives may turn back between junctions. The algorithms do not.
+        let events = match self.driver {
+            Who::Algorithm => gathered.events.clone(),
+            Who::Anyone => gathered.events.without_excursions(),
+        };
+        let judgement = judge(events, &question, quirks, &progress);
         let ConformConfig { search, dart_bound, .. } = question;
         progress.finish();
         let judgement = judgement.map_err(|error| match error {
             JudgeError::Empty if gathered.pictures > 0 => CliError::in_file(
                 path,
                 format!("no junction is visited in its {} images", gathered.pictures),
+            ),
+            JudgeError::Empty if gathered.scans > 0 => CliError::in_file(
+                path,
+                format!("no junction is visited in its {} laser scans", gathered.scans),
             ),
             error @ (JudgeError::Marker(_) | JudgeError::Algorithm { .. }) => {
                 CliError::in_file(path, format!("{error}{WITHOUT_MARKER}"))
@@ -485,6 +499,7 @@ impl From<Made> for Evidence {
             Made::Recorded => Self::Recorded,
             Made::Scenes => Self::Scenes,
             Made::Pictures => Self::Pictures,
+            Made::Laser => Self::Laser,
         }
     }
 }

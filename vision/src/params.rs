@@ -33,6 +33,7 @@ macro_rules! params {
         }
     )*};
 }
+pub(crate) use params;
 
 params! {
     /// All parameters of sensing.

@@ -135,6 +135,51 @@ impl RunEvents {
         Trace::from_events(self.events.iter().enumerate().filter_map(event))
     }
 
+    /// The events without the excursions of a robot that left a junction, turned back and entered it again:
+    /// it has stood there all the time, and takes the door that it takes in the end. An excursion stays if
+    /// the two percepts contradict each other.
+    #[must_use]
+    pub fn without_excursions(&self) -> Self {
+        let mut events: Vec<CheckedEvent> = Vec::new();
+        // By how many doors clockwise the next door is farther from the entry of the last arrival.
+        let mut turned = 0;
+        for event in &self.events {
+            let mut event = event.clone();
+            match (&mut event.kind, &events[..]) {
+                (
+                    CheckedKind::Arrival { arrival: again, .. },
+                    [
+                        ..,
+                        CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. },
+                        left,
+                        back,
+                    ],
+                ) => {
+                    if let CheckedKind::Door { door, .. } = left.kind
+                        && back.kind == CheckedKind::TurnedBack
+                        && arrival.is_same_from(again, door)
+                    {
+                        turned = door.0;
+                        events.truncate(events.len() - 2);
+                        continue;
+                    }
+                    turned = 0;
+                }
+                (
+                    CheckedKind::Door { door, .. },
+                    [.., CheckedEvent { kind: CheckedKind::Arrival { arrival, .. }, .. }],
+                ) if arrival.degree > 0 => {
+                    door.0 = (door.0 + std::mem::take(&mut turned)) % arrival.degree;
+                }
+                _ => turned = 0,
+            }
+            events.push(event);
+        }
+        // Whoever has turned back at the end has not arrived again.
+        events.pop_if(|event| event.kind == CheckedKind::TurnedBack);
+        Self { events, ..self.clone() }
+    }
+
     /// Checks that no event is earlier than the one before it.
     ///
     /// # Errors

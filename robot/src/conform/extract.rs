@@ -1,5 +1,5 @@
-//! Extracts the events of a log: recorded ones, or else those that are inferred from its scenes or images
-//! and its odometry. Sections 3 to 6.
+//! Extracts the events of a log: recorded ones, or else those that are inferred from its scenes, images or
+//! laser scans and its odometry. Sections 3 to 6.
 
 use rayon::prelude::*;
 use thiserror::Error;
@@ -7,10 +7,10 @@ use toposlam_model::driving::{
     odometry::Odometry,
     scene::{Scene, wrapped},
 };
-use toposlam_vision::sensing::Sensor;
+use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
-    InferredEvents, RecordedEvents,
+    InferredEvents, LaserEvents, RecordedEvents,
     events::{CheckedEvent, EventSource, RunEvents},
 };
 use crate::{
@@ -33,6 +33,8 @@ pub enum Evidence {
     Scenes,
     /// Images and odometry.
     Pictures,
+    /// Laser scans and odometry.
+    Laser,
 }
 
 /// The events of a log.
@@ -50,6 +52,8 @@ pub struct ExtractedRun {
     pub pictures: u64,
     /// The number of them that could not be decoded.
     pub unreadable: u64,
+    /// The number of laser scans that were sensed.
+    pub scans: u64,
 }
 
 /// A scene, and where it was sensed.
@@ -116,7 +120,9 @@ impl Evidence {
     /// The first source of events that a topic map has.
     #[must_use]
     pub fn of(mapping: &TopicMap) -> Option<Self> {
-        [Self::Recorded, Self::Scenes, Self::Pictures].into_iter().find(|one| one.is_in(mapping))
+        [Self::Recorded, Self::Scenes, Self::Pictures, Self::Laser]
+            .into_iter()
+            .find(|one| one.is_in(mapping))
     }
 
     /// Whether a topic map has this source of events.
@@ -126,6 +132,7 @@ impl Evidence {
             Self::Recorded => [Role::Percept, Role::Door],
             Self::Scenes => [Role::Scene, Role::Odometry],
             Self::Pictures => [Role::Image, Role::Odometry],
+            Self::Laser => [Role::Scan, Role::Odometry],
         };
         needed.iter().all(|role| mapping.carrier(*role).is_some())
     }
@@ -135,6 +142,7 @@ impl Evidence {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
             Self::Scenes => &[Role::Scene, Role::Odometry],
             Self::Pictures => &[Role::Image, Role::Odometry],
+            Self::Laser => &[Role::Scan, Role::Odometry],
         }
     }
 }
@@ -168,12 +176,25 @@ pub fn extract(
         watch,
         pictures: 0,
         unreadable: 0,
+        laser: LaserEvents::new(LaserParams::default()),
+        scans: 0,
     };
     for entry in log.entries(&bound) {
         gathering.take(entry?)?;
     }
     gathering.look()?;
-    let Extraction { recorded, track, seen, run, mut events, pictures, unreadable, .. } = gathering;
+    let Extraction {
+        recorded,
+        track,
+        seen,
+        run,
+        mut events,
+        pictures,
+        unreadable,
+        laser,
+        scans,
+        ..
+    } = gathering;
     let placed = |(source, time, scene)| {
         let odometry = at(&track, time)?;
         Some(SensedScene { source, scene, odometry })
@@ -182,8 +203,9 @@ pub fn extract(
     events.events = match evidence {
         Evidence::Recorded => recorded.finish(),
         Evidence::Scenes | Evidence::Pictures => infer_events(&seen, marked),
+        Evidence::Laser => laser.finish(),
     };
-    Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable })
+    Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable, scans })
 }
 
 /// The events that are inferred from scenes.
@@ -213,6 +235,8 @@ struct Extraction<'w, W> {
     watch: &'w W,
     pictures: u64,
     unreadable: u64,
+    laser: LaserEvents,
+    scans: u64,
 }
 
 impl<W: SensingProgress> Extraction<'_, W> {
@@ -240,6 +264,11 @@ impl<W: SensingProgress> Extraction<'_, W> {
             EventKind::Odometry(odometry) => self.track.push((stamp, odometry)),
             EventKind::Frame(Frame { scene: Some(scene), .. }) => {
                 self.seen.push((source, stamp, scene));
+            }
+            EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
+                self.laser.see(source, &scan, &odometry);
+                self.scans += 1;
+                self.watch.sensed(1);
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));

@@ -104,6 +104,21 @@ impl Arrival {
         Some(Percept { degree: self.degree, sighting: self.sighting? })
     }
 
+    /// Whether another arrival can be at the same junction, entered by a door of this one.
+    #[must_use]
+    pub fn is_same_from(&self, other: &Self, door: Door) -> bool {
+        let turned = |sighting: Sighting| match sighting {
+            Sighting::Pointing(along) if self.degree > 0 => {
+                Sighting::Pointing(Door((along.0 + self.degree - door.0) % self.degree))
+            }
+            other => other,
+        };
+        let [one, other_sighting] = [self.sighting.map(turned), other.sighting];
+        self.degree == other.degree
+            && door.0 < self.degree
+            && one.zip(other_sighting).is_none_or(|(one, other)| one == other)
+    }
+
     /// Whether a percept agrees with it, as far as it is recorded.
     #[must_use]
     pub fn agrees(&self, percept: &Percept) -> bool {

@@ -116,6 +116,7 @@ impl<'j> FactFields<'j> {
                 Evidence::Recorded => "recorded",
                 Evidence::Scenes => "scenes",
                 Evidence::Pictures => "pictures",
+                Evidence::Laser => "laser",
             },
             images: gathered.pictures,
             unreadable_images: gathered.unreadable,

@@ -145,6 +145,10 @@ impl Judged<'_> {
                 let pictures = grouped(self.gathered.pictures.into());
                 format!("inferred from {pictures} images and odometry")
             }
+            Evidence::Laser => {
+                let scans = grouped(self.gathered.scans.into());
+                format!("inferred from {scans} laser scans and odometry")
+            }
         };
         let mut facts = vec![("events", format!("{count}, {made}"))];
         match (&self.known, &judgement.poses) {

@@ -4,8 +4,8 @@ use std::{collections::BTreeMap, io::Write};
 
 use serde::Serialize;
 use toposlam::report::{CoveredCase, DivergenceReport, LogReport};
-use toposlam_model::folding::SearchLimit;
-use toposlam_robot::conform::{ConformVerdict, FaultClass, ReachedLimit};
+use toposlam_model::{folding::SearchLimit, percept::Sighting};
+use toposlam_robot::conform::{CheckedKind, ConformVerdict, FaultClass, ReachedLimit, RunEvents};
 
 use super::{CliError, Judged, fact_fields::FactFields};
 use crate::cli::{
@@ -69,6 +69,63 @@ struct Together<'r> {
     unreadable: usize,
     coverage: BTreeMap<&'r str, u64>,
     classes: BTreeMap<&'static str, usize>,
+}
+
+/// What `--json` prints for a junction that the robot visited.
+#[derive(Serialize)]
+struct EventLine {
+    index: usize,
+    /// In seconds.
+    stamp: f64,
+    /// The number of doors; `None` if the visit is undecided.
+    degree: Option<u32>,
+    /// The door by which the robot left; `None` if the log ends there.
+    door: Option<u32>,
+    /// The door along which the marker points, or -1 without a marker; `None` if that is not recorded.
+    marker: Option<i64>,
+    /// Whether the robot turned back on its way there.
+    turned_back: bool,
+}
+
+/// Prints the junctions that the robot visited.
+pub(super) fn events(out: &mut dyn Write, events: &RunEvents) -> Result<(), CliError> {
+    let mut lines: Vec<EventLine> = Vec::new();
+    let mut back = false;
+    for event in &events.events {
+        let mut visit = |degree, marker| EventLine {
+            index: lines.len(),
+            stamp: event.source.time as f64 / 1e9,
+            degree,
+            door: None,
+            marker,
+            turned_back: std::mem::take(&mut back),
+        };
+        match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => {
+                let marker = arrival.sighting.map(|sighting| match sighting {
+                    Sighting::Pointing(door) => i64::from(door.0),
+                    _ => -1,
+                });
+                let visit = visit(Some(arrival.degree), marker);
+                lines.push(visit);
+            }
+            CheckedKind::Undecided => {
+                let visit = visit(None, None);
+                lines.push(visit);
+            }
+            CheckedKind::Door { door, .. } => {
+                if let Some(visit) = lines.last_mut() {
+                    visit.door = Some(door.0);
+                }
+            }
+            CheckedKind::TurnedBack => back = true,
+            CheckedKind::Aside { .. } => {}
+        }
+    }
+    for line in &lines {
+        print_line(out, "event", line)?;
+    }
+    Ok(())
 }
 
 pub(super) fn json(

@@ -1,61 +1,98 @@
-//! The Euclidean distance transform (Meijster, Roerdink and Hesselink, 2000).
+//! The Euclidean distance transform of Meijster, Roerdink and Hesselink (2000).
 
-/// For each cell the squared distance, in cells, to the nearest that is a site.
+/// For each cell of a square the squared distance, in cells, to the nearest one that is a site. It is at
+/// least the square of the side if there is no site.
+#[must_use]
 pub fn squared_distances(side: usize, is_site: impl Fn(usize) -> bool) -> Vec<u32> {
+    let column = column_distances(side, is_site);
+    let mut squared = Vec::with_capacity(side * side);
+    for row in column.chunks_exact(side) {
+        row_distances(row, &mut squared);
+    }
+    squared
+}
+
+/// The distance to the nearest site in the same column.
+fn column_distances(side: usize, is_site: impl Fn(usize) -> bool) -> Vec<i64> {
     let far = 2 * side as i64;
-    // The distance to the nearest site in the same column.
-    let mut column = vec![far; side * side];
+    let mut distances = vec![far; side * side];
     for x in 0..side {
         let mut distance = far;
         for y in 0..side {
             distance = if is_site(y * side + x) { 0 } else { (distance + 1).min(far) };
-            column[y * side + x] = distance;
+            distances[y * side + x] = distance;
         }
-        let mut distance = far;
         for y in (0..side).rev() {
-            distance = if column[y * side + x] == 0 { 0 } else { (distance + 1).min(far) };
-            let known = &mut column[y * side + x];
-            *known = (*known).min(distance);
+            let known = &mut distances[y * side + x];
+            distance = (*known).min(distance + 1);
+            *known = distance;
         }
     }
-    // The lower envelope of the parabolas of each row.
-    let mut squared = vec![0; side * side];
-    let (mut hull, mut from) = (vec![0_usize; side], vec![0_i64; side]);
-    for y in 0..side {
-        let row = &column[y * side..(y + 1) * side];
-        let value = |x: i64, site: usize| {
-            let off = x - site as i64;
-            off * off + row[site] * row[site]
+    distances
+}
+
+/// The squared distances of a row: the lower envelope of the parabolas of its columns.
+fn row_distances(row: &[i64], squared: &mut Vec<u32>) {
+    let side = row.len();
+    let value = |x: usize, site: usize| (x as i64 - site as i64).pow(2) + row[site].pow(2);
+    // The sites on the envelope, each with the first place where it is the lowest.
+    let mut envelope: Vec<(usize, usize)> = Vec::with_capacity(side);
+    for site in 0..side {
+        while let Some(&(below, from)) = envelope.last()
+            && value(from, below) > value(from, site)
+        {
+            envelope.pop();
+        }
+        let from = match envelope.last() {
+            None => 0,
+            Some(&(below, _)) => {
+                let (one, other) = (below as i64, site as i64);
+                let off = other.pow(2) - one.pow(2) + row[site].pow(2) - row[below].pow(2);
+                off.div_euclid(2 * (other - one)) + 1
+            }
         };
-        let mut top = 0;
-        (hull[0], from[0]) = (0, 0);
-        for x in 1..side {
-            loop {
-                if value(from[top], hull[top]) > value(from[top], x) {
-                    if top == 0 {
-                        (hull[0], from[0]) = (x, 0);
-                        break;
-                    }
-                    top -= 1;
-                    continue;
-                }
-                let (one, other) = (hull[top] as i64, x as i64);
-                let cut = (other * other - one * one + row[x] * row[x]
-                    - row[hull[top]] * row[hull[top]])
-                    .div_euclid(2 * (other - one));
-                if cut + 1 < side as i64 {
-                    top += 1;
-                    (hull[top], from[top]) = (x, cut + 1);
-                }
-                break;
-            }
+        if let Ok(from) = usize::try_from(from)
+            && from < side
+        {
+            envelope.push((site, from));
         }
-        for x in (0..side).rev() {
-            squared[y * side + x] = value(x as i64, hull[top]).min(i64::from(u32::MAX)) as u32;
-            if x as i64 == from[top] && top > 0 {
-                top -= 1;
+    }
+    let mut lowest = envelope.iter().peekable();
+    let mut site = 0;
+    for x in 0..side {
+        while let Some(&(next, _)) = lowest.next_if(|&&(_, from)| from <= x) {
+            site = next;
+        }
+        squared.push(u32::try_from(value(x, site)).unwrap_or(u32::MAX));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn distances_are_those_to_the_nearest_site(
+            side in 1_usize..12,
+            sites in prop::collection::vec(0_usize..144, 1..8),
+        ) {
+            let sites: Vec<usize> = sites.into_iter().map(|site| site % (side * side)).collect();
+            let squared = squared_distances(side, |at| sites.contains(&at));
+            for (at, &distance) in squared.iter().enumerate() {
+                let off = |site: &usize| {
+                    let [x, y] = [at % side, at / side];
+                    x.abs_diff(site % side).pow(2) + y.abs_diff(site / side).pow(2)
+                };
+                prop_assert_eq!(Some(distance as usize), sites.iter().map(off).min());
             }
         }
     }
-    squared
+
+    #[test]
+    fn without_a_site_everything_is_far() {
+        assert!(squared_distances(5, |_| false).into_iter().all(|squared| squared >= 25));
+    }
 }

@@ -1,3 +1,23 @@
-//! Sensing with a laser scanner.
+//! Sensing with a laser scanner: from scans and odometry to junctions with any number of arms at any angle.
+//!
+//! From the ground up:
+//!
+//! * [`params`]: the thresholds of all steps;
+//! * [`scan`]: one sweep of the scanner;
+//! * [`grid`]: the local map, of the cells where rays of the last scans have passed and ended;
+//! * [`distance`]: the distance of each cell to the nearest wall;
+//! * [`ends`]: where the ways around the robot go on unseen, and where they end;
+//! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
+//! * [`way_graph`]: its meet points and the arms that count, and [`junctions`];
+//! * [`sensor`]: all of these steps.
 
+pub mod distance;
+pub mod ends;
+mod evidence;
+pub mod grid;
+pub mod junctions;
+pub mod params;
 pub mod scan;
+pub mod sensor;
+pub mod skeleton;
+pub mod way_graph;

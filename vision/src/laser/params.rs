@@ -1,57 +1,103 @@
-//! The parameters of sensing with a laser scanner.
+//! The parameters of sensing with a laser scanner, in one place.
+//!
+//! Lengths are in metres and angles in radians. The defaults are for buildings with corridors, and come
+//! from:
+//!
+//! * **geometry**: the robot, the scanner or the building gives the value;
+//! * **logs**: chosen on the logs of `docs/real-logs.md`, the same for all of them.
+
+use crate::params::params;
 
 params! {
-    /// All parameters. Lengths are in metres.
+    /// All parameters of sensing with a laser scanner.
     LaserParams {
-        /// The side of a cell of the local map.
+        /// The local map.
+        map: LocalMapParams = LocalMapParams::default(),
+        /// The arms of a junction.
+        arm: ArmParams = ArmParams::default(),
+        /// Visits of junctions.
+        visit: VisitParams = VisitParams::default(),
+    }
+
+    /// The local map: what the last scans have shown around the robot.
+    LocalMapParams {
+        /// The side of a cell. Geometry: a quarter of the narrowest way, an eighth of a corridor.
         cell: f64 = 0.15,
-        /// The local map reaches this far from the robot in each direction.
+        /// Junctions and their arms are looked for up to this far from the robot, along both axes.
+        /// Geometry: more than [`ArmParams::min_arm`] from a junction a few metres away.
         reach: f64 = 16.0,
-        /// Scans stay in the local map while the robot drives this far.
+        /// A scan is forgotten when the robot has driven this far since. Logs.
         memory: f64 = 18.0,
-        /// A scan is used when the robot has driven this far since the last one, or has turned by
-        /// [`Self::every_turn`].
+        /// A scan is used when the robot has driven this far since the last one that was, or has turned
+        /// by [`Self::every_turn`]. Geometry: a few views while a junction is passed.
         every: f64 = 0.4,
-        /// See [`Self::every`]; in radians.
+        /// See [`Self::every`]. Geometry.
         every_turn: f64 = 0.3,
-        /// Ends of neighbouring rays on one line are ends on one wall if they are nearer than this.
-        bridge: f64 = 3.0,
-        /// A gap narrower than this is no way for the robot: doors of rooms are.
-        min_width: f64 = 1.2,
-        /// An arm of a junction that ends nearer than this, along the free space from the junction's
-        /// centre, is an alcove or a room.
-        min_arm: f64 = 10.0,
-        /// An arm of which the end was not seen counts if it is known to go on for this far behind the
-        /// walls of the junction.
-        min_open_arm: f64 = 0.5,
-        /// Obstacles that are smaller than this in both directions do not divide a way: furniture, people.
-        small_obstacle: f64 = 1.0,
-        /// A cell is occupied if at least this part of the rays that reached it ended there.
+        /// A cell is an obstacle if at least this part of the rays that reached it ended there. Logs.
         occupied: f64 = 0.2,
-        /// Meet points are one junction if they are nearer than this part of their clearance.
+        /// Neighbouring rays that end on one straight line end on one wall if the ends are nearer to each
+        /// other than this. Geometry: along a corridor rays meet its walls far apart.
+        bridge: f64 = 3.0,
+        /// Obstacles smaller than this along both axes do not divide a way. Geometry: people, chairs.
+        small_obstacle: f64 = 1.0,
+        /// A gap narrower than this is no way. Geometry: the doors of rooms.
+        min_width: f64 = 1.2,
+    }
+
+    /// The arms of a junction.
+    ArmParams {
+        /// An arm that is seen to end nearer than this, along the free space from the junction's centre,
+        /// does not count. Geometry: rooms and entrances are less deep.
+        min_arm: f64 = 10.0,
+        /// An arm that is not seen to end counts if it is known for at least this length...  Logs.
+        min_known: f64 = 3.6,
+        /// ... and this far behind the walls of the junction, ... Logs.
+        min_behind: f64 = 0.5,
+        /// ... is at least this wide, ... Geometry: the doors of rooms.
+        min_width: f64 = 1.55,
+        /// ... at most this wide, ... Geometry: halls.
+        max_width: f64 = 2.6,
+        /// ... and the gap at its end is at least this part of its width, and ... Logs.
+        min_gap: f64 = 0.6,
+        /// ... at most this many times its width: it is a room otherwise, of which one sees a part
+        /// through a door. Logs.
+        max_gap: f64 = 2.1,
+        /// Free space that was seen to end goes on nevertheless if a stretch of its border at least this
+        /// long is unknown, within [`Self::border_near`] of the end. Logs.
+        border: f64 = 0.6,
+        /// See [`Self::border`]. Logs.
+        border_near: f64 = 1.2,
+        /// A maximum of the distance from the robot is an end of a way if every other end is reached only
+        /// over cells this much nearer to the robot. Geometry: half of a corridor.
+        min_prominence: f64 = 1.0,
+        /// Meet points nearer to each other than this many times their distance from the walls are one
+        /// junction. Geometry: the lobby around a crossing.
         merge: f64 = 1.0,
-        /// The direction of an arm is measured at this distance behind the walls of the junction.
-        arm_direction: f64 = 1.5,
-        /// A bend of a corridor is a corner if the directions at this distance on both sides of it differ
-        /// by [`Self::corner`] from straight on.
-        corner_leg: f64 = 2.5,
-        /// See [`Self::corner_leg`]; in radians.
-        corner: f64 = 1.05,
-        min_far: f64 = 3.6,
-        max_opening: f64 = 2.1,
-        max_corridor: f64 = 2.6,
-        min_corridor: f64 = 1.55,
-        frontier_near: u32 = 4,
-        gap: f64 = 0.6,
-        gap_near: f64 = 1.2,
-        min_opening: f64 = 0.6,
-        min_frontier: usize = 1,
-        vote: f64 = 0.5,
-        view_range: f64 = 4.0,
+        /// The direction of an arm is measured this far behind the walls of the junction. Geometry.
+        direction: f64 = 1.5,
+        /// The robot does not doubt an arm whose middle line is this near. Geometry: half of a corridor.
+        robot_near: f64 = 0.8,
+    }
+
+    /// Visits of junctions.
+    VisitParams {
+        /// A junction is seen from up to this far behind its walls. Logs.
+        range: f64 = 4.0,
+        /// Junctions nearer to each other than this in two views are the same. Geometry: half of the
+        /// shortest way between two.
         same: f64 = 1.5,
+        /// Arms nearer to each other than this in two views are the same. Geometry: under half of the
+        /// angle between two arms of a junction with eight.
         same_arm: f64 = 0.6,
+        /// A robot farther than this behind the walls of a junction has left it. Geometry.
         leave: f64 = 0.1,
+        /// A visit is decided when the robot has driven this far since it left. Logs.
         settle: f64 = 2.5,
-        last_views: usize = 8,
+        /// The number of views that decide: the last ones, which have seen most. Logs.
+        views: usize = 8,
+        /// An arm counts if it is seen in at least this part of them ... Logs.
+        agree: f64 = 0.5,
+        /// ... and the visit is undecided if the part is as near as this to it. Logs.
+        doubt: f64 = 0.1,
     }
 }

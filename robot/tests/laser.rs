@@ -1,0 +1,198 @@
+//! Junctions from laser scans, in plans of corridors: what a scanner measures is computed here, by another way
+//! than sensing uses it.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use toposlam_model::{driving::odometry::Odometry, percept::Door};
+use toposlam_robot::conform::{CheckedKind, EventSource, LaserEvents, RunEvents};
+use toposlam_vision::laser::{
+    params::LaserParams,
+    scan::{Scan, ScanGeometry, ScannerPose},
+};
+
+/// A straight corridor: the ends of its middle line, and its width.
+type Corridor = ([f64; 2], [f64; 2], f64);
+
+/// The range at which a ray leaves the union of the corridors.
+fn range(corridors: &[Corridor], from: [f64; 2], bearing: f64) -> f64 {
+    let mut pieces: Vec<(f64, f64)> = corridors
+        .iter()
+        .filter_map(|&(one, other, width)| {
+            let along = [other[0] - one[0], other[1] - one[1]];
+            let length = along[0].hypot(along[1]);
+            let unit = along.map(|part| part / length);
+            // In the corridor's frame; it reaches half of its width beyond its ends.
+            let framed = |[x, y]: [f64; 2]| [x * unit[0] + y * unit[1], y * unit[0] - x * unit[1]];
+            let place = framed([from[0] - one[0], from[1] - one[1]]);
+            let ray = framed([bearing.cos(), bearing.sin()]);
+            let half = width / 2.0;
+            let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
+            for (place, ray, [low, high]) in
+                [(place[0], ray[0], [-half, length + half]), (place[1], ray[1], [-half, half])]
+            {
+                if ray.abs() < 1e-12 {
+                    if place < low || place > high {
+                        return None;
+                    }
+                    continue;
+                }
+                let ends = [(low - place) / ray, (high - place) / ray];
+                enters = enters.max(ends[0].min(ends[1]));
+                leaves = leaves.min(ends[0].max(ends[1]));
+            }
+            (leaves > enters.max(0.0)).then_some((enters, leaves))
+        })
+        .collect();
+    pieces.sort_by(|one, other| one.0.total_cmp(&other.0));
+    pieces.iter().fold(
+        0.0,
+        |reached, &(enters, leaves)| {
+            if enters <= reached + 1e-9 { leaves.max(reached) } else { reached }
+        },
+    )
+}
+
+fn scan(corridors: &[Corridor], at: &Odometry) -> Scan {
+    let ranges = (0..=180).map(|degree| {
+        range(corridors, at.position, at.heading - FRAC_PI_2 + f64::from(degree).to_radians())
+    });
+    let geometry = ScanGeometry {
+        angle_min: -FRAC_PI_2,
+        angle_increment: PI / 180.0,
+        range_min: 0.0,
+        range_max: 80.0,
+    };
+    Scan::new(geometry, ranges.map(|range| range as f32).collect(), ScannerPose::default()).unwrap()
+}
+
+/// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
+/// there; its odometry drifts by so many radians a metre.
+fn events(corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> RunEvents {
+    let mut inferred = LaserEvents::new(LaserParams::default());
+    let (mut believed, mut driven) = (way[0], 0.0);
+    let mut heading = f64::NAN;
+    let mut number = 0;
+    let mut see = |truth: Odometry, believed: Odometry| {
+        number += 1;
+        let source = EventSource { time: number * 1_000_000_000, ..EventSource::default() };
+        inferred.see(source, &scan(corridors, &truth), &believed);
+    };
+    for leg in way.windows(2) {
+        let off = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
+        let (length, ahead) = (off[0].hypot(off[1]), off[1].atan2(off[0]));
+        let turn =
+            if heading.is_nan() { 0.0 } else { (ahead - heading + PI).rem_euclid(2.0 * PI) - PI };
+        let turns = (turn.abs() / 0.4).ceil();
+        for part in 1..=turns as u32 {
+            let heading = ahead - turn * (1.0 - f64::from(part) / turns);
+            let position = leg[0];
+            see(
+                Odometry { position, heading },
+                Odometry { position: believed, heading: heading + drift * driven },
+            );
+        }
+        heading = ahead;
+        let steps = (length / 0.5).ceil();
+        for step in 1..=steps as u32 {
+            let part = f64::from(step) / steps;
+            let position = [0, 1].map(|axis| leg[0][axis] + part * off[axis]);
+            driven += length / steps;
+            let drifted = ahead + drift * driven;
+            believed = [
+                believed[0] + length / steps * drifted.cos(),
+                believed[1] + length / steps * drifted.sin(),
+            ];
+            see(Odometry { position, heading }, Odometry { position: believed, heading: drifted });
+        }
+    }
+    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+}
+
+/// The degree of each junction and the door taken, with `None` for turning back and for what is undecided.
+fn visits(events: &RunEvents) -> Vec<(Option<u32>, Option<u32>)> {
+    let mut visits: Vec<(Option<u32>, Option<u32>)> = Vec::new();
+    for event in &events.events {
+        match &event.kind {
+            CheckedKind::Arrival { arrival, .. } => visits.push((Some(arrival.degree), None)),
+            CheckedKind::Door { door: Door(door), .. } => {
+                visits.last_mut().unwrap().1 = Some(*door);
+            }
+            _ => visits.push((None, None)),
+        }
+    }
+    visits
+}
+
+/// Two T junctions whose stems meet a long corridor from opposite sides, 14 m apart, and a crossing.
+fn comb() -> Vec<Corridor> {
+    vec![
+        ([0.0, 0.0], [60.0, 0.0], 2.0),
+        ([14.0, 0.0], [14.0, 15.0], 2.0),
+        ([28.0, -15.0], [28.0, 0.0], 2.0),
+        ([44.0, -15.0], [44.0, 15.0], 2.0),
+    ]
+}
+
+#[test]
+fn each_junction_on_the_way_is_visited_once() {
+    // Straight on: past the stem on the left, the one on the right, and the crossing.
+    let way = [[3.0, 0.0], [57.0, 0.0]];
+    let expected = [(Some(3), Some(2)), (Some(3), Some(1)), (Some(4), Some(2))];
+    for drift in [0.0_f64, 5.0, -5.0] {
+        let events = events(&comb(), &way, drift.to_radians() / 10.0);
+        assert_eq!(visits(&events), expected, "drift of {drift} degrees in 10 m");
+    }
+    // Out by the stem on the left, which is the second door clockwise from the way back.
+    let events = events(&comb(), &[[3.0, 0.0], [14.0, 0.0], [14.0, 12.0]], 0.0);
+    assert_eq!(visits(&events), [(Some(3), Some(1))]);
+}
+
+#[test]
+fn the_arms_of_a_junction_can_have_any_angle() {
+    // A corridor that forks: the arms are 120 degrees apart.
+    let arm = |degrees: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        ([0.0, 0.0], [15.0 * cosine, 15.0 * sine], 2.0)
+    };
+    let fork = [arm(180.0), arm(60.0), arm(-60.0)];
+    let (sine, cosine) = 60_f64.to_radians().sin_cos();
+    let left = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, 12.0 * sine]], 0.0);
+    assert_eq!(visits(&left), [(Some(3), Some(1))]);
+    let right = events(&fork, &[[-12.0, 0.0], [0.0, 0.0], [12.0 * cosine, -12.0 * sine]], 0.0);
+    assert_eq!(visits(&right), [(Some(3), Some(2))]);
+    // Five arms.
+    let star: Vec<_> = [180.0, 108.0, 36.0, -36.0, -108.0].map(arm).to_vec();
+    let ahead = [12.0 * 36_f64.to_radians().cos(), 12.0 * 36_f64.to_radians().sin()];
+    let events = events(&star, &[[-12.0, 0.0], [0.0, 0.0], ahead], 0.0);
+    assert_eq!(visits(&events), [(Some(5), Some(2))]);
+}
+
+#[test]
+fn alcoves_rooms_and_bends_are_no_junctions() {
+    let corridor = ([0.0, 0.0], [50.0, 0.0], 2.0);
+    // A niche, a room behind a door of 0.9 m, an alcove that ends after 8 m.
+    let niche = ([12.0, 0.0], [12.0, 2.0], 1.6);
+    let room = [([22.0, 0.0], [22.0, 2.0], 0.9), ([18.0, 4.5], [26.0, 4.5], 6.0)];
+    let alcove = ([36.0, 0.0], [36.0, 7.0], 2.0);
+    let plan = [corridor, niche, room[0], room[1], alcove];
+    assert_eq!(visits(&events(&plan, &[[3.0, 0.0], [47.0, 0.0]], 0.0)), []);
+    // A corridor that turns by 45 degrees, and by 90.
+    let bends = [
+        ([0.0, 0.0], [15.0, 0.0], 2.0),
+        ([15.0, 0.0], [25.0, 10.0], 2.0),
+        ([25.0, 10.0], [15.0, 20.0], 2.0),
+    ];
+    let way = [[2.0, 0.0], [15.0, 0.0], [25.0, 10.0], [17.0, 18.0]];
+    assert_eq!(visits(&events(&bends, &way, 0.0)), []);
+}
+
+#[test]
+fn a_robot_that_turns_back_between_junctions_enters_the_same_one_again() {
+    // Into the stem, back, and on along the corridor.
+    let way = [[3.0, 0.0], [14.0, 0.0], [14.0, 8.0], [14.0, 0.0], [24.0, 0.0]];
+    let events = events(&comb(), &way, 0.0);
+    let back = (None, None);
+    assert_eq!(visits(&events), [(Some(3), Some(1)), back, (Some(3), Some(1))]);
+    // It stood at one junction, and took the door straight on in the end.
+    assert_eq!(visits(&events.without_excursions()), [(Some(3), Some(2))]);
+}

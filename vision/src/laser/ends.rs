@@ -1,0 +1,176 @@
+//! The ends of the ways around the robot: where free space goes on unseen, and where it was seen to end.
+
+use std::{cmp::Reverse, collections::VecDeque};
+
+use super::{
+    grid::{Cell, Grid},
+    params::LaserParams,
+    skeleton::Clearances,
+};
+
+/// How a way ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WayEnd {
+    /// Free space goes on where nothing was seen yet.
+    Open,
+    /// It was seen to end.
+    Closed,
+}
+
+/// An end of a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// Its cell.
+    pub cell: usize,
+    /// How it ends.
+    pub end: WayEnd,
+    /// The width of the gap behind it, in metres.
+    pub gap: f64,
+    /// How much farther from the robot than the cell the way is known, in metres.
+    pub beyond: f64,
+}
+
+/// The lengths of a straight and of a diagonal step, in fifths of a cell.
+const STRAIGHT: u32 = 5;
+const DIAGONAL: u32 = 7;
+
+/// The length of the shortest way to each cell of a set from one of them, in fifths of a cell. The cells
+/// that cannot be reached are removed from the set.
+pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u32> {
+    let mut lengths = vec![u32::MAX; ways.len()];
+    lengths[start] = 0;
+    // Cells wait in a ring of buckets by their length: no step is longer than the ring.
+    let mut buckets: [VecDeque<usize>; 8] = Default::default();
+    buckets[0].push_back(start);
+    let (mut length, mut waiting) = (0_u32, 1_usize);
+    while waiting > 0 {
+        while let Some(at) = buckets[length as usize % 8].pop_front() {
+            waiting -= 1;
+            if lengths[at] != length || grid.is_border(at) {
+                continue;
+            }
+            for (number, near) in grid.neighbours(at).into_iter().enumerate() {
+                let to = length + if number % 2 == 0 { DIAGONAL } else { STRAIGHT };
+                if ways[near] && lengths[near] > to {
+                    lengths[near] = to;
+                    buckets[to as usize % 8].push_back(near);
+                    waiting += 1;
+                }
+            }
+        }
+        length += 1;
+    }
+    for (way, &length) in ways.iter_mut().zip(&lengths) {
+        *way &= length != u32::MAX;
+    }
+    lengths
+}
+
+/// The ends of the ways: one cell for each stretch of border to the unknown, and the maxima of the distance
+/// from the robot.
+pub(super) fn ends(
+    ways: &[bool],
+    lengths: &[u32],
+    clearances: &Clearances,
+    grid: &Grid,
+    params: &LaserParams,
+) -> Vec<End> {
+    let metres = |length: u32| f64::from(length) / f64::from(STRAIGHT) * grid.cell;
+    let mut at_gap = vec![false; ways.len()];
+    let mut ends = Vec::new();
+    for gap in grid.groups(|at| ways[at] && clearances.unknown[at] <= 4) {
+        for &at in &gap {
+            at_gap[at] = true;
+        }
+        let Some(&cell) = gap.iter().max_by_key(|&&at| (clearances.wall[at], lengths[at], at))
+        else {
+            continue;
+        };
+        let farthest = gap.iter().map(|&at| lengths[at]).max().unwrap_or_default();
+        ends.push(End {
+            cell,
+            end: WayEnd::Open,
+            // The cells of the gap are two rows, and end half a way before its sides.
+            gap: params.map.min_width + gap.len() as f64 / 2.0 * grid.cell,
+            beyond: metres(farthest - lengths[cell]),
+        });
+    }
+    let borders = unknown_borders(clearances, grid, params);
+    let prominence = (params.arm.min_prominence / grid.cell * f64::from(STRAIGHT)) as u32;
+    for cell in maxima(ways, lengths, grid, prominence) {
+        if !at_gap[cell] {
+            let goes_on = is_near(&borders, cell, grid, params.arm.border_near);
+            let end = if goes_on { WayEnd::Open } else { WayEnd::Closed };
+            ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
+        }
+    }
+    ends
+}
+
+/// The free cells on long stretches of border to the unknown. Beside a wall such a border means nothing.
+fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -> Vec<bool> {
+    let mut borders = vec![false; grid.cells.len()];
+    let is_border = |at: usize| {
+        grid.cells[at] == Cell::Free && clearances.unknown[at] == 1 && clearances.wall[at] >= 2
+    };
+    for border in grid.groups(is_border) {
+        if border.len() as f64 * grid.cell >= params.arm.border {
+            for at in border {
+                borders[at] = true;
+            }
+        }
+    }
+    borders
+}
+
+/// Whether a cell of a set is within a distance of this one, in metres.
+fn is_near(set: &[bool], cell: usize, grid: &Grid, distance: f64) -> bool {
+    let reach = (distance / grid.cell) as usize;
+    let around = |at: usize| at.saturating_sub(reach)..=(at + reach).min(grid.side - 1);
+    let (x, y) = (cell % grid.side, cell / grid.side);
+    around(y).any(|row| {
+        around(x).any(|column| {
+            let off = row.abs_diff(y).pow(2) + column.abs_diff(x).pow(2);
+            set[row * grid.side + column] && off <= reach * reach
+        })
+    })
+}
+
+/// The maxima of a function on a set of cells from which one must descend at least this far to reach a
+/// greater one.
+fn maxima(set: &[bool], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..set.len()).filter(|&at| set[at]).collect();
+    order.sort_unstable_by_key(|&at| (Reverse(value[at]), at));
+    // Components of the cells so far, each with its maximum as its root.
+    let mut parent: Vec<Option<usize>> = vec![None; set.len()];
+    let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();
+    for at in order {
+        parent[at] = Some(at);
+        if grid.is_border(at) {
+            continue;
+        }
+        for near in grid.neighbours(at) {
+            if parent[near].is_none() {
+                continue;
+            }
+            let (one, other) = (root(&mut parent, at), root(&mut parent, near));
+            if one == other {
+                continue;
+            }
+            let (low, high) = if value[one] < value[other] { (one, other) } else { (other, one) };
+            if value[low] - value[at] >= prominence {
+                maxima.push(low);
+            }
+            parent[low] = Some(high);
+        }
+    }
+    maxima
+}
+
+fn root(parent: &mut [Option<usize>], mut at: usize) -> usize {
+    while let Some(above) = parent[at].filter(|&above| above != at) {
+        parent[at] = parent[above];
+        at = above;
+    }
+    at
+}

@@ -1,0 +1,139 @@
+//! Where rays of the last scans have passed and where they have ended, in the frame of odometry.
+
+use super::{
+    grid::{Cell, Grid},
+    params::LocalMapParams,
+};
+
+/// The rays of one scan, in metres in the frame of odometry.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rays {
+    /// Where the scanner was.
+    pub from: [f64; 2],
+    /// Where rays ended at an obstacle.
+    pub hits: Vec<[f64; 2]>,
+    /// Where rays between two neighbours would have ended at the latest.
+    pub between: Vec<[f64; 2]>,
+    /// Straight pieces of wall between the ends of neighbouring rays.
+    pub walls: Vec<[[f64; 2]; 2]>,
+}
+
+/// Counts of rays. Rays are added, and removed again when their scan is forgotten.
+#[derive(Clone, Debug)]
+pub(super) struct Evidence {
+    side: usize,
+    cell: f64,
+    /// The corner with the least coordinates, in metres.
+    origin: [f64; 2],
+    hits: Vec<u32>,
+    passes: Vec<u32>,
+}
+
+impl Evidence {
+    /// Counts around a point, in a square of this many cells a side.
+    pub(super) fn around(point: [f64; 2], side: usize, cell: f64) -> Self {
+        // Whole cells from the origin of the frame.
+        let corner = |at: f64| ((at / cell).floor() - (side / 2) as f64) * cell;
+        Self {
+            side,
+            cell,
+            origin: point.map(corner),
+            hits: vec![0; side * side],
+            passes: vec![0; side * side],
+        }
+    }
+
+    /// Adds rays.
+    pub(super) fn add(&mut self, rays: &Rays) {
+        self.count(rays, |count| *count = count.saturating_add(1));
+    }
+
+    /// Removes rays that were added.
+    pub(super) fn remove(&mut self, rays: &Rays) {
+        self.count(rays, |count| *count = count.saturating_sub(1));
+    }
+
+    fn count(&mut self, rays: &Rays, change: impl Fn(&mut u32)) {
+        let from = self.place(rays.from);
+        for (ends, hit) in [(&rays.hits, true), (&rays.between, false)] {
+            for &end in ends {
+                let end = self.place(end);
+                let last = cell_at(end);
+                for at in cells(from, end, 1.0).filter(|&at| at != last) {
+                    if let Some(index) = self.index(at) {
+                        change(&mut self.passes[index]);
+                    }
+                }
+                if let Some(index) = self.index(last).filter(|_| hit) {
+                    change(&mut self.hits[index]);
+                }
+            }
+        }
+        for &[one, other] in &rays.walls {
+            let (one, other) = (self.place(one), self.place(other));
+            let ends = [cell_at(one), cell_at(other)];
+            for at in cells(one, other, 2.0).filter(|at| !ends.contains(at)) {
+                if let Some(index) = self.index(at) {
+                    change(&mut self.hits[index]);
+                }
+            }
+        }
+    }
+
+    /// Whether a window of this many cells a side fits around a point.
+    pub(super) fn covers(&self, point: [f64; 2], window: usize) -> bool {
+        let half = (window / 2) as i64;
+        cell_at(self.place(point)).iter().all(|&at| at - half >= 0 && at + half < self.side as i64)
+    }
+
+    /// What is known around a point, in a square of an odd number of cells a side, which must fit.
+    pub(super) fn window(&self, point: [f64; 2], side: usize, params: &LocalMapParams) -> Grid {
+        let corner = cell_at(self.place(point)).map(|at| at - (side / 2) as i64);
+        let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis] as f64 * self.cell);
+        let mut cells = Vec::with_capacity(side * side);
+        for row in 0..side as i64 {
+            for column in 0..side as i64 {
+                let index = self.index([corner[0] + column, corner[1] + row]);
+                cells.push(index.map_or(Cell::Unknown, |index| self.cell(index, params)));
+            }
+        }
+        Grid { side, cell: self.cell, origin, cells }
+    }
+
+    fn cell(&self, index: usize, params: &LocalMapParams) -> Cell {
+        let (hits, passes) = (f64::from(self.hits[index]), f64::from(self.passes[index]));
+        if hits > 0.0 && hits >= params.occupied * (hits + passes) {
+            Cell::Occupied
+        } else if hits + passes > 0.0 {
+            Cell::Free
+        } else {
+            Cell::Unknown
+        }
+    }
+
+    /// A point in cells from the corner.
+    fn place(&self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (point[axis] - self.origin[axis]) / self.cell)
+    }
+
+    fn index(&self, [column, row]: [i64; 2]) -> Option<usize> {
+        let within = |at: i64| (0..self.side as i64).contains(&at);
+        (within(column) && within(row)).then(|| row as usize * self.side + column as usize)
+    }
+}
+
+fn cell_at(place: [f64; 2]) -> [i64; 2] {
+    place.map(|at| at.floor() as i64)
+}
+
+/// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.
+fn cells(from: [f64; 2], to: [f64; 2], density: f64) -> impl Iterator<Item = [i64; 2]> {
+    let step = [0, 1].map(|axis| to[axis] - from[axis]);
+    let steps = (density * step[0].abs().max(step[1].abs())).ceil().max(1.0);
+    let mut last = None;
+    (0..=steps as u32).filter_map(move |number| {
+        let part = f64::from(number) / steps;
+        let at = cell_at([0, 1].map(|axis| from[axis] + part * step[axis]));
+        (last.replace(at) != Some(at)).then_some(at)
+    })
+}

@@ -1,0 +1,165 @@
+//! From scans to junctions: the local map of the last scans, the middle lines of its ways, and where they
+//! meet.
+
+use std::collections::VecDeque;
+
+use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
+
+use super::{
+    evidence::{Evidence, Rays},
+    grid::Grid,
+    junctions::LaserJunction,
+    params::{LaserParams, LocalMapParams},
+    scan::{Reading, Scan},
+    skeleton::Skeleton,
+    way_graph::{WayGraph, distance},
+};
+
+/// Senses junctions with a laser scanner.
+#[derive(Clone, Debug)]
+pub struct LaserSensor {
+    params: LaserParams,
+    evidence: Option<Evidence>,
+    /// The scans in the local map, each with the length of the robot's way until then, in metres.
+    scans: VecDeque<(f64, Rays)>,
+    /// The length of the robot's way, in metres.
+    way: f64,
+    /// Where the last scan was taken that was used.
+    last: Option<Odometry>,
+}
+
+/// What the last scans show.
+#[derive(Clone, Debug)]
+pub struct LaserView {
+    /// Where the robot is, by odometry.
+    pub robot: Odometry,
+    /// The local map.
+    pub grid: Grid,
+    /// The middle lines of its ways; `None` if the robot has no way.
+    pub skeleton: Option<Skeleton>,
+    /// Those that count.
+    pub graph: WayGraph,
+    /// Where they meet.
+    pub junctions: Vec<LaserJunction>,
+}
+
+/// The counts reach this many times as far as a window of the local map.
+const MARGIN: usize = 3;
+
+impl LaserSensor {
+    /// A sensor that has seen nothing yet.
+    #[must_use]
+    pub fn new(params: LaserParams) -> Self {
+        Self { params, evidence: None, scans: VecDeque::new(), way: 0.0, last: None }
+    }
+
+    /// Takes the next scan, and the odometry at its time. Returns what is seen now, or `None` if the robot
+    /// has hardly moved since the last view.
+    pub fn see(&mut self, scan: &Scan, odometry: &Odometry) -> Option<LaserView> {
+        let params = self.params.map;
+        if let Some(last) = self.last {
+            let driven = distance(last.position, odometry.position);
+            let turned = wrapped(odometry.heading - last.heading).abs();
+            if driven < params.every && turned < params.every_turn {
+                return None;
+            }
+            self.way += driven;
+        }
+        self.last = Some(*odometry);
+        let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
+        self.add(rays(scan, odometry, &params), odometry.position, side);
+        let evidence = self.evidence.as_ref()?;
+        let mut grid = evidence.window(odometry.position, side, &params);
+        grid.clean(&params);
+        let skeleton = Skeleton::new(&grid, odometry.position, &self.params);
+        let graph = skeleton.as_ref().map_or_else(WayGraph::default, |skeleton| {
+            WayGraph::new(skeleton, &grid).pruned(odometry.position, &self.params.arm)
+        });
+        let junctions = graph.junctions(&self.params.arm);
+        Some(LaserView { robot: *odometry, grid, skeleton, graph, junctions })
+    }
+
+    /// Adds the rays of a scan, and forgets those of old ones.
+    fn add(&mut self, rays: Rays, robot: [f64; 2], side: usize) {
+        let moved = self.evidence.as_ref().is_none_or(|evidence| !evidence.covers(robot, side));
+        let forgotten = self.way - self.params.map.memory;
+        while let Some((_, old)) = self.scans.front().filter(|(way, _)| *way < forgotten) {
+            if let Some(evidence) = self.evidence.as_mut().filter(|_| !moved) {
+                evidence.remove(old);
+            }
+            self.scans.pop_front();
+        }
+        self.scans.push_back((self.way, rays));
+        if moved {
+            let mut evidence = Evidence::around(robot, MARGIN * side, self.params.map.cell);
+            for (_, rays) in &self.scans {
+                evidence.add(rays);
+            }
+            self.evidence = Some(evidence);
+        } else if let (Some(evidence), Some((_, rays))) = (&mut self.evidence, self.scans.back()) {
+            evidence.add(rays);
+        }
+    }
+}
+
+/// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
+fn rays(scan: &Scan, odometry: &Odometry, params: &LocalMapParams) -> Rays {
+    let place = |[x, y]: [f64; 2]| {
+        let (sine, cosine) = odometry.heading.sin_cos();
+        let [east, north] = odometry.position;
+        [east + x * cosine - y * sine, north + x * sine + y * cosine]
+    };
+    let mut rays = Rays { from: place(scan.mount().position), ..Rays::default() };
+    let readings: Vec<(f64, Option<f64>)> = scan
+        .readings()
+        .map(|(bearing, reading)| match reading {
+            Reading::Hit(range) => (bearing, Some(range)),
+            Reading::NoReturn | Reading::Invalid => (bearing, None),
+        })
+        .collect();
+    let point = |bearing: f64, range: f64| place(scan.point(bearing, range));
+    let end = |index: usize| {
+        let &(bearing, range) = readings.get(index)?;
+        Some(point(bearing, range?))
+    };
+    for (index, &(bearing, range)) in readings.iter().enumerate() {
+        let Some(range) = range else { continue };
+        rays.hits.push(point(bearing, range));
+        let Some(&(next, Some(other))) = readings.get(index + 1) else { continue };
+        let step = wrapped(next - bearing);
+        // Rays closer than cells, up to where the map ends.
+        let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
+        for part in 1..parts {
+            let bearing = bearing + step * f64::from(part) / f64::from(parts);
+            rays.between.push(point(bearing, range.min(other)));
+        }
+        let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
+        let [before, Some(one), Some(two), after] = four else { continue };
+        let gap = distance(one, two);
+        let on_line = |line: Option<[f64; 2]>, from: [f64; 2], to: [f64; 2], range: f64| {
+            let met = met(rays.from, to, line?, from)?;
+            Some((met - range).abs() < 0.3 * gap.max(0.3))
+        };
+        let straight = on_line(before, one, two, other).unwrap_or(false)
+            || on_line(after, two, one, range).unwrap_or(false);
+        if (params.cell..=params.bridge).contains(&gap)
+            && before.is_some()
+            && after.is_some()
+            && straight
+        {
+            rays.walls.push([one, two]);
+        }
+    }
+    rays
+}
+
+/// The range at which the ray from one point towards another meets the line through two points.
+fn met(from: [f64; 2], towards: [f64; 2], one: [f64; 2], other: [f64; 2]) -> Option<f64> {
+    let range = distance(from, towards);
+    let ray = [0, 1].map(|axis| (towards[axis] - from[axis]) / range);
+    let line = [0, 1].map(|axis| other[axis] - one[axis]);
+    let off = [0, 1].map(|axis| one[axis] - from[axis]);
+    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+    let met = cross(off, line) / cross(ray, line);
+    (met.is_finite() && met > 0.0).then_some(met)
+}

@@ -1,0 +1,212 @@
+//! The graph of the skeleton: meet points and ends, and the ways between them; and which ways are arms of
+//! junctions.
+
+use std::collections::BTreeMap;
+
+use super::{
+    ends::{End, WayEnd},
+    grid::Grid,
+    params::ArmParams,
+    skeleton::Skeleton,
+};
+
+/// A meet point, or the end of a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WayNode {
+    /// Where it is, in metres in the frame of odometry.
+    pub point: [f64; 2],
+    /// The distance to the nearest wall, in metres.
+    pub clearance: f64,
+    /// The end; `None` at a meet point.
+    pub end: Option<End>,
+}
+
+/// A way between two nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// The indices of its nodes.
+    pub nodes: [usize; 2],
+    /// Its middle line from the first node to the second, in metres in the frame of odometry, with the
+    /// distance to the nearest wall.
+    pub line: Vec<([f64; 2], f64)>,
+    /// Its length, in metres.
+    pub length: f64,
+}
+
+/// The graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WayGraph {
+    /// Meet points and ends.
+    pub nodes: Vec<WayNode>,
+    /// The ways between them.
+    pub ways: Vec<Way>,
+}
+
+/// The distance of two points.
+#[must_use]
+pub(super) fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
+    (x - u).hypot(y - v)
+}
+
+/// The length of a line of neighbouring cells, without its steps.
+fn length(line: &[([f64; 2], f64)]) -> f64 {
+    let sparse: Vec<_> = line.iter().step_by(4).chain(line.last()).collect();
+    sparse.windows(2).map(|two| distance(two[0].0, two[1].0)).sum()
+}
+
+impl WayGraph {
+    /// The graph of a skeleton.
+    #[must_use]
+    pub fn new(skeleton: &Skeleton, grid: &Grid) -> Self {
+        let clearance = |at: usize| f64::from(skeleton.clearances.wall[at]).sqrt() * grid.cell;
+        let on_line = |at: usize| (grid.point(at), clearance(at));
+        let mut nodes = Vec::new();
+        let mut node_at = BTreeMap::new();
+        for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
+            if skeleton.links(at, grid).len() != 2 {
+                node_at.insert(at, nodes.len());
+                let end = skeleton.ends.iter().find(|end| end.cell == at).copied();
+                nodes.push(WayNode { point: grid.point(at), clearance: clearance(at), end });
+            }
+        }
+        let mut ways = Vec::new();
+        for (&start, &from) in &node_at {
+            for first in skeleton.links(start, grid) {
+                let (mut before, mut at) = (start, first);
+                let mut line = vec![on_line(start), on_line(first)];
+                while !node_at.contains_key(&at) {
+                    let links = skeleton.links(at, grid);
+                    let Some(next) = links.into_iter().find(|&next| next != before) else { break };
+                    line.push(on_line(next));
+                    (before, at) = (at, next);
+                }
+                // Each way is found from both of its ends.
+                if let Some(&to) = node_at.get(&at)
+                    && (start, first) <= (at, before)
+                {
+                    let length = length(&line);
+                    ways.push(Way { nodes: [from, to], line, length });
+                }
+            }
+        }
+        Self { nodes, ways }
+    }
+
+    /// The indices of the ways at a node; a loop is there twice.
+    #[must_use]
+    pub fn at(&self, node: usize) -> Vec<usize> {
+        let ends = |(index, way): (usize, &Way)| way.nodes.map(|end| (end, index));
+        let all = self.ways.iter().enumerate().flat_map(ends);
+        all.filter(|&(end, _)| end == node).map(|(_, index)| index).collect()
+    }
+
+    /// The graph with those arms only that count, for a robot at a point. The shortest is removed first,
+    /// because others become longer by it.
+    #[must_use]
+    pub fn pruned(mut self, robot: [f64; 2], params: &ArmParams) -> Self {
+        loop {
+            let removed = (0..self.ways.len()).filter(|&way| !self.counts(way, robot, params));
+            let shortest = removed
+                .min_by(|&one, &other| self.ways[one].length.total_cmp(&self.ways[other].length));
+            let Some(shortest) = shortest else { return self };
+            for node in self.ways.swap_remove(shortest).nodes {
+                self.join_at(node);
+            }
+        }
+    }
+
+    /// Whether a way counts: it is not an arm of a meet point that ends, or an arm that is no alcove.
+    fn counts(&self, way: usize, robot: [f64; 2], params: &ArmParams) -> bool {
+        let way = &self.ways[way];
+        let [one, other] = way.nodes;
+        let (leaf, meet) = match (self.at(one).len(), self.at(other).len()) {
+            (1, 3..) => (one, other),
+            (3.., 1) => (other, one),
+            _ => return true,
+        };
+        let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
+        let Some(end) = leaf.end else { return true };
+        let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
+            && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
+        if has_robot {
+            return true;
+        }
+        let known = way.length + end.beyond;
+        match end.end {
+            WayEnd::Closed => known + leaf.clearance >= params.min_arm,
+            WayEnd::Open if way.length < meet.clearance + params.min_behind => false,
+            WayEnd::Open if known >= params.min_arm => true,
+            WayEnd::Open => {
+                let mut widths: Vec<f64> = way
+                    .line
+                    .iter()
+                    .filter(|(point, _)| {
+                        distance(*point, meet.point) > meet.clearance
+                            && distance(*point, leaf.point) > 2.0 * params.min_behind / 3.0
+                    })
+                    .map(|&(_, clearance)| 2.0 * clearance)
+                    .collect();
+                widths.sort_by(f64::total_cmp);
+                let width = widths.get(widths.len() / 2).copied().unwrap_or(2.0 * leaf.clearance);
+                let widest = widths.last().copied().unwrap_or(width);
+                known >= params.min_known
+                    && width >= params.min_width
+                    && widest <= params.max_width
+                    && (params.min_gap..=params.max_gap).contains(&(end.gap / width))
+            }
+        }
+    }
+
+    /// Makes one way of two that end at a node.
+    fn join_at(&mut self, node: usize) {
+        let [one, other] = self.at(node)[..] else { return };
+        if one == other {
+            return;
+        }
+        let second = self.ways[other].clone().from_node(node);
+        let first = &mut self.ways[one];
+        *first = std::mem::take(first).to_node(node);
+        first.line.extend(second.line.into_iter().skip(1));
+        first.nodes[1] = second.nodes[1];
+        first.length += second.length;
+        self.ways.swap_remove(other);
+    }
+}
+
+impl Default for Way {
+    fn default() -> Self {
+        Self { nodes: [0; 2], line: Vec::new(), length: 0.0 }
+    }
+}
+
+impl Way {
+    /// The way in the direction that begins at this node of it.
+    #[must_use]
+    pub fn from_node(self, node: usize) -> Self {
+        if self.nodes[0] == node { self } else { self.reversed() }
+    }
+
+    fn to_node(self, node: usize) -> Self {
+        if self.nodes[1] == node { self } else { self.reversed() }
+    }
+
+    fn reversed(mut self) -> Self {
+        self.nodes.reverse();
+        self.line.reverse();
+        self
+    }
+}
+
+impl Skeleton {
+    /// The cells to which a cell of the skeleton is linked. A diagonal neighbour beside a direct one is
+    /// linked through it.
+    fn links(&self, at: usize, grid: &Grid) -> Vec<usize> {
+        let around = grid.neighbours(at);
+        let on = around.map(|near| self.cells[near]);
+        let is_link = |&number: &usize| {
+            let beside = on[(number + 1) % 8] || on[(number + 7) % 8];
+            on[number] && (number % 2 == 1 || !beside)
+        };
+        (0..8).filter(is_link).map(|number| around[number]).collect()
+    }
+}
