@@ -45,7 +45,9 @@ fn events_as_json_lines_or_csv_are_checked() {
         let arguments = ["conform", path.to_str().unwrap(), "--world", "worlds/shape-6.toml"];
         let options = ["--start", "any", "--driver", "anyone", "--marker", "none", "--json"];
         let output = run([&arguments[..], &options[..]].concat());
-        (output.status.code(), objects(&stdout(&output)).first().cloned(), stderr(&output))
+        let printed = Some(stdout(&output)).filter(|text| !text.is_empty());
+        let line = printed.map(|text| objects(&text).remove(0));
+        (output.status.code(), line, stderr(&output))
     };
     for text in [json(&AROUND), csv(&AROUND)] {
         let (code, line, error) = check(&text);
@@ -87,7 +89,7 @@ fn info_lists_a_carmen_log() {
     let path = path.to_str().unwrap();
     let text = stdout_of(["info", path]);
     for part in [
-        ": CARMEN log, 135 bytes\n",
+        ": CARMEN log, 140 bytes\n",
         "\n2 messages\nskipped lines: 1 NEFF, 1 whose time is far from that of their neighbours\n",
         "\nscan      FLASER\nodometry  ODOM\n",
         ", for 2.000 s\n",

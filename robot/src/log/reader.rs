@@ -11,7 +11,8 @@ use super::{
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
     rosbag2::{self, BagFile},
     skipped::SkippedLines,
-    source::{Source, Storage},
+    source::Source,
+    storage::Storage,
     topic::{Topic, Topics},
 };
 
