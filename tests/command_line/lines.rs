@@ -1,4 +1,4 @@
-//! Logs of lines: events as JSON lines or CSV, and CARMEN logs.
+//! Logs that are not one binary file: events as JSON lines or CSV, CARMEN logs, folders of rosbag2.
 
 use std::fs;
 
@@ -103,5 +103,37 @@ fn info_lists_a_carmen_log() {
     assert_eq!(line["mapping"], serde_json::json!({"scan": ["FLASER"], "odometry": ["ODOM"]}));
     let verified = stdout_of(["info", path, "--verify"]);
     assert!(verified.contains("contents verified: 2 messages, 0 chunks"), "{verified}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_folder_of_rosbag2_is_one_log() {
+    let folder = folder("rosbag2_folder");
+    let log = folder.join("run_0.mcap");
+    let [at, file] = [&folder, &log].map(|path| path.to_str().unwrap());
+    stdout_of(["simulate", "worlds/shape-6.toml", "--by-scene", "--seed", "3", "--log", file]);
+    let text = stdout_of(["info", at]);
+    assert!(text.contains(": rosbag2 folder, "), "{text}");
+    let [of_folder, of_file] =
+        [at, file].map(|log| objects(&stdout_of(["info", log, "--json", "--verify"])).remove(0));
+    assert_eq!(of_folder["format"], "rosbag2");
+    for field in ["bytes", "messages", "start", "end", "topics", "mapping", "verification"] {
+        assert_eq!(of_folder[field], of_file[field], "{field}");
+    }
+    let html = folder.parent().unwrap().join("rosbag2_folder.html");
+    let html = html.to_str().unwrap();
+    stdout_of(["conform", at, "--world", "worlds/shape-6.toml", "--html", html]);
+    assert!(fs::read_to_string(html).unwrap().contains("conforms"));
+    // The files of the folder are inputs.
+    let output = run(["info", at, "--write-mapping", file]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    fs::write(folder.join("metadata.yaml"), "relative_file_paths: [run_1.mcap]\n").unwrap();
+    let output = run(["info", at]);
+    assert_eq!(output.status.code(), Some(2));
+    let expected = format!(
+        "error: {at}: run_1.mcap: cannot be read: No such file or directory (os error 2)\n"
+    );
+    assert_eq!(stderr(&output), expected);
+    fs::remove_file(html).unwrap();
     fs::remove_dir_all(folder).unwrap();
 }

@@ -90,6 +90,7 @@ impl Log {
             let scanned = container::scan(file, &mut |record| topics.add_record(record));
             let (scan, text) = scanned.map_err(|error| file.in_file(error))?;
             file.text = text;
+            indexed &= file.format.unit() != OffsetUnit::Line;
             let ended = scan.truncation.map(|end| Truncation { file: file.name.clone(), ..end });
             truncation = truncation.or(ended);
             for mut section in scan.sections {
@@ -101,7 +102,7 @@ impl Log {
                     declared && (section.times.is_some() || empty)
                 });
                 if !known {
-                    indexed &= file.format.unit() == OffsetUnit::Line;
+                    indexed = false;
                     scan_section(&mut section, file, topics)?;
                 }
                 all_sections.push(section);
