@@ -91,7 +91,7 @@ fn info_lists_a_carmen_log() {
     for part in [
         ": CARMEN log, 140 bytes\n",
         "\n2 messages\nskipped lines: 1 NEFF, 1 whose time is far from that of their neighbours\n",
-        "\nscan      FLASER\nodometry  ODOM\n",
+        "\n  scan      FLASER\n  odometry  ODOM\n",
         ", for 2.000 s\n",
     ] {
         assert!(text.contains(part), "{part}: {text}");
