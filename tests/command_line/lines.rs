@@ -1,4 +1,4 @@
-//! Logs of lines: events as JSON lines or CSV, and CARMEN logs.
+//! Logs that are not one binary file: events as JSON lines or CSV, CARMEN logs, folders of rosbag2.
 
 use std::fs;
 
@@ -45,7 +45,9 @@ fn events_as_json_lines_or_csv_are_checked() {
         let arguments = ["conform", path.to_str().unwrap(), "--world", "worlds/shape-6.toml"];
         let options = ["--start", "any", "--driver", "anyone", "--marker", "none", "--json"];
         let output = run([&arguments[..], &options[..]].concat());
-        (output.status.code(), objects(&stdout(&output)).first().cloned(), stderr(&output))
+        let printed = Some(stdout(&output)).filter(|text| !text.is_empty());
+        let line = printed.map(|text| objects(&text).remove(0));
+        (output.status.code(), line, stderr(&output))
     };
     for text in [json(&AROUND), csv(&AROUND)] {
         let (code, line, error) = check(&text);
@@ -87,9 +89,9 @@ fn info_lists_a_carmen_log() {
     let path = path.to_str().unwrap();
     let text = stdout_of(["info", path]);
     for part in [
-        ": CARMEN log, 135 bytes\n",
+        ": CARMEN log, 140 bytes\n",
         "\n2 messages\nskipped lines: 1 NEFF, 1 whose time is far from that of their neighbours\n",
-        "\nscan      FLASER\nodometry  ODOM\n",
+        "\n  scan      FLASER\n  odometry  ODOM\n",
         ", for 2.000 s\n",
     ] {
         assert!(text.contains(part), "{part}: {text}");
@@ -101,5 +103,37 @@ fn info_lists_a_carmen_log() {
     assert_eq!(line["mapping"], serde_json::json!({"scan": ["FLASER"], "odometry": ["ODOM"]}));
     let verified = stdout_of(["info", path, "--verify"]);
     assert!(verified.contains("contents verified: 2 messages, 0 chunks"), "{verified}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_folder_of_rosbag2_is_one_log() {
+    let folder = folder("rosbag2_folder");
+    let log = folder.join("run_0.mcap");
+    let [at, file] = [&folder, &log].map(|path| path.to_str().unwrap());
+    stdout_of(["simulate", "worlds/shape-6.toml", "--by-scene", "--seed", "3", "--log", file]);
+    let text = stdout_of(["info", at]);
+    assert!(text.contains(": rosbag2 folder, "), "{text}");
+    let [of_folder, of_file] =
+        [at, file].map(|log| objects(&stdout_of(["info", log, "--json", "--verify"])).remove(0));
+    assert_eq!(of_folder["format"], "rosbag2");
+    for field in ["bytes", "messages", "start", "end", "topics", "mapping", "verification"] {
+        assert_eq!(of_folder[field], of_file[field], "{field}");
+    }
+    let html = folder.parent().unwrap().join("rosbag2_folder.html");
+    let html = html.to_str().unwrap();
+    stdout_of(["conform", at, "--world", "worlds/shape-6.toml", "--html", html]);
+    assert!(fs::read_to_string(html).unwrap().contains("conforms"));
+    // The files of the folder are inputs.
+    let output = run(["info", at, "--write-mapping", file]);
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    fs::write(folder.join("metadata.yaml"), "relative_file_paths: [run_1.mcap]\n").unwrap();
+    let output = run(["info", at]);
+    assert_eq!(output.status.code(), Some(2));
+    let expected = format!(
+        "error: {at}: run_1.mcap: cannot be read: No such file or directory (os error 2)\n"
+    );
+    assert_eq!(stderr(&output), expected);
+    fs::remove_file(html).unwrap();
     fs::remove_dir_all(folder).unwrap();
 }

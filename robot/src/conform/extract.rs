@@ -312,9 +312,10 @@ impl<W: SensingProgress> Extraction<'_, W> {
     }
 }
 
-/// The odometry at a time, interpolated between the nearest two readings.
+/// The odometry at a time, interpolated between the nearest two readings. Of several at that time the last
+/// counts.
 fn at(track: &[(u64, Odometry)], time: u64) -> Option<Odometry> {
-    let after = track.partition_point(|&(reading, _)| reading < time);
+    let after = track.partition_point(|&(reading, _)| reading <= time);
     match (after.checked_sub(1).and_then(|before| track.get(before)), track.get(after)) {
         (Some(&(begin, from)), Some(&(end, to))) => {
             let part = (time - begin) as f64 / (end - begin) as f64;
@@ -347,5 +348,8 @@ mod tests {
         assert_eq!(half.position, [0.5, 0.0]);
         assert!((half.heading.abs() - std::f64::consts::PI).abs() < 1e-12, "{half:?}");
         assert_eq!(super::at(&[], 5), None);
+        // A CARMEN log has the odometry of a scan after that of the wheels, with the same time.
+        let scan = odometry(5.0, 3.0);
+        assert_eq!(super::at(&[track[0], (10, scan), track[1]], 10), Some(scan));
     }
 }

@@ -9,7 +9,7 @@ use std::{
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
-use super::source::Storage;
+use super::storage::Storage;
 
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
@@ -153,7 +153,7 @@ impl Read for SharedFile {
 /// The frames of a Zstandard file, one after the other.
 enum Frames {
     Before(SharedFile),
-    In(StreamingDecoder<SharedFile, FrameDecoder>),
+    In(Box<StreamingDecoder<SharedFile, FrameDecoder>>),
 }
 
 impl Read for Frames {
@@ -163,12 +163,13 @@ impl Read for Frames {
                 Self::Before(file) if !file.goes_on()? => return Ok(0),
                 Self::Before(file) => {
                     let start = SharedFile { at: file.at, ..file.clone() };
-                    *self = Self::In(StreamingDecoder::new(start).map_err(io::Error::other)?);
+                    let frame = StreamingDecoder::new(start).map_err(io::Error::other)?;
+                    *self = Self::In(Box::new(frame));
                 }
                 Self::In(frame) => {
-                    let read = frame.read(bytes).map_err(|error| match frame.get_ref().ended {
-                        true => io::ErrorKind::UnexpectedEof.into(),
-                        false => error,
+                    let read = frame.read(bytes).map_err(|error| {
+                        let ended = frame.get_ref().ended;
+                        if ended { io::ErrorKind::UnexpectedEof.into() } else { error }
                     })?;
                     if read > 0 || bytes.is_empty() {
                         return Ok(read);

@@ -24,6 +24,7 @@ pub mod rosbag2;
 mod skipped;
 mod source;
 pub mod standard;
+mod storage;
 pub mod topic;
 pub mod topic_map;
 mod transforms;

@@ -11,7 +11,8 @@ use super::{
     error::{LogError, LogErrorKind, OffsetUnit, Truncation},
     rosbag2::{self, BagFile},
     skipped::SkippedLines,
-    source::{Source, Storage},
+    source::Source,
+    storage::Storage,
     topic::{Topic, Topics},
 };
 
@@ -89,6 +90,7 @@ impl Log {
             let scanned = container::scan(file, &mut |record| topics.add_record(record));
             let (scan, text) = scanned.map_err(|error| file.in_file(error))?;
             file.text = text;
+            indexed &= file.format.unit() != OffsetUnit::Line;
             let ended = scan.truncation.map(|end| Truncation { file: file.name.clone(), ..end });
             truncation = truncation.or(ended);
             for mut section in scan.sections {
@@ -100,7 +102,7 @@ impl Log {
                     declared && (section.times.is_some() || empty)
                 });
                 if !known {
-                    indexed &= file.format.unit() == OffsetUnit::Line;
+                    indexed = false;
                     scan_section(&mut section, file, topics)?;
                 }
                 all_sections.push(section);

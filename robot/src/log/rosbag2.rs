@@ -10,7 +10,7 @@ use saphyr_parser::{Event, Parser};
 
 use super::{
     error::{LogError, LogErrorKind},
-    source::Storage,
+    storage::Storage,
 };
 
 /// The file that describes a folder.
@@ -90,11 +90,7 @@ pub fn file_names(metadata: &[u8]) -> Result<Vec<String>, LogError> {
         })?;
         let line = span.start.line();
         match event {
-            Event::Scalar(word, ..) => {
-                if reading.word(&word) && reading.names.len() > MOST_FILES {
-                    return Err(at_line(format!("more than {MOST_FILES} files"), line));
-                }
-            }
+            Event::Scalar(word, ..) => reading.word(&word),
             Event::MappingStart(..) => reading.begin(true),
             Event::SequenceStart(..) => reading.begin(false),
             Event::MappingEnd | Event::SequenceEnd => reading.end(),
@@ -104,6 +100,9 @@ pub fn file_names(metadata: &[u8]) -> Result<Vec<String>, LogError> {
             }
             Event::DocumentEnd => break,
             _ => {}
+        }
+        if reading.names.len() > MOST_FILES {
+            return Err(at_line(format!("it has more than {MOST_FILES} files"), line));
         }
     }
     if reading.names.is_empty() {
@@ -164,18 +163,16 @@ impl Reading {
         }
     }
 
-    /// Whether a word is the name of a file.
-    fn word(&mut self, word: &str) -> bool {
+    /// A word is a key, or a value that may be the name of a file.
+    fn word(&mut self, word: &str) {
         if let Some(Some(key @ Key::None)) = self.path.last_mut() {
             *key = if word == FILES { Key::Files } else { Key::Other };
-            return false;
+            return;
         }
-        let is_name = matches!(self.path[..], [.., Some(Key::Files), None]);
-        if is_name {
+        if matches!(self.path[..], [.., Some(Key::Files), None]) {
             self.names.push(word.to_owned());
         }
         self.value_ended();
-        is_name
     }
 }
 

@@ -6,12 +6,10 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use super::compressed::{Decompressed, FileCompression};
-
-/// A source of bytes.
-pub trait Storage: Read + Seek + Send {}
-
-impl<S: Read + Seek + Send> Storage for S {}
+use super::{
+    compressed::{Decompressed, FileCompression},
+    storage::Storage,
+};
 
 /// A file with random access, perhaps compressed.
 pub(super) struct Source {

@@ -72,6 +72,7 @@ impl Topic {
     ///
     /// # Errors
     /// Returns an error if the bytes are not a message of the topic.
+    #[must_use]
     pub fn decode<'a>(&'a self, bytes: &'a [u8]) -> Option<Result<Value<'a>, DecodeError>> {
         let definition = self.definition.as_ref().ok()?;
         match self.encoding {

@@ -173,10 +173,6 @@ fn a_log_that_was_cut_is_read_up_to_its_last_whole_line() {
     let cut = Log::of_bytes(packed[..packed.len() - 20].to_vec()).unwrap();
     assert_eq!(cut.truncation().unwrap().cause, TruncationKind::Compressed);
     assert!(cut.messages_total() > 3, "{}", cut.messages_total());
-    assert_eq!(
-        entries(&cut).len() as u64,
-        cut.messages_total() + scans(&cut).len() as u64 - cut.topics()[2].messages
-    );
     let mut broken = packed;
     let middle = broken.len() / 2;
     broken[middle..middle + 8].fill(0xff);

@@ -12,5 +12,6 @@ mod mcap_file;
 mod recorded;
 mod roles;
 mod rosbags;
+mod scans;
 mod verified;
 mod written;

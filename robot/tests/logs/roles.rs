@@ -45,16 +45,20 @@ pub(crate) fn log_of(topics: &[Topic]) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-fn text(text: &str) -> Vec<u8> {
+pub(crate) fn text(text: &str) -> Vec<u8> {
     [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
 }
 
-fn numbers<const MANY: usize>(numbers: [f64; MANY]) -> Vec<u8> {
+pub(crate) fn numbers<const MANY: usize>(numbers: [f64; MANY]) -> Vec<u8> {
     numbers.map(f64::to_le_bytes).concat()
 }
 
 fn header(sec: u32) -> Vec<u8> {
-    [[0, sec, 5].map(u32::to_le_bytes).concat(), text("f")].concat()
+    header_in(sec, "f")
+}
+
+pub(crate) fn header_in(sec: u32, frame: &str) -> Vec<u8> {
+    [[0, sec, 5].map(u32::to_le_bytes).concat(), text(frame)].concat()
 }
 
 fn image() -> Topic {

@@ -55,8 +55,8 @@ fn read(log: &Log) -> Found {
                 scans.push((stamp, bits, [x, y, scan.mount().heading]));
                 let kinds: Vec<_> = scan.readings().map(|(_, reading)| reading).collect();
                 let [Reading::Hit(_), rest @ ..] = &kinds[..] else { panic!("{kinds:?}") };
-                use Reading::{Invalid, NoReturn};
-                assert_eq!(rest, [Invalid, NoReturn, Invalid, NoReturn]);
+                let [invalid, none] = [Reading::Invalid, Reading::NoReturn];
+                assert_eq!(rest, [invalid, none, invalid, none]);
             }
             Content::Event(EventKind::Odometry(at)) => {
                 odometry.push((stamp, [at.position[0], at.position[1], at.heading]));

@@ -2,8 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
-use std::{fs, hint::black_box, io::Cursor, path::Path};
+use std::{
+    fmt::Write as _,
+    fs,
+    hint::black_box,
+    io::{Cursor, Write as _},
+    path::Path,
+};
 
+use flate2::{Compression, write::GzEncoder};
 use toposlam_robot::log::{
     decode::decode,
     definition::{Definition, Dialect},
@@ -149,4 +156,31 @@ fn zeros_hold() {
         // refused.
         assert_eq!(taken > 100_000_000, read, "{taken}");
     }
+}
+
+#[test]
+fn a_log_of_lines_takes_the_same_memory_whatever_its_length() {
+    let line = format!("FLASER 180{} 1 2 3 1 2 3", " 12.5".repeat(180));
+    for (lines, format) in [(9000, "log"), (18_000, "log"), (18_000, "gzip")] {
+        let mut text = String::new();
+        for time in 0..lines {
+            writeln!(text, "{line} {time} host {time}").unwrap();
+        }
+        let bytes = if format == "gzip" { gzip(text.as_bytes()) } else { text.into_bytes() };
+        let size = bytes.len();
+        let taken = peak(|| {
+            // The bytes themselves are in memory already.
+            let log = Log::new(Cursor::new(bytes)).unwrap();
+            assert_eq!(log.messages_total(), lines);
+            let read = log.read_all().map(Result::unwrap).count();
+            assert_eq!(read as u64, lines);
+        });
+        assert!(taken < 2 << 20, "{taken} for {lines} lines, {size} bytes");
+    }
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
 }

@@ -120,6 +120,7 @@ impl Scan {
 
     /// The readings in counter-clockwise order, each with its bearing: the direction in which it was taken
     /// from the scanner, in radians counter-clockwise from the robot's heading, above -pi and up to pi.
+    #[must_use]
     pub fn readings(&self) -> impl ExactSizeIterator<Item = (f64, Reading)> + '_ {
         let first = self.mount.heading + self.geometry.angle_min;
         self.ranges.iter().enumerate().map(move |(index, &range)| {

@@ -51,15 +51,12 @@ impl Clock {
             }
             _ => None,
         };
-        match time {
-            Some(time) => {
-                self.latest = Some(time.max(latest));
-                self.off = 0;
-            }
-            None => {
-                self.off += 1;
-                self.off_total += 1;
-            }
+        if let Some(time) = time {
+            self.latest = Some(time.max(latest));
+            self.off = 0;
+        } else {
+            self.off += 1;
+            self.off_total += 1;
         }
         time
     }

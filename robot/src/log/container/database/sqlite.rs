@@ -51,17 +51,14 @@ impl From<rusqlite::Error> for LogErrorKind {
 impl Tables {
     /// Opens a database. One that is compressed or has no path is kept in memory.
     pub(super) fn open(source: &Source, path: Option<&Path>) -> Result<Self, LogErrorKind> {
-        let connection = match path.filter(|_| source.compression.is_none()) {
-            Some(path) => {
-                let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-                Connection::open_with_flags(path, flags)?
-            }
-            None => {
-                let bytes = source.read(0..source.length())?;
-                let mut connection = Connection::open_in_memory()?;
-                connection.deserialize_read_exact("main", &*bytes, bytes.len(), true)?;
-                connection
-            }
+        let connection = if let Some(path) = path.filter(|_| source.compression.is_none()) {
+            let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+            Connection::open_with_flags(path, flags)?
+        } else {
+            let bytes = source.read(0..source.length())?;
+            let mut connection = Connection::open_in_memory()?;
+            connection.deserialize_read_exact("main", &*bytes, bytes.len(), true)?;
+            connection
         };
         connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, MOST_BYTES)?;
         connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")?;
