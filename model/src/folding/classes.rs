@@ -297,18 +297,20 @@ impl DartClasses {
         }
     }
 
-    /// The open darts of roots that the latest union identified with other darts, as they were numbered
-    /// before it, if they are not open any more or were identified with a dart of a larger class.
-    pub(super) fn identified(&self) -> impl Iterator<Item = u32> + '_ {
-        self.changes[self.before_union..].iter().flat_map(move |change| {
-            let darts = match *change {
-                Change::Child { child, .. } => self.darts_of(child),
-                Change::Opposite { dart } => dart..dart + 1,
-                Change::Numbers { .. } | Change::Open { .. } => 0..0,
-            };
-            let is_child = matches!(change, Change::Child { .. });
-            darts.filter(move |&dart| !is_child || self.darts[dart as usize].opposite == OPEN)
-        })
+    /// Visits the open darts of roots that the latest union identified with other darts, as they were
+    /// numbered before it, if they are not open any more or were identified with a dart of a larger class.
+    #[inline]
+    pub(super) fn for_each_identified(&self, mut visit: impl FnMut(u32)) {
+        for change in &self.changes[self.before_union..] {
+            match *change {
+                Change::Child { child, .. } => {
+                    let darts = self.darts_of(child);
+                    darts.filter(|&dart| self.darts[dart as usize].opposite == OPEN).for_each(&mut visit);
+                }
+                Change::Opposite { dart } => visit(dart),
+                Change::Numbers { .. } | Change::Open { .. } => {}
+            }
+        }
     }
 
     /// Makes each trail vertex a root or the child of one. The unions so far cannot be undone any more.
@@ -318,8 +320,14 @@ impl DartClasses {
             return;
         }
         self.changes.clear();
-        for dart in 0..self.darts.len() {
-            self.darts[dart].parent = self.find(dart as u32);
+        for vertex in 0..self.vertices.len() {
+            let TrailVertex { first, .. } = self.vertices[vertex];
+            let parent = self.darts[first as usize].parent;
+            if self.darts[parent as usize].parent != parent {
+                for dart in self.vertices[vertex].darts() {
+                    self.darts[dart as usize].parent = self.find(dart);
+                }
+            }
         }
     }
 

@@ -115,11 +115,15 @@ impl FoldedTrail {
         computed
     }
 
-    /// The darts that were open before the latest [union](Self::unite) and are not open after it, with
-    /// their [opposites](Self::opposite) after it.
-    pub fn closed_darts(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
-        let identified = self.classes.identified().map(Dart);
-        identified.filter_map(|dart| Some((dart, self.opposite(dart)?)))
+    /// Visits the darts that were open before the latest [union](Self::unite) and are not open after it,
+    /// with their [opposites](Self::opposite) after it.
+    #[inline]
+    pub fn for_each_closed_dart(&self, mut visit: impl FnMut(Dart, Dart)) {
+        self.classes.for_each_identified(|dart| {
+            if let Some(opposite) = self.opposite(Dart(dart)) {
+                visit(Dart(dart), opposite);
+            }
+        });
     }
 
     /// Gives numbers to the darts of a vertex, clockwise from a pose. Later unions keep them. Two
@@ -245,6 +249,18 @@ impl FoldedTrail {
     #[must_use]
     pub fn root_of(&self, dart: Dart) -> Dart {
         Dart(self.classes.find(dart.0))
+    }
+
+    /// Visits the other ends of the edges at a dart's vertex, clockwise from the first of the root, as
+    /// darts of roots with the numbers of their vertices.
+    #[inline]
+    pub(crate) fn for_each_neighbour(&self, dart: Dart, mut visit: impl FnMut(Dart, usize)) {
+        for dart in self.darts_around(dart) {
+            let far = self.classes.opposite(dart.0);
+            if far != OPEN {
+                visit(Dart(far), self.classes.owner(far) as usize);
+            }
+        }
     }
 
     /// The other end of a dart's edge, as a dart of a root; `None` if the dart is open.

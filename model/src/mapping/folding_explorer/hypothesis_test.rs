@@ -6,10 +6,15 @@ use super::{FoldingExploration, HypothesisTest, Pending};
 use crate::{embedded_graph::Dart, mapping::partial_map::START};
 
 impl FoldingExploration {
-    /// The cheapest walk that confirms a hypothesis about a place if it ends at the marker. Of walks of
-    /// one cost it is that with the first hypothesis, and the first open dart of the trail.
-    pub(super) fn cheapest_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
-        self.list_tests(pending);
+    /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
+    /// marker. Of walks of one cost it is that with the first hypothesis, and the first open dart of the
+    /// trail.
+    pub(super) fn cheapest_test(
+        &mut self,
+        pending: Pending,
+        most: usize,
+    ) -> Option<HypothesisTest> {
+        self.list_tests(pending, most);
         let mut tests = BinaryHeap::from(mem::take(&mut self.tests));
         let found =
             iter::from_fn(|| tests.pop()).find(|Reverse(test)| self.confirms(pending, test));
@@ -18,8 +23,9 @@ impl FoldingExploration {
     }
 
     /// Lists the walks that lead to the marker if a hypothesis about a place is true: to an open dart
-    /// that would then lead to a place of the map, over it, and through the map to the marker.
-    fn list_tests(&mut self, pending: Pending) {
+    /// that would then lead to a place of the map, over it, and through the map to the marker, in at most
+    /// `most` moves.
+    fn list_tests(&mut self, pending: Pending, most: usize) {
         let Pending { edge, far } = pending;
         let (mut tests, all) = (mem::take(&mut self.tests), mem::take(&mut self.unexplored));
         let mut identified = mem::take(&mut self.identified);
@@ -29,10 +35,14 @@ impl FoldingExploration {
                 continue;
             }
             let target = self.in_trail[hypothesis.at()];
+            if self.trail.degree(far) != self.trail.degree(target) {
+                continue;
+            }
             identified.clear();
             let united = self.trail.with_united(far, target, |united| {
-                let entry = |(open, far)| Some((open, Dart(united.number(far)?)));
-                identified.extend(united.closed_darts().filter_map(entry));
+                united.for_each_closed_dart(|open, far| {
+                    identified.extend(united.number(far).map(|entry| (open, Dart(entry))));
+                });
             });
             if united.is_err() {
                 self.hypotheses.refute(edge, hypothesis);
@@ -41,7 +51,9 @@ impl FoldingExploration {
             for &(open, entry) in &identified {
                 let rest = self.to_marker.hops(self.map().vertex(entry)) as usize;
                 let cost = self.from_robot.moves_to(&self.trail, open) + 1 + rest;
-                tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+                if cost <= most {
+                    tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+                }
             }
         }
         (self.tests, self.unexplored, self.identified) = (tests, all, identified);

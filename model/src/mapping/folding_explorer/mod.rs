@@ -78,6 +78,8 @@ pub struct FoldingExploration {
     in_trail: Vec<Dart>,
     /// The unexplored darts of the map.
     unexplored: Vec<Dart>,
+    /// Those of them that are open.
+    open: Vec<Dart>,
     pending: Vec<Pending>,
     hypotheses: Hypotheses,
     /// Shortest ways to the marker through the map.
@@ -128,6 +130,7 @@ impl FoldingExploration {
             trail: FoldedTrail::default(),
             in_trail: Vec::new(),
             unexplored: Vec::new(),
+            open: Vec::new(),
             pending: Vec::new(),
             hypotheses: Hypotheses::default(),
             to_marker: BreadthFirstTree::default(),
@@ -193,8 +196,10 @@ impl FoldingExploration {
         self.journey.clear();
         self.in_trail.clear();
         self.unexplored.clear();
+        self.open.clear();
         self.pending.clear();
         self.hypotheses.clear();
+        self.from_robot.clear();
         self.to_marker_is_current = false;
     }
 

@@ -31,12 +31,16 @@ impl FoldingExploration {
     /// Finds the edges of the map whose far ends are now known, and the pending places.
     fn close_loops<W: World>(&mut self, world: &mut W, observer: &mut impl Observer<W>) {
         let mut unexplored = mem::take(&mut self.unexplored);
+        self.open.clear();
         self.pending.clear();
         unexplored.retain(|&edge| {
             if !self.map().is_unexplored(edge) {
                 return false;
             }
-            let Some(far) = self.trail.opposite(self.in_trail[edge.at()]) else { return true };
+            let Some(far) = self.trail.opposite(self.in_trail[edge.at()]) else {
+                self.open.push(edge);
+                return true;
+            };
             let Some(other) = self.trail.number(far).map(Dart) else {
                 self.pending.push(Pending { edge, far });
                 return true;
@@ -110,7 +114,8 @@ impl FoldingExploration {
             return false;
         }
         let target = self.in_trail[hypothesis.at()];
-        let alive = self.trail.with_united(pending.far, target, |_| ()).is_ok();
+        let alive = self.trail.degree(pending.far) == self.trail.degree(target)
+            && self.trail.with_united(pending.far, target, |_| ()).is_ok();
         if !alive {
             self.hypotheses.refute(pending.edge, hypothesis);
         }

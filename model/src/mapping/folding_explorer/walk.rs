@@ -65,13 +65,16 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
-        let mut way = mem::take(&mut self.way);
-        self.from_robot.darts_to(&self.trail, open, &mut way);
-        for &dart in &way {
-            let door = self.trail.door(self.trail.pose(), dart);
-            self.take(door, world, observer)?;
+        if self.trail.vertex(open) != self.trail.vertex(self.trail.pose()) {
+            self.from_robot.find(&self.trail);
+            let mut way = mem::take(&mut self.way);
+            self.from_robot.darts_to(&self.trail, open, &mut way);
+            for &dart in &way {
+                let door = self.trail.door(self.trail.pose(), dart);
+                self.take(door, world, observer)?;
+            }
+            self.way = way;
         }
-        self.way = way;
         self.take(self.trail.door(self.trail.pose(), open), world, observer)
     }
 
