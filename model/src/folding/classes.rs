@@ -401,18 +401,17 @@ impl DartClasses {
         for from in from..from + degree {
             let to = self.darts[from as usize].parent;
             match [from, to].map(|dart| self.darts[dart as usize].opposite) {
+                // No dart is the opposite of an open one. So the dart does not become its own.
                 [OPEN, _] => self.open -= 1,
                 [far, OPEN] => {
                     self.darts[to as usize].opposite = far;
                     self.open -= 1;
                     self.changes.push(Change::Opposite { dart: to });
                 }
+                [_, near] if self.find(near) == to => {
+                    return Err(ContradictionReason::OwnOpposite { visit: large.visit });
+                }
                 [far, near] => self.pairs.push((far, near)),
-            }
-            let opposite = self.darts[to as usize].opposite;
-            if opposite != OPEN && self.find(opposite) == to {
-                let visit = large.visit;
-                return Err(ContradictionReason::OwnOpposite { visit });
             }
         }
         Ok(())

@@ -300,6 +300,12 @@ impl FoldedTrail {
         self.classes.owner(self.classes.find(dart.0)) as usize
     }
 
+    /// The number of the trail vertex at which a dart was seen, folded or not.
+    #[inline]
+    pub(crate) fn trail_vertex(&self, dart: Dart) -> usize {
+        self.classes.owner(dart.0) as usize
+    }
+
     /// The degree of a dart's vertex.
     #[inline]
     #[must_use]

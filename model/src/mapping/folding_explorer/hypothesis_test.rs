@@ -27,36 +27,28 @@ impl FoldingExploration {
     /// `most` moves.
     fn list_tests(&mut self, pending: Pending, most: usize) {
         let Pending { edge, far } = pending;
-        let (mut tests, all) = (mem::take(&mut self.tests), mem::take(&mut self.unexplored));
-        let mut identified = mem::take(&mut self.identified);
+        let Self { trail, journey, to_marker, from_robot, hypotheses, tests, .. } = self;
         tests.clear();
-        for &hypothesis in &all {
-            if self.hypotheses.is_refuted(edge, hypothesis) {
-                continue;
-            }
+        let degree = trail.degree(far);
+        for &hypothesis in &self.unexplored {
             let target = self.in_trail[hypothesis.at()];
-            if self.trail.degree(far) != self.trail.degree(target) {
+            if hypotheses.is_refuted(edge, hypothesis) || trail.degree(target) != degree {
                 continue;
             }
-            identified.clear();
-            let united = self.trail.with_united(far, target, |united| {
+            let united = trail.with_united(far, target, |united| {
                 united.for_each_closed_dart(|open, far| {
-                    identified.extend(united.number(far).map(|entry| (open, Dart(entry))));
+                    let Some(entry) = united.number(far).map(Dart) else { return };
+                    let rest = to_marker.hops(journey.map.vertex(entry)) as usize;
+                    let cost = from_robot.moves_to_vertex(united.trail_vertex(open)) + 1 + rest;
+                    if cost <= most {
+                        tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+                    }
                 });
             });
             if united.is_err() {
-                self.hypotheses.refute(edge, hypothesis);
-                continue;
-            }
-            for &(open, entry) in &identified {
-                let rest = self.to_marker.hops(self.map().vertex(entry)) as usize;
-                let cost = self.from_robot.moves_to(&self.trail, open) + 1 + rest;
-                if cost <= most {
-                    tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
-                }
+                hypotheses.refute(edge, hypothesis);
             }
         }
-        (self.tests, self.unexplored, self.identified) = (tests, all, identified);
     }
 
     /// Whether the success of a test forces its hypothesis.

@@ -89,8 +89,6 @@ pub struct FoldingExploration {
     from_robot: Ways,
     /// Scratch: the tests of one pending place.
     tests: Vec<Reverse<HypothesisTest>>,
-    /// Scratch: open darts that a union closed, and the darts of the map at their other ends.
-    identified: Vec<(Dart, Dart)>,
     /// Scratch: the darts on the way to somewhere known.
     way: Vec<Dart>,
 }
@@ -137,7 +135,6 @@ impl FoldingExploration {
             to_marker_is_current: false,
             from_robot: Ways::default(),
             tests: Vec::new(),
-            identified: Vec::new(),
             way: Vec::new(),
         }
     }

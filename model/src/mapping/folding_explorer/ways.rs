@@ -62,7 +62,13 @@ impl Ways {
     /// The moves to a dart's vertex.
     #[inline]
     pub(super) fn moves_to(&self, trail: &FoldedTrail, dart: Dart) -> usize {
-        self.way[trail.vertex(dart)].moves as usize
+        self.moves_to_vertex(trail.vertex(dart))
+    }
+
+    /// The moves to a vertex, with the number of its root.
+    #[inline]
+    pub(super) fn moves_to_vertex(&self, root: usize) -> usize {
+        self.way[root].moves as usize
     }
 
     /// Writes the darts by which the robot leaves on its way to a dart's vertex.
