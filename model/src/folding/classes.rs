@@ -273,7 +273,9 @@ impl DartClasses {
     /// Undoes the latest unions, so that this many changes are left.
     pub(super) fn undo_to(&mut self, count: usize) {
         let Self { changes, vertices, darts, .. } = self;
-        for change in changes.drain(count..).rev() {
+        while changes.len() > count
+            && let Some(change) = changes.pop()
+        {
             match change {
                 Change::Child { child, root } => {
                     let &TrailVertex { first, size, percept, .. } = &vertices[child as usize];
@@ -339,17 +341,19 @@ impl DartClasses {
         numbered: Numbered,
     ) -> Result<(), ContradictionReason> {
         self.pairs.clear();
-        self.pairs.push((one, other));
-        while let Some((one, other)) = self.pairs.pop() {
+        let mut next = Some((one, other));
+        while let Some((one, other)) = next {
             let (one, other) = (self.find(one), self.find(other));
             if one != other {
                 self.merge(one, other, numbered)?;
             }
+            next = self.pairs.pop();
         }
         Ok(())
     }
 
     /// Makes one class of two.
+    #[inline]
     fn merge(
         &mut self,
         one: u32,
@@ -358,61 +362,63 @@ impl DartClasses {
     ) -> Result<(), ContradictionReason> {
         let (mut root, mut child) = (self.owner(one), self.owner(other));
         let (mut at_root, mut at_child) = (one, other);
+        let (mut large, mut small) =
+            (&self.vertices[root as usize], &self.vertices[child as usize]);
         if root == child {
-            let visit = self.vertices[root as usize].visit;
-            return Err(ContradictionReason::Rotation { visit });
+            return Err(ContradictionReason::Rotation { visit: large.visit });
         }
-        let [mut large, mut small] = [root, child].map(|vertex| self.vertices[vertex as usize]);
         if large.size < small.size {
             (root, child, at_root, at_child) = (child, root, at_child, at_root);
             (large, small) = (small, large);
         }
-        let [before, now] = [large.percept, small.percept];
-        let visits = [large.visit, small.visit];
-        let degree = before.degree;
-        if degree != now.degree {
-            return Err(ContradictionReason::Degree { visits, degrees: [degree, now.degree] });
+        let visits = || [large.visit, small.visit];
+        let degree = large.percept.degree;
+        if degree != small.percept.degree {
+            let degrees = [degree, small.percept.degree];
+            return Err(ContradictionReason::Degree { visits: visits(), degrees });
         }
         let numbers = [at_root, at_child].map(|dart| self.darts[dart as usize].number != NO_NUMBER);
         if numbers == [true; 2] && numbered == Numbered::Distinct {
-            return Err(ContradictionReason::Distinct { visits });
+            return Err(ContradictionReason::Distinct { visits: visits() });
         }
         // The child's first dart, at the root.
         let (at, from) = (large.first, small.first);
         let Door(turn) = Door::between(at_child - from, at_root - at, degree);
+        let [before, now] = [large, small].map(|vertex| vertex.percept);
         if (before.sighting, now.sighting) != (Sighting::Nothing, Sighting::Nothing) {
-            compare_sightings(before.seen_from(Door(turn)), now, visits)?;
+            compare_sightings(before.seen_from(Door(turn)), now, visits())?;
         }
         self.vertices[root as usize].size += small.size;
         self.count -= 1;
         self.changes.push(Change::Child { child, root });
-        let takes_numbers = numbers == [false, true];
-        if takes_numbers {
+        if numbers == [false, true] {
             self.changes.push(Change::Numbers { root });
+            for door in 0..degree {
+                let to = self.turned(at + turn, door);
+                self.darts[to as usize].number = self.darts[(from + door) as usize].number;
+            }
         }
         let mut to = at + turn;
         for from in from..from + degree {
-            self.darts[from as usize].parent = to;
-            if takes_numbers {
-                self.darts[to as usize].number = self.darts[from as usize].number;
+            let dart = &mut self.darts[from as usize];
+            dart.parent = to;
+            match dart.opposite {
+                // No dart is the opposite of an open one. So the dart does not become its own.
+                OPEN => self.open -= 1,
+                far => match self.darts[to as usize].opposite {
+                    OPEN => {
+                        self.darts[to as usize].opposite = far;
+                        self.open -= 1;
+                        self.changes.push(Change::Opposite { dart: to });
+                    }
+                    near if self.find(near) == to => {
+                        let visit = self.vertices[root as usize].visit;
+                        return Err(ContradictionReason::OwnOpposite { visit });
+                    }
+                    near => self.pairs.push((far, near)),
+                },
             }
             to = if to + 1 == at + degree { at } else { to + 1 };
-        }
-        for from in from..from + degree {
-            let to = self.darts[from as usize].parent;
-            match [from, to].map(|dart| self.darts[dart as usize].opposite) {
-                // No dart is the opposite of an open one. So the dart does not become its own.
-                [OPEN, _] => self.open -= 1,
-                [far, OPEN] => {
-                    self.darts[to as usize].opposite = far;
-                    self.open -= 1;
-                    self.changes.push(Change::Opposite { dart: to });
-                }
-                [_, near] if self.find(near) == to => {
-                    return Err(ContradictionReason::OwnOpposite { visit: large.visit });
-                }
-                [far, near] => self.pairs.push((far, near)),
-            }
         }
         Ok(())
     }
