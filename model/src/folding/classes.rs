@@ -170,6 +170,19 @@ impl DartClasses {
         }
     }
 
+    /// Whether a dart of a root is open.
+    #[inline]
+    pub(super) fn is_open(&self, root: u32) -> bool {
+        self.darts[root as usize].opposite == OPEN
+    }
+
+    /// The next dart clockwise at the same trail vertex.
+    #[inline]
+    pub(super) fn next_around(&self, dart: u32) -> u32 {
+        let darts = self.vertex(dart).darts();
+        if dart + 1 == darts.end { darts.start } else { dart + 1 }
+    }
+
     /// The trail vertex of a dart.
     #[inline]
     pub(super) fn owner(&self, dart: u32) -> u32 {
@@ -188,10 +201,16 @@ impl DartClasses {
         self.vertices[vertex as usize].first
     }
 
+    /// What was seen at a dart's trail vertex, by a robot that came in by its first dart.
+    #[inline]
+    pub(super) fn percept(&self, dart: u32) -> Percept {
+        self.vertex(dart).percept
+    }
+
     /// The degree of a dart's vertex.
     #[inline]
     pub(super) fn degree(&self, dart: u32) -> u32 {
-        self.vertex(dart).percept.degree
+        self.percept(dart).degree
     }
 
     /// The darts of a trail vertex.
@@ -307,7 +326,9 @@ impl DartClasses {
             match *change {
                 Change::Child { child, .. } => {
                     let darts = self.darts_of(child);
-                    darts.filter(|&dart| self.darts[dart as usize].opposite == OPEN).for_each(&mut visit);
+                    darts
+                        .filter(|&dart| self.darts[dart as usize].opposite == OPEN)
+                        .for_each(&mut visit);
                 }
                 Change::Opposite { dart } => visit(dart),
                 Change::Numbers { .. } | Change::Open { .. } => {}

@@ -313,6 +313,24 @@ impl FoldedTrail {
         self.classes.degree(dart.0)
     }
 
+    /// Whether a dart of a root is open.
+    #[inline]
+    pub(super) fn is_open_root(&self, root: Dart) -> bool {
+        self.classes.is_open(root.0)
+    }
+
+    /// The next dart clockwise at the vertex of a dart of a root.
+    #[inline]
+    pub(super) fn next_around(&self, root: Dart) -> Dart {
+        Dart(self.classes.next_around(root.0))
+    }
+
+    /// What was seen at a dart's vertex, by a robot that came in by the first dart of the root.
+    #[inline]
+    pub(super) fn sighting(&self, dart: Dart) -> Sighting {
+        self.classes.percept(self.classes.find(dart.0)).sighting
+    }
+
     /// The roots' first darts, one for each vertex, in the order of the first visits of the roots.
     pub fn vertices(&self) -> impl Iterator<Item = Dart> + '_ {
         self.classes.roots().map(|root| Dart(self.classes.first(root)))

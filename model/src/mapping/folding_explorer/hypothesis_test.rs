@@ -3,7 +3,7 @@
 use std::{cmp::Reverse, collections::BinaryHeap, iter, mem};
 
 use super::{FoldingExploration, HypothesisTest, Pending};
-use crate::{embedded_graph::Dart, mapping::partial_map::START};
+use crate::{embedded_graph::Dart, folding::FoldedTrail, mapping::partial_map::START};
 
 impl FoldingExploration {
     /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
@@ -26,7 +26,7 @@ impl FoldingExploration {
     /// that would then lead to a place of the map, over it, and through the map to the marker, in at most
     /// `most` moves.
     fn list_tests(&mut self, pending: Pending, most: usize) {
-        let Pending { edge, far } = pending;
+        let Pending { edge, far, is_leaf } = pending;
         let Self { trail, journey, to_marker, from_robot, hypotheses, tests, .. } = self;
         tests.clear();
         let degree = trail.degree(far);
@@ -35,15 +35,20 @@ impl FoldingExploration {
             if hypotheses.is_refuted(edge, hypothesis) || trail.degree(target) != degree {
                 continue;
             }
+            let mut list = |trail: &FoldedTrail, open, entry: Option<u32>| {
+                let Some(entry) = entry.map(Dart) else { return };
+                let rest = to_marker.hops(journey.map.vertex(entry)) as usize;
+                let cost = from_robot.moves_to_vertex(trail.trail_vertex(open)) + 1 + rest;
+                if cost <= most {
+                    tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+                }
+            };
+            if is_leaf && trail.takes_leaf(target, far) {
+                trail.for_each_closed_by_leaf(far, target, |open, entry| list(trail, open, entry));
+                continue;
+            }
             let united = trail.with_united(far, target, |united| {
-                united.for_each_closed_dart(|open, far| {
-                    let Some(entry) = united.number(far).map(Dart) else { return };
-                    let rest = to_marker.hops(journey.map.vertex(entry)) as usize;
-                    let cost = from_robot.moves_to_vertex(united.trail_vertex(open)) + 1 + rest;
-                    if cost <= most {
-                        tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
-                    }
-                });
+                united.for_each_closed_dart(|open, far| list(united, open, united.number(far)));
             });
             if united.is_err() {
                 hypotheses.refute(edge, hypothesis);
@@ -51,22 +56,29 @@ impl FoldingExploration {
         }
     }
 
-    /// Whether the success of a test forces its hypothesis.
+    /// Whether the success of a test, whose hypothesis is alive, forces the hypothesis.
     pub(super) fn confirms(&mut self, pending: Pending, test: &HypothesisTest) -> bool {
         let Some(leaving) = self.trail.opposite(self.in_trail[test.entry.at()]) else {
             return false;
         };
+        let (trail, open) = (&mut self.trail, test.open);
+        let (far, target) = (pending.far, self.in_trail[test.hypothesis.at()]);
+        if trail.vertex(open) == trail.vertex(far) {
+            // The dart is taken at the place itself, as the hypothesis predicts.
+            let predicted = trail.behind(target, trail.door(far, open));
+            if predicted == leaving {
+                return true;
+            }
+        }
         let hypothesis = Some(test.hypothesis.0);
-        let forced = self
-            .trail
-            .with_united(test.open, leaving, |united| united.number(pending.far) == hypothesis);
+        let forced = trail.with_united(open, leaving, |united| united.number(far) == hypothesis);
         forced == Ok(true)
     }
 
     /// The walk from a pending place along the way to the marker that the first hypothesis predicts, as
     /// in Algorithm 1.
     pub(super) fn strict_test(&mut self, pending: Pending) -> Option<HypothesisTest> {
-        let Pending { edge, far } = pending;
+        let Pending { edge, far, .. } = pending;
         let all = mem::take(&mut self.unexplored);
         let hypothesis = all.iter().copied().find(|&dart| self.is_alive(pending, dart));
         self.unexplored = all;

@@ -63,6 +63,8 @@ struct Pending {
     edge: Dart,
     /// The pose behind it, a dart of the trail.
     far: Dart,
+    /// Whether the place [is a leaf](FoldedTrail::is_leaf): the robot has only looked at it.
+    is_leaf: bool,
 }
 
 /// The state of a run of the folding explorer. Memory is reused from run to run.

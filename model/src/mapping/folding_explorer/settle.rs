@@ -42,7 +42,7 @@ impl FoldingExploration {
                 return true;
             };
             let Some(other) = self.trail.number(far).map(Dart) else {
-                self.pending.push(Pending { edge, far });
+                self.pending.push(Pending { edge, far, is_leaf: self.trail.is_leaf(far) });
                 return true;
             };
             self.journey.map.join(edge, other);
@@ -60,7 +60,7 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let Pending { edge, far } = pending;
+        let Pending { edge, far, .. } = pending;
         let degree = self.trail.degree(far);
         self.journey.check_bound(degree)?;
         let vertex = self.journey.map.add_vertex(degree);
@@ -114,8 +114,10 @@ impl FoldingExploration {
             return false;
         }
         let target = self.in_trail[hypothesis.at()];
-        let alive = self.trail.degree(pending.far) == self.trail.degree(target)
-            && self.trail.with_united(pending.far, target, |_| ()).is_ok();
+        let Pending { far, is_leaf, .. } = pending;
+        let alive = self.trail.degree(far) == self.trail.degree(target)
+            && (is_leaf && self.trail.takes_leaf(target, far)
+                || self.trail.with_united(far, target, |_| ()).is_ok());
         if !alive {
             self.hypotheses.refute(pending.edge, hypothesis);
         }
