@@ -7,8 +7,8 @@ use crate::{embedded_graph::Dart, folding::FoldedTrail, mapping::partial_map::ST
 
 impl FoldingExploration {
     /// The cheapest walk of at most `most` moves that confirms a hypothesis about a place if it ends at the
-    /// marker. Of walks of one cost it is that with the first hypothesis, and the first open dart of the
-    /// trail.
+    /// marker. Of walks of one cost it is that with the nearest open dart, then the first hypothesis, and
+    /// the first open dart of the trail.
     pub(super) fn cheapest_test(
         &mut self,
         pending: Pending,
@@ -38,9 +38,11 @@ impl FoldingExploration {
             let mut list = |trail: &FoldedTrail, open, entry: Option<u32>| {
                 let Some(entry) = entry.map(Dart) else { return };
                 let rest = to_marker.hops(journey.map.vertex(entry)) as usize;
-                let cost = from_robot.moves_to_vertex(trail.trail_vertex(open)) + 1 + rest;
+                let approach = from_robot.moves_to_vertex(trail.trail_vertex(open));
+                let cost = approach + 1 + rest;
                 if cost <= most {
-                    tests.push(Reverse(HypothesisTest { cost, hypothesis, open, edge, entry }));
+                    let test = HypothesisTest { cost, approach, hypothesis, open, edge, entry };
+                    tests.push(Reverse(test));
                 }
             };
             if is_leaf && trail.takes_leaf(target, far) {
@@ -89,7 +91,10 @@ impl FoldingExploration {
             let (door, entry) = self.to_marker.toward_root(self.map(), believed)?;
             let open = self.trail.behind(pose, door);
             match self.trail.opposite(open) {
-                None => return Some(HypothesisTest { cost, hypothesis, open, edge, entry }),
+                None => {
+                    let approach = self.from_robot.moves_to(&self.trail, open);
+                    return Some(HypothesisTest { cost, approach, hypothesis, open, edge, entry });
+                }
                 Some(next) => (pose, believed) = (next, entry),
             }
         }

@@ -5,9 +5,11 @@ use std::cmp::Reverse;
 use super::{FoldingExploration, FoldingStep, HypothesisTest, Pending};
 use crate::embedded_graph::Dart;
 
-/// How many times nearer an open dart of the map must be than the marker is by the cheapest test, to be
-/// taken first.
-const EXPLORE_FACTOR: usize = 4;
+/// The most moves of a test that is made before an open dart of the map is taken, if that is so many moves
+/// away. The figures are the best that were tried.
+fn worthwhile(moves_to_open: usize) -> usize {
+    8 * moves_to_open + 2
+}
 
 impl FoldingExploration {
     /// What to do next; `None` if no dart is open.
@@ -15,7 +17,7 @@ impl FoldingExploration {
         if self.trail.open_count() == 0 {
             return None;
         }
-        if !self.is_late()
+        if self.pending.is_empty()
             && let Some(edge) = self.open_here()
         {
             return Some(FoldingStep::Explore(edge));
@@ -74,7 +76,7 @@ impl FoldingExploration {
         once
     }
 
-    /// An open dart of the map at the robot's vertex. No test is cheaper.
+    /// The first open dart of the map at the robot's vertex.
     fn open_here(&self) -> Option<Dart> {
         let robot = Dart(self.trail.number(self.trail.pose())?);
         let is_open = |&edge: &Dart| self.trail.opposite(self.in_trail[edge.at()]).is_none();
@@ -102,7 +104,7 @@ impl FoldingExploration {
         self.tests.clear();
         let late = self.is_late();
         let strict = if late { self.strict_test(pending) } else { None };
-        let most = open.filter(|_| !late).map_or(usize::MAX, |(moves, _)| EXPLORE_FACTOR * moves);
+        let most = open.filter(|_| !late).map_or(usize::MAX, |(moves, _)| worthwhile(moves));
         let test = strict.or_else(|| self.cheapest_test(pending, most));
         test.map(FoldingStep::Test).or(explore)
     }

@@ -32,7 +32,7 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let HypothesisTest { edge, hypothesis, cost, open, entry } = test;
+        let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
         self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world, observer);
         let mut before = self.trail.vertex_count() + 1;
         let mut perceived = self.take_open(open, world, observer)?;
