@@ -201,6 +201,13 @@ impl DartClasses {
         self.vertices[vertex as usize].first
     }
 
+    /// What was seen at a dart's trail vertex, from this pose, if that was before a number of moves.
+    pub(super) fn seen_before(&self, pose: u32, moves: usize) -> Option<Percept> {
+        let &TrailVertex { first, percept, visit, .. } =
+            self.vertices.get(self.darts.get(pose as usize)?.owner as usize)?;
+        (visit < moves).then(|| percept.seen_from(Door(pose - first)))
+    }
+
     /// What was seen at a dart's trail vertex, by a robot that came in by its first dart.
     #[inline]
     pub(super) fn percept(&self, dart: u32) -> Percept {

@@ -86,6 +86,13 @@ impl FoldedTrail {
         Ok(())
     }
 
+    /// What a robot with this pose saw at its place before, if it came there along edges that it knew. That
+    /// is so after a [step](Self::step) that failed, too.
+    #[must_use]
+    pub fn seen_before(&self) -> Option<Percept> {
+        self.classes.seen_before(self.pose, self.moves)
+    }
+
     /// Identifies two darts, and all that follows.
     ///
     /// # Errors

@@ -245,7 +245,9 @@ impl FoldingExploration {
 impl<E> From<TrailError> for MappingError<E> {
     fn from(error: TrailError) -> Self {
         match error {
-            TrailError::Contradiction(reason) => Contradiction::Trail(reason).into(),
+            TrailError::Contradiction(reason) => {
+                Contradiction::Trail { reason, expected: None }.into()
+            }
             TrailError::TooManyDarts => Self::Bound { bound: MAX_DARTS },
         }
     }

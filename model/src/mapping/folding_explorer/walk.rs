@@ -5,7 +5,8 @@ use std::mem;
 use super::{FoldingExploration, HypothesisTest};
 use crate::{
     embedded_graph::Dart,
-    mapping::{FoldingEvent, MappingError, MappingEvent, Observer},
+    folding::TrailError,
+    mapping::{Contradiction, FoldingEvent, MappingError, MappingEvent, Observer},
     percept::{Door, Percept},
     world::World,
 };
@@ -86,7 +87,14 @@ impl FoldingExploration {
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
         let percept = self.journey.go(door, world, observer)?;
-        self.trail.step(door, percept)?;
+        if let Err(error) = self.trail.step(door, percept) {
+            return Err(match error {
+                TrailError::Contradiction(reason) => {
+                    Contradiction::Trail { reason, expected: self.trail.seen_before() }.into()
+                }
+                TrailError::TooManyDarts => MappingError::from(error),
+            });
+        }
         self.find_robot();
         Ok(percept)
     }
