@@ -176,3 +176,16 @@ fn whole_runs_are_right_with_the_folding_explorer() {
         |lines: &[Value]| -> u64 { lines.iter().filter_map(|line| line["moves"].as_u64()).sum() };
     assert!(moves(&lines) < moves(&other));
 }
+
+#[test]
+fn runs_by_image_are_right_with_both_algorithms() {
+    let words = ["evaluate", "runs", "--images", "--look", "tiles", "--runs", "1", "--json"];
+    let words = [&words[..], &["--plan", "worlds/shape-8.toml"]].concat();
+    let moves = [&[][..], &FOLDING].map(|algorithm| {
+        let lines = objects(&stdout_of([&words[..], algorithm].concat()));
+        let run = lines.iter().find(|line| line["kind"] == "run").unwrap();
+        assert!(run["right"] == true && run["frames"].as_u64() > Some(10), "{run}");
+        run["moves"].as_u64().unwrap()
+    });
+    assert!(moves[1] <= moves[0], "{moves:?}");
+}
