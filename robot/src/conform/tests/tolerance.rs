@@ -1,5 +1,7 @@
 //! Many tolerated divergences do not need as many judgements.
 
+use toposlam_model::{mapping::Contradiction, trace::StepPurpose};
+
 use super::*;
 use crate::conform::judgement::JUDGED;
 
@@ -118,21 +120,26 @@ fn contradictions_of_the_folding_explorer_are_tolerated_where_the_place_is_known
     let good = log_of(folding, &plan, starts_of(&plan)[0], 1).recorded();
     let question = ConformConfig { driver: RunDriver::Algorithm(folding), ..without_world() };
     let quirks = everywhere(&["contradiction"]);
-    let (mut known, mut not_known) = (Vec::new(), 0);
+    let (mut known, mut by_marker) = (Vec::new(), 0);
     for event in (2..good.events.len()).step_by(2) {
         let wrong = with_wrong_degrees(&good, &[event]);
-        let (_, strictly) = counted(&wrong, &question, &Quirks::default());
+        let (_, strict) = counted(&wrong, &question, &Quirks::default());
         let (_, judgement) = counted(&wrong, &question, &quirks);
         let at: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
         if judgement.divergence.is_none() && at == [event] {
             known.push(event);
-            continue;
         }
-        // At a place that is new, or is known only by the marker, the percept shows its fault later.
-        not_known += 1;
-        assert_eq!((at, &judgement.divergence), (vec![], &strictly.divergence));
+        // Of two visits that are one because the marker was seen, either may be false.
+        if let Some(DivergenceCause::Algorithm(departure)) = strict.divergence.map(|of| of.cause)
+            && let StepPurpose::Contradicted(Contradiction::Trail { expected: None, .. }) =
+                departure.allowed[0].purpose
+        {
+            by_marker += 1;
+            assert!(at.is_empty(), "{at:?}");
+            assert!(judgement.divergence.is_some());
+        }
     }
-    assert!(known.len() > 3 && not_known > 3, "{known:?}, {not_known} others");
+    assert!(known.len() > 1 && by_marker > 1, "{known:?}, {by_marker} by the marker");
     let wrong = with_wrong_degrees(&good, &known);
     let (count, judgement) = counted(&wrong, &question, &quirks);
     assert_eq!((count, judgement.verdict()), (2, ConformVerdict::Conforms));
