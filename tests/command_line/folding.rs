@@ -176,3 +176,15 @@ fn whole_runs_are_right_with_the_folding_explorer() {
         |lines: &[Value]| -> u64 { lines.iter().filter_map(|line| line["moves"].as_u64()).sum() };
     assert!(moves(&lines) < moves(&other));
 }
+
+#[test]
+fn runs_by_image_are_right_with_both_algorithms() {
+    let words = ["evaluate", "runs", "--images", "--look", "tiles", "--runs", "1", "--json"];
+    let words = [&words[..], &["--plan", "worlds/shape-8.toml"]].concat();
+    for algorithm in ["algorithm1", "folding"] {
+        let lines = objects(&stdout_of([&words[..], &["--algorithm", algorithm]].concat()));
+        let run = lines.iter().find(|line| line["kind"] == "run").unwrap();
+        assert!(run["right"] == true && run["frames"].as_u64() > Some(10), "{run}");
+        assert_eq!(run["moves"], run["explore_moves"], "{run}");
+    }
+}

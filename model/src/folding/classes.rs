@@ -1,5 +1,7 @@
 //! Classes of darts: a union-find structure in which one union forces others, and which can undo them.
 
+use std::ops::Range;
+
 use super::ContradictionReason;
 use crate::percept::{Door, Percept, Sighting};
 
@@ -15,22 +17,8 @@ const NO_NUMBER: u32 = u32::MAX;
 /// vertices are one, and so are the vertices behind the same doors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DartClasses {
-    /// The first dart of each trail vertex.
-    first: Vec<u32>,
-    /// The number of moves before the first visit of each trail vertex.
-    visit: Vec<usize>,
-    /// What was seen at each trail vertex, for a robot that came in by its first dart.
-    percept: Vec<Percept>,
-    /// The number of trail vertices of each root's class.
-    size: Vec<u32>,
-    /// The trail vertex of each dart.
-    owner: Vec<u32>,
-    /// The parent of each dart: the same dart of a larger class. A dart of a root is its own parent.
-    parent: Vec<u32>,
-    /// The opposite of each dart of a root, as any dart of its class; or [`OPEN`].
-    opposite: Vec<u32>,
-    /// The number that the user has given to each dart of a root; or [`NO_NUMBER`].
-    number: Vec<u32>,
+    vertices: Vec<TrailVertex>,
+    darts: Vec<TrailDart>,
     /// The number of classes of trail vertices.
     count: usize,
     /// The number of open darts of roots.
@@ -41,6 +29,38 @@ pub(super) struct DartClasses {
     before_union: usize,
     /// Scratch: darts that have to be identified next.
     pairs: Vec<(u32, u32)>,
+}
+
+/// A vertex for each percept at a place that was not known.
+#[derive(Clone, Copy, Debug)]
+struct TrailVertex {
+    /// Its first dart.
+    first: u32,
+    /// The number of trail vertices in its class, if it is a root.
+    size: u32,
+    /// What was seen at it, for a robot that came in by its first dart.
+    percept: Percept,
+    /// The number of moves before it was seen.
+    visit: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct TrailDart {
+    /// The trail vertex at which it is.
+    owner: u32,
+    /// The same dart of a larger class. A dart of a root is its own parent.
+    parent: u32,
+    /// If its vertex is a root, its opposite, as any dart of its class; or [`OPEN`].
+    opposite: u32,
+    /// If its vertex is a root, the number that the user has given to it; or [`NO_NUMBER`].
+    number: u32,
+}
+
+impl TrailVertex {
+    /// Its darts.
+    fn darts(&self) -> Range<u32> {
+        self.first..self.first + self.percept.degree
+    }
 }
 
 /// A change by a union.
@@ -67,28 +87,19 @@ enum Numbered {
 
 impl DartClasses {
     pub(super) fn clear(&mut self) {
-        let Self { first, size, owner, parent, opposite, number, .. } = self;
-        for numbers in [first, size, owner, parent, opposite, number] {
-            numbers.clear();
-        }
-        self.visit.clear();
-        self.percept.clear();
+        self.vertices.clear();
+        self.darts.clear();
         self.changes.clear();
         (self.count, self.open, self.before_union) = (0, 0, 0);
     }
 
     /// Adds a vertex with open darts, a class of its own, and returns its first dart.
     pub(super) fn add_vertex(&mut self, percept: Percept, visit: usize) -> u32 {
-        let (vertex, first) = (self.first.len() as u32, self.owner.len() as u32);
-        let end = first + percept.degree;
-        self.first.push(first);
-        self.visit.push(visit);
-        self.percept.push(percept);
-        self.size.push(1);
-        self.owner.resize(end as usize, vertex);
-        self.parent.extend(first..end);
-        self.opposite.resize(end as usize, OPEN);
-        self.number.resize(end as usize, NO_NUMBER);
+        let (owner, first) = (self.vertices.len() as u32, self.darts.len() as u32);
+        let vertex = TrailVertex { first, size: 1, percept, visit };
+        let new = |parent| TrailDart { owner, parent, opposite: OPEN, number: NO_NUMBER };
+        self.darts.extend(vertex.darts().map(new));
+        self.vertices.push(vertex);
         self.count += 1;
         self.open += percept.degree as usize;
         first
@@ -96,8 +107,8 @@ impl DartClasses {
 
     /// Makes two open darts of roots the ends of an edge. This is not undone.
     pub(super) fn join(&mut self, one: u32, other: u32) {
-        self.opposite[one as usize] = other;
-        self.opposite[other as usize] = one;
+        self.darts[one as usize].opposite = other;
+        self.darts[other as usize].opposite = one;
         self.open -= 2;
     }
 
@@ -106,7 +117,7 @@ impl DartClasses {
     pub(super) fn set_numbers(&mut self, pose: u32, mut number: u32) {
         for door in 0..self.degree(pose) {
             let dart = self.turned(pose, door);
-            self.number[dart as usize] = number;
+            self.darts[dart as usize].number = number;
             number += 1;
         }
     }
@@ -114,7 +125,7 @@ impl DartClasses {
     /// The number of a dart, if its class has numbers.
     #[inline]
     pub(super) fn number(&self, dart: u32) -> Option<u32> {
-        let number = self.number[self.find(dart) as usize];
+        let number = self.darts[self.find(dart) as usize].number;
         (number != NO_NUMBER).then_some(number)
     }
 
@@ -130,11 +141,11 @@ impl DartClasses {
     }
 
     pub(super) fn trail_vertex_count(&self) -> usize {
-        self.first.len()
+        self.vertices.len()
     }
 
     pub(super) fn dart_count(&self) -> usize {
-        self.owner.len()
+        self.darts.len()
     }
 
     /// The dart of a root that stands for a dart.
@@ -142,7 +153,7 @@ impl DartClasses {
     pub(super) fn find(&self, dart: u32) -> u32 {
         let mut dart = dart;
         loop {
-            let parent = self.parent[dart as usize];
+            let parent = self.darts[dart as usize].parent;
             if parent == dart {
                 return dart;
             }
@@ -153,47 +164,78 @@ impl DartClasses {
     /// The opposite of a dart of a root, as a dart of a root; or [`OPEN`].
     #[inline]
     pub(super) fn opposite(&self, root: u32) -> u32 {
-        match self.opposite[root as usize] {
+        match self.darts[root as usize].opposite {
             OPEN => OPEN,
             opposite => self.find(opposite),
         }
     }
 
+    /// Whether a dart of a root is open.
+    #[inline]
+    pub(super) fn is_open(&self, root: u32) -> bool {
+        self.darts[root as usize].opposite == OPEN
+    }
+
+    /// The next dart clockwise at the same trail vertex.
+    #[inline]
+    pub(super) fn next_around(&self, dart: u32) -> u32 {
+        let darts = self.vertex(dart).darts();
+        if dart + 1 == darts.end { darts.start } else { dart + 1 }
+    }
+
     /// The trail vertex of a dart.
     #[inline]
     pub(super) fn owner(&self, dart: u32) -> u32 {
-        self.owner[dart as usize]
+        self.darts[dart as usize].owner
+    }
+
+    /// The trail vertex at which a dart is.
+    #[inline]
+    fn vertex(&self, dart: u32) -> &TrailVertex {
+        &self.vertices[self.owner(dart) as usize]
     }
 
     /// The first dart of a trail vertex.
     #[inline]
     pub(super) fn first(&self, vertex: u32) -> u32 {
-        self.first[vertex as usize]
+        self.vertices[vertex as usize].first
+    }
+
+    /// What was seen at a dart's trail vertex, from this pose, if that was before a number of moves.
+    pub(super) fn seen_before(&self, pose: u32, moves: usize) -> Option<Percept> {
+        let &TrailVertex { first, percept, visit, .. } =
+            self.vertices.get(self.darts.get(pose as usize)?.owner as usize)?;
+        (visit < moves).then(|| percept.seen_from(Door(pose - first)))
+    }
+
+    /// What was seen at a dart's trail vertex, by a robot that came in by its first dart.
+    #[inline]
+    pub(super) fn percept(&self, dart: u32) -> Percept {
+        self.vertex(dart).percept
     }
 
     /// The degree of a dart's vertex.
     #[inline]
     pub(super) fn degree(&self, dart: u32) -> u32 {
-        self.percept[self.owner[dart as usize] as usize].degree
+        self.percept(dart).degree
     }
 
     /// The darts of a trail vertex.
-    pub(super) fn darts_of(&self, vertex: u32) -> std::ops::Range<u32> {
-        let first = self.first[vertex as usize];
-        first..first + self.percept[vertex as usize].degree
+    pub(super) fn darts_of(&self, vertex: u32) -> Range<u32> {
+        self.vertices[vertex as usize].darts()
     }
 
     /// The roots, in the order of their first visits.
     pub(super) fn roots(&self) -> impl Iterator<Item = u32> + '_ {
-        let firsts = self.first.iter().copied();
-        (0..).zip(firsts).filter(|&(_, first)| self.parent[first as usize] == first).map(|(v, _)| v)
+        let is_root = |first: u32| self.darts[first as usize].parent == first;
+        let roots = (0..).zip(&self.vertices).filter(move |(_, vertex)| is_root(vertex.first));
+        roots.map(|(root, _)| root)
     }
 
     /// The dart at the same trail vertex that stands some places further clockwise.
     #[inline]
     pub(super) fn turned(&self, dart: u32, places: u32) -> u32 {
-        let vertex = self.owner[dart as usize] as usize;
-        let (first, degree) = (self.first[vertex], self.percept[vertex].degree);
+        let &TrailVertex { first, percept: Percept { degree, .. }, .. } = self.vertex(dart);
         let places = if places < degree { places } else { places % degree };
         let index = dart - first;
         // No sum of an index and places, which may overflow.
@@ -203,9 +245,8 @@ impl DartClasses {
     /// The door that leads from a dart to another at the same trail vertex.
     #[inline]
     pub(super) fn door(&self, from: u32, to: u32) -> Door {
-        let vertex = self.owner[from as usize] as usize;
-        let first = self.first[vertex];
-        Door::between(from - first, to.wrapping_sub(first), self.percept[vertex].degree)
+        let &TrailVertex { first, percept, .. } = self.vertex(from);
+        Door::between(from - first, to.wrapping_sub(first), percept.degree)
     }
 
     /// Compares a percept with what was perceived at a vertex before, for a robot with this pose.
@@ -215,14 +256,13 @@ impl DartClasses {
         percept: Percept,
         moves: usize,
     ) -> Result<(), ContradictionReason> {
-        let root = self.owner[pose as usize] as usize;
-        let index = pose - self.first[root];
-        let (visits, before) = ([self.visit[root], moves], self.percept[root]);
+        let &TrailVertex { first, percept: before, visit, .. } = self.vertex(pose);
+        let visits = [visit, moves];
         if before.degree != percept.degree {
             let degrees = [before.degree, percept.degree];
             return Err(ContradictionReason::Degree { visits, degrees });
         }
-        compare_sightings(before.seen_from(Door(index)), percept, visits)
+        compare_sightings(before.seen_from(Door(pose - first)), percept, visits)
     }
 
     /// Identifies two darts, and all that follows.
@@ -258,41 +298,49 @@ impl DartClasses {
 
     /// Undoes the latest unions, so that this many changes are left.
     pub(super) fn undo_to(&mut self, count: usize) {
-        let Self { changes, parent, first, percept, size, number, opposite, .. } = self;
-        for change in changes.drain(count..).rev() {
+        let Self { changes, vertices, darts, .. } = self;
+        while changes.len() > count
+            && let Some(change) = changes.pop()
+        {
             match change {
                 Change::Child { child, root } => {
-                    let darts = first[child as usize]..;
-                    for dart in darts.take(percept[child as usize].degree as usize) {
-                        parent[dart as usize] = dart;
+                    let &TrailVertex { first, size, percept, .. } = &vertices[child as usize];
+                    let darts = darts[first as usize..].iter_mut().zip(first..);
+                    for (dart, number) in darts.take(percept.degree as usize) {
+                        dart.parent = number;
                     }
-                    size[root as usize] -= size[child as usize];
+                    vertices[root as usize].size -= size;
                     self.count += 1;
                 }
                 Change::Numbers { root } => {
-                    let darts = first[root as usize] as usize..;
-                    for dart in darts.take(percept[root as usize].degree as usize) {
-                        number[dart] = NO_NUMBER;
+                    let &TrailVertex { first, percept, .. } = &vertices[root as usize];
+                    let darts = darts[first as usize..].iter_mut();
+                    for dart in darts.take(percept.degree as usize) {
+                        dart.number = NO_NUMBER;
                     }
                 }
-                Change::Opposite { dart } => opposite[dart as usize] = OPEN,
+                Change::Opposite { dart } => darts[dart as usize].opposite = OPEN,
                 Change::Open { before } => self.open = before,
             }
         }
     }
 
-    /// The open darts of roots that the latest union identified with other darts, as they were numbered
-    /// before it, if they are not open any more or were identified with a dart of a larger class.
-    pub(super) fn identified(&self) -> impl Iterator<Item = u32> + '_ {
-        self.changes[self.before_union..].iter().flat_map(move |change| {
-            let darts = match *change {
-                Change::Child { child, .. } => self.darts_of(child),
-                Change::Opposite { dart } => dart..dart + 1,
-                Change::Numbers { .. } | Change::Open { .. } => 0..0,
-            };
-            let is_child = matches!(change, Change::Child { .. });
-            darts.filter(move |&dart| !is_child || self.opposite[dart as usize] == OPEN)
-        })
+    /// Visits the open darts of roots that the latest union identified with other darts, as they were
+    /// numbered before it, if they are not open any more or were identified with a dart of a larger class.
+    #[inline]
+    pub(super) fn for_each_identified(&self, mut visit: impl FnMut(u32)) {
+        for change in &self.changes[self.before_union..] {
+            match *change {
+                Change::Child { child, .. } => {
+                    let darts = self.darts_of(child);
+                    darts
+                        .filter(|&dart| self.darts[dart as usize].opposite == OPEN)
+                        .for_each(&mut visit);
+                }
+                Change::Opposite { dart } => visit(dart),
+                Change::Numbers { .. } | Change::Open { .. } => {}
+            }
+        }
     }
 
     /// Makes each trail vertex a root or the child of one. The unions so far cannot be undone any more.
@@ -302,8 +350,14 @@ impl DartClasses {
             return;
         }
         self.changes.clear();
-        for dart in 0..self.parent.len() {
-            self.parent[dart] = self.find(dart as u32);
+        for vertex in 0..self.vertices.len() {
+            let TrailVertex { first, .. } = self.vertices[vertex];
+            let parent = self.darts[first as usize].parent;
+            if self.darts[parent as usize].parent != parent {
+                for dart in self.vertices[vertex].darts() {
+                    self.darts[dart as usize].parent = self.find(dart);
+                }
+            }
         }
     }
 
@@ -315,79 +369,84 @@ impl DartClasses {
         numbered: Numbered,
     ) -> Result<(), ContradictionReason> {
         self.pairs.clear();
-        self.pairs.push((one, other));
-        while let Some((one, other)) = self.pairs.pop() {
+        let mut next = Some((one, other));
+        while let Some((one, other)) = next {
             let (one, other) = (self.find(one), self.find(other));
             if one != other {
                 self.merge(one, other, numbered)?;
             }
+            next = self.pairs.pop();
         }
         Ok(())
     }
 
     /// Makes one class of two.
+    #[inline]
     fn merge(
         &mut self,
         one: u32,
         other: u32,
         numbered: Numbered,
     ) -> Result<(), ContradictionReason> {
-        let (mut root, mut child) = (self.owner[one as usize], self.owner[other as usize]);
+        let (mut root, mut child) = (self.owner(one), self.owner(other));
         let (mut at_root, mut at_child) = (one, other);
+        let (mut large, mut small) =
+            (&self.vertices[root as usize], &self.vertices[child as usize]);
         if root == child {
-            return Err(ContradictionReason::Rotation { visit: self.visit[root as usize] });
+            return Err(ContradictionReason::Rotation { visit: large.visit });
         }
-        if self.size[root as usize] < self.size[child as usize] {
+        if large.size < small.size {
             (root, child, at_root, at_child) = (child, root, at_child, at_root);
+            (large, small) = (small, large);
         }
-        let [before, now] = [root, child].map(|vertex| self.percept[vertex as usize]);
-        let visits = || [root, child].map(|vertex| self.visit[vertex as usize]);
-        let degree = before.degree;
-        if degree != now.degree {
-            let degrees = [degree, now.degree];
+        let visits = || [large.visit, small.visit];
+        let degree = large.percept.degree;
+        if degree != small.percept.degree {
+            let degrees = [degree, small.percept.degree];
             return Err(ContradictionReason::Degree { visits: visits(), degrees });
         }
-        let numbers = [at_root, at_child].map(|dart| self.number[dart as usize] != NO_NUMBER);
+        let numbers = [at_root, at_child].map(|dart| self.darts[dart as usize].number != NO_NUMBER);
         if numbers == [true; 2] && numbered == Numbered::Distinct {
             return Err(ContradictionReason::Distinct { visits: visits() });
         }
         // The child's first dart, at the root.
-        let (at, from) = (self.first[root as usize], self.first[child as usize]);
+        let (at, from) = (large.first, small.first);
         let Door(turn) = Door::between(at_child - from, at_root - at, degree);
+        let [before, now] = [large, small].map(|vertex| vertex.percept);
         if (before.sighting, now.sighting) != (Sighting::Nothing, Sighting::Nothing) {
             compare_sightings(before.seen_from(Door(turn)), now, visits())?;
         }
-        self.size[root as usize] += self.size[child as usize];
+        self.vertices[root as usize].size += small.size;
         self.count -= 1;
         self.changes.push(Change::Child { child, root });
-        let takes_numbers = numbers == [false, true];
-        if takes_numbers {
+        if numbers == [false, true] {
             self.changes.push(Change::Numbers { root });
+            for door in 0..degree {
+                let to = self.turned(at + turn, door);
+                self.darts[to as usize].number = self.darts[(from + door) as usize].number;
+            }
         }
         let mut to = at + turn;
         for from in from..from + degree {
-            self.parent[from as usize] = to;
-            if takes_numbers {
-                self.number[to as usize] = self.number[from as usize];
+            let dart = &mut self.darts[from as usize];
+            dart.parent = to;
+            match dart.opposite {
+                // No dart is the opposite of an open one. So the dart does not become its own.
+                OPEN => self.open -= 1,
+                far => match self.darts[to as usize].opposite {
+                    OPEN => {
+                        self.darts[to as usize].opposite = far;
+                        self.open -= 1;
+                        self.changes.push(Change::Opposite { dart: to });
+                    }
+                    near if self.find(near) == to => {
+                        let visit = self.vertices[root as usize].visit;
+                        return Err(ContradictionReason::OwnOpposite { visit });
+                    }
+                    near => self.pairs.push((far, near)),
+                },
             }
             to = if to + 1 == at + degree { at } else { to + 1 };
-        }
-        for from in from..from + degree {
-            let to = self.parent[from as usize];
-            match [from, to].map(|dart| self.opposite[dart as usize]) {
-                [OPEN, _] => self.open -= 1,
-                [far, OPEN] => {
-                    self.opposite[to as usize] = far;
-                    self.open -= 1;
-                    self.changes.push(Change::Opposite { dart: to });
-                }
-                [far, near] => self.pairs.push((far, near)),
-            }
-            let opposite = self.opposite[to as usize];
-            if opposite != OPEN && self.find(opposite) == to {
-                let visit = self.visit[root as usize];
-                return Err(ContradictionReason::OwnOpposite { visit });
-            }
         }
         Ok(())
     }

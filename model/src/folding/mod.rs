@@ -23,6 +23,7 @@ mod certificate;
 mod classes;
 mod closed;
 mod contradiction;
+mod leaf;
 mod marker_tree;
 mod smallest;
 mod trail;

@@ -360,4 +360,34 @@ proptest! {
             }
         }
     }
+
+    #[test]
+    fn what_follows_if_a_leaf_is_a_known_place_is_what_a_union_shows(
+        graph in any_graph(Class::Multigraph, 8),
+        turns in prop::collection::vec(any::<u8>(), 0..40),
+        numbered in any::<prop::sample::Index>(),
+    ) {
+        let (percepts, doors, _) = walk(&graph, Dart(0), Dart(0), &turns);
+        let mut trail = fold(&percepts, &doors).unwrap();
+        let darts: Vec<Dart> = (0..trail.dart_count()).map(|dart| Dart(dart as u32)).collect();
+        let numbered = darts[numbered.index(darts.len())];
+        trail.set_numbers(numbered, 7);
+        for &leaf in darts.iter().filter(|&&dart| trail.is_leaf(dart)).collect::<Vec<_>>() {
+            for &dart in &darts {
+                if trail.vertex(dart) == trail.vertex(leaf) || !trail.takes_leaf(dart, leaf) {
+                    continue;
+                }
+                let mut closed = Vec::new();
+                trail.for_each_closed_by_leaf(leaf, dart, |dart, number| closed.push((dart, number)));
+                let united = trail.with_united(leaf, dart, |united| {
+                    let mut closed = Vec::new();
+                    united.for_each_closed_dart(|dart, far| closed.push((dart, united.number(far))));
+                    closed.sort_unstable();
+                    closed
+                });
+                closed.sort_unstable();
+                prop_assert_eq!(united, Ok(closed));
+            }
+        }
+    }
 }

@@ -86,6 +86,13 @@ impl FoldedTrail {
         Ok(())
     }
 
+    /// What a robot with this pose saw at its place before, if it came there along edges that it knew. That
+    /// is so after a [step](Self::step) that failed, too.
+    #[must_use]
+    pub fn seen_before(&self) -> Option<Percept> {
+        self.classes.seen_before(self.pose, self.moves)
+    }
+
     /// Identifies two darts, and all that follows.
     ///
     /// # Errors
@@ -115,11 +122,15 @@ impl FoldedTrail {
         computed
     }
 
-    /// The darts that were open before the latest [union](Self::unite) and are not open after it, with
-    /// their [opposites](Self::opposite) after it.
-    pub fn closed_darts(&self) -> impl Iterator<Item = (Dart, Dart)> + '_ {
-        let identified = self.classes.identified().map(Dart);
-        identified.filter_map(|dart| Some((dart, self.opposite(dart)?)))
+    /// Visits the darts that were open before the latest [union](Self::unite) and are not open after it,
+    /// with their [opposites](Self::opposite) after it.
+    #[inline]
+    pub fn for_each_closed_dart(&self, mut visit: impl FnMut(Dart, Dart)) {
+        self.classes.for_each_identified(|dart| {
+            if let Some(opposite) = self.opposite(Dart(dart)) {
+                visit(Dart(dart), opposite);
+            }
+        });
     }
 
     /// Gives numbers to the darts of a vertex, clockwise from a pose. Later unions keep them. Two
@@ -247,6 +258,18 @@ impl FoldedTrail {
         Dart(self.classes.find(dart.0))
     }
 
+    /// Visits the other ends of the edges at a dart's vertex, clockwise from the first of the root, as
+    /// darts of roots with the numbers of their vertices.
+    #[inline]
+    pub(crate) fn for_each_neighbour(&self, dart: Dart, mut visit: impl FnMut(Dart, usize)) {
+        for dart in self.darts_around(dart) {
+            let far = self.classes.opposite(dart.0);
+            if far != OPEN {
+                visit(Dart(far), self.classes.owner(far) as usize);
+            }
+        }
+    }
+
     /// The other end of a dart's edge, as a dart of a root; `None` if the dart is open.
     #[inline]
     #[must_use]
@@ -284,11 +307,35 @@ impl FoldedTrail {
         self.classes.owner(self.classes.find(dart.0)) as usize
     }
 
+    /// The number of the trail vertex at which a dart was seen, folded or not.
+    #[inline]
+    pub(crate) fn trail_vertex(&self, dart: Dart) -> usize {
+        self.classes.owner(dart.0) as usize
+    }
+
     /// The degree of a dart's vertex.
     #[inline]
     #[must_use]
     pub fn degree(&self, dart: Dart) -> u32 {
         self.classes.degree(dart.0)
+    }
+
+    /// Whether a dart of a root is open.
+    #[inline]
+    pub(super) fn is_open_root(&self, root: Dart) -> bool {
+        self.classes.is_open(root.0)
+    }
+
+    /// The next dart clockwise at the vertex of a dart of a root.
+    #[inline]
+    pub(super) fn next_around(&self, root: Dart) -> Dart {
+        Dart(self.classes.next_around(root.0))
+    }
+
+    /// What was seen at a dart's vertex, by a robot that came in by the first dart of the root.
+    #[inline]
+    pub(super) fn sighting(&self, dart: Dart) -> Sighting {
+        self.classes.percept(self.classes.find(dart.0)).sighting
     }
 
     /// The roots' first darts, one for each vertex, in the order of the first visits of the roots.

@@ -164,8 +164,14 @@ pub enum Contradiction {
         perceived: Percept,
     },
     /// The folded trail contradicts itself.
-    #[error(transparent)]
-    Trail(#[from] ContradictionReason),
+    #[error("{reason}")]
+    Trail {
+        /// The reason.
+        reason: ContradictionReason,
+        /// The percept of the place before, seen from the new entry, if the robot came there along edges that
+        /// it knew. Otherwise it is not known which percept is false.
+        expected: Option<Percept>,
+    },
 }
 
 /// A percept in words.

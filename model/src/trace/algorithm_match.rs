@@ -54,31 +54,51 @@ pub fn match_algorithm(
 ) -> AlgorithmMatch {
     match algorithm {
         DirectionalAlgorithm::Algorithm1 => match_choices(trace, claim, bound, None),
-        DirectionalAlgorithm::Folding => {
-            let (reached, exploration) = follow(trace, bound);
-            AlgorithmMatch {
-                algorithm,
-                choices: MatchedChoices::Default,
-                reached,
-                run: MappingRun::Folding(Box::new(exploration)),
-                coverage: AlgorithmCoverage::default(),
-            }
-        }
+        DirectionalAlgorithm::Folding => match_folding(trace, bound, &mut |_| None),
     }
 }
 
-/// A percept in place of one that contradicts Algorithm 1; `None` if it is not replaced.
+/// A percept in place of one that contradicts the map; `None` if it is not replaced.
 pub type Amendment<'a> = &'a mut dyn FnMut(&Departure) -> Option<Percept>;
 
-/// Matches a trace with Algorithm 1. At a contradiction, `amend` may replace the percept; the match then
-/// goes on from the step to it.
+/// Matches a trace with an algorithm. At a contradiction, `amend` may replace the percept; the match then
+/// goes on.
 pub fn match_amended(
+    algorithm: DirectionalAlgorithm,
     trace: &Trace,
     claim: TraceClaim,
     bound: usize,
     amend: Amendment,
 ) -> AlgorithmMatch {
-    match_choices(trace, claim, bound, Some(amend))
+    match algorithm {
+        DirectionalAlgorithm::Algorithm1 => match_choices(trace, claim, bound, Some(amend)),
+        DirectionalAlgorithm::Folding => match_folding(trace, bound, amend),
+    }
+}
+
+/// Matches a trace with the folding explorer.
+fn match_folding(trace: &Trace, bound: usize, amend: Amendment) -> AlgorithmMatch {
+    let mut trace = Cow::Borrowed(trace);
+    let mut amended_before = 0;
+    let (reached, exploration) = loop {
+        let (reached, exploration) = follow(&trace, bound);
+        let moves = exploration.trail().moves();
+        let percept = match &reached {
+            MatchEnd::Departure(departure) if moves >= amended_before => amend(departure),
+            _ => None,
+        };
+        let Some(percept) = percept else { break (reached, exploration) };
+        trace.to_mut().percepts[moves] = percept;
+        // No percept is replaced twice.
+        amended_before = moves + 1;
+    };
+    AlgorithmMatch {
+        algorithm: DirectionalAlgorithm::Folding,
+        choices: MatchedChoices::Default,
+        reached,
+        run: MappingRun::Folding(Box::new(exploration)),
+        coverage: AlgorithmCoverage::default(),
+    }
 }
 
 /// The run with the default choices.

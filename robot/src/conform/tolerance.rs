@@ -2,12 +2,12 @@
 //!
 //! A run is judged again after a divergence was tolerated. So that a run with many of them is not judged as
 //! often, the divergences that can be found without a judgement are tolerated together: contradictions of
-//! single events, percepts that do not fit the known world, and percepts that contradict Algorithm 1.
+//! single events, percepts that do not fit the known world, and percepts that contradict the algorithm's map.
 
 use std::collections::BTreeSet;
 
 use toposlam_model::{
-    mapping::{Contradiction, DirectionalAlgorithm},
+    mapping::Contradiction,
     percept::Percept,
     trace::{Departure, Misfit, MisfitReason, StepPurpose, match_amended, poses_amended},
 };
@@ -146,13 +146,10 @@ impl<'q> Tolerance<'q> {
         self.tolerated.extend(tolerated);
     }
 
-    /// Tolerates the percepts before an event that contradict Algorithm 1.
+    /// Tolerates the percepts before an event that contradict the algorithm's map.
     fn contradictions(&mut self, limit: usize) {
-        let algorithm1 = RunDriver::Algorithm(DirectionalAlgorithm::Algorithm1);
+        let RunDriver::Algorithm(algorithm) = self.question.driver else { return };
         let Ok(trace) = self.amended.trace() else { return };
-        if self.question.driver != algorithm1 {
-            return;
-        }
         let mut tolerated = Vec::new();
         let mut amend = |departure: &Departure| {
             let event = departure.event.id;
@@ -163,7 +160,7 @@ impl<'q> Tolerance<'q> {
             expected_after(departure)
         };
         let bound = self.question.dart_bound;
-        let _ = match_amended(&trace, self.amended.claim(), bound, &mut amend);
+        let _ = match_amended(algorithm, &trace, self.amended.claim(), bound, &mut amend);
         self.tolerated.extend(tolerated);
     }
 }
@@ -187,11 +184,13 @@ fn expected_by(misfit: &Misfit) -> Option<Percept> {
     expected.all(|other| other == Some(first)).then_some(first)
 }
 
-/// The percept that Algorithm 1 expects.
+/// The percept that the algorithm expects at a known place.
 fn expected_after(departure: &Departure) -> Option<Percept> {
     departure.allowed.iter().find_map(|allowed| match allowed.purpose {
         StepPurpose::Contradicted(
-            Contradiction::KnownPlace { expected, .. } | Contradiction::WayBack { expected, .. },
+            Contradiction::KnownPlace { expected, .. }
+            | Contradiction::WayBack { expected, .. }
+            | Contradiction::Trail { expected: Some(expected), .. },
         ) => Some(expected),
         _ => None,
     })

@@ -7,8 +7,8 @@
 //! as long as the trail with the two poses united does not contradict itself.
 //!
 //! Ties are broken by the order in which darts were numbered: of open darts and pending places equally
-//! near, the one of the lowest dart of the map; of tests of equal cost, the one with the lowest
-//! hypothesis, then with the open dart that was seen first.
+//! near, the one of the lowest dart of the map; of tests of equal cost, the one with the nearest open
+//! dart, then with the lowest hypothesis, then with the open dart that was seen first.
 
 mod hypotheses;
 mod hypothesis_test;
@@ -46,6 +46,8 @@ pub enum FoldingStep {
 pub struct HypothesisTest {
     /// The moves to the marker.
     pub cost: usize,
+    /// The moves to the open dart. The rest of the way is through the map.
+    approach: usize,
     /// The dart of the map by which the pending place is entered, if the hypothesis is true.
     pub hypothesis: Dart,
     /// The open dart of the trail that is taken.
@@ -63,6 +65,8 @@ struct Pending {
     edge: Dart,
     /// The pose behind it, a dart of the trail.
     far: Dart,
+    /// Whether the place [is a leaf](FoldedTrail::is_leaf): the robot has only looked at it.
+    is_leaf: bool,
 }
 
 /// The state of a run of the folding explorer. Memory is reused from run to run.
@@ -78,6 +82,8 @@ pub struct FoldingExploration {
     in_trail: Vec<Dart>,
     /// The unexplored darts of the map.
     unexplored: Vec<Dart>,
+    /// Those of them that are open.
+    open: Vec<Dart>,
     pending: Vec<Pending>,
     hypotheses: Hypotheses,
     /// Shortest ways to the marker through the map.
@@ -87,8 +93,6 @@ pub struct FoldingExploration {
     from_robot: Ways,
     /// Scratch: the tests of one pending place.
     tests: Vec<Reverse<HypothesisTest>>,
-    /// Scratch: open darts that a union closed, and the darts of the map at their other ends.
-    identified: Vec<(Dart, Dart)>,
     /// Scratch: the darts on the way to somewhere known.
     way: Vec<Dart>,
 }
@@ -128,13 +132,13 @@ impl FoldingExploration {
             trail: FoldedTrail::default(),
             in_trail: Vec::new(),
             unexplored: Vec::new(),
+            open: Vec::new(),
             pending: Vec::new(),
             hypotheses: Hypotheses::default(),
             to_marker: BreadthFirstTree::default(),
             to_marker_is_current: false,
             from_robot: Ways::default(),
             tests: Vec::new(),
-            identified: Vec::new(),
             way: Vec::new(),
         }
     }
@@ -193,8 +197,10 @@ impl FoldingExploration {
         self.journey.clear();
         self.in_trail.clear();
         self.unexplored.clear();
+        self.open.clear();
         self.pending.clear();
         self.hypotheses.clear();
+        self.from_robot.clear();
         self.to_marker_is_current = false;
     }
 
@@ -239,7 +245,9 @@ impl FoldingExploration {
 impl<E> From<TrailError> for MappingError<E> {
     fn from(error: TrailError) -> Self {
         match error {
-            TrailError::Contradiction(reason) => Contradiction::Trail(reason).into(),
+            TrailError::Contradiction(reason) => {
+                Contradiction::Trail { reason, expected: None }.into()
+            }
             TrailError::TooManyDarts => Self::Bound { bound: MAX_DARTS },
         }
     }

@@ -31,14 +31,18 @@ impl FoldingExploration {
     /// Finds the edges of the map whose far ends are now known, and the pending places.
     fn close_loops<W: World>(&mut self, world: &mut W, observer: &mut impl Observer<W>) {
         let mut unexplored = mem::take(&mut self.unexplored);
+        self.open.clear();
         self.pending.clear();
         unexplored.retain(|&edge| {
             if !self.map().is_unexplored(edge) {
                 return false;
             }
-            let Some(far) = self.trail.opposite(self.in_trail[edge.at()]) else { return true };
+            let Some(far) = self.trail.opposite(self.in_trail[edge.at()]) else {
+                self.open.push(edge);
+                return true;
+            };
             let Some(other) = self.trail.number(far).map(Dart) else {
-                self.pending.push(Pending { edge, far });
+                self.pending.push(Pending { edge, far, is_leaf: self.trail.is_leaf(far) });
                 return true;
             };
             self.journey.map.join(edge, other);
@@ -56,7 +60,7 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let Pending { edge, far } = pending;
+        let Pending { edge, far, .. } = pending;
         let degree = self.trail.degree(far);
         self.journey.check_bound(degree)?;
         let vertex = self.journey.map.add_vertex(degree);
@@ -110,7 +114,10 @@ impl FoldingExploration {
             return false;
         }
         let target = self.in_trail[hypothesis.at()];
-        let alive = self.trail.with_united(pending.far, target, |_| ()).is_ok();
+        let Pending { far, is_leaf, .. } = pending;
+        let alive = self.trail.degree(far) == self.trail.degree(target)
+            && (is_leaf && self.trail.takes_leaf(target, far)
+                || self.trail.with_united(far, target, |_| ()).is_ok());
         if !alive {
             self.hypotheses.refute(pending.edge, hypothesis);
         }

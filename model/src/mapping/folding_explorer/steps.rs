@@ -5,15 +5,22 @@ use std::cmp::Reverse;
 use super::{FoldingExploration, FoldingStep, HypothesisTest, Pending};
 use crate::embedded_graph::Dart;
 
-/// How many times nearer an open dart of the map must be than the marker is by the cheapest test, to be
-/// taken first.
-const EXPLORE_FACTOR: usize = 4;
+/// The most moves of a test that is made before an open dart of the map is taken, if that is so many moves
+/// away. The figures are the best that were tried.
+fn worthwhile(moves_to_open: usize) -> usize {
+    8 * moves_to_open + 2
+}
 
 impl FoldingExploration {
     /// What to do next; `None` if no dart is open.
     pub fn next_step(&mut self) -> Option<FoldingStep> {
         if self.trail.open_count() == 0 {
             return None;
+        }
+        if self.pending.is_empty()
+            && let Some(edge) = self.open_here()
+        {
+            return Some(FoldingStep::Explore(edge));
         }
         self.from_robot.find(&self.trail);
         let open = self.nearest_open();
@@ -25,17 +32,15 @@ impl FoldingExploration {
     /// All steps that [`next_step`](Self::next_step) may return if ties are broken in another way.
     pub fn open_steps(&mut self) -> Vec<FoldingStep> {
         let Some(first) = self.next_step() else { return Vec::new() };
+        self.from_robot.find(&self.trail);
         let mut steps = vec![first];
         let near = |at: &Self, dart: Dart| at.from_robot.moves_to(&at.trail, dart);
         let nearest = self.nearest_open().map(|(moves, _)| moves);
-        let is_open = |at: &Self, dart: Dart| at.trail.opposite(at.in_trail[dart.at()]).is_none();
         let edges: Vec<Option<(usize, Dart)>> = match nearest {
             None => vec![None],
             Some(moves) => {
-                let tied = |&&edge: &&Dart| {
-                    is_open(self, edge) && near(self, self.in_trail[edge.at()]) == moves
-                };
-                self.unexplored.iter().filter(tied).map(|&edge| Some((moves, edge))).collect()
+                let tied = |&&edge: &&Dart| near(self, self.in_trail[edge.at()]) == moves;
+                self.open.iter().filter(tied).map(|&edge| Some((moves, edge))).collect()
             }
         };
         let least = self.pending.iter().map(|pending| near(self, pending.far)).min();
@@ -71,14 +76,19 @@ impl FoldingExploration {
         once
     }
 
+    /// The first open dart of the map at the robot's vertex.
+    fn open_here(&self) -> Option<Dart> {
+        let robot = Dart(self.trail.number(self.trail.pose())?);
+        let is_open = |&edge: &Dart| self.trail.opposite(self.in_trail[edge.at()]).is_none();
+        self.map().darts_of(self.map().vertex(robot)).find(is_open)
+    }
+
     /// The nearest open dart of the map, and the moves to it.
     fn nearest_open(&self) -> Option<(usize, Dart)> {
-        let moves_to = |&edge: &Dart| {
-            let dart = self.in_trail[edge.at()];
-            let open = self.trail.opposite(dart).is_none();
-            open.then(|| (self.from_robot.moves_to(&self.trail, dart), edge))
-        };
-        self.unexplored.iter().filter_map(moves_to).min_by_key(|&(moves, _)| moves)
+        let moves_to =
+            |&edge: &Dart| self.from_robot.moves_to(&self.trail, self.in_trail[edge.at()]);
+        let open = self.open.iter().map(|edge| (moves_to(edge), *edge));
+        open.min_by_key(|&(moves, _)| moves)
     }
 
     /// Explores an open dart or tests a hypothesis about a pending place. Afterwards `tests` holds the
@@ -92,16 +102,16 @@ impl FoldingExploration {
         let Some(pending) = pending else { return explore };
         self.find_ways_to_marker();
         self.tests.clear();
-        let late = self.strict || self.trail.moves() > self.patience();
+        let late = self.is_late();
         let strict = if late { self.strict_test(pending) } else { None };
-        let test = strict.or_else(|| self.cheapest_test(pending));
-        match (open, test) {
-            (Some((moves, _)), Some(test)) if !late && EXPLORE_FACTOR * moves < test.cost => {
-                explore
-            }
-            (_, Some(test)) => Some(FoldingStep::Test(test)),
-            (_, None) => explore,
-        }
+        let most = open.filter(|_| !late).map_or(usize::MAX, |(moves, _)| worthwhile(moves));
+        let test = strict.or_else(|| self.cheapest_test(pending, most));
+        test.map(FoldingStep::Test).or(explore)
+    }
+
+    /// Whether the robot only makes strict tests.
+    fn is_late(&self) -> bool {
+        self.strict || self.trail.moves() > self.patience()
     }
 
     /// The number of moves after which the robot only makes strict tests, `4 n m + 200` for a map with `n`

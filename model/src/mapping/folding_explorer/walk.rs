@@ -5,7 +5,8 @@ use std::mem;
 use super::{FoldingExploration, HypothesisTest};
 use crate::{
     embedded_graph::Dart,
-    mapping::{FoldingEvent, MappingError, MappingEvent, Observer},
+    folding::TrailError,
+    mapping::{Contradiction, FoldingEvent, MappingError, MappingEvent, Observer},
     percept::{Door, Percept},
     world::World,
 };
@@ -32,7 +33,7 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<(), MappingError<W::Error>> {
-        let HypothesisTest { edge, hypothesis, cost, open, entry } = test;
+        let HypothesisTest { edge, hypothesis, cost, open, entry, .. } = test;
         self.report(FoldingEvent::Testing { edge, hypothesis, cost }, world, observer);
         let mut before = self.trail.vertex_count() + 1;
         let mut perceived = self.take_open(open, world, observer)?;
@@ -65,13 +66,16 @@ impl FoldingExploration {
         world: &mut W,
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
-        let mut way = mem::take(&mut self.way);
-        self.from_robot.darts_to(&self.trail, open, &mut way);
-        for &dart in &way {
-            let door = self.trail.door(self.trail.pose(), dart);
-            self.take(door, world, observer)?;
+        if self.trail.vertex(open) != self.trail.vertex(self.trail.pose()) {
+            self.from_robot.find(&self.trail);
+            let mut way = mem::take(&mut self.way);
+            self.from_robot.darts_to(&self.trail, open, &mut way);
+            for &dart in &way {
+                let door = self.trail.door(self.trail.pose(), dart);
+                self.take(door, world, observer)?;
+            }
+            self.way = way;
         }
-        self.way = way;
         self.take(self.trail.door(self.trail.pose(), open), world, observer)
     }
 
@@ -83,7 +87,14 @@ impl FoldingExploration {
         observer: &mut impl Observer<W>,
     ) -> Result<Percept, MappingError<W::Error>> {
         let percept = self.journey.go(door, world, observer)?;
-        self.trail.step(door, percept)?;
+        if let Err(error) = self.trail.step(door, percept) {
+            return Err(match error {
+                TrailError::Contradiction(reason) => {
+                    Contradiction::Trail { reason, expected: self.trail.seen_before() }.into()
+                }
+                TrailError::TooManyDarts => MappingError::from(error),
+            });
+        }
         self.find_robot();
         Ok(percept)
     }

@@ -9,7 +9,10 @@ use crate::{embedded_graph::Dart, folding::FoldedTrail};
 pub(super) struct Ways {
     /// For each trail vertex that is a root.
     way: Vec<Way>,
-    queue: Vec<Dart>,
+    /// The moves after which the ways were found.
+    found_after: Option<usize>,
+    /// Scratch: the vertices that are reached, with the darts by which.
+    queue: Vec<(Dart, usize)>,
 }
 
 /// A shortest way to a vertex.
@@ -24,34 +27,48 @@ struct Way {
 const UNREACHED: u32 = u32::MAX;
 
 impl Ways {
-    /// Finds the ways from the robot's present vertex.
+    /// Forgets an earlier run.
+    pub(super) fn clear(&mut self) {
+        self.found_after = None;
+    }
+
+    /// Finds the ways from the robot's present vertex, unless they are known.
     pub(super) fn find(&mut self, trail: &FoldedTrail) {
-        let Self { way, queue } = self;
+        if self.found_after.replace(trail.moves()) == Some(trail.moves()) {
+            return;
+        }
+        let Self { way, queue, .. } = self;
         let pose = trail.pose();
         way.clear();
         way.resize(trail.trail_vertex_count(), Way { moves: UNREACHED, entry: pose });
-        way[trail.vertex(pose)].moves = 0;
+        let here = trail.vertex(pose);
+        way[here].moves = 0;
         queue.clear();
-        queue.push(pose);
+        queue.push((pose, here));
         let mut next = 0;
-        while let Some(&pose) = queue.get(next) {
+        while let Some(&(pose, vertex)) = queue.get(next) {
             next += 1;
-            let moves = way[trail.vertex(pose)].moves + 1;
-            for dart in trail.darts_around(pose) {
-                let Some(entry) = trail.opposite(dart) else { continue };
-                let way = &mut way[trail.vertex(entry)];
+            let moves = way[vertex].moves + 1;
+            trail.for_each_neighbour(pose, |entry, vertex| {
+                let way = &mut way[vertex];
                 if way.moves == UNREACHED {
                     *way = Way { moves, entry };
-                    queue.push(entry);
+                    queue.push((entry, vertex));
                 }
-            }
+            });
         }
     }
 
     /// The moves to a dart's vertex.
     #[inline]
     pub(super) fn moves_to(&self, trail: &FoldedTrail, dart: Dart) -> usize {
-        self.way[trail.vertex(dart)].moves as usize
+        self.moves_to_vertex(trail.vertex(dart))
+    }
+
+    /// The moves to a vertex, with the number of its root.
+    #[inline]
+    pub(super) fn moves_to_vertex(&self, root: usize) -> usize {
+        self.way[root].moves as usize
     }
 
     /// Writes the darts by which the robot leaves on its way to a dart's vertex.
