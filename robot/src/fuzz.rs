@@ -5,14 +5,24 @@
 
 use std::fmt;
 
-use crate::log::{
-    Format,
-    decode::decode,
-    definition::{Definition, Dialect},
-    reader::Log,
-    rosbag2,
-    topic_map::TopicMap,
-    value::Value,
+use toposlam_model::{
+    enumerate::Class,
+    folding::WorldSearch,
+    mapping::DirectionalAlgorithm,
+    marker::{Directional, NoMarker},
+};
+
+use crate::{
+    conform::{ConformConfig, Evidence, ExtractedRun, Quirks, RunDriver, extract, judge},
+    log::{
+        Format,
+        decode::decode,
+        definition::{Definition, Dialect},
+        reader::Log,
+        rosbag2,
+        topic_map::TopicMap,
+        value::Value,
+    },
 };
 
 /// A target and its name, which is also the name in `fuzz/` and of the folder of its seeds.
@@ -40,8 +50,8 @@ pub fn bag(bytes: &[u8]) {
 }
 
 /// Any bytes are read as an MCAP file, whole or truncated. Its messages come in the order of their
-/// times with consecutive numbers, and the run in it can be read up to its end; or there is one
-/// error message.
+/// times with consecutive numbers, and the run in it can be read up to its end and judged; or there is
+/// one error message.
 ///
 /// # Panics
 /// Panics if the property is violated.
@@ -80,7 +90,9 @@ fn log(bytes: &[u8]) {
     if let Some(truncation) = log.truncation() {
         assert_is_a_message(truncation);
     }
-    read_run(&log, &TopicMap::unambiguous(&log));
+    let mapping = TopicMap::unambiguous(&log);
+    read_run(&log, &mapping);
+    judge_run(&log, &mapping);
 }
 
 /// Any bytes are read as a CARMEN log, perhaps compressed, as in [`mcap()`].
@@ -144,6 +156,40 @@ fn read_run(log: &Log, mapping: &TopicMap) {
             }
         }
         Err(error) => assert_is_a_message(&error),
+    }
+}
+
+/// Judges the run in a log without images, whoever chose its doors: it diverges at one of its events or at
+/// its end, or not; or there is an error.
+fn judge_run(log: &Log, mapping: &TopicMap) {
+    let Some(evidence) = Evidence::of(mapping) else { return };
+    let ExtractedRun { events, .. } = match extract(log, mapping, evidence, None, true, &()) {
+        Ok(run) => run,
+        Err(error) => return assert_is_a_message(&error),
+    };
+    let config = ConformConfig {
+        world: None,
+        marker: &Directional,
+        driver: RunDriver::Anyone,
+        search: WorldSearch { class: Class::Multigraph, max_edges: None, steps: 100 },
+        dart_bound: 50,
+    };
+    let algorithm =
+        |algorithm| ConformConfig { driver: RunDriver::Algorithm(algorithm), ..config.clone() };
+    for config in [
+        algorithm(DirectionalAlgorithm::Algorithm1),
+        algorithm(DirectionalAlgorithm::Folding),
+        ConformConfig { marker: &NoMarker, ..config.clone() },
+    ] {
+        match judge(events.clone(), &config, &Quirks::default(), &()) {
+            Ok(judgement) => {
+                if let Some(divergence) = judgement.divergence {
+                    assert!(divergence.event <= events.events.len());
+                    assert_is_a_message(&divergence.cause);
+                }
+            }
+            Err(error) => assert_is_a_message(&error),
+        }
     }
 }
 

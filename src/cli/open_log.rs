@@ -96,6 +96,9 @@ impl OpenLog {
         if let Some(evidence) = Evidence::of(&self.mapping) {
             return Ok(evidence);
         }
+        if self.has_one_percept() {
+            return Ok(Evidence::Recorded);
+        }
         if self.log.messages_total() == 0 {
             return Err(CliError::in_file(path, "the log is empty: it has no messages"));
         }
@@ -103,6 +106,13 @@ impl OpenLog {
             TopicMap::from_log(&self.log).map_err(|error| CliError::in_file(path, error))?;
         }
         Err(CliError::in_file(path, ExtractError::NothingMapped))
+    }
+
+    /// Whether the log has one percept and no doors: then its robot did not move.
+    fn has_one_percept(&self) -> bool {
+        let Some(percept) = self.mapping.carrier(Role::Percept) else { return false };
+        let topics = self.log.topics();
+        topics.iter().any(|topic| topic.name == percept.topic && topic.messages == 1)
     }
 
     /// The camera and the colours: those that are given, or else those in the log.

@@ -22,7 +22,7 @@ const SHAPE_6: &str = "worlds/shape-6.toml";
 const SHAPE_8: &str = "worlds/shape-8.toml";
 
 /// The log of a run without pictures.
-fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
+pub(super) fn logged(folder: &Path, world: &str, arguments: &[&str]) -> PathBuf {
     let log = folder.join("run.mcap");
     let simulate = ["simulate", world, "--by-scene", "--json", "--log", log.to_str().unwrap()];
     run([&simulate[..], arguments].concat());
@@ -36,7 +36,7 @@ fn log_and_page(name: &str) -> [PathBuf; 2] {
 }
 
 /// The exit code and what `--json` says.
-fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
+pub(super) fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
     let conform = ["conform", log.to_str().unwrap(), "--json"];
     let output = run([&conform[..], arguments].concat());
     let code = output.status.code();
@@ -175,6 +175,9 @@ fn a_log_of_algorithm_1_diverges_from_the_folding_explorer_at_a_door() {
     assert_eq!(report["condition"], "the folding explorer does not take this door here");
     let allowed = report["allowed"][0].as_str().unwrap();
     assert!(allowed.starts_with("door ") && allowed.contains("dart"), "{allowed}");
+    let before = report["event"].as_u64().unwrap() - 1;
+    let doors = format!("those of the folding explorer; up to event {before}");
+    assert_eq!(report["facts"]["doors"], doors);
     let command = report["command"].as_str().unwrap();
     assert!(command.ends_with("--algorithm folding"), "{command}");
     let again = run(command.split(' ').skip(1).collect::<Vec<_>>());
@@ -244,6 +247,8 @@ fn bad_input_is_one_message_and_exit_code_2() {
         (&[log, "--edges", "30"], "--edges"),
         (&[log, "--map", "x.toml", "--world", SHAPE_6], "--map"),
         (&[log, "--minimise", log], "this output would replace the input"),
+        (&[log, text, "--map", "x.toml"], "--map: this needs exactly one log"),
+        (&[log, text, "--minimise", "x.mcap"], "--minimise: this needs exactly one log"),
         (&[log, "--marker", "movable"], "--marker"),
         (&[log, "--driver", "anyone", "--algorithm", "folding"], "--algorithm: with --driver"),
         (&[log, "--algorithm", "other"], "--algorithm"),
@@ -444,7 +449,7 @@ fn doors_that_were_never_followed_are_listed() {
 }
 
 /// Percepts and doors of a robot without numbers, shapes and odometry.
-fn walked(folder: &Path, steps: &[(u32, i32, Option<u32>)]) -> PathBuf {
+pub(super) fn walked(folder: &Path, steps: &[(u32, i32, Option<u32>)]) -> PathBuf {
     let log = folder.join("walk.mcap");
     let mut writer = LogWriter::new(Vec::new()).unwrap();
     for (moves, &(degree, marker, door)) in steps.iter().enumerate() {

@@ -17,7 +17,7 @@ use toposlam_model::{
     world::{Action, GraphWorld, World},
 };
 
-use super::{folder, objects, read_world, run, stdout, stdout_of, world_files};
+use super::{folder, objects, read_world, run, stderr, stdout, stdout_of, world_files};
 
 /// Repeats the actions of a run from its start.
 fn replay<'w, M: Marker>(
@@ -186,6 +186,12 @@ fn a_run_that_reaches_its_bound_is_incomplete() {
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(stdout(&output).ends_with("Use --max-darts N to raise the bound.\n"));
+    assert_eq!(stderr(&output), "");
+    let map = folder("explore-bound").join("map.toml");
+    let few = ["explore", "worlds/shape-6.toml", "--max-darts", "3", "--map"];
+    let output = run([&few[..], &[map.to_str().unwrap()]].concat());
+    assert!(stderr(&output).contains("the map is not written: it is not complete"));
+    assert!(!map.exists());
     let output = run(["explore", "worlds/shape-6.toml", "--max-darts", "3", "--json"]);
     assert_eq!(output.status.code(), Some(3));
     let line = &objects(&stdout(&output))[0];

@@ -150,6 +150,17 @@ fn a_log_is_verified_against_its_checksums() {
     let text = stdout(&run(["info", "--verify", damaged]));
     assert!(text.contains(": the checksum of the chunk is wrong\n"), "{text}");
     assert!(stdout_of(["info", "--verify", RUN]).contains("contents verified: 7 messages"));
+    // A log without an index cannot be listed without its chunks.
+    let unlisted = folder("info-unlisted").join("run.mcap");
+    let mut bytes = fs::read(RUN).unwrap();
+    bytes[261] ^= 1;
+    fs::write(&unlisted, bytes).unwrap();
+    let unlisted = unlisted.to_str().unwrap();
+    assert_eq!(run(["info", unlisted]).status.code(), Some(2));
+    let (code, found) = verify(unlisted);
+    assert_eq!((code, &found["holds"]), (Some(1), &json!(false)));
+    assert_eq!(found["damage"].as_array().unwrap().len(), 1);
+    assert!(stdout(&run(["info", "--verify", unlisted])).contains("damaged, and not read further"));
     // Damaged and truncated is damaged; truncated is not known.
     assert_eq!(verify("fuzz/corpus/bag/error-a-chunk-that-grows-without-end").0, Some(1));
     assert_eq!(verify("fuzz/corpus/mcap/cut-in-a-chunk").0, Some(3));

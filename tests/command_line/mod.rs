@@ -7,6 +7,7 @@ mod calibrate;
 mod check;
 mod compare;
 mod conform;
+mod conform_report;
 mod counterexample;
 mod draw;
 mod evaluate;

@@ -198,7 +198,6 @@ fn match_choices(
     let (trace, moves) = (&*trace, default.moves);
     // If the default choices match the whole trace, they differ after its end.
     let from = match run {
-        Err(MappingError::World(TraceWorldError::End)) => trace.len(),
         Err(MappingError::Contradiction(_) | MappingError::Bound { .. }) => 2 * moves,
         _ => 2 * moves + 1,
     };
@@ -236,12 +235,15 @@ fn with_choices(
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use proptest::prelude::*;
 
     use super::*;
     use crate::{
-        any_graph::{Class, any_graph},
+        any_graph::any_graph,
         embedded_graph::{Dart, EmbeddedGraph},
+        enumerate::{Class, Each, EnumeratedGraph, Enumeration},
         isomorphism::code,
         mapping::{
             Choices, Contradiction,
@@ -339,8 +341,172 @@ mod tests {
         // The end of the tail has one dart, and the fork behind it has three.
         for (bound, event) in [(0, 0), (3, 2)] {
             let end = MatchEnd::Bound { event: trace.event(event), bound };
-            assert_eq!(match_algorithm(Algorithm1, &trace, TraceClaim::Part, bound).reached, end);
+            let followed = match_algorithm(Algorithm1, &trace, TraceClaim::Part, bound);
+            assert_eq!((followed.reached, followed.choices), (end, MatchedChoices::Default));
         }
+    }
+
+    /// Every start with up to four edges, and runs with many choices in it.
+    fn for_each_choice(mut visit: impl FnMut(&EmbeddedGraph, &Trace)) {
+        for edges in 1..=4 {
+            let mut of_start = |found: EnumeratedGraph| {
+                for numbers in [[1, 0], [0, 1], [2, 1], [5, 2]] {
+                    visit(found.graph, &chosen(found.graph, &numbers));
+                }
+                ControlFlow::Continue(())
+            };
+            let all = Enumeration::new(Each::Start, Class::Multigraph, edges).unwrap();
+            let _ = all.for_each(&mut of_start);
+        }
+    }
+
+    #[test]
+    fn the_first_event_of_other_choices_is_where_the_default_ones_differ() {
+        let mut others = 0;
+        for_each_choice(|graph, trace| {
+            let default = explored(graph, Dart(0));
+            let same = trace.events().zip(default.events()).take_while(|(one, other)| one == other);
+            let same = same.count();
+            let choices = if *trace == default {
+                MatchedChoices::Default
+            } else {
+                others += 1;
+                MatchedChoices::Other { from: Some(same) }
+            };
+            let followed = match_algorithm(Algorithm1, trace, TraceClaim::Whole, 100);
+            assert_eq!((&followed.reached, followed.choices), (&MatchEnd::Mapped, choices));
+            let part = match_algorithm(Algorithm1, trace, TraceClaim::Part, 100);
+            assert_eq!((part.reached, part.choices), (MatchEnd::Mapped, choices));
+            // After it there is nothing left to do.
+            let mut doors = trace.doors().to_vec();
+            doors.push(Door(0));
+            let longer = walked(graph, Dart(0), &doors);
+            let followed = match_algorithm(Algorithm1, &longer, TraceClaim::Whole, 100);
+            let MatchEnd::Departure(departure) = &followed.reached else { panic!("{followed:?}") };
+            let last = 2 * doors.len() - 1;
+            assert_eq!(departure.event.id, last);
+            let from = longer.events().zip(default.events()).position(|(one, other)| one != other);
+            let from = from.unwrap_or(default.len().min(last));
+            let expected = if from == last {
+                MatchedChoices::Default
+            } else {
+                MatchedChoices::Other { from: Some(from) }
+            };
+            assert_eq!(followed.choices, expected);
+            // Each door that is allowed instead is one that some choices take.
+            assert!(departure.allowed.iter().any(|step| step.purpose == StepPurpose::Done));
+            for door in departure.allowed.iter().filter_map(|step| step.door) {
+                doors[last / 2] = door;
+                let instead = walked(graph, Dart(0), &doors);
+                let followed = match_algorithm(Algorithm1, &instead, TraceClaim::Part, 100);
+                assert!(!matches!(followed.reached, MatchEnd::Departure(_)), "{followed:?}");
+            }
+        });
+        assert!(others > 1000, "{others}");
+    }
+
+    #[test]
+    fn the_bound_is_where_the_longest_run_reaches_it() {
+        let mut bounded = 0;
+        for_each_choice(|graph, trace| {
+            for bound in 1..graph.dart_count() {
+                let followed = match_algorithm(Algorithm1, trace, TraceClaim::Whole, bound);
+                let MatchEnd::Bound { event, .. } = followed.reached else { continue };
+                // No run goes on to the end of the trace up to there.
+                let part = trace.up_to(event.id);
+                let again = match_algorithm(Algorithm1, &part, TraceClaim::Part, bound);
+                assert_eq!(again.reached, followed.reached);
+                bounded += 1;
+            }
+        });
+        assert!(bounded > 1000, "{bounded}");
+    }
+
+    #[test]
+    fn every_part_of_a_run_with_other_choices_is_followed_to_its_end() {
+        for_each_choice(|_, trace| {
+            for event in 0..trace.len() - 1 {
+                let part = trace.up_to(event);
+                let followed = match_algorithm(Algorithm1, &part, TraceClaim::Part, 100);
+                assert!(matches!(followed.reached, MatchEnd::EndOfTrace | MatchEnd::Mapped));
+            }
+        });
+    }
+
+    /// The percept that Algorithm 1 expects in place of one that contradicts its map.
+    fn expected(departure: &Departure) -> Option<Percept> {
+        departure.allowed.iter().find_map(|allowed| match allowed.purpose {
+            StepPurpose::Contradicted(
+                Contradiction::KnownPlace { expected, .. }
+                | Contradiction::WayBack { expected, .. },
+            ) => Some(expected),
+            _ => None,
+        })
+    }
+
+    /// The trace with one more door at each of these moves.
+    fn wrong_after(trace: &Trace, moves: &[usize]) -> Trace {
+        let mut wrong = trace.clone();
+        for &at in moves {
+            wrong.percepts[at].degree += 1;
+        }
+        wrong
+    }
+
+    #[test]
+    fn all_contradictions_are_amended_in_one_match() {
+        let mut most = 0;
+        for_each_choice(|graph, trace| {
+            let departs =
+                |wrong: &Trace| match match_algorithm(Algorithm1, wrong, TraceClaim::Whole, 100)
+                    .reached
+                {
+                    MatchEnd::Departure(departure) => Some(departure),
+                    _ => None,
+                };
+            // The moves after which a wrong percept is a contradiction.
+            let contradicted = |&moves: &usize| {
+                let found = departs(&wrong_after(trace, &[moves]));
+                found.is_some_and(|found| {
+                    found.event.id == 2 * moves && expected(&found) == Some(trace.percepts()[moves])
+                })
+            };
+            let wrong: Vec<usize> = (1..trace.percepts().len()).filter(contradicted).collect();
+            let all = wrong_after(trace, &wrong);
+            let mut amended = Vec::new();
+            let mut amend = |departure: &Departure| {
+                amended.push(departure.event.id / 2);
+                expected(departure)
+            };
+            let followed = match_amended(&all, TraceClaim::Whole, 100, &mut amend);
+            assert_eq!((&followed.reached, &amended), (&MatchEnd::Mapped, &wrong));
+            let map = followed.run.map().complete().unwrap();
+            assert_eq!(code(map, FACING), code(graph, Dart(0)));
+            let good = match_algorithm(Algorithm1, trace, TraceClaim::Whole, 100);
+            assert_eq!(followed.choices, good.choices);
+            // One that is not replaced stays a departure.
+            if let [first, second, ..] = wrong[..] {
+                let mut once = |departure: &Departure| {
+                    expected(departure).filter(|_| departure.event.id == 2 * first)
+                };
+                let stopped = match_amended(&all, TraceClaim::Whole, 100, &mut once);
+                let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
+                assert_eq!(departure.event.id, 2 * second);
+            }
+            // A percept that is replaced by a wrong one is not replaced again.
+            if let Some(&first) = wrong.first() {
+                let mut asked = 0;
+                let mut wrongly = |_: &Departure| {
+                    asked += 1;
+                    Some(Percept { degree: 9, sighting: Sighting::Nothing })
+                };
+                let stopped = match_amended(&all, TraceClaim::Whole, 100, &mut wrongly);
+                let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
+                assert_eq!((departure.event.id, asked), (2 * first, 1));
+            }
+            most = most.max(wrong.len());
+        });
+        assert!(most > 5, "{most}");
     }
 
     proptest! {

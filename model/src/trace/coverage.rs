@@ -165,6 +165,34 @@ mod tests {
     }
 
     #[test]
+    fn each_case_has_a_name() {
+        let names = AlgorithmCase::ALL.map(|case| format!("{case:>20}").trim_start().to_owned());
+        assert_eq!(
+            names,
+            [
+                "new-vertex",
+                "confirmed",
+                "rejected-at-once",
+                "rejected-on-the-way",
+                "rejected-at-the-end",
+                "marker-seen",
+                "marker-missed",
+            ]
+        );
+        assert_eq!(format!("{:>10}", AlgorithmCase::Confirmed), " confirmed");
+    }
+
+    #[test]
+    fn what_did_not_happen_is_not_counted() {
+        let mut coverage = AlgorithmCoverage::default();
+        let percept = Percept { degree: 2, sighting: Sighting::Nothing };
+        let event =
+            MappingEvent::Arrived { edge: Dart(1), percept, contradicted: 0, hypotheses: 1 };
+        coverage.event(&mut (), Exploration::new(0).journey(), event);
+        assert_eq!(coverage, AlgorithmCoverage::default());
+    }
+
+    #[test]
     fn a_marker_that_points_elsewhere_is_not_missed() {
         let percept = |sighting| Percept { degree: 2, sighting };
         let [along, aside] = [0, 1].map(|door| percept(Sighting::Pointing(Door(door))));

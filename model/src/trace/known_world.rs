@@ -166,7 +166,7 @@ mod tests {
         trace.percepts[1].degree = 2;
         let misfit = poses(&graph, &Directional, &start, &trace).misfit.unwrap();
         let expected = Percept { degree: 3, sighting: Sighting::Nothing };
-        assert_eq!(misfit.event.id, 2);
+        assert_eq!((misfit.event.id, misfit.moves), (2, 1));
         assert_eq!(misfit.candidates[0].1, MisfitReason::Percept { expected });
         trace.percepts[1].degree = 3;
         trace.doors[1] = Door(3);
@@ -175,6 +175,25 @@ mod tests {
             (misfit.event.id, misfit.candidates[0].1),
             (3, MisfitReason::NoSuchDoor { degree: 3 })
         );
+    }
+
+    #[test]
+    fn a_percept_that_is_amended_leaves_the_poses_that_expect_it() {
+        let graph = lollipop();
+        let starts = anywhere(&graph, &NoMarker);
+        let percept = |degree| Percept { degree, sighting: Sighting::Nothing };
+        let trace = Trace::new([TraceEventKind::Percept(percept(9))]).unwrap();
+        // One end, a fork with three doors, and two corners with two doors each.
+        for (degree, count) in [(1, 1), (2, 4), (3, 3), (4, 0)] {
+            let mut asked = 0;
+            let found = poses_amended(&graph, &NoMarker, &starts, &trace, |misfit| {
+                asked += 1;
+                assert_eq!((misfit.event.id, misfit.moves, misfit.candidates.len()), (0, 0, 8));
+                Some(percept(degree))
+            });
+            assert_eq!((asked, found.left.first().copied().unwrap_or(0)), (1, count));
+            assert_eq!(found.misfit.is_some(), count == 0);
+        }
     }
 
     proptest! {

@@ -1,7 +1,10 @@
 //! Infers events from what a laser scanner shows: visits to junctions, and the doors taken. A visit is decided
 //! when several views agree, as those of a camera are.
 
-use std::{cmp::Ordering, f64::consts::TAU};
+use std::{
+    cmp::Ordering,
+    f64::consts::{FRAC_PI_3, TAU},
+};
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
@@ -77,8 +80,8 @@ struct PastVisit {
 
 /// A robot within this distance of where it was before goes back, in metres.
 const RETRACED: f64 = 0.6;
-/// The least length of a way after which the robot can be where it was, in metres.
-const LOOP: f64 = 1.6;
+/// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
+const TURN: f64 = 4.0;
 /// A junction that was not seen on this length of the way is forgotten, in metres.
 const FORGOTTEN: f64 = 30.0;
 /// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
@@ -207,11 +210,15 @@ impl LaserEvents {
         if self.visit.is_some() {
             return;
         }
-        let mut length = self.since.last().map_or(0.0, |&last| distance(last, robot));
+        let Some(&last) = self.since.last() else { return };
+        let mut length = distance(last, robot);
+        let ahead = direction(last, robot);
         for piece in self.since.windows(2).rev() {
             length += distance(piece[0], piece[1]);
-            if length > LOOP && distance_to_piece(robot, piece) < RETRACED {
-                self.turned_back ^= true;
+            let opposite = wrapped(ahead - direction(piece[1], piece[0])).abs() < FRAC_PI_3;
+            if opposite && length > TURN && distance_to_piece(robot, piece) < RETRACED {
+                // Who has not been at a junction yet comes from anywhere.
+                self.turned_back ^= self.last.is_some();
                 self.since.clear();
                 return;
             }

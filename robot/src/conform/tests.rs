@@ -31,6 +31,7 @@ use crate::{
 
 mod folding;
 mod oracle;
+mod report;
 mod tolerance;
 mod verdicts;
 

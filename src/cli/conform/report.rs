@@ -109,8 +109,8 @@ impl Judged<'_> {
                 format!("the search was limited to worlds with at most {edges} (--max-edges)")
             }
             SearchLimit::Steps => {
-                let steps = grouped(self.search.steps.into());
-                format!("the search reached its limit of {steps} steps (--max-steps)")
+                let steps = counted(self.search.steps as usize, "step");
+                format!("the search reached its limit of {steps} (--max-steps)")
             }
             SearchLimit::Decisions => "the search has too many places to decide".to_owned(),
             SearchLimit::Stopped => "the search was stopped".to_owned(),

@@ -96,8 +96,8 @@ params! {
         /// The number of views that decide: the last ones, which have seen most. Logs.
         views: usize = 8,
         /// An arm counts if it is seen in at least this part of them ... Logs.
-        agree: f64 = 0.5,
+        agree: f64 = 0.4,
         /// ... and the visit is undecided if the part is as near as this to it. Logs.
-        doubt: f64 = 0.1,
+        doubt: f64 = 0.02,
     }
 }

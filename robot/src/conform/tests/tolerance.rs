@@ -69,6 +69,49 @@ fn what_follows_a_divergence_is_not_tolerated() {
     let tolerated: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
     assert_eq!(tolerated[..4], [1, 2, 3, 4]);
     assert!(tolerated.iter().all(|&event| event <= 5), "{tolerated:?}");
+    // The events after it are the recorded ones.
+    assert_eq!(judgement.events.events[6..], events.events[6..]);
+}
+
+#[test]
+fn a_percept_is_not_tolerated_if_it_is_not_known_what_was_expected() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let good = log(&plan, starts_of(&plan)[0], 1).recorded();
+    // From any start, different percepts are expected.
+    let anywhere = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, None) };
+    let mut wrong = good.clone();
+    let CheckedKind::Arrival { arrival, .. } = &mut wrong.events[0].kind else { panic!() };
+    (arrival.degree, arrival.form) = (9, None);
+    let (_, judgement) = counted(&wrong, &anywhere, &everywhere(&["percept"]));
+    let divergence = judgement.divergence.unwrap();
+    assert_eq!((divergence.event, divergence.cause.name()), (0, "percept"));
+    assert!(judgement.tolerated.is_empty());
+}
+
+#[test]
+fn a_percept_is_not_tolerated_at_an_event_that_diverges_in_another_way() {
+    let (_, plan) = plans().unwrap().into_iter().find(|(name, _)| name == "building-12").unwrap();
+    let facing = starts_of(&plan)[0];
+    let good = log(&plan, facing, 1).recorded();
+    let anyone = ConformConfig { driver: RunDriver::Anyone, ..question(&plan, Some(facing)) };
+    for (question, cause) in [(anyone, "percept"), (without_world(), "contradiction")] {
+        let quirks = everywhere(&[cause]);
+        // Two events of which each alone is tolerated.
+        let alone = |event: &usize| {
+            let (_, judgement) = counted(&with_wrong_degrees(&good, &[*event]), &question, &quirks);
+            judgement.divergence.is_none()
+        };
+        let events: Vec<_> = (2..good.events.len()).step_by(2).filter(alone).take(2).collect();
+        let [first, second] = events[..] else { panic!("{events:?}") };
+        let mut wrong = with_wrong_degrees(&good, &events);
+        let CheckedKind::Arrival { arrival, .. } = &mut wrong.events[second].kind else { panic!() };
+        arrival.number = Some(99);
+        let (_, judgement) = counted(&wrong, &question, &quirks);
+        let divergence = judgement.divergence.unwrap();
+        assert_eq!((divergence.event, divergence.cause.name()), (second, "number"));
+        let at: Vec<_> = judgement.tolerated.iter().map(|(found, _)| found.event).collect();
+        assert_eq!(at, [first]);
+    }
 }
 
 /// The events of a log, with one more door at each of these arrivals.

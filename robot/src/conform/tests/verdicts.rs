@@ -6,6 +6,8 @@ use toposlam_model::{
     embedded_graph::EmbeddedGraph,
     enumerate::{Each, EnumeratedGraph, Enumeration},
     folding::{SearchLimit, SmallestWorld},
+    format::world_file,
+    mapping::{Journey, MappingEvent, MappingRun},
     marker::NoMarker,
     trace::{Trace, TraceEventKind},
     world::World,
@@ -397,4 +399,50 @@ fn bare() -> Options {
         bare: true,
         unmarked: false,
     }
+}
+
+/// The wheel of Figure 1(b) lies on the torus.
+#[test]
+fn the_first_event_that_no_planar_world_explains_is_exact() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../worlds/figure-1b.toml");
+    let wheel = world_file::read(&std::fs::read(file).unwrap()).unwrap();
+    let mut robot = GraphWorld::new(&wheel.graph, wheel.start.unwrap());
+    let mut kinds = vec![(robot.sensed(), None)];
+    let mut listen = |robot: &mut GraphWorld, _: &Journey, event: MappingEvent| {
+        if let MappingEvent::Moved { door, .. } = event {
+            kinds.push((robot.sensed(), Some(door)));
+        }
+    };
+    let mut run = MappingRun::new(DirectionalAlgorithm::Algorithm1, DARTS);
+    run.map_world(&mut robot, &mut listen).unwrap();
+    let mut recorded = RecordedEvents::default();
+    let mut observe = |kind| recorded.observe(EventSource::default(), &kind);
+    for (Percept { degree, sighting }, door) in kinds {
+        if let Some(door) = door {
+            observe(EventKind::Door { number: None, door });
+        }
+        let sighting = Some(sighting);
+        observe(EventKind::Arrival(Arrival {
+            number: None,
+            degree,
+            sighting,
+            form: None,
+            entry: None,
+        }));
+    }
+    let events = RunEvents { events: recorded.finish(), ..RunEvents::default() };
+    let search = WorldSearch { class: Class::Planar, ..without_world().search };
+    let planar = ConformConfig { search, ..without_world() };
+    let divergence_of = |last| judged(&events.up_to(last), &planar).divergence;
+    let last = events.events.len() - 1;
+    let whole = divergence_of(last).unwrap();
+    let class = Impossibility::Class { class: Class::Planar };
+    assert!(matches!(&whole.cause, DivergenceCause::NoWorld { why, .. } if *why == class));
+    for event in (0..=last).step_by(2) {
+        let found = divergence_of(event);
+        let first = (event >= whole.event).then_some(&whole);
+        assert_eq!(found.as_ref(), first, "after event {event}");
+    }
+    let other = ConformConfig { search: without_world().search, ..planar.clone() };
+    assert_eq!(judged(&events, &other).divergence, None);
 }
