@@ -83,6 +83,7 @@ const COMMANDS: [(&str, &[&str]); 16] = [
             "conform run.mcap --world worlds/shape-8.toml --minimise short.mcap",
             "conform run.mcap carried.mcap --require-coverage confirmed",
             "conform run.mcap --max-darts 4 --max-steps 1",
+            "conform run.mcap --events recorded",
         ],
     ),
     ("replay", &["replay run.mcap"]),

@@ -4,11 +4,16 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
-use toposlam_robot::conform::{CheckedKind, EventSource, LaserEvents, RunEvents};
+use toposlam_robot::{
+    conform::{CheckedKind, EventSource, Evidence, LaserEvents, RunEvents, extract},
+    log::{reader::Log, topic_map::TopicMap},
+};
 use toposlam_vision::laser::{
     params::LaserParams,
     scan::{Scan, ScanGeometry, ScannerPose},
 };
+
+use crate::logs::carmen;
 
 /// A straight corridor: the ends of its middle line, and its width.
 type Corridor = ([f64; 2], [f64; 2], f64);
@@ -195,4 +200,35 @@ fn a_robot_that_turns_back_between_junctions_enters_the_same_one_again() {
     assert_eq!(visits(&events), [(Some(3), Some(1)), back, (Some(3), Some(1))]);
     // It stood at one junction, and took the door straight on in the end.
     assert_eq!(visits(&events.without_excursions()), [(Some(3), Some(2))]);
+}
+
+/// The visits of junctions with at least three arms in the logs of two real buildings, as they were marked by
+/// hand: the scan near the junction, the degree, and the door by which the robot left.
+#[test]
+fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
+    let Some(folder) = carmen::folder() else { return };
+    for (name, count) in [("aces", 12), ("seattle", 3)] {
+        let text = std::fs::read_to_string(folder.join(format!("{name}-visits.jsonl"))).unwrap();
+        let marked: Vec<_> = text
+            .lines()
+            .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
+            .filter(|visit| visit["degree"].as_u64().unwrap() >= 3)
+            .map(|visit| (visit["degree"].as_u64(), visit["door"].as_u64()))
+            .collect();
+        assert_eq!(marked.len(), count);
+        let log = Log::open(&folder.join(name).with_extension("log.gz")).unwrap();
+        let mapping = TopicMap::from_log(&log).unwrap();
+        let run = extract(&log, &mapping, Evidence::Laser, None, false, &()).unwrap();
+        let found: Vec<_> = visits(&run.events)
+            .into_iter()
+            .filter(|(degree, _)| degree.is_some())
+            .map(|(degree, door)| (degree.map(u64::from), door.map(u64::from)))
+            .collect();
+        assert_eq!(found.len(), count, "{name}: {found:?}");
+        for (found, marked) in found.iter().zip(&marked) {
+            // The door of the first visit is not marked if the log begins there.
+            assert_eq!(found.0, marked.0, "{name}");
+            assert!(marked.1.is_none() || found.1 == marked.1, "{name}: {found:?}, {marked:?}");
+        }
+    }
 }

@@ -181,7 +181,7 @@ fn a_log_that_was_cut_is_read_up_to_its_last_whole_line() {
 }
 
 /// The logs, if they exist; `TOPOSLAM_CARMEN_LOGS` names their folder.
-fn folder() -> Option<PathBuf> {
+pub(crate) fn folder() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/carmen");
     let folder = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);
     let found = folder.join("aces.log.gz").is_file();

@@ -7,7 +7,7 @@
 
 mod bag;
 mod broken;
-mod carmen;
+pub(crate) mod carmen;
 mod mcap_file;
 mod recorded;
 mod roles;
