@@ -478,7 +478,7 @@ mod tests {
                 amended.push(departure.event.id / 2);
                 expected(departure)
             };
-            let followed = match_amended(&all, TraceClaim::Whole, 100, &mut amend);
+            let followed = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut amend);
             assert_eq!((&followed.reached, &amended), (&MatchEnd::Mapped, &wrong));
             let map = followed.run.map().complete().unwrap();
             assert_eq!(code(map, FACING), code(graph, Dart(0)));
@@ -489,7 +489,7 @@ mod tests {
                 let mut once = |departure: &Departure| {
                     expected(departure).filter(|_| departure.event.id == 2 * first)
                 };
-                let stopped = match_amended(&all, TraceClaim::Whole, 100, &mut once);
+                let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut once);
                 let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
                 assert_eq!(departure.event.id, 2 * second);
             }
@@ -500,7 +500,7 @@ mod tests {
                     asked += 1;
                     Some(Percept { degree: 9, sighting: Sighting::Nothing })
                 };
-                let stopped = match_amended(&all, TraceClaim::Whole, 100, &mut wrongly);
+                let stopped = match_amended(Algorithm1, &all, TraceClaim::Whole, 100, &mut wrongly);
                 let MatchEnd::Departure(departure) = stopped.reached else { panic!() };
                 assert_eq!((departure.event.id, asked), (2 * first, 1));
             }

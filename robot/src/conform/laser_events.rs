@@ -1,10 +1,7 @@
 //! Infers events from what a laser scanner shows: visits to junctions, and the doors taken. A visit is decided
 //! when several views agree, as those of a camera are.
 
-use std::{
-    cmp::Ordering,
-    f64::consts::{FRAC_PI_3, TAU},
-};
+use std::f64::consts::{FRAC_PI_3, TAU};
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
@@ -294,12 +291,7 @@ impl LaserEvents {
         let entry = visit.entry.and_then(|entry| nearest(&arms, entry)).unwrap_or_default();
         let entry = arms[entry];
         let clockwise = |arm: f64| (entry - arm).rem_euclid(TAU);
-        arms.sort_by(|&one, &other| {
-            if one == entry || other == entry {
-                return (other == entry).cmp(&(one == entry));
-            }
-            clockwise(one).partial_cmp(&clockwise(other)).unwrap_or(Ordering::Equal)
-        });
+        arms.sort_by(|&one, &other| clockwise(one).total_cmp(&clockwise(other)));
         let arrival = Arrival {
             number: None,
             degree: arms.len() as u32,

@@ -11,6 +11,8 @@
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`];
 //! * [`sensor`]: all of these steps.
 
+#![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
+
 pub mod distance;
 pub mod ends;
 mod evidence;

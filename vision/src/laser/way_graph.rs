@@ -165,7 +165,7 @@ impl WayGraph {
         }
         let second = self.ways[other].clone().from_node(node);
         let first = &mut self.ways[one];
-        *first = std::mem::take(first).to_node(node);
+        *first = std::mem::take(first).into_node(node);
         first.line.extend(second.line.into_iter().skip(1));
         first.nodes[1] = second.nodes[1];
         first.length += second.length;
@@ -186,7 +186,7 @@ impl Way {
         if self.nodes[0] == node { self } else { self.reversed() }
     }
 
-    fn to_node(self, node: usize) -> Self {
+    fn into_node(self, node: usize) -> Self {
         if self.nodes[1] == node { self } else { self.reversed() }
     }
 
