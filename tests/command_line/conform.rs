@@ -41,7 +41,32 @@ pub(super) fn judged(log: &Path, arguments: &[&str]) -> (Option<i32>, Value) {
     let output = run([&conform[..], arguments].concat());
     let code = output.status.code();
     assert!(code != Some(2), "{}", stderr(&output));
-    (code, objects(&stdout(&output)).remove(0))
+    let lines = objects(&stdout(&output));
+    (code, lines.into_iter().find(|line| line["kind"] == "log").unwrap())
+}
+
+/// The junctions that the robot visited are the same, whether they are recorded or inferred.
+#[test]
+fn each_visit_is_a_line_if_the_source_of_events_is_chosen() {
+    let log = logged(&folder("conform-visits"), SHAPE_6, &["--seed", "3"]);
+    let visits = |source: &str| {
+        let log = log.to_str().unwrap();
+        let output = run(["conform", log, "--json", "--world", SHAPE_6, "--events", source]);
+        let mut lines = objects(&stdout(&output));
+        assert_eq!(lines.pop().unwrap()["kind"], "log");
+        let fields = ["kind", "index", "degree", "door", "marker", "turned_back"];
+        let chosen = |line: &Value| fields.map(|field| line[field].clone());
+        lines.iter().map(chosen).collect::<Vec<_>>()
+    };
+    let recorded = visits("recorded");
+    assert_eq!(recorded, visits("scenes"));
+    // 15 events: percepts, and a door after each but the last.
+    assert_eq!(recorded.len(), 8);
+    assert_eq!(
+        recorded[0][..],
+        serde_json::json!(["event", 0, 2, 0, 0, false]).as_array().unwrap()[..]
+    );
+    assert_eq!(recorded[7][3], Value::Null);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use std::{cmp::Reverse, collections::VecDeque};
 
 use super::{
+    clearances::Clearances,
     grid::{Cell, Grid},
     params::LaserParams,
-    skeleton::Clearances,
 };
 
 /// How a way ends.

@@ -5,7 +5,7 @@
 //! * [`params`]: the thresholds of all steps;
 //! * [`scan`]: one sweep of the scanner;
 //! * [`grid`]: the local map, of the cells where rays of the last scans have passed and ended;
-//! * [`distance`]: the distance of each cell to the nearest wall;
+//! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall;
 //! * [`ends`]: where the ways around the robot go on unseen, and where they end;
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`];
@@ -13,12 +13,13 @@
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
+pub mod clearances;
 pub mod distance;
 pub mod ends;
-mod evidence;
 pub mod grid;
 pub mod junctions;
 pub mod params;
+mod ray_counts;
 pub mod scan;
 pub mod sensor;
 pub mod skeleton;

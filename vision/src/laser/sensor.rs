@@ -6,10 +6,10 @@ use std::collections::VecDeque;
 use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 
 use super::{
-    evidence::{Evidence, Rays},
     grid::Grid,
     junctions::LaserJunction,
     params::{LaserParams, LocalMapParams},
+    ray_counts::{RayCounts, Rays},
     scan::{Reading, Scan},
     skeleton::Skeleton,
     way_graph::{WayGraph, distance},
@@ -19,7 +19,7 @@ use super::{
 #[derive(Clone, Debug)]
 pub struct LaserSensor {
     params: LaserParams,
-    evidence: Option<Evidence>,
+    counts: Option<RayCounts>,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
     /// The length of the robot's way, in metres.
@@ -43,6 +43,8 @@ pub struct LaserView {
     pub junctions: Vec<LaserJunction>,
 }
 
+/// Odometry beyond this is wrong, in metres; cells near it would have no place.
+const FARTHEST: f64 = 1e7;
 /// The counts reach this many times as far as a window of the local map.
 const MARGIN: usize = 3;
 
@@ -50,13 +52,17 @@ impl LaserSensor {
     /// A sensor that has seen nothing yet.
     #[must_use]
     pub fn new(params: LaserParams) -> Self {
-        Self { params, evidence: None, scans: VecDeque::new(), way: 0.0, last: None }
+        Self { params, counts: None, scans: VecDeque::new(), way: 0.0, last: None }
     }
 
     /// Takes the next scan, and the odometry at its time. Returns what is seen now, or `None` if the robot
-    /// has hardly moved since the last view.
+    /// has hardly moved since the last view, or if the odometry is more than 10,000 km from its origin.
     pub fn see(&mut self, scan: &Scan, odometry: &Odometry) -> Option<LaserView> {
         let params = self.params.map;
+        let pose = odometry.position.into_iter().chain([odometry.heading]);
+        if pose.into_iter().any(|number| !(-FARTHEST..=FARTHEST).contains(&number)) {
+            return None;
+        }
         if let Some(last) = self.last {
             let driven = distance(last.position, odometry.position);
             let turned = wrapped(odometry.heading - last.heading).abs();
@@ -68,8 +74,8 @@ impl LaserSensor {
         self.last = Some(*odometry);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
         self.add(rays(scan, odometry, &params), odometry.position, side);
-        let evidence = self.evidence.as_ref()?;
-        let mut grid = evidence.window(odometry.position, side, &params);
+        let counts = self.counts.as_ref()?;
+        let mut grid = counts.window(odometry.position, side, &params);
         grid.clean(&params);
         let skeleton = Skeleton::new(&grid, odometry.position, &self.params);
         let graph = skeleton.as_ref().map_or_else(WayGraph::default, |skeleton| {
@@ -81,23 +87,23 @@ impl LaserSensor {
 
     /// Adds the rays of a scan, and forgets those of old ones.
     fn add(&mut self, rays: Rays, robot: [f64; 2], side: usize) {
-        let moved = self.evidence.as_ref().is_none_or(|evidence| !evidence.covers(robot, side));
+        let moved = self.counts.as_ref().is_none_or(|counts| !counts.covers(robot, side));
         let forgotten = self.way - self.params.map.memory;
         while let Some((_, old)) = self.scans.front().filter(|(way, _)| *way < forgotten) {
-            if let Some(evidence) = self.evidence.as_mut().filter(|_| !moved) {
-                evidence.remove(old);
+            if let Some(counts) = self.counts.as_mut().filter(|_| !moved) {
+                counts.remove(old);
             }
             self.scans.pop_front();
         }
         self.scans.push_back((self.way, rays));
         if moved {
-            let mut evidence = Evidence::around(robot, MARGIN * side, self.params.map.cell);
+            let mut counts = RayCounts::around(robot, MARGIN * side, self.params.map.cell);
             for (_, rays) in &self.scans {
-                evidence.add(rays);
+                counts.add(rays);
             }
-            self.evidence = Some(evidence);
-        } else if let (Some(evidence), Some((_, rays))) = (&mut self.evidence, self.scans.back()) {
-            evidence.add(rays);
+            self.counts = Some(counts);
+        } else if let (Some(counts), Some((_, rays))) = (&mut self.counts, self.scans.back()) {
+            counts.add(rays);
         }
     }
 }
@@ -117,6 +123,8 @@ fn rays(scan: &Scan, odometry: &Odometry, params: &LocalMapParams) -> Rays {
             Reading::NoReturn | Reading::Invalid => (bearing, None),
         })
         .collect();
+    // Nothing beyond is on the map while the scan is remembered.
+    let farthest = 2.0 * params.reach + params.memory;
     let point = |bearing: f64, range: f64| place(scan.point(bearing, range));
     let end = |index: usize| {
         let &(bearing, range) = readings.get(index)?;
@@ -124,6 +132,10 @@ fn rays(scan: &Scan, odometry: &Odometry, params: &LocalMapParams) -> Rays {
     };
     for (index, &(bearing, range)) in readings.iter().enumerate() {
         let Some(range) = range else { continue };
+        if range > farthest {
+            rays.between.push(point(bearing, farthest));
+            continue;
+        }
         rays.hits.push(point(bearing, range));
         let Some(&(next, Some(other))) = readings.get(index + 1) else { continue };
         let step = wrapped(next - bearing);
@@ -131,7 +143,7 @@ fn rays(scan: &Scan, odometry: &Odometry, params: &LocalMapParams) -> Rays {
         let parts = (step.abs() * params.reach / params.cell).ceil() as u32;
         for part in 1..parts {
             let bearing = bearing + step * f64::from(part) / f64::from(parts);
-            rays.between.push(point(bearing, range.min(other)));
+            rays.between.push(point(bearing, range.min(other).min(farthest)));
         }
         let four = [index.checked_sub(1).and_then(end), end(index), end(index + 1), end(index + 2)];
         let [before, Some(one), Some(two), after] = four else { continue };

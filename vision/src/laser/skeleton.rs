@@ -3,20 +3,11 @@
 //! the ends of the ways, and so has no branches into corners.
 
 use super::{
-    distance::squared_distances,
+    clearances::Clearances,
     ends::{End, ends, way_lengths},
     grid::{Cell, Grid},
     params::LaserParams,
 };
-
-/// Squared distances of each cell, in cells.
-#[derive(Clone, Debug)]
-pub struct Clearances {
-    /// To the nearest occupied cell.
-    pub wall: Vec<u32>,
-    /// To the nearest cell that is unknown, or on the border of the map.
-    pub unknown: Vec<u32>,
-}
 
 /// The cells in the middle of the ways that the robot can take.
 #[derive(Clone, Debug)]
@@ -36,12 +27,7 @@ impl Skeleton {
     /// The skeleton of the ways from a robot at a point; `None` if there is none.
     #[must_use]
     pub fn new(grid: &Grid, robot: [f64; 2], params: &LaserParams) -> Option<Self> {
-        let clearances = Clearances {
-            wall: squared_distances(grid.side, |at| grid.cells[at] == Cell::Occupied),
-            unknown: squared_distances(grid.side, |at| {
-                grid.cells[at] == Cell::Unknown || grid.is_border(at)
-            }),
-        };
+        let clearances = Clearances::new(grid);
         let radius = params.map.min_width / 2.0 / grid.cell;
         let is_way = |at: usize| {
             let wide = f64::from(clearances.wall[at]) >= radius * radius;

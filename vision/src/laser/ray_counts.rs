@@ -20,7 +20,7 @@ pub(super) struct Rays {
 
 /// Counts of rays. Rays are added, and removed again when their scan is forgotten.
 #[derive(Clone, Debug)]
-pub(super) struct Evidence {
+pub(super) struct RayCounts {
     side: usize,
     cell: f64,
     /// The corner with the least coordinates, in metres.
@@ -29,7 +29,7 @@ pub(super) struct Evidence {
     passes: Vec<u32>,
 }
 
-impl Evidence {
+impl RayCounts {
     /// Counts around a point, in a square of this many cells a side.
     pub(super) fn around(point: [f64; 2], side: usize, cell: f64) -> Self {
         // Whole cells from the origin of the frame.
@@ -122,8 +122,9 @@ impl Evidence {
     }
 }
 
+/// The cell at a place; far away, one beyond every map.
 fn cell_at(place: [f64; 2]) -> [i64; 2] {
-    place.map(|at| at.floor() as i64)
+    place.map(|at| at.clamp(-1e9, 1e9).floor() as i64)
 }
 
 /// The cells on a line, each once, sampled this often on each cell that it crosses along its main axis.
