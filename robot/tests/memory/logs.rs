@@ -73,6 +73,7 @@ pub(crate) fn reading_takes_no_more_memory_than_stated() {
     assert_eq!(peak(|| drop(black_box(Vec::<u8>::with_capacity(1000)))), 1000);
     seeds_hold();
     zeros_hold();
+    lines_hold();
     for length in [0, 1, 7, 8, 30, 127, 260, 1030, 4100, 33_000] {
         for part in ["int8 a\n", "int8 a", "\n", "===\nMSG: a/B\n", "int8 A=1\n", "#", "B b\n", "a"]
         {
@@ -158,8 +159,8 @@ fn zeros_hold() {
     }
 }
 
-#[test]
-fn a_log_of_lines_takes_the_same_memory_whatever_its_length() {
+/// A log of lines takes the same memory, whatever its length.
+fn lines_hold() {
     let line = format!("FLASER 180{} 1 2 3 1 2 3", " 12.5".repeat(180));
     for (lines, format) in [(9000, "log"), (18_000, "log"), (18_000, "gzip")] {
         let mut text = String::new();
