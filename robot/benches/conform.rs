@@ -17,7 +17,7 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, KnownWorld, Quirks,
+        CheckedEvent, CheckedKind, ConformConfig, EventSource, Evidence, ExtractConfig, KnownWorld, Quirks,
         RunDriver, RunEvents, extract, judge,
     },
     evaluation::random_plan::random_plan_with,
@@ -114,7 +114,8 @@ fn ten_thousand_events(bencher: divan::Bencher) {
     bencher.bench_local(|| {
         let log = Log::of_bytes(bytes.clone()).unwrap();
         let mapping = TopicMap::unambiguous(&log);
-        let gathered = extract(&log, &mapping, Evidence::Recorded, None, true, &()).unwrap();
+        let config = ExtractConfig { marked: true, ..ExtractConfig::new(Evidence::Recorded) };
+        let gathered = extract(&log, &mapping, &config, &()).unwrap();
         let judgement = judge(gathered.events, &question, &Quirks::default(), &()).unwrap();
         assert!(judgement.divergence.is_none() && judgement.trace.len() == 10_000);
     });

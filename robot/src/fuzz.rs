@@ -13,7 +13,9 @@ use toposlam_model::{
 };
 
 use crate::{
-    conform::{ConformConfig, Evidence, ExtractedRun, Quirks, RunDriver, extract, judge},
+    conform::{
+        ConformConfig, Evidence, ExtractConfig, ExtractedRun, Quirks, RunDriver, extract, judge,
+    },
     log::{
         Format,
         decode::decode,
@@ -163,7 +165,8 @@ fn read_run(log: &Log, mapping: &TopicMap) {
 /// its end, or not; or there is an error.
 fn judge_run(log: &Log, mapping: &TopicMap) {
     let Some(evidence) = Evidence::of(mapping) else { return };
-    let ExtractedRun { events, .. } = match extract(log, mapping, evidence, None, true, &()) {
+    let config = ExtractConfig { marked: true, ..ExtractConfig::new(evidence) };
+    let ExtractedRun { events, .. } = match extract(log, mapping, &config, &()) {
         Ok(run) => run,
         Err(error) => return assert_is_a_message(&error),
     };

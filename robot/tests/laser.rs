@@ -1,12 +1,16 @@
 //! Junctions from laser scans, in plans of corridors: what a scanner measures is computed here, by another way
 //! than sensing uses it.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    sync::Arc,
+};
 
 use toposlam_model::{driving::odometry::Odometry, percept::Door};
 use toposlam_robot::{
-    conform::{CheckedKind, EventSource, Evidence, LaserEvents, RunEvents, extract},
-    log::{reader::Log, topic_map::TopicMap},
+    conform::{CheckedKind, EventSource, LaserEvents, RunEvents},
+    log::{entries::Content, reader::Log, topic_map::TopicMap},
+    record::{EventKind, Frame},
 };
 use toposlam_vision::laser::{
     params::LaserParams,
@@ -73,7 +77,16 @@ fn scan(corridors: &[Corridor], at: &Odometry) -> Scan {
 /// The events of a robot that drives straight from point to point, half a metre from scan to scan, and turns
 /// there; its odometry drifts by so many radians a metre.
 fn events(corridors: &[Corridor], way: &[[f64; 2]], drift: f64) -> RunEvents {
-    let mut inferred = LaserEvents::new(LaserParams::default());
+    events_with(LaserParams::default(), corridors, way, drift)
+}
+
+fn events_with(
+    params: LaserParams,
+    corridors: &[Corridor],
+    way: &[[f64; 2]],
+    drift: f64,
+) -> RunEvents {
+    let mut inferred = LaserEvents::new(params);
     let (mut believed, mut driven) = (way[0], 0.0);
     let mut heading = f64::NAN;
     let mut number = 0;
@@ -143,7 +156,7 @@ fn each_junction_on_the_way_is_visited_once() {
     // Straight on: past the stem on the left, the one on the right, and the crossing.
     let way = [[3.0, 0.0], [57.0, 0.0]];
     let expected = [(Some(3), Some(2)), (Some(3), Some(1)), (Some(4), Some(2))];
-    for drift in [0.0_f64, 5.0, -5.0] {
+    for drift in [0.0_f64, 5.0, -5.0, 10.0, -10.0] {
         let events = events(&comb(), &way, drift.to_radians() / 10.0);
         assert_eq!(visits(&events), expected, "drift of {drift} degrees in 10 m");
     }
@@ -202,33 +215,103 @@ fn a_robot_that_turns_back_between_junctions_enters_the_same_one_again() {
     assert_eq!(visits(&events.without_excursions()), [(Some(3), Some(2))]);
 }
 
-/// The visits of junctions with at least three arms in the logs of two real buildings, as they were marked by
-/// hand: the scan near the junction, the degree, and the door by which the robot left.
+#[test]
+fn a_robot_that_turns_back_at_the_end_of_a_corridor_was_at_a_dead_end() {
+    let plan = [([0.0, 0.0], [30.0, 0.0], 2.0), ([14.0, -14.0], [14.0, 0.0], 2.0)];
+    // Past the stem to the end of the corridor, and back into the stem.
+    let way = [[2.0, 0.0], [28.0, 0.0], [14.0, 0.0], [14.0, -10.0]];
+    let events = events(&plan, &way, 0.0);
+    assert_eq!(visits(&events), [(Some(3), Some(2)), (Some(1), Some(0)), (Some(3), Some(1))]);
+}
+
+#[test]
+fn sharp_bends_are_vertices_if_corners_are() {
+    let mut params = LaserParams::default();
+    params.corner.corners = true;
+    // Two right angles, then a bend by 45 degrees.
+    let plan = [
+        ([0.0, 0.0], [20.0, 0.0], 2.0),
+        ([20.0, 0.0], [20.0, 16.0], 2.0),
+        ([20.0, 16.0], [36.0, 16.0], 2.0),
+        ([36.0, 16.0], [50.0, 30.0], 2.0),
+    ];
+    let way = [[2.0, 0.0], [20.0, 0.0], [20.0, 16.0], [36.0, 16.0], [46.0, 26.0]];
+    let corner = (Some(2), Some(1));
+    assert_eq!(visits(&events_with(params, &plan, &way, 0.0)), [corner, corner]);
+    assert_eq!(visits(&events(&plan, &way, 0.0)), []);
+}
+
+/// A degree, and the door that was taken.
+type MarkedVisit = (u64, Option<u64>);
+
+/// The visits of junctions in a log of a real building, as they were marked by hand, and the scans of the log,
+/// each with its odometry.
+fn recorded(name: &str) -> Option<(Vec<MarkedVisit>, Vec<(Arc<Scan>, Odometry)>)> {
+    let folder = carmen::folder()?;
+    let text = std::fs::read_to_string(folder.join(format!("{name}-visits.jsonl"))).unwrap();
+    let marked = text.lines().map(|line| {
+        let visit: serde_json::Value = serde_json::from_str(line).unwrap();
+        (visit["degree"].as_u64().unwrap(), visit["door"].as_u64())
+    });
+    let log = Log::open(&folder.join(name).with_extension("log.gz")).unwrap();
+    let bound = TopicMap::from_log(&log).unwrap().bind(&log).unwrap();
+    let scans = log.entries(&bound).filter_map(|entry| match entry.unwrap().content {
+        Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) => {
+            Some((scan, odometry))
+        }
+        _ => None,
+    });
+    Some((marked.collect(), scans.collect()))
+}
+
+/// The odometry of a robot whose heading drifts by so many radians a metre.
+fn drifted(track: &[(Arc<Scan>, Odometry)], drift: f64) -> Vec<(Arc<Scan>, Odometry)> {
+    let (mut off, mut position) = (0.0, [0.0; 2]);
+    let mut last: Option<Odometry> = None;
+    let drifted = track.iter().map(|(scan, odometry)| {
+        if let Some(last) = last {
+            let step = [0, 1].map(|axis| odometry.position[axis] - last.position[axis]);
+            let length = step[0].hypot(step[1]);
+            let ahead = step[1].atan2(step[0]) + off + drift * length / 2.0;
+            off += drift * length;
+            position = [position[0] + length * ahead.cos(), position[1] + length * ahead.sin()];
+        }
+        last = Some(*odometry);
+        (Arc::clone(scan), Odometry { position, heading: odometry.heading + off })
+    });
+    drifted.collect()
+}
+
+fn events_of(params: LaserParams, scans: &[(Arc<Scan>, Odometry)]) -> RunEvents {
+    let mut inferred = LaserEvents::new(params);
+    for (number, (scan, odometry)) in scans.iter().enumerate() {
+        let source = EventSource { time: number as u64, ..EventSource::default() };
+        inferred.see(source, scan, odometry);
+    }
+    RunEvents { events: inferred.finish(), ..RunEvents::default() }
+}
+
 #[test]
 fn the_junctions_of_two_real_buildings_are_visited_as_they_were_marked_by_hand() {
-    let Some(folder) = carmen::folder() else { return };
     for (name, count) in [("aces", 12), ("seattle", 3)] {
-        let text = std::fs::read_to_string(folder.join(format!("{name}-visits.jsonl"))).unwrap();
-        let marked: Vec<_> = text
-            .lines()
-            .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
-            .filter(|visit| visit["degree"].as_u64().unwrap() >= 3)
-            .map(|visit| (visit["degree"].as_u64(), visit["door"].as_u64()))
-            .collect();
+        let Some((mut marked, scans)) = recorded(name) else { return };
+        marked.retain(|visit| visit.0 >= 3);
         assert_eq!(marked.len(), count);
-        let log = Log::open(&folder.join(name).with_extension("log.gz")).unwrap();
-        let mapping = TopicMap::from_log(&log).unwrap();
-        let run = extract(&log, &mapping, Evidence::Laser, None, false, &()).unwrap();
-        let found: Vec<_> = visits(&run.events)
-            .into_iter()
-            .filter(|(degree, _)| degree.is_some())
-            .map(|(degree, door)| (degree.map(u64::from), door.map(u64::from)))
-            .collect();
-        assert_eq!(found.len(), count, "{name}: {found:?}");
-        for (found, marked) in found.iter().zip(&marked) {
-            // The door of the first visit is not marked if the log begins there.
-            assert_eq!(found.0, marked.0, "{name}");
-            assert!(marked.1.is_none() || found.1 == marked.1, "{name}: {found:?}, {marked:?}");
+        for drift in [0.0_f64, 2.0, -2.0, 5.0, -5.0] {
+            let scans = drifted(&scans, drift.to_radians() / 10.0);
+            let found = visits(&events_of(LaserParams::default(), &scans));
+            let found: Vec<_> = found
+                .into_iter()
+                .filter(|visit| visit.0.is_some_and(|degree| degree != 1))
+                .collect();
+            let drift = format!("{name}, drift of {drift} degrees in 10 m");
+            assert_eq!(found.len(), count, "{drift}: {found:?}");
+            for (found, marked) in found.iter().zip(&marked) {
+                assert_eq!(found.0.map(u64::from), Some(marked.0), "{drift}: {found:?}");
+                // The door of the first visit is not marked if the log begins there.
+                let door = found.1.map(u64::from);
+                assert!(marked.1.is_none() || door == marked.1, "{drift}: {found:?}, {marked:?}");
+            }
         }
     }
 }

@@ -30,8 +30,9 @@ use toposlam_model::{
     percept::Sighting,
 };
 use toposlam_robot::conform::{
-    CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractError, ExtractedRun, JudgeError,
-    Judgement, Quirks, RunCoverage, RunDriver, RunEvents, SensingProgress, extract, judge,
+    CheckedKind, ConformConfig, ConformVerdict, Evidence, ExtractConfig, ExtractError,
+    ExtractedRun, JudgeError, Judgement, Quirks, RunCoverage, RunDriver, RunEvents,
+    SensingProgress, extract, judge,
 };
 
 use super::{
@@ -39,6 +40,7 @@ use super::{
     ci_report::{CiCase, CiOptions},
     exit_codes::help_end,
     input,
+    laser_options::LaserOptions,
     mapping_marker::AlgorithmOption,
     open_log::{LogOptions, OpenLog},
     outcome::SeveralInputs,
@@ -107,6 +109,8 @@ pub(super) struct ConformArguments {
     max_steps: u64,
     #[command(flatten)]
     sources: LogOptions,
+    #[command(flatten)]
+    laser: LaserOptions,
     /// The source of the events [default: the first of these that the log has]
     #[arg(long, value_enum, value_name = "WHAT")]
     events: Option<Made>,
@@ -353,6 +357,7 @@ impl ConformArguments {
             }
             None => opened.evidence(path)?,
         };
+        self.laser.check_used(evidence)?;
         let marker = match self.marker {
             Some(marker) => marker.marker(),
             None => opened.marker()?,
@@ -368,8 +373,13 @@ impl ConformArguments {
         let progress = Progress::endless("reading", "images and scans")?;
         let sensor = opened.sensor();
         let marked = marker.name() == Directional.name();
-        let gathered =
-            extract(&opened.log, &opened.mapping, evidence, sensor.as_ref(), marked, &progress);
+        let config = ExtractConfig {
+            evidence,
+            sensor: sensor.as_ref(),
+            marked,
+            laser: self.laser.params()?,
+        };
+        let gathered = extract(&opened.log, &opened.mapping, &config, &progress);
         let gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
             error => CliError::in_file(path, error),

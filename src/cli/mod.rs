@@ -22,6 +22,7 @@ mod files;
 mod info;
 mod input;
 mod json;
+mod laser_options;
 mod man;
 mod mapping_marker;
 mod open_log;

@@ -4,7 +4,7 @@ use std::{ffi::OsStr, io::Cursor, path::Path};
 
 use image::{ImageFormat, RgbImage, codecs::jpeg::JpegEncoder};
 use toposlam::picture::with_legend;
-use toposlam_vision::{annotate, image_file::ImageFile, sensing::WrongSize};
+use toposlam_vision::{annotate::StageLegend, image_file::ImageFile, sensing::WrongSize};
 
 use super::{CliError, input, output};
 
@@ -37,8 +37,12 @@ pub(super) fn write(path: &Path, picture: &RgbImage) -> Result<(), CliError> {
 }
 
 /// Writes the picture of a step of sensing, with its legend and its scale below it.
-pub(super) fn write_stage(path: &Path, stage: &str, picture: &RgbImage) -> Result<(), CliError> {
-    let whole = with_legend(picture, &annotate::legend(stage));
+pub(super) fn write_stage(
+    path: &Path,
+    legend: &StageLegend,
+    picture: &RgbImage,
+) -> Result<(), CliError> {
+    let whole = with_legend(picture, legend);
     write(path, &whole.map_err(|error| CliError::in_file(path, error))?)
 }
 

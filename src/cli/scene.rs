@@ -96,13 +96,13 @@ impl From<&MarkerView> for MarkerLine {
 }
 
 /// Rounds to six decimal places.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     // Adding zero turns negative zero into zero.
     (value * 1e6).round() / 1e6 + 0.0
 }
 
 /// Rounds an angle to six decimal places and keeps it within `greatest`.
-fn rounded_angle(angle: f64, greatest: f64) -> f64 {
+pub(super) fn rounded_angle(angle: f64, greatest: f64) -> f64 {
     let greatest = (greatest * 1e6).floor() / 1e6;
     rounded(angle).clamp(-greatest, greatest)
 }
@@ -162,18 +162,22 @@ fn junction_rows(junction: &JunctionView) -> Vec<(&'static str, String)> {
 }
 
 fn marker_in_words(marker: &MarkerView) -> String {
-    let [x, y] = marker.position;
-    let side = if y < 0.0 { "right" } else { "left" };
     let along = match marker.door {
         Some(door) => format!("along door {}", door.0),
         None => bearing(marker.axis),
     };
+    format!("{}, {along}", place_in_words(marker.position))
+}
+
+/// A place in metres ahead and to the left of the robot, in words.
+pub(super) fn place_in_words([x, y]: [f64; 2]) -> String {
+    let side = if y < 0.0 { "right" } else { "left" };
     let (ahead, aside) = (if x < 0.0 { "behind" } else { "ahead" }, y.abs());
-    format!("{:.2} m {ahead} and {aside:.2} m to the {side}, {along}", x.abs())
+    format!("{:.2} m {ahead} and {aside:.2} m to the {side}", x.abs())
 }
 
 /// A direction in whole degrees, in words.
-fn bearing(angle: f64) -> String {
+pub(super) fn bearing(angle: f64) -> String {
     let degrees = angle.to_degrees().round();
     match degrees {
         0.0 => "straight ahead".to_owned(),

@@ -1,8 +1,11 @@
-//! `toposlam sense IMAGE...`: the scene in each panoramic image. Section 3.
+//! `toposlam sense FILE...`: the scene in each panoramic image, or what the laser scans of a log show.
+//! Section 3.
+
+mod scans;
 
 use std::{
     collections::BTreeMap,
-    ffi::OsString,
+    ffi::{OsStr, OsString},
     io::Write,
     path::{Path, PathBuf},
 };
@@ -11,32 +14,39 @@ use serde::Serialize;
 use toposlam_model::driving::scene::Scene;
 use toposlam_vision::{annotate, camera::Camera, sensing::Sensor};
 
+use scans::ScanRange;
+
 use super::{
     CliError, Outcome,
     exit_codes::help_end,
     input,
     json::print_line,
+    laser_options::LaserOptions,
     outcome::SeveralInputs,
     output, picture_file,
     scene::{SceneLine, rows},
     text::print_hanging,
 };
 
-/// Find hallway, junction and marker in panoramic images
+/// Find hallway, junction and marker in panoramic images, or junctions in laser scans
 ///
 /// Each image is a PNG or JPEG of the robot's camera. The result is one of three: the robot's place in
 /// a hallway; a junction with its doors and centre lines; or unknown, with a reason. If the marker is
 /// in view, its position is reported too.
+///
+/// A log with laser scans and odometry is read from its beginning. Whenever the robot has moved on, the
+/// result is the junctions of the local map.
 #[derive(clap::Args)]
 #[command(after_help = help_end(
     "\
 Example:
   toposlam sense view.png --calibration camera.toml --colours colours.toml \\
     --stages steps
+  toposlam sense run.mcap --scans 60..=70 --stages steps
 
 An image that cannot be used is reported, and the others are sensed.
 
-Angles are relative to the robot's heading, counter-clockwise. Doors are listed
+Angles and positions are relative to the robot's heading, counter-clockwise. Doors are listed
 clockwise from the entry door.",
     &[
         (0, "all images were sensed, also if a scene is unknown"),
@@ -44,19 +54,27 @@ clockwise from the entry door.",
     ],
 ))]
 pub(super) struct SenseArguments {
-    /// Images: .png or .jpg
-    #[arg(required = true, value_name = "IMAGE")]
-    images: Vec<PathBuf>,
-    /// Camera calibration
+    /// Images (.png or .jpg), or logs with laser scans
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Camera calibration, for images
     #[arg(long, value_name = "FILE")]
-    calibration: PathBuf,
-    /// Colours of the building, from `toposlam train`
+    calibration: Option<PathBuf>,
+    /// Colours of the building, from `toposlam train`, for images
     #[arg(long, value_name = "FILE")]
-    colours: PathBuf,
-    /// Folder for a picture of each processing stage of each image
+    colours: Option<PathBuf>,
+    /// For logs: the numbers of the scans that are reported, counted from 0 [default: all]
+    #[arg(long, value_name = "N|A..=B")]
+    scans: Option<ScanRange>,
+    /// For logs: what each topic carries [default: by the message types]
+    #[arg(long, value_name = "FILE")]
+    mapping: Option<PathBuf>,
+    #[command(flatten)]
+    laser: LaserOptions,
+    /// Folder for a picture of each processing stage of each image or scan
     #[arg(long, value_name = "DIR")]
     stages: Option<PathBuf>,
-    /// Print one JSON object per image
+    /// Print one JSON object per image or scan
     #[arg(long)]
     json: bool,
     /// Output file: .txt, .json or .jsonl [default: standard output]
@@ -77,19 +95,23 @@ impl SenseArguments {
         if let Some(path) = &self.out {
             output::check_place(path, &["json", "jsonl", "txt"])?;
         }
-        input::register(&self.images)?;
-        let camera = input::read_camera(&self.calibration)?;
-        let colours = input::read_colours(&self.colours)?;
-        let names = stage_names(&self.images, self.stages.is_some())?;
+        self.check_options()?;
+        input::register(&self.files)?;
+        let camera = self.calibration.as_deref().map(input::read_camera).transpose()?;
+        let colours = self.colours.as_deref().map(input::read_colours).transpose()?;
+        let names = stage_names(&self.files, self.stages.is_some())?;
         if let Some(folder) = &self.stages {
             output::make_folder(folder)?;
         }
-        let mut sensor = Sensor::new(&camera, &colours);
+        let camera = camera.as_ref();
+        let mut eye = camera
+            .zip(colours.as_ref())
+            .map(|(camera, colours)| (camera, Sensor::new(camera, colours)));
         match &self.out {
-            None => self.sense_all(&camera, &mut sensor, &names, out)?.worst(),
+            None => self.sense_all(&mut eye, &names, out)?.worst(),
             Some(path) => {
                 let mut text = Vec::new();
-                let inputs = self.sense_all(&camera, &mut sensor, &names, &mut text)?;
+                let inputs = self.sense_all(&mut eye, &names, &mut text)?;
                 // Without any scene there is nothing to write.
                 if !text.is_empty() {
                     output::write_whole(path, &text)?;
@@ -99,35 +121,76 @@ impl SenseArguments {
         }
     }
 
-    /// Senses all images and prints their scenes. An image that cannot be used is reported.
+    /// Returns an error for an option that is missing, or has no effect.
+    fn check_options(&self) -> Result<(), CliError> {
+        let any_image = self.files.iter().any(|path| is_image(path));
+        let any_log = self.files.iter().any(|path| !is_image(path));
+        for (option, is_given) in
+            [("--calibration", self.calibration.is_some()), ("--colours", self.colours.is_some())]
+        {
+            if any_image && !is_given {
+                return Err(CliError::at(option, "this is needed for images"));
+            }
+            if is_given && !any_image {
+                return Err(CliError::at(option, "this is for images, and no input is an image"));
+            }
+        }
+        let for_logs = [("--scans", self.scans.is_some()), ("--mapping", self.mapping.is_some())];
+        let given = for_logs.into_iter().find(|&(_, is_given)| is_given).map(|(option, _)| option);
+        if let Some(option) = given.or(self.laser.given()).filter(|_| !any_log) {
+            return Err(CliError::at(option, "this is for laser scans, and no input is a log"));
+        }
+        if any_log && self.stages.is_some() && self.scans.is_none() {
+            let cause = "for a log this needs --scans: there is a picture for each step of each scan";
+            return Err(CliError::at("--stages", cause));
+        }
+        Ok(())
+    }
+
+    /// Senses all files and prints what is seen. A file that cannot be used is reported.
     fn sense_all(
         &self,
-        camera: &Camera,
-        sensor: &mut Sensor,
+        eye: &mut Option<(&Camera, Sensor)>,
         names: &[OsString],
         out: &mut dyn Write,
     ) -> Result<SeveralInputs, CliError> {
         let mut inputs = SeveralInputs::new();
-        for (path, name) in self.images.iter().zip(names) {
-            let sensed = self.sense(camera, sensor, path, name);
-            let sensed = sensed.map(|scene| (scene, Outcome::Holds));
-            let Some(scene) = inputs.add(sensed) else { continue };
-            if self.json {
-                let image = path.display().to_string();
-                print_line(out, "image", &Line { image, scene: SceneLine::from(&scene) })?;
-            } else {
-                writeln!(out, "{}", path.display())?;
-                for (label, text) in rows(&scene) {
-                    print_hanging(out, &format!("  {label:<12}"), &text)?;
+        for (path, name) in self.files.iter().zip(names) {
+            let sensed = match eye {
+                Some((camera, sensor)) if is_image(path) => {
+                    self.sense_image(camera, sensor, path, name, out)
                 }
-            }
+                _ => self.sense_scans(path, out),
+            };
+            inputs.add(sensed.map(|()| ((), Outcome::Holds)));
             out.flush()?;
         }
         Ok(inputs)
     }
 
+    /// Senses an image and prints its scene.
+    fn sense_image(
+        &self,
+        camera: &Camera,
+        sensor: &mut Sensor,
+        path: &Path,
+        name: &OsString,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let scene = self.scene(camera, sensor, path, name)?;
+        if self.json {
+            let image = path.display().to_string();
+            return print_line(out, "image", &Line { image, scene: SceneLine::from(&scene) });
+        }
+        writeln!(out, "{}", path.display())?;
+        for (label, text) in rows(&scene) {
+            print_hanging(out, &format!("  {label:<12}"), &text)?;
+        }
+        Ok(())
+    }
+
     /// The scene of an image. Writes the pictures of the stages.
-    fn sense(
+    fn scene(
         &self,
         camera: &Camera,
         sensor: &mut Sensor,
@@ -141,17 +204,23 @@ impl SenseArguments {
         for (stage, picture) in &stages {
             let mut name = name.clone();
             name.push(format!("-{stage}.png"));
-            picture_file::write_stage(&folder.join(name), stage, picture)?;
+            picture_file::write_stage(&folder.join(name), &annotate::legend(stage), picture)?;
         }
         Ok(scene)
     }
 }
 
-/// The names of the images without their endings. The pictures of their stages start with them.
-fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliError> {
+/// Whether a file is an image, by its name.
+fn is_image(path: &Path) -> bool {
+    let ending = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+    matches!(ending.as_deref(), Some("png" | "jpg" | "jpeg"))
+}
+
+/// The names of the files without their endings. The pictures of their stages start with them.
+fn stage_names(files: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliError> {
     let mut names: BTreeMap<OsString, &Path> = BTreeMap::new();
     let name = |path: &PathBuf| input::stem(path);
-    for path in images {
+    for path in files {
         if let Some(other) = names.insert(name(path), path)
             && wanted
         {
@@ -160,5 +229,5 @@ fn stage_names(images: &[PathBuf], wanted: bool) -> Result<Vec<OsString>, CliErr
             return Err(CliError::in_file(path, cause));
         }
     }
-    Ok(images.iter().map(name).collect())
+    Ok(files.iter().map(name).collect())
 }

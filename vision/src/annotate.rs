@@ -19,19 +19,19 @@ use crate::{
 pub use legend::{LegendSign, StageLegend, legend};
 
 /// The robot's body.
-const BODY: Rgb<u8> = Rgb([90, 90, 90]);
+pub(crate) const BODY: Rgb<u8> = Rgb([90, 90, 90]);
 /// The direction of the edge on which the robot is.
-const GREEN: Rgb<u8> = Rgb([0, 200, 60]);
+pub(crate) const GREEN: Rgb<u8> = Rgb([0, 200, 60]);
 /// The directions of the other edges.
-const RED: Rgb<u8> = Rgb([235, 30, 30]);
+pub(crate) const RED: Rgb<u8> = Rgb([235, 30, 30]);
 /// The marker.
 const BLUE: Rgb<u8> = Rgb([40, 90, 255]);
 /// Walls.
-const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
+pub(crate) const WHITE: Rgb<u8> = Rgb([255, 255, 255]);
 /// Edges: corners that bend outwards.
-const ORANGE: Rgb<u8> = Rgb([255, 150, 0]);
+pub(crate) const ORANGE: Rgb<u8> = Rgb([255, 150, 0]);
 /// Corners of the room, which bend inwards.
-const CYAN: Rgb<u8> = Rgb([0, 220, 230]);
+pub(crate) const CYAN: Rgb<u8> = Rgb([0, 220, 230]);
 /// The colours of clusters, in turn.
 const CLUSTERS: [Rgb<u8>; 6] = [
     Rgb([230, 80, 70]),
@@ -48,11 +48,11 @@ const CENTRE_LINE: f64 = 1.6;
 /// The pixels around each pixel of a line over an image.
 const PEN: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
 /// The floor up to its farthest point.
-const REACH: Rgb<u8> = Rgb([40, 60, 40]);
+pub(crate) const REACH: Rgb<u8> = Rgb([40, 60, 40]);
 /// Walls of a scene.
 const WALL: Rgb<u8> = Rgb([150, 150, 150]);
 /// The background.
-const DARK: Rgb<u8> = Rgb([24, 24, 28]);
+pub(crate) const DARK: Rgb<u8> = Rgb([24, 24, 28]);
 
 /// The names of the steps, in their order.
 pub const STAGES: [&str; 6] =

@@ -5,13 +5,14 @@ use rayon::prelude::*;
 use thiserror::Error;
 use toposlam_model::driving::{
     odometry::Odometry,
-    scene::{Scene, wrapped},
+    scene::Scene,
 };
 use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
     InferredEvents, LaserEvents, RecordedEvents,
     events::{CheckedEvent, EventSource, RunEvents},
+    scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
     log::{
@@ -35,6 +36,19 @@ pub enum Evidence {
     Pictures,
     /// Laser scans and odometry.
     Laser,
+}
+
+/// From what events are extracted, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct ExtractConfig<'s> {
+    /// The source of the events.
+    pub evidence: Evidence,
+    /// Senses images, if they are the source.
+    pub sensor: Option<&'s Sensor>,
+    /// Whether the robot puts its marker down at its start. This matters only for inferred events.
+    pub marked: bool,
+    /// The parameters for laser scans.
+    pub laser: LaserParams,
 }
 
 /// The events of a log.
@@ -85,6 +99,12 @@ pub enum ExtractError {
     /// Images must be sensed without a calibration or colours.
     #[error("its events must be inferred from its images: this needs --calibration and --colours")]
     NoSensor,
+    /// There are laser scans, and no odometry.
+    #[error("no odometry is recorded with its {scans} laser scans")]
+    NoOdometry {
+        /// The number of scans.
+        scans: u64,
+    },
     /// An image is not of the calibrated camera.
     #[error("message {message}: {cause}")]
     Size {
@@ -147,19 +167,25 @@ impl Evidence {
     }
 }
 
-/// Extracts the events of a log. A `marked` robot puts its marker down at its start; this matters only for
-/// inferred events.
+impl ExtractConfig<'_> {
+    /// Events of a robot without a marker from this source, with the default parameters.
+    #[must_use]
+    pub fn new(evidence: Evidence) -> Self {
+        Self { evidence, sensor: None, marked: false, laser: LaserParams::default() }
+    }
+}
+
+/// Extracts the events of a log.
 ///
 /// # Errors
 /// Returns an error if the log cannot be read, or has no source of events.
 pub fn extract(
     log: &Log,
     mapping: &TopicMap,
-    evidence: Evidence,
-    sensor: Option<&Sensor>,
-    marked: bool,
+    config: &ExtractConfig,
     watch: &impl SensingProgress,
 ) -> Result<ExtractedRun, ExtractError> {
+    let ExtractConfig { evidence, sensor, marked, laser } = *config;
     let asked = evidence.roles().iter().chain(&[Role::Run, Role::End, Role::Map]);
     let threads = rayon::current_num_threads();
     let sensors = sensor.map_or_else(Vec::new, |sensor| vec![sensor.clone(); threads]);
@@ -176,13 +202,22 @@ pub fn extract(
         watch,
         pictures: 0,
         unreadable: 0,
-        laser: LaserEvents::new(LaserParams::default()),
+        evidence,
+        laser: LaserEvents::new(laser),
+        placing: ScanOdometry::default(),
         scans: 0,
     };
     for entry in log.entries(&bound) {
         gathering.take(entry?)?;
     }
     gathering.look()?;
+    match std::mem::take(&mut gathering.placing).finish() {
+        Some(waiting) => waiting.for_each(|placed| gathering.see(&placed)),
+        None if gathering.scans > 0 => {
+            return Err(ExtractError::NoOdometry { scans: gathering.scans });
+        }
+        None => {}
+    }
     let Extraction {
         recorded,
         track,
@@ -235,7 +270,10 @@ struct Extraction<'w, W> {
     watch: &'w W,
     pictures: u64,
     unreadable: u64,
+    evidence: Evidence,
     laser: LaserEvents,
+    /// Scans that wait for their odometry.
+    placing: ScanOdometry,
     scans: u64,
 }
 
@@ -261,14 +299,24 @@ impl<W: SensingProgress> Extraction<'_, W> {
         let source = EventSource { time, id, offset };
         self.recorded.observe(source, &kind);
         match kind {
-            EventKind::Odometry(odometry) => self.track.push((stamp, odometry)),
+            EventKind::Odometry(odometry) => {
+                for placed in self.placing.odometry(stamp, odometry) {
+                    self.see(&placed);
+                }
+                if self.evidence != Evidence::Laser {
+                    self.track.push((stamp, odometry));
+                }
+            }
             EventKind::Frame(Frame { scene: Some(scene), .. }) => {
                 self.seen.push((source, stamp, scene));
             }
             EventKind::Frame(Frame { scan: Some(scan), odometry, .. }) => {
-                self.laser.see(source, &scan, &odometry);
                 self.scans += 1;
-                self.watch.sensed(1);
+                if let Some(placed) =
+                    self.placing.scan(stamp, PlacedScan { source, scan, odometry })
+                {
+                    self.see(&placed);
+                }
             }
             EventKind::Frame(frame) => {
                 self.waiting.push((source, stamp, frame));
@@ -281,6 +329,13 @@ impl<W: SensingProgress> Extraction<'_, W> {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Senses a laser scan.
+    fn see(&mut self, placed: &PlacedScan) {
+        let PlacedScan { source, scan, odometry } = placed;
+        self.laser.see(*source, scan, odometry);
+        self.watch.sensed(1);
     }
 
     /// Senses the waiting frames.
@@ -318,14 +373,7 @@ fn at(track: &[(u64, Odometry)], time: u64) -> Option<Odometry> {
     let after = track.partition_point(|&(reading, _)| reading <= time);
     match (after.checked_sub(1).and_then(|before| track.get(before)), track.get(after)) {
         (Some(&(begin, from)), Some(&(end, to))) => {
-            let part = (time - begin) as f64 / (end - begin) as f64;
-            let turned = wrapped(to.heading - from.heading);
-            Some(Odometry {
-                position: [0, 1].map(|axis| {
-                    from.position[axis] + part * (to.position[axis] - from.position[axis])
-                }),
-                heading: wrapped(from.heading + part * turned),
-            })
+            Some(interpolated((begin, from), (end, to), time))
         }
         (one, other) => one.or(other).map(|&(_, odometry)| odometry),
     }

@@ -1,59 +1,58 @@
 //! Infers events from what a laser scanner shows: visits to junctions, and the doors taken. A visit is decided
 //! when several views agree, as those of a camera are.
 
-use std::f64::consts::{FRAC_PI_3, TAU};
+use std::{
+    collections::VecDeque,
+    f64::consts::{FRAC_PI_3, PI, TAU},
+};
 
 use toposlam_model::{
     driving::{odometry::Odometry, scene::wrapped},
     percept::Door,
 };
 use toposlam_vision::laser::{
-    junctions::LaserJunction,
-    params::{LaserParams, VisitParams},
+    params::{CornerParams, LaserParams},
+    plane::{Motion, direction, distance},
     scan::Scan,
     sensor::LaserSensor,
 };
 
-use super::events::{CheckedEvent, CheckedKind, EventSource};
+use super::{
+    events::{CheckedEvent, CheckedKind, EventSource},
+    seen_junctions::{SeenArm, SeenJunction, SeenJunctions},
+};
 use crate::record::Arrival;
 
 /// Infers events from a sequence of scans.
 #[derive(Clone, Debug)]
 pub struct LaserEvents {
     sensor: LaserSensor,
-    params: VisitParams,
+    params: LaserParams,
     events: Vec<CheckedEvent>,
-    /// The junctions that were seen lately.
-    seen: Vec<SeenJunction>,
+    /// Junctions, and corners if they are vertices.
+    junctions: SeenJunctions,
+    dead_ends: SeenJunctions,
     /// The visit that goes on.
     visit: Option<Visit>,
     /// Visits that are over and not decided yet.
-    waiting: Vec<Visit>,
+    waiting: VecDeque<Visit>,
     /// The way since the last visit, or since the robot turned back after it.
     since: Vec<[f64; 2]>,
     /// Whether the robot has turned back since the last visit.
     turned_back: bool,
-    /// The last visit that was a junction.
-    last: Option<PastVisit>,
+    /// The last visit that was decided, and whether the robot has turned back between it and the visits
+    /// that were decided to be none.
+    last: Option<(PastVisit, bool)>,
     /// The length of the robot's way, in metres.
     way: f64,
     source: EventSource,
-}
-
-/// A junction in several views.
-#[derive(Clone, Debug)]
-struct SeenJunction {
-    centre: [f64; 2],
-    clearance: f64,
-    /// The arms in each view, the last one last; empty where it is no junction.
-    views: Vec<Vec<f64>>,
-    /// The length of the robot's way at the last view.
-    way: f64,
+    to_odometry: Motion,
 }
 
 /// A visit.
 #[derive(Clone, Debug)]
 struct Visit {
+    kind: VisitKind,
     source: EventSource,
     centre: [f64; 2],
     clearance: f64,
@@ -65,22 +64,39 @@ struct Visit {
     left: EventSource,
     /// Whether the robot turned back on its way to the junction.
     turned_back: bool,
+    /// From the frame of the local map to that of odometry, in which events are reported.
+    to_odometry: Motion,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum VisitKind {
+    /// Of a junction or a corner.
+    Junction,
+    DeadEnd,
 }
 
 /// What is known of a junction that was left.
 #[derive(Clone, Copy, Debug)]
 struct PastVisit {
     centre: [f64; 2],
-    clearance: f64,
+    extent: f64,
     exit: f64,
+}
+
+/// What the views of a visited place show.
+enum Shown {
+    /// No vertex.
+    Nothing,
+    /// They do not agree.
+    Doubt,
+    /// The directions of its doors.
+    Doors(Vec<f64>),
 }
 
 /// A robot within this distance of where it was before goes back, in metres.
 const RETRACED: f64 = 0.6;
 /// A robot has turned back once it has gone back for half of this length, in metres. Less is manoeuvring.
 const TURN: f64 = 4.0;
-/// A junction that was not seen on this length of the way is forgotten, in metres.
-const FORGOTTEN: f64 = 30.0;
 /// The entry and the exit of a visit are arms if they are as near to one that is seen, in radians.
 const ARM: f64 = 0.8;
 /// An arm by which the robot came or left counts if it is seen in this part of the views.
@@ -92,16 +108,18 @@ impl LaserEvents {
     pub fn new(params: LaserParams) -> Self {
         Self {
             sensor: LaserSensor::new(params),
-            params: params.visit,
+            params,
             events: Vec::new(),
-            seen: Vec::new(),
+            junctions: SeenJunctions::new(params.visit),
+            dead_ends: SeenJunctions::new(params.visit),
             visit: None,
-            waiting: Vec::new(),
+            waiting: VecDeque::new(),
             since: Vec::new(),
             turned_back: false,
             last: None,
             way: 0.0,
             source: EventSource::default(),
+            to_odometry: Motion::default(),
         }
     }
 
@@ -109,23 +127,26 @@ impl LaserEvents {
     pub fn see(&mut self, source: EventSource, scan: &Scan, odometry: &Odometry) {
         let Some(view) = self.sensor.see(scan, odometry) else { return };
         self.source = source;
-        let robot = odometry.position;
+        self.to_odometry = view.to_odometry;
+        let robot = view.robot.position;
         if let Some(&last) = self.since.last() {
             self.way += distance(last, robot);
         }
-        self.look(&view.junctions, robot);
+        let (dead_ends, junctions): (Vec<_>, Vec<_>) =
+            view.junctions.iter().partition(|junction| junction.arms.len() == 1);
+        self.junctions.look(junctions.into_iter(), robot, self.way);
+        self.dead_ends.look(dead_ends.into_iter(), robot, self.way);
         self.leave(robot);
         self.turn(robot);
         self.since.push(robot);
         self.enter(robot);
-        while self.waiting.first().is_some_and(|visit| {
-            visit.exit.is_some_and(|(_, left)| self.way - left >= self.params.settle)
-        }) {
-            let visit = self.waiting.remove(0);
+        while let Some(visit) = self.waiting.pop_front() {
+            if visit.exit.is_some_and(|(_, left)| self.way - left < self.params.visit.settle) {
+                self.waiting.push_front(visit);
+                break;
+            }
             self.decide(&visit);
         }
-        let way = self.way;
-        self.seen.retain(|junction| way - junction.way < FORGOTTEN);
     }
 
     /// The events, after the last scan.
@@ -138,71 +159,25 @@ impl LaserEvents {
         self.events
     }
 
-    /// Adds a view to the junctions that the robot is near.
-    fn look(&mut self, junctions: &[LaserJunction], robot: [f64; 2]) {
-        let range = self.params.range;
-        for junction in junctions {
-            if distance(junction.centre, robot) > range + junction.clearance {
-                continue;
-            }
-            if let Some(known) = self.junction_at(junction.centre) {
-                let known = &mut self.seen[known];
-                let views = known.views.len().min(self.params.views) as f64;
-                let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
-                known.centre = [0, 1].map(|axis| mean(known.centre[axis], junction.centre[axis]));
-                known.clearance = mean(known.clearance, junction.clearance);
-                known.views.push(junction.arms.clone());
-                known.way = self.way;
-            } else {
-                self.seen.push(SeenJunction {
-                    centre: junction.centre,
-                    clearance: junction.clearance,
-                    views: vec![junction.arms.clone()],
-                    way: self.way,
-                });
-            }
-        }
-        for known in &mut self.seen {
-            let near = distance(known.centre, robot) < range + known.clearance;
-            if near && known.way < self.way {
-                known.views.push(Vec::new());
-            }
-            let old = known.views.len().saturating_sub(self.params.views);
-            known.views.drain(..old);
-        }
-    }
-
-    /// The junction that was seen nearest to a point, if it can be one there.
-    fn junction_at(&self, centre: [f64; 2]) -> Option<usize> {
-        let off = |junction: &SeenJunction| distance(junction.centre, centre);
-        let same = |junction: &SeenJunction| {
-            off(junction) < self.params.same.max(0.6 * junction.clearance)
-        };
-        (0..self.seen.len())
-            .filter(|&index| same(&self.seen[index]))
-            .min_by(|&one, &other| off(&self.seen[one]).total_cmp(&off(&self.seen[other])))
-    }
-
     /// Ends the visit of a robot that is outside of the junction.
     fn leave(&mut self, robot: [f64; 2]) {
         let Some(mut visit) = self.visit.take() else { return };
-        if let Some(known) = self.junction_at(visit.centre) {
-            (visit.centre, visit.clearance) = (self.seen[known].centre, self.seen[known].clearance);
+        if let Some(known) = self.junctions.at(visit.centre) {
+            (visit.centre, visit.clearance) = (known.centre, known.clearance);
         }
-        if distance(visit.centre, robot) <= inside(visit.clearance) + self.params.leave {
+        visit.to_odometry = self.to_odometry;
+        if distance(visit.centre, robot) <= inside(visit.clearance) + self.params.visit.leave {
             self.visit = Some(visit);
             return;
         }
-        let exit = direction(visit.centre, robot);
-        visit.exit = Some((exit, self.way));
+        visit.exit = Some((direction(visit.centre, robot), self.way));
         visit.left = self.source;
-        self.last = Some(PastVisit { centre: visit.centre, clearance: visit.clearance, exit });
-        self.waiting.push(visit);
+        self.waiting.push_back(visit);
         self.since.clear();
         self.turned_back = false;
     }
 
-    /// Notices that the robot goes back along its way.
+    /// Notices that the robot goes back along its way, and whether it was at a dead end.
     fn turn(&mut self, robot: [f64; 2]) {
         if self.visit.is_some() {
             return;
@@ -214,12 +189,40 @@ impl LaserEvents {
             length += distance(piece[0], piece[1]);
             let opposite = wrapped(ahead - direction(piece[1], piece[0])).abs() < FRAC_PI_3;
             if opposite && length > TURN && distance_to_piece(robot, piece) < RETRACED {
-                // Who has not been at a junction yet comes from anywhere.
-                self.turned_back ^= self.last.is_some();
+                if let Some(visit) = self.visit_of_dead_end() {
+                    self.waiting.push_back(visit);
+                    self.turned_back = false;
+                } else {
+                    self.turned_back ^= true;
+                }
                 self.since.clear();
                 return;
             }
         }
+    }
+
+    /// The visit of a robot that has turned back at a dead end.
+    fn visit_of_dead_end(&self) -> Option<Visit> {
+        let within = |end: &SeenJunction| inside(end.clearance).max(self.params.visit.dead_end);
+        let off = |end: &SeenJunction, point: &[f64; 2]| distance(end.centre, *point);
+        let ends = self
+            .since
+            .iter()
+            .filter_map(|point| self.dead_ends.nearest(*point, within).map(|end| (end, point)));
+        let (end, _) =
+            ends.min_by(|one, other| off(one.0, one.1).total_cmp(&off(other.0, other.1)))?;
+        let arm = direction(end.centre, *self.since.last()?);
+        Some(Visit {
+            kind: VisitKind::DeadEnd,
+            source: self.source,
+            centre: end.centre,
+            clearance: end.clearance,
+            entry: Some(arm),
+            exit: Some((arm, self.way)),
+            left: self.source,
+            turned_back: self.turned_back,
+            to_odometry: self.to_odometry,
+        })
     }
 
     /// Begins a visit of a robot that is within a junction.
@@ -227,83 +230,87 @@ impl LaserEvents {
         if self.visit.is_some() {
             return;
         }
-        let is_here = |junction: &&SeenJunction| {
-            distance(junction.centre, robot) < inside(junction.clearance)
-                && junction.views.iter().any(|arms| arms.len() >= 3)
-        };
-        let near = |junction: &&SeenJunction| distance(junction.centre, robot);
-        let here = self.seen.iter().filter(is_here);
-        let Some(here) = here.min_by(|one, other| near(one).total_cmp(&near(other))) else {
+        let Some(here) = self.junctions.nearest(robot, |junction| inside(junction.clearance))
+        else {
             return;
         };
         let outside = |point: &&[f64; 2]| distance(here.centre, **point) > inside(here.clearance);
         let before = self.since.iter().rev().find(outside);
-        let mut entry = before.map(|&point| direction(here.centre, point));
-        let mut turned_back = self.turned_back;
-        // Whoever comes in where he went out, with no junction on the way, has turned back.
-        if let Some(last) = &self.last
-            && distance(last.centre, here.centre) < self.params.same.max(0.6 * last.clearance)
-        {
-            let back = entry.is_none_or(|entry| wrapped(entry - last.exit).abs() < ARM);
-            turned_back |= back;
-            entry = entry.or(Some(last.exit));
-        }
         self.visit = Some(Visit {
+            kind: VisitKind::Junction,
             source: self.source,
             centre: here.centre,
             clearance: here.clearance,
-            entry,
+            entry: before.map(|&point| direction(here.centre, point)),
             exit: None,
             left: self.source,
-            turned_back,
+            turned_back: self.turned_back,
+            to_odometry: self.to_odometry,
         });
     }
 
     /// Adds the events of a visit that is over.
     fn decide(&mut self, visit: &Visit) {
-        let Some(known) = self.junction_at(visit.centre) else { return };
-        let VisitParams { same_arm, agree, doubt, .. } = self.params;
-        let votes = votes(&self.seen[known].views, same_arm);
         let exit = visit.exit.map(|(exit, _)| exit);
-        let traversed = |arm: f64| {
-            let ways = [visit.entry, exit].into_iter().flatten();
-            ways.map(|way| wrapped(way - arm).abs()).any(|off| off < ARM)
+        let places = match visit.kind {
+            VisitKind::Junction => &self.junctions,
+            VisitKind::DeadEnd => &self.dead_ends,
         };
-        let counts =
-            |&&(arm, part): &&(f64, f64)| part >= agree || traversed(arm) && part >= TRAVERSED;
-        let doubtful = |&(arm, part): &(f64, f64)| (part - agree).abs() < doubt && !traversed(arm);
-        let mut arms: Vec<f64> = votes.iter().filter(counts).map(|&(arm, _)| arm).collect();
-        if arms.len() < 3 {
+        let Some(known) = places.at(visit.centre) else { return };
+        let shown = visit.shown(&known.arms(&self.params.visit), &self.params);
+        if matches!(shown, Shown::Nothing) {
+            // It went on, or it turned back there.
+            let back = visit.entry.zip(exit).is_some_and(|(entry, exit)| is_same_arm(entry, exit));
+            if let Some((_, turned)) = &mut self.last {
+                *turned ^= visit.turned_back ^ back;
+            }
             return;
         }
-        if visit.turned_back {
+        let mut entry = visit.entry;
+        let mut turned_back = false;
+        if let Some((last, turned)) = &self.last {
+            turned_back = turned ^ visit.turned_back;
+            // Whoever comes in where he went out, with no junction on the way, has turned back.
+            if distance(last.centre, visit.centre) < last.extent {
+                turned_back |= entry.is_none_or(|entry| is_same_arm(entry, last.exit));
+                entry = entry.or(Some(last.exit));
+            }
+        }
+        let extent = known.extent(&self.params.visit);
+        let past = |exit| (PastVisit { centre: visit.centre, extent, exit }, false);
+        self.last = exit.map(past).or(self.last);
+        if turned_back {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
-        if votes.iter().any(doubtful) {
-            self.push(visit.source, CheckedKind::Undecided);
-            return;
+        match shown {
+            Shown::Doors(doors) => self.arrive(visit, doors, entry),
+            Shown::Doubt | Shown::Nothing => self.push(visit.source, CheckedKind::Undecided),
         }
-        let nearest = |arms: &[f64], way: f64| {
-            let off = |arm: f64| wrapped(arm - way).abs();
-            (0..arms.len()).min_by(|&one, &other| off(arms[one]).total_cmp(&off(arms[other])))
+    }
+
+    /// Adds an arrival at a junction with doors in these directions, and the door taken.
+    fn arrive(&mut self, visit: &Visit, mut doors: Vec<f64>, entry: Option<f64>) {
+        let nearest = |doors: &[f64], way: f64| {
+            let off = |door: f64| wrapped(door - way).abs();
+            (0..doors.len()).min_by(|&one, &other| off(doors[one]).total_cmp(&off(doors[other])))
         };
         // A robot whose log begins at the junction came in by any of its doors.
-        let entry = visit.entry.and_then(|entry| nearest(&arms, entry)).unwrap_or_default();
-        let entry = arms[entry];
-        let clockwise = |arm: f64| (entry - arm).rem_euclid(TAU);
-        arms.sort_by(|&one, &other| clockwise(one).total_cmp(&clockwise(other)));
+        let entry = entry.and_then(|entry| nearest(&doors, entry)).unwrap_or_default();
+        let entry = doors[entry];
+        let clockwise = |door: f64| (entry - door).rem_euclid(TAU);
+        doors.sort_by(|&one, &other| clockwise(one).total_cmp(&clockwise(other)));
         let arrival = Arrival {
             number: None,
-            degree: arms.len() as u32,
+            degree: doors.len() as u32,
             sighting: None,
             form: None,
-            entry: Some(entry),
+            entry: Some(wrapped(entry + visit.to_odometry.turn)),
         };
         self.push(visit.source, CheckedKind::Arrival { arrival, entry_off: None });
-        if let Some(exit) = exit
-            && let Some(door) = nearest(&arms, exit)
+        if let Some((exit, _)) = visit.exit
+            && let Some(door) = nearest(&doors, exit)
         {
-            let off = Some(wrapped(arms[door] - exit).abs());
+            let off = Some(wrapped(doors[door] - exit).abs());
             let door = Door(door as u32);
             self.push(visit.left, CheckedKind::Door { door, number: None, off });
         }
@@ -314,38 +321,48 @@ impl LaserEvents {
     }
 }
 
+impl Visit {
+    /// What the views of the place show.
+    fn shown(&self, arms: &[SeenArm], params: &LaserParams) -> Shown {
+        let CornerParams { corners, min_turn, .. } = params.corner;
+        let params = &params.visit;
+        let is_corner =
+            |one: f64, other: f64| corners && PI - wrapped(one - other).abs() >= min_turn;
+        let exit = self.exit.map(|(exit, _)| exit);
+        let is_traversed = |arm: &SeenArm| {
+            let mut ways = [self.entry, exit].into_iter().flatten();
+            ways.any(|way| is_same_arm(way, arm.direction))
+        };
+        let counts =
+            |arm: &&SeenArm| arm.part >= params.agree || is_traversed(arm) && arm.part >= TRAVERSED;
+        let is_doubtful =
+            |arm: &SeenArm| (arm.part - params.agree).abs() < params.doubt && !is_traversed(arm);
+        let doors: Vec<f64> = arms.iter().filter(counts).map(|arm| arm.direction).collect();
+        let is_vertex = match (self.kind, &doors[..]) {
+            (VisitKind::DeadEnd, [_]) => true,
+            // A corridor goes straight on where no arm of a junction is left.
+            (VisitKind::Junction, &[one, other]) => is_corner(one, other),
+            (VisitKind::Junction, [_, _, _, ..]) => true,
+            _ => false,
+        };
+        if !is_vertex {
+            Shown::Nothing
+        } else if arms.iter().any(is_doubtful) {
+            Shown::Doubt
+        } else {
+            Shown::Doors(doors)
+        }
+    }
+}
+
 /// A robot this near to the centre of a junction is inside, in metres.
 fn inside(clearance: f64) -> f64 {
     clearance.max(1.0)
 }
 
-/// The directions of the arms that are seen, each with the part of the views that show it.
-fn votes(views: &[Vec<f64>], same: f64) -> Vec<(f64, f64)> {
-    // The mean direction, the number of views, and the last of them.
-    let mut groups: Vec<(f64, u32, usize)> = Vec::new();
-    for (number, view) in views.iter().enumerate() {
-        for &arm in view {
-            let off = |group: &(f64, u32, usize)| wrapped(group.0 - arm).abs();
-            let near = groups.iter_mut().filter(|group| off(group) < same);
-            if let Some(group) = near.min_by(|one, other| off(one).total_cmp(&off(other))) {
-                group.0 = wrapped(group.0 + wrapped(arm - group.0) / f64::from(group.1 + 1));
-                group.1 += u32::from(group.2 != number);
-                group.2 = number;
-            } else {
-                groups.push((arm, 1, number));
-            }
-        }
-    }
-    let all = views.len().max(1) as f64;
-    groups.into_iter().map(|(arm, seen, _)| (arm, f64::from(seen) / all)).collect()
-}
-
-fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
-    (x - u).hypot(y - v)
-}
-
-fn direction([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
-    (v - y).atan2(u - x)
+/// Whether two directions are of one arm.
+fn is_same_arm(one: f64, other: f64) -> bool {
+    wrapped(one - other).abs() < ARM
 }
 
 /// The distance from a point to a piece of a way.

@@ -13,6 +13,8 @@ mod known_world;
 mod laser_events;
 mod quirks;
 mod recorded_events;
+mod scan_odometry;
+mod seen_junctions;
 mod shorten;
 mod tolerance;
 
@@ -25,7 +27,7 @@ pub use events::{
     CheckedEvent, CheckedKind, EventSource, MarkerNotRecorded, OutOfOrder, RunEvents,
 };
 pub use extract::{
-    Evidence, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
+    Evidence, ExtractConfig, ExtractError, ExtractedRun, SensedScene, SensingProgress, extract, infer_events,
 };
 pub use impossible::{FoldedTrace, Impossibility};
 pub use inferred_events::{InferredEvents, NEAR};

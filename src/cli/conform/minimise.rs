@@ -9,9 +9,9 @@ use toposlam_model::{
 };
 use toposlam_robot::{
     conform::{
-        CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, Quirks, RunEvents,
-        SensedScene, ShortenedRun, direction, extract, infer_events, judge, shorten_frames,
-        shorten_run,
+        CheckedEvent, CheckedKind, ConformConfig, Divergence, Evidence, ExtractConfig, Quirks,
+        RunEvents, SensedScene, ShortenedRun, direction, extract, infer_events, judge,
+        shorten_frames, shorten_run,
     },
     log::{
         arrival_message, door_message,
@@ -118,7 +118,8 @@ fn divergence_of(bytes: &[u8], evidence: Evidence, question: &ConformConfig) -> 
     let log = Log::of_bytes(bytes.to_vec()).ok()?;
     let mapping = TopicMap::unambiguous(&log);
     let marked = question.marker.name() == Directional.name();
-    let run = extract(&log, &mapping, evidence, None, marked, &()).ok()?;
+    let config = ExtractConfig { marked, ..ExtractConfig::new(evidence) };
+    let run = extract(&log, &mapping, &config, &()).ok()?;
     judge(run.events, question, &Quirks::default(), &()).ok()?.divergence
 }
 

@@ -16,6 +16,7 @@ use toposlam_robot::evaluation::{
     verdict::{MarkerVerdict, PlaceVerdict},
 };
 use toposlam_robot::truth::{JunctionTruth, Truth};
+use toposlam_vision::annotate;
 
 use crate::cli::{
     CliError, json::print_line, output, picture_file, progress::must_stop, scene::SceneLine,
@@ -93,7 +94,8 @@ fn write_steps(
         judge.stages(&judged.view, calibration).map_err(|error| CliError::at("evaluate", error))?;
     picture_file::write(&folder.join("0-picture.png"), &image)?;
     for (name, picture) in &stages {
-        picture_file::write_stage(&folder.join(format!("{name}.png")), name, picture)?;
+        let path = folder.join(format!("{name}.png"));
+        picture_file::write_stage(&path, &annotate::legend(name), picture)?;
     }
     let plan = world_file::to_toml(&plan_of(&judged.view));
     output::write_whole(&folder.join("plan.toml"), plan.as_bytes())?;

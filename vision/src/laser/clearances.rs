@@ -10,7 +10,7 @@ use super::{
 pub struct Clearances {
     /// To the nearest occupied cell.
     pub wall: Vec<u32>,
-    /// To the nearest cell that is unknown, or on the border of the map.
+    /// To the nearest unknown cell.
     pub unknown: Vec<u32>,
 }
 
@@ -18,10 +18,7 @@ impl Clearances {
     /// The distances on a map.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
-        let is_unknown = |at: usize| grid.cells[at] == Cell::Unknown || grid.is_border(at);
-        Self {
-            wall: squared_distances(grid.side, |at| grid.cells[at] == Cell::Occupied),
-            unknown: squared_distances(grid.side, is_unknown),
-        }
+        let squared = |kind| squared_distances(grid.columns, &grid.cells, kind);
+        Self { wall: squared(Cell::Occupied), unknown: squared(Cell::Unknown) }
     }
 }

@@ -6,6 +6,7 @@ use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
     params::LaserParams,
+    plane::{direction, distance},
 };
 
 /// How a way ends.
@@ -18,16 +19,31 @@ pub enum WayEnd {
 }
 
 /// An end of a way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct End {
     /// Its cell.
     pub cell: usize,
     /// How it ends.
     pub end: WayEnd,
-    /// The width of the gap behind it, in metres.
-    pub gap: f64,
+    /// Cells of the gap to what is unknown, in metres in the frame of the local map.
+    pub gap: Vec<[f64; 2]>,
     /// How much farther from the robot than the cell the way is known, in metres.
     pub beyond: f64,
+}
+
+impl End {
+    /// The width of its gap across the direction from a point, in metres; at least the width of a way.
+    pub(super) fn width(&self, from: [f64; 2], min_way: f64) -> f64 {
+        let far = |gap: &&[f64; 2]| distance(from, **gap);
+        let farthest = self.gap.iter().max_by(|one, other| far(one).total_cmp(&far(other)));
+        let Some(farthest) = farthest else { return min_way };
+        let (sine, cosine) = direction(from, *farthest).sin_cos();
+        let across = self.gap.iter().map(|gap| gap[1] * cosine - gap[0] * sine);
+        let (low, high) = across
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+        // The cells of a way end half of its least width before its sides.
+        min_way + (high - low)
+    }
 }
 
 /// The lengths of a straight and of a diagonal step, in fifths of a cell.
@@ -46,7 +62,7 @@ pub(super) fn way_lengths(ways: &mut [bool], grid: &Grid, start: usize) -> Vec<u
     while waiting > 0 {
         while let Some(at) = buckets[length as usize % 8].pop_front() {
             waiting -= 1;
-            if lengths[at] != length || grid.is_border(at) {
+            if lengths[at] != length {
                 continue;
             }
             for (number, near) in grid.neighbours(at).into_iter().enumerate() {
@@ -90,8 +106,7 @@ pub(super) fn ends(
         ends.push(End {
             cell,
             end: WayEnd::Open,
-            // The cells of the gap are two rows, and end half a way before its sides.
-            gap: params.map.min_width + gap.len() as f64 / 2.0 * grid.cell,
+            gap: gap.iter().map(|&at| grid.point(at)).collect(),
             beyond: metres(farthest - lengths[cell]),
         });
     }
@@ -101,7 +116,7 @@ pub(super) fn ends(
         if !at_gap[cell] {
             let goes_on = is_near(&borders, cell, grid, params.arm.border_near);
             let end = if goes_on { WayEnd::Open } else { WayEnd::Closed };
-            ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
+            ends.push(End { cell, end, gap: Vec::new(), beyond: 0.0 });
         }
     }
     ends
@@ -126,12 +141,12 @@ fn unknown_borders(clearances: &Clearances, grid: &Grid, params: &LaserParams) -
 /// Whether a cell of a set is within a distance of this one, in metres.
 fn is_near(set: &[bool], cell: usize, grid: &Grid, distance: f64) -> bool {
     let reach = (distance / grid.cell) as usize;
-    let around = |at: usize| at.saturating_sub(reach)..=(at + reach).min(grid.side - 1);
-    let (x, y) = (cell % grid.side, cell / grid.side);
-    around(y).any(|row| {
-        around(x).any(|column| {
+    let around = |at: usize, count: usize| at.saturating_sub(reach)..=(at + reach).min(count - 1);
+    let (x, y) = (cell % grid.columns, cell / grid.columns);
+    around(y, grid.rows()).any(|row| {
+        around(x, grid.columns).any(|column| {
             let off = row.abs_diff(y).pow(2) + column.abs_diff(x).pow(2);
-            set[row * grid.side + column] && off <= reach * reach
+            set[row * grid.columns + column] && off <= reach * reach
         })
     })
 }
@@ -146,9 +161,6 @@ fn maxima(set: &[bool], value: &[u32], grid: &Grid, prominence: u32) -> Vec<usiz
     let mut maxima: Vec<usize> = order.first().copied().into_iter().collect();
     for at in order {
         parent[at] = Some(at);
-        if grid.is_border(at) {
-            continue;
-        }
         for near in grid.neighbours(at) {
             if parent[near].is_none() {
                 continue;

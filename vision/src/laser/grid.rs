@@ -13,26 +13,33 @@ pub enum Cell {
     Occupied,
 }
 
-/// A square of cells.
+/// A rectangle of cells. Those on its border are unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// The number of cells on a side.
-    pub side: usize,
+    /// The number of cells in a row.
+    pub columns: usize,
     /// The side of a cell, in metres.
     pub cell: f64,
-    /// The corner with the least coordinates, in metres in the frame of odometry.
+    /// The corner with the least coordinates, in metres in the frame of the local map.
     pub origin: [f64; 2],
     /// The cells, row by row.
     pub cells: Vec<Cell>,
 }
 
 impl Grid {
+    /// The number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.cells.len() / self.columns.max(1)
+    }
+
     /// The index of the cell at a point, if it is on the map.
     #[must_use]
     pub fn index(&self, point: [f64; 2]) -> Option<usize> {
         let [column, row] = self.column_row(point);
-        let within = |at: i64| (0..self.side as i64).contains(&at);
-        (within(column) && within(row)).then(|| row as usize * self.side + column as usize)
+        let within = |at: i64, count: usize| (0..count as i64).contains(&at);
+        let is_on_map = within(column, self.columns) && within(row, self.rows());
+        is_on_map.then(|| row as usize * self.columns + column as usize)
     }
 
     /// The column and the row of a point, on the map or not.
@@ -44,35 +51,38 @@ impl Grid {
     /// The middle of a cell.
     #[must_use]
     pub fn point(&self, index: usize) -> [f64; 2] {
-        let at = [index % self.side, index / self.side];
+        let at = [index % self.columns, index / self.columns];
         [0, 1].map(|axis| self.origin[axis] + (at[axis] as f64 + 0.5) * self.cell)
-    }
-
-    /// Whether a cell is on the border of the map.
-    #[must_use]
-    pub fn is_border(&self, index: usize) -> bool {
-        let last = self.side - 1;
-        [index % self.side, index / self.side].iter().any(|&at| at == 0 || at == last)
     }
 
     /// The eight neighbours of a cell that is not on the border, in clockwise order from a diagonal one.
     #[must_use]
     pub fn neighbours(&self, index: usize) -> [usize; 8] {
-        let side = self.side;
+        let row = self.columns;
         [
-            index - side - 1,
-            index - side,
-            index - side + 1,
+            index - row - 1,
+            index - row,
+            index - row + 1,
             index + 1,
-            index + side + 1,
-            index + side,
-            index + side - 1,
+            index + row + 1,
+            index + row,
+            index + row - 1,
             index - 1,
         ]
     }
 
-    /// The groups of neighbouring cells of a kind. Cells on the border of the map are in a group, but do not
-    /// connect it.
+    /// The length from a point in a direction over free cells, in metres.
+    pub(super) fn free_run(&self, from: [f64; 2], direction: f64) -> f64 {
+        let (sine, cosine) = direction.sin_cos();
+        let step = self.cell / 2.0;
+        let run = (0..).map(|number| f64::from(number) * step).take_while(|&length| {
+            let at = self.index([from[0] + length * cosine, from[1] + length * sine]);
+            at.is_some_and(|at| self.cells[at] == Cell::Free)
+        });
+        run.last().unwrap_or_default()
+    }
+
+    /// The groups of neighbouring cells of a kind. None of them is on the border.
     pub(super) fn groups(&self, is_member: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let mut seen = vec![false; self.cells.len()];
         let mut groups = Vec::new();
@@ -85,9 +95,6 @@ impl Grid {
             let mut next = 0;
             while let Some(&at) = group.get(next) {
                 next += 1;
-                if self.is_border(at) {
-                    continue;
-                }
                 for near in self.neighbours(at) {
                     if !seen[near] && is_member(near) {
                         seen[near] = true;
@@ -102,29 +109,75 @@ impl Grid {
 
     /// Makes free what only looks otherwise: cells between rays, and obstacles too small to divide a way.
     pub(super) fn clean(&mut self, params: &LocalMapParams) {
-        let is_free = |cells: &[Cell], at: usize| cells[at] == Cell::Free;
-        let specks: Vec<usize> = (0..self.cells.len())
-            .filter(|&at| self.cells[at] == Cell::Unknown && !self.is_border(at))
-            .filter(|&at| {
-                self.neighbours(at).into_iter().filter(|&near| is_free(&self.cells, near)).count()
-                    >= 5
-            })
-            .collect();
-        for at in specks {
-            self.cells[at] = Cell::Free;
-        }
-        let limit = (params.small_obstacle / self.cell).ceil() as usize;
-        for group in self.groups(|at| !is_free(&self.cells, at)) {
-            let is_small = [1, self.side].iter().all(|&unit| {
-                let along = || group.iter().map(|&at| at / unit % self.side);
-                let (low, high) = (along().min(), along().max());
-                low.zip(high).is_some_and(|(low, high)| high - low < limit)
-            });
-            if is_small && !group.iter().any(|&at| self.is_border(at)) {
-                for at in group {
-                    self.cells[at] = Cell::Free;
+        let mut changed: Vec<usize> = Vec::new();
+        for row in 1..self.rows().saturating_sub(1) {
+            for at in row * self.columns + 1..(row + 1) * self.columns - 1 {
+                if self.cells[at] == Cell::Unknown {
+                    let near = self.neighbours(at).map(|near| self.cells[near] == Cell::Free);
+                    if near.into_iter().filter(|&is_free| is_free).count() >= 5 {
+                        changed.push(at);
+                    }
                 }
             }
         }
+        self.free(&changed);
+        let limit = (params.small_obstacle / self.cell).ceil() as usize;
+        let small = self.small_obstacles(limit);
+        self.free(&small);
+    }
+
+    fn free(&mut self, cells: &[usize]) {
+        for &at in cells {
+            self.cells[at] = Cell::Free;
+        }
+    }
+
+    /// The cells of groups that are not free and smaller than this many cells along both axes.
+    fn small_obstacles(&self, limit: usize) -> Vec<usize> {
+        let is_free = |at: usize| self.cells[at] == Cell::Free;
+        let column_row = |at: usize| [at % self.columns, at / self.columns];
+        let border = [self.columns - 1, self.rows() - 1];
+        let is_border =
+            |place: [usize; 2]| (0..2).any(|axis| place[axis] == 0 || place[axis] == border[axis]);
+        // The number of the group, from 1; a large group is left before all of its cells are seen.
+        let mut group = vec![0_u32; self.cells.len()];
+        let mut large = vec![true];
+        let mut small = Vec::new();
+        // The first cell of a row of a group has a free one before it.
+        for start in (1..self.cells.len()).filter(|&at| !is_free(at) && is_free(at - 1)) {
+            if group[start] > 0 {
+                continue;
+            }
+            let number = large.len() as u32;
+            group[start] = number;
+            let mut members = vec![start];
+            let (mut low, mut high) = (column_row(start), column_row(start));
+            let mut next = 0;
+            let is_large = loop {
+                let Some(&at) = members.get(next) else { break false };
+                next += 1;
+                let place = column_row(at);
+                low = [0, 1].map(|axis| low[axis].min(place[axis]));
+                high = [0, 1].map(|axis| high[axis].max(place[axis]));
+                if is_border(place) || (0..2).any(|axis| high[axis] - low[axis] >= limit) {
+                    break true;
+                }
+                let near = self.neighbours(at);
+                let near = near.into_iter().filter(|&near| !is_free(near) && group[near] != number);
+                let near: Vec<usize> = near.collect();
+                if near.iter().any(|&near| group[near] > 0 && large[group[near] as usize]) {
+                    break true;
+                }
+                for near in near {
+                    group[near] = number;
+                    members.push(near);
+                }
+            };
+            large.push(is_large);
+            if !is_large {
+                small.extend(members);
+            }
+        }
+        small
     }
 }

@@ -1,11 +1,17 @@
-//! The junctions of the way graph.
+//! The junctions of the way graph, its corners and its dead ends.
+
+use std::f64::consts::PI;
+
+use toposlam_model::driving::scene::wrapped;
 
 use super::{
-    params::ArmParams,
-    way_graph::{WayGraph, distance},
+    ends::WayEnd,
+    params::{ArmParams, CornerParams, LaserParams},
+    plane::{direction, distance},
+    way_graph::{Way, WayGraph, WayNode},
 };
 
-/// A junction with at least three arms.
+/// A place where ways meet: a junction with at least three arms, a corner with two, or a dead end with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserJunction {
     /// Its centre, in metres in the frame of odometry.
@@ -17,9 +23,19 @@ pub struct LaserJunction {
 }
 
 impl WayGraph {
-    /// The junctions: meet points, of which those in one place are one.
+    /// The junctions, the dead ends and, if they are vertices, the corners.
     #[must_use]
-    pub fn junctions(&self, params: &ArmParams) -> Vec<LaserJunction> {
+    pub fn junctions(&self, params: &LaserParams) -> Vec<LaserJunction> {
+        let mut junctions = self.meets(&params.arm);
+        junctions.extend(self.dead_ends(&params.arm, &params.corner));
+        if params.corner.corners {
+            junctions.extend(self.ways.iter().flat_map(|way| way.corners(&params.corner)));
+        }
+        junctions
+    }
+
+    /// Meet points, of which those in one place are one.
+    fn meets(&self, params: &ArmParams) -> Vec<LaserJunction> {
         let degrees: Vec<usize> = (0..self.nodes.len()).map(|node| self.at(node).len()).collect();
         // Each meet point is in the group of the first that is joined to it by short ways.
         let mut group: Vec<usize> = (0..self.nodes.len()).collect();
@@ -58,7 +74,7 @@ impl WayGraph {
                     let beyond =
                         way.line.iter().find(|(point, _)| distance(*point, centre) >= gate);
                     if let Some(&(point, _)) = beyond.or(way.line.last()) {
-                        arms.push((point[1] - centre[1]).atan2(point[0] - centre[0]));
+                        arms.push(direction(centre, point));
                     }
                 }
             }
@@ -66,5 +82,59 @@ impl WayGraph {
             junctions.push(LaserJunction { centre, clearance, arms });
         }
         junctions
+    }
+    /// The ends of long ways that were seen to end.
+    fn dead_ends<'a>(
+        &'a self,
+        arm: &'a ArmParams,
+        params: &'a CornerParams,
+    ) -> impl Iterator<Item = LaserJunction> + 'a {
+        (0..self.nodes.len()).filter_map(move |node| {
+            let WayNode { point, clearance, ref end } = self.nodes[node];
+            let [way] = self.at(node)[..] else { return None };
+            let way = self.ways[way].clone().from_node(node);
+            if end.as_ref()?.end != WayEnd::Closed || way.length < params.min_way {
+                return None;
+            }
+            let gate = clearance + arm.direction;
+            let beyond = way.line.iter().find(|(at, _)| distance(*at, point) >= gate);
+            let &(towards, _) = beyond.or(way.line.last())?;
+            Some(LaserJunction { centre: point, clearance, arms: vec![direction(point, towards)] })
+        })
+    }
+}
+
+impl Way {
+    /// The places where the middle line bends most, if it is by enough for a corner.
+    fn corners(&self, params: &CornerParams) -> Vec<LaserJunction> {
+        // The steps of cells are no bends.
+        let line: Vec<_> = self.line.iter().step_by(4).chain(self.line.last()).collect();
+        let mut lengths = vec![0.0];
+        for two in line.windows(2) {
+            let length: f64 = lengths.last().copied().unwrap_or_default();
+            lengths.push(length + distance(two[0].0, two[1].0));
+        }
+        let bend = |at: usize| {
+            let before = (0..at).rev().find(|&i| lengths[at] - lengths[i] >= params.arm)?;
+            let after = (at..line.len()).find(|&i| lengths[i] - lengths[at] >= params.arm)?;
+            let arms = [before, after].map(|arm| direction(line[at].0, line[arm].0));
+            let turn = PI - wrapped(arms[0] - arms[1]).abs();
+            (turn >= params.min_turn).then_some((turn, arms))
+        };
+        let mut corners = Vec::new();
+        let mut sharpest: Option<(f64, LaserJunction)> = None;
+        for (at, &&(centre, clearance)) in line.iter().enumerate() {
+            let Some((turn, mut arms)) = bend(at) else {
+                corners.extend(sharpest.take().map(|(_, corner)| corner));
+                continue;
+            };
+            if sharpest.as_ref().is_none_or(|(most, _)| turn > *most) {
+                arms.sort_by(|one, other| other.total_cmp(one));
+                let corner = LaserJunction { centre, clearance, arms: arms.to_vec() };
+                sharpest = Some((turn, corner));
+            }
+        }
+        corners.extend(sharpest.map(|(_, corner)| corner));
+        corners
     }
 }

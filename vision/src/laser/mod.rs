@@ -2,14 +2,16 @@
 //!
 //! From the ground up:
 //!
-//! * [`params`]: the thresholds of all steps;
+//! * [`params`]: the thresholds of all steps, and [`params_file`]: a file with them;
+//! * [`plane`]: distances, directions and motions;
 //! * [`scan`]: one sweep of the scanner;
+//! * [`matching`]: where it was taken, by odometry and by the walls of earlier scans;
 //! * [`grid`]: the local map, of the cells where rays of the last scans have passed and ended;
 //! * [`distance`], [`clearances`]: the distance of each cell to the nearest wall;
 //! * [`ends`]: where the ways around the robot go on unseen, and where they end;
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
-//! * [`way_graph`]: its meet points and the arms that count, and [`junctions`];
-//! * [`sensor`]: all of these steps.
+//! * [`way_graph`]: its meet points and the arms that count, and [`junctions`]: junctions, corners and dead ends;
+//! * [`sensor`]: all of these steps, and [`pictures`] of them.
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
@@ -18,7 +20,11 @@ pub mod distance;
 pub mod ends;
 pub mod grid;
 pub mod junctions;
+pub mod matching;
 pub mod params;
+pub mod params_file;
+pub mod pictures;
+pub mod plane;
 mod ray_counts;
 pub mod scan;
 pub mod sensor;

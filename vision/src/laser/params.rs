@@ -11,12 +11,58 @@ use crate::params::params;
 params! {
     /// All parameters of sensing with a laser scanner.
     LaserParams {
+        /// Where scans were taken.
+        matching: MatchingParams = MatchingParams::default(),
         /// The local map.
         map: LocalMapParams = LocalMapParams::default(),
         /// The arms of a junction.
         arm: ArmParams = ArmParams::default(),
+        /// Corners and dead ends.
+        corner: CornerParams = CornerParams::default(),
         /// Visits of junctions.
         visit: VisitParams = VisitParams::default(),
+    }
+
+    /// Scan matching: where a scan was taken, by odometry and by the walls of earlier scans.
+    MatchingParams {
+        /// Walls farther from the scanner than this are not matched. Geometry: there the angle between two
+        /// rays is as wide as a small step of a wall.
+        range: f64 = 15.0,
+        /// A point is on a wall if its neighbours make a straight line at least this long. Geometry.
+        line: f64 = 0.4,
+        /// Neighbours farther apart than this do not lie on one wall. Geometry.
+        max_step: f64 = 1.2,
+        /// The standard deviation of the points of a straight line. Geometry: the scanner's noise.
+        straight: f64 = 0.04,
+        /// Points of one wall that are nearer to each other than this are one. Geometry.
+        spacing: f64 = 0.2,
+        /// A point is matched with one at most this far away. Geometry.
+        reach: f64 = 1.0,
+        /// The cosine of the angle between two pieces of the same wall. Geometry: 30 degrees.
+        same_direction: f64 = 0.866,
+        /// The number of times that points are matched and the pose is improved. Geometry.
+        rounds: usize = 8,
+        /// Matched walls are at most this far apart in the first round. Geometry: a quarter of a corridor.
+        first_gate: f64 = 0.6,
+        /// Matched walls are at most this far apart in the last round. Geometry.
+        gate: f64 = 0.25,
+        /// The standard deviation of a matched point from its wall. Geometry.
+        deviation: f64 = 0.1,
+        /// With fewer matches odometry alone decides. Geometry.
+        min_matches: usize = 12,
+        /// The standard deviation of odometry between two scans. Geometry: a robot with wheels.
+        shift: f64 = 0.03,
+        /// More of it, for each metre of the way. Geometry.
+        shift_per_metre: f64 = 0.1,
+        /// The standard deviation of the heading by odometry between two scans. Geometry.
+        turn: f64 = 0.01,
+        /// More of it, for each metre of the way. Geometry: 14 degrees in 10 m.
+        turn_per_metre: f64 = 0.025,
+        /// More of it, for each radian that the robot turns. Geometry.
+        turn_per_radian: f64 = 0.1,
+        /// Odometry that seems to be wrong by more than this many standard deviations decides alone: the
+        /// match is wrong. Geometry.
+        max_deviations: f64 = 3.0,
     }
 
     /// The local map: what the last scans have shown around the robot.
@@ -79,6 +125,19 @@ params! {
         robot_near: f64 = 0.8,
     }
 
+    /// Corners and dead ends.
+    CornerParams {
+        /// Whether a bend of a corridor is a vertex of the world.
+        corners: bool = false,
+        /// The directions of the arms of a bend are measured this far from it, along the middle line.
+        /// Geometry: more than the width of a corridor.
+        arm: f64 = 2.5,
+        /// A bend by at least this angle is a corner. Geometry: between 45 and 90 degrees.
+        min_turn: f64 = 1.05,
+        /// A way that ends is a dead end if it is at least this long. Geometry: more than a room.
+        min_way: f64 = 5.0,
+    }
+
     /// Visits of junctions.
     VisitParams {
         /// A junction is seen from up to this far behind its walls. Logs.
@@ -89,6 +148,8 @@ params! {
         /// Arms nearer to each other than this in two views are the same. Geometry: under half of the
         /// angle between two arms of a junction with eight.
         same_arm: f64 = 0.6,
+        /// A robot this near to the end of a way visits the dead end. Geometry: robots turn before a wall.
+        dead_end: f64 = 3.0,
         /// A robot farther than this behind the walls of a junction has left it. Geometry.
         leave: f64 = 0.1,
         /// A visit is decided when the robot has driven this far since it left. Logs.

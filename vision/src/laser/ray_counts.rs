@@ -86,28 +86,42 @@ impl RayCounts {
         cell_at(self.place(point)).iter().all(|&at| at - half >= 0 && at + half < self.side as i64)
     }
 
-    /// What is known around a point, in a square of an odd number of cells a side, which must fit.
+    /// What is known around a point, in a square of an odd number of cells a side, which must fit; without
+    /// the rows and columns in which nothing is known, except one on each side.
     pub(super) fn window(&self, point: [f64; 2], side: usize, params: &LocalMapParams) -> Grid {
-        let corner = cell_at(self.place(point)).map(|at| at - (side / 2) as i64);
-        let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis] as f64 * self.cell);
-        let mut cells = Vec::with_capacity(side * side);
-        for row in 0..side as i64 {
-            for column in 0..side as i64 {
-                let index = self.index([corner[0] + column, corner[1] + row]);
-                cells.push(index.map_or(Cell::Unknown, |index| self.cell(index, params)));
-            }
+        let half = (side / 2) as i64;
+        // The window without its border.
+        let [west, south] = cell_at(self.place(point)).map(|at| (at - half + 1).max(1) as usize);
+        let inner = side.saturating_sub(2);
+        let row = |row: usize, from: usize, to: usize| row * self.side + from..row * self.side + to;
+        let is_known = |at: usize| self.hits[at] | self.passes[at] > 0;
+        let mut rows: Vec<usize> = (south..(south + inner).min(self.side - 1)).collect();
+        let last = (west + inner).min(self.side - 1);
+        rows.retain(|&at| row(at, west, last).any(is_known));
+        let (bottom, top) = rows.first().zip(rows.last()).map_or((south, south), |(a, b)| (*a, *b));
+        let known = |column: &usize| (bottom..=top).any(|row| is_known(row * self.side + column));
+        let left = (west..last).find(known).unwrap_or(west);
+        let right = (west..last).rfind(known).unwrap_or(west);
+        let columns = right + 3 - left;
+        let mut cells = vec![Cell::Unknown; columns];
+        for at in bottom..=top {
+            cells.push(Cell::Unknown);
+            cells.extend(row(at, left, right + 1).map(|index| self.cell(index, params)));
+            cells.push(Cell::Unknown);
         }
-        Grid { side, cell: self.cell, origin, cells }
+        cells.extend(vec![Cell::Unknown; columns]);
+        let corner = [left, bottom].map(|at| at as f64 - 1.0);
+        let origin = [0, 1].map(|axis| self.origin[axis] + corner[axis] * self.cell);
+        Grid { columns, cell: self.cell, origin, cells }
     }
 
     fn cell(&self, index: usize, params: &LocalMapParams) -> Cell {
-        let (hits, passes) = (f64::from(self.hits[index]), f64::from(self.passes[index]));
-        if hits > 0.0 && hits >= params.occupied * (hits + passes) {
-            Cell::Occupied
-        } else if hits + passes > 0.0 {
-            Cell::Free
+        let (hits, passes) = (self.hits[index], self.passes[index]);
+        if hits == 0 {
+            if passes == 0 { Cell::Unknown } else { Cell::Free }
         } else {
-            Cell::Unknown
+            let part = f64::from(hits) / (f64::from(hits) + f64::from(passes));
+            if part >= params.occupied { Cell::Occupied } else { Cell::Free }
         }
     }
 

@@ -8,17 +8,20 @@ use toposlam_model::driving::{odometry::Odometry, scene::wrapped};
 use super::{
     grid::Grid,
     junctions::LaserJunction,
+    matching::ScanMatcher,
     params::{LaserParams, LocalMapParams},
+    plane::{Motion, distance},
     ray_counts::{RayCounts, Rays},
     scan::{Reading, Scan},
     skeleton::Skeleton,
-    way_graph::{WayGraph, distance},
+    way_graph::WayGraph,
 };
 
 /// Senses junctions with a laser scanner.
 #[derive(Clone, Debug)]
 pub struct LaserSensor {
     params: LaserParams,
+    matcher: ScanMatcher,
     counts: Option<RayCounts>,
     /// The scans in the local map, each with the length of the robot's way until then, in metres.
     scans: VecDeque<(f64, Rays)>,
@@ -31,8 +34,10 @@ pub struct LaserSensor {
 /// What the last scans show.
 #[derive(Clone, Debug)]
 pub struct LaserView {
-    /// Where the robot is, by odometry.
+    /// Where the robot is, in the frame of the local map.
     pub robot: Odometry,
+    /// The motion from the frame of the local map to that of odometry. It is right near the robot.
+    pub to_odometry: Motion,
     /// The local map.
     pub grid: Grid,
     /// The middle lines of its ways; `None` if the robot has no way.
@@ -52,7 +57,8 @@ impl LaserSensor {
     /// A sensor that has seen nothing yet.
     #[must_use]
     pub fn new(params: LaserParams) -> Self {
-        Self { params, counts: None, scans: VecDeque::new(), way: 0.0, last: None }
+        let matcher = ScanMatcher::new(params.matching);
+        Self { params, matcher, counts: None, scans: VecDeque::new(), way: 0.0, last: None }
     }
 
     /// Takes the next scan, and the odometry at its time. Returns what is seen now, or `None` if the robot
@@ -72,17 +78,19 @@ impl LaserSensor {
             self.way += driven;
         }
         self.last = Some(*odometry);
+        let robot = self.matcher.see(scan, odometry, self.way, self.way - params.memory);
         let side = 2 * (params.reach / params.cell).ceil() as usize + 1;
-        self.add(rays(scan, odometry, &params), odometry.position, side);
+        self.add(rays(scan, &robot, &params), robot.position, side);
         let counts = self.counts.as_ref()?;
-        let mut grid = counts.window(odometry.position, side, &params);
+        let mut grid = counts.window(robot.position, side, &params);
         grid.clean(&params);
-        let skeleton = Skeleton::new(&grid, odometry.position, &self.params);
+        let skeleton = Skeleton::new(&grid, robot.position, &self.params);
         let graph = skeleton.as_ref().map_or_else(WayGraph::default, |skeleton| {
-            WayGraph::new(skeleton, &grid).pruned(odometry.position, &self.params.arm)
+            WayGraph::new(skeleton, &grid).pruned(robot.position, &self.params)
         });
-        let junctions = graph.junctions(&self.params.arm);
-        Some(LaserView { robot: *odometry, grid, skeleton, graph, junctions })
+        let junctions = graph.junctions(&self.params);
+        let to_odometry = self.matcher.correction().inverse();
+        Some(LaserView { robot, to_odometry, grid, skeleton, graph, junctions })
     }
 
     /// Adds the rays of a scan, and forgets those of old ones.
@@ -109,12 +117,9 @@ impl LaserSensor {
 }
 
 /// The rays of a scan. A reading without a return shows nothing: glass and black surfaces give none.
-fn rays(scan: &Scan, odometry: &Odometry, params: &LocalMapParams) -> Rays {
-    let place = |[x, y]: [f64; 2]| {
-        let (sine, cosine) = odometry.heading.sin_cos();
-        let [east, north] = odometry.position;
-        [east + x * cosine - y * sine, north + x * sine + y * cosine]
-    };
+fn rays(scan: &Scan, robot: &Odometry, params: &LocalMapParams) -> Rays {
+    let motion = Motion::from_robot(robot);
+    let place = |point: [f64; 2]| motion.point(point);
     let mut rays = Rays { from: place(scan.mount().position), ..Rays::default() };
     let readings: Vec<(f64, Option<f64>)> = scan
         .readings()

@@ -30,8 +30,7 @@ impl Skeleton {
         let clearances = Clearances::new(grid);
         let radius = params.map.min_width / 2.0 / grid.cell;
         let is_way = |at: usize| {
-            let wide = f64::from(clearances.wall[at]) >= radius * radius;
-            wide && grid.cells[at] == Cell::Free && !grid.is_border(at)
+            grid.cells[at] == Cell::Free && f64::from(clearances.wall[at]) >= radius * radius
         };
         let mut cells: Vec<bool> = (0..grid.cells.len()).map(is_way).collect();
         let start = nearest(&cells, grid, robot, BESIDE)?;
@@ -46,13 +45,15 @@ impl Skeleton {
 fn nearest(set: &[bool], grid: &Grid, point: [f64; 2], within: f64) -> Option<usize> {
     let reach = (within / grid.cell).ceil() as i64;
     let [x, y] = grid.column_row(point);
-    let last = grid.side as i64 - 1;
-    let around = |at: i64| (at - reach).clamp(0, last)..=(at + reach).clamp(0, last);
-    around(y)
-        .flat_map(|row| around(x).map(move |column| (row, column)))
+    let around = |at: i64, count: usize| {
+        let last = count as i64 - 1;
+        (at - reach).clamp(0, last)..=(at + reach).clamp(0, last)
+    };
+    around(y, grid.rows())
+        .flat_map(|row| around(x, grid.columns).map(move |column| (row, column)))
         .map(|(row, column)| {
             let off = (row - y).pow(2) + (column - x).pow(2);
-            (off, (row * grid.side as i64 + column) as usize)
+            (off, (row * grid.columns as i64 + column) as usize)
         })
         .filter(|&(_, at)| set[at])
         .min()

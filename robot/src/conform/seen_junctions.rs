@@ -1,0 +1,138 @@
+//! Junctions, corners and dead ends in several views of a laser scanner, and what most of the views show.
+
+use toposlam_model::driving::scene::wrapped;
+use toposlam_vision::laser::{junctions::LaserJunction, params::VisitParams, plane::distance};
+
+/// The junctions that were seen lately.
+#[derive(Clone, Debug)]
+pub(super) struct SeenJunctions {
+    params: VisitParams,
+    junctions: Vec<SeenJunction>,
+}
+
+/// A junction in several views.
+#[derive(Clone, Debug)]
+pub(super) struct SeenJunction {
+    /// The mean of its centre, in metres.
+    pub centre: [f64; 2],
+    /// The mean distance from there to the nearest wall, in metres.
+    pub clearance: f64,
+    /// The directions of its arms in each view, the last one last; empty where it is not seen.
+    views: Vec<Vec<f64>>,
+    /// The length of the robot's way at the last view.
+    way: f64,
+}
+
+/// An arm of a junction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenArm {
+    /// Its mean direction, in radians.
+    pub direction: f64,
+    /// The part of the views that show it.
+    pub part: f64,
+}
+
+/// A junction that was not seen on this length of the way is forgotten, in metres.
+const FORGOTTEN: f64 = 30.0;
+
+impl SeenJunctions {
+    pub(super) fn new(params: VisitParams) -> Self {
+        Self { params, junctions: Vec::new() }
+    }
+
+    /// Adds a view to the junctions that the robot is near, after this length of its way.
+    pub(super) fn look<'a>(
+        &mut self,
+        junctions: impl Iterator<Item = &'a LaserJunction>,
+        robot: [f64; 2],
+        way: f64,
+    ) {
+        let VisitParams { range, views: most, .. } = self.params;
+        self.junctions.retain(|junction| way - junction.way < FORGOTTEN);
+        for junction in junctions {
+            if distance(junction.centre, robot) > range + junction.clearance {
+                continue;
+            }
+            if let Some(known) = self.index_at(junction.centre) {
+                let known = &mut self.junctions[known];
+                let views = known.views.len().min(most) as f64;
+                let mean = |old: f64, new: f64| (views * old + new) / (views + 1.0);
+                known.centre = [0, 1].map(|axis| mean(known.centre[axis], junction.centre[axis]));
+                known.clearance = mean(known.clearance, junction.clearance);
+                known.views.push(junction.arms.clone());
+                known.way = way;
+            } else {
+                self.junctions.push(SeenJunction {
+                    centre: junction.centre,
+                    clearance: junction.clearance,
+                    views: vec![junction.arms.clone()],
+                    way,
+                });
+            }
+        }
+        for known in &mut self.junctions {
+            let near = distance(known.centre, robot) < range + known.clearance;
+            if near && known.way < way {
+                known.views.push(Vec::new());
+            }
+            let old = known.views.len().saturating_sub(most);
+            known.views.drain(..old);
+        }
+    }
+
+    /// The nearest junction that can be the one at a point.
+    pub(super) fn at(&self, centre: [f64; 2]) -> Option<&SeenJunction> {
+        self.index_at(centre).map(|index| &self.junctions[index])
+    }
+
+    fn index_at(&self, centre: [f64; 2]) -> Option<usize> {
+        let off = |index: &usize| distance(self.junctions[*index].centre, centre);
+        (0..self.junctions.len())
+            .filter(|index| off(index) < self.junctions[*index].extent(&self.params))
+            .min_by(|one, other| off(one).total_cmp(&off(other)))
+    }
+
+    /// The junction whose centre is nearest to a point, if the point is within the distance that a function
+    /// returns for it.
+    pub(super) fn nearest(
+        &self,
+        point: [f64; 2],
+        within: impl Fn(&SeenJunction) -> f64,
+    ) -> Option<&SeenJunction> {
+        let off = |junction: &&SeenJunction| distance(junction.centre, point);
+        self.junctions
+            .iter()
+            .filter(|junction| junction.views.iter().any(|arms| !arms.is_empty()))
+            .filter(|junction| off(junction) < within(junction))
+            .min_by(|one, other| off(one).total_cmp(&off(other)))
+    }
+}
+
+impl SeenJunction {
+    /// What is nearer than this to its centre is the same junction, in metres.
+    pub(super) fn extent(&self, params: &VisitParams) -> f64 {
+        params.same.max(0.6 * self.clearance)
+    }
+
+    /// The arms that are seen.
+    pub(super) fn arms(&self, params: &VisitParams) -> Vec<SeenArm> {
+        // The mean direction, the number of views, and the last of them.
+        let mut groups: Vec<(f64, u32, usize)> = Vec::new();
+        for (number, view) in self.views.iter().enumerate() {
+            for &arm in view {
+                let off = |group: &(f64, u32, usize)| wrapped(group.0 - arm).abs();
+                let near = groups.iter_mut().filter(|group| off(group) < params.same_arm);
+                if let Some(group) = near.min_by(|one, other| off(one).total_cmp(&off(other))) {
+                    group.0 = wrapped(group.0 + wrapped(arm - group.0) / f64::from(group.1 + 1));
+                    group.1 += u32::from(group.2 != number);
+                    group.2 = number;
+                } else {
+                    groups.push((arm, 1, number));
+                }
+            }
+        }
+        let all = self.views.len().max(1) as f64;
+        let arm = |(direction, seen, _)| SeenArm { direction, part: f64::from(seen) / all };
+        groups.into_iter().map(arm).collect()
+    }
+}

@@ -1,0 +1,64 @@
+//! The options of sensing with a laser scanner.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use toposlam_robot::conform::Evidence;
+use toposlam_vision::laser::params::LaserParams;
+
+use super::{CliError, input};
+
+/// How laser scans are sensed.
+#[derive(clap::Args)]
+pub(super) struct LaserOptions {
+    /// Parameters of sensing with a laser scanner (TOML) [default: for buildings with corridors]
+    #[arg(long, value_name = "FILE")]
+    laser_params: Option<PathBuf>,
+    /// Whether a bend of a corridor is a vertex, for laser scans [default: no]
+    #[arg(long, value_enum, value_name = "WHETHER")]
+    corners: Option<Corners>,
+}
+
+/// Whether bends of corridors are vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Corners {
+    /// A bend by 60 degrees or more is a vertex of degree 2
+    Yes,
+    /// A bend is a part of its corridor
+    No,
+}
+
+impl LaserOptions {
+    /// An option that is given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let params = self.laser_params.as_ref().map(|_| "--laser-params");
+        params.or(self.corners.map(|_| "--corners"))
+    }
+
+    /// Returns an error if an option is given for events from something else.
+    pub(super) fn check_used(&self, evidence: Evidence) -> Result<(), CliError> {
+        match self.given().filter(|_| evidence != Evidence::Laser) {
+            Some(option) => {
+                let cause = "the events are not from laser scans; add --events laser";
+                Err(CliError::at(option, cause))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The parameters.
+    pub(super) fn params(&self) -> Result<LaserParams, CliError> {
+        let mut params = match &self.laser_params {
+            None => LaserParams::default(),
+            Some(path) => {
+                let text = String::from_utf8(input::read(path)?)
+                    .map_err(|error| CliError::in_file(path, error))?;
+                LaserParams::read(&text).map_err(|error| CliError::in_file(path, error))?
+            }
+        };
+        if let Some(corners) = self.corners {
+            params.corner.corners = corners == Corners::Yes;
+        }
+        Ok(params)
+    }
+}

@@ -1,0 +1,176 @@
+//! Senses the laser scans of a log.
+
+use std::{io::Write, path::Path};
+
+use serde::Serialize;
+use toposlam_robot::{
+    conform::Evidence,
+    log::{
+        entries::Content,
+        topic_map::{Role, TopicMap},
+    },
+    record::{EventKind, Frame},
+};
+use toposlam_vision::laser::{
+    junctions::LaserJunction,
+    pictures,
+    plane::Motion,
+    scan::Scan,
+    sensor::{LaserSensor, LaserView},
+};
+
+use super::SenseArguments;
+use crate::cli::{
+    CliError, input,
+    json::print_line,
+    output, picture_file,
+    scene::{bearing, place_in_words, rounded, rounded_angle},
+    text::print_hanging,
+};
+
+/// The JSON line of a scan.
+#[derive(Serialize)]
+struct ScanLine<'a> {
+    log: &'a str,
+    scan: u64,
+    stamp: f64,
+    junctions: Vec<JunctionLine>,
+}
+
+/// A junction, relative to the robot.
+#[derive(Serialize)]
+struct JunctionLine {
+    degree: usize,
+    position: [f64; 2],
+    doors: Vec<f64>,
+}
+
+impl JunctionLine {
+    fn new(junction: &LaserJunction, view: &LaserView) -> Self {
+        let to_robot = Motion::from_robot(&view.robot).inverse();
+        let door = |&arm: &f64| rounded_angle(view.robot.seen(arm), std::f64::consts::PI);
+        Self {
+            degree: junction.arms.len(),
+            position: to_robot.point(junction.centre).map(rounded),
+            doors: junction.arms.iter().map(door).collect(),
+        }
+    }
+
+    /// For example "T, 2.31 m ahead and 0.12 m to the left; doors straight ahead, straight behind".
+    fn in_words(&self) -> String {
+        let kind = match self.degree {
+            1 => "dead end".to_owned(),
+            2 => "corner".to_owned(),
+            3 => "T".to_owned(),
+            degree => format!("junction with {degree} doors"),
+        };
+        let doors: Vec<_> = self.doors.iter().map(|&door| bearing(door)).collect();
+        format!("{kind}, {}; doors {}", place_in_words(self.position), doors.join(", "))
+    }
+}
+
+impl SenseArguments {
+    /// Senses the scans of a log, and prints what is seen whenever the robot has moved on.
+    pub(super) fn sense_scans(&self, path: &Path, out: &mut dyn Write) -> Result<(), CliError> {
+        let wrong = |error: &dyn std::fmt::Display| CliError::in_file(path, error.to_string());
+        let log = input::open_log(path)?;
+        let mapping = match &self.mapping {
+            None => TopicMap::unambiguous(&log),
+            Some(file) => TopicMap::read(&input::read(file)?)
+                .map_err(|error| CliError::in_file(file, error))?,
+        };
+        if !Evidence::Laser.is_in(&mapping) {
+            return Err(wrong(&"this is no image, and no log with laser scans and odometry"));
+        }
+        let bound = mapping.only(&[Role::Scan, Role::Odometry]).bind(&log);
+        let bound = bound.map_err(|error| wrong(&error))?;
+        if !self.json {
+            writeln!(out, "{}", path.display())?;
+        }
+        let mut sensor = LaserSensor::new(self.laser.params()?);
+        let mut number = 0;
+        for entry in log.entries(&bound) {
+            let entry = entry.map_err(|error| wrong(&error))?;
+            let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
+                entry.content
+            else {
+                continue;
+            };
+            let scan_number = number;
+            number += 1;
+            if self.scans.as_ref().is_some_and(|scans| scan_number > scans.last) {
+                break;
+            }
+            let Some(view) = sensor.see(&scan, &odometry) else { continue };
+            if self.scans.as_ref().is_some_and(|scans| scan_number < scans.first) {
+                continue;
+            }
+            let stamp = entry.stamp.nanoseconds() as f64 / 1e9;
+            self.print_scan(path, scan_number, stamp, &view, out)?;
+            self.write_stages(path, scan_number, &view, &scan)?;
+        }
+        Ok(())
+    }
+
+    fn print_scan(
+        &self,
+        path: &Path,
+        scan: u64,
+        stamp: f64,
+        view: &LaserView,
+        out: &mut dyn Write,
+    ) -> Result<(), CliError> {
+        let line = |junction: &LaserJunction| JunctionLine::new(junction, view);
+        let mut junctions: Vec<_> = view.junctions.iter().map(line).collect();
+        let far = |junction: &JunctionLine| junction.position[0].hypot(junction.position[1]);
+        junctions.sort_by(|one, other| far(one).total_cmp(&far(other)));
+        if self.json {
+            let log = &*path.display().to_string();
+            return print_line(out, "scan", &ScanLine { log, scan, stamp, junctions });
+        }
+        let mut texts: Vec<_> = junctions.iter().map(JunctionLine::in_words).collect();
+        if texts.is_empty() {
+            texts.push("no junction".to_owned());
+        }
+        print_hanging(out, &format!("  {scan:>6}  {stamp:.3} s  "), &texts.join("; "))?;
+        Ok(())
+    }
+
+    fn write_stages(
+        &self,
+        path: &Path,
+        number: u64,
+        view: &LaserView,
+        scan: &Scan,
+    ) -> Result<(), CliError> {
+        let Some(folder) = &self.stages else { return Ok(()) };
+        for (stage, picture) in &pictures::stages(view, scan) {
+            let mut name = input::stem(path);
+            name.push(format!("-{number}-{stage}.png"));
+            let legend = pictures::legend(stage, view.grid.cell);
+            picture_file::write_stage(&folder.join(name), &legend, picture)?;
+        }
+        Ok(())
+    }
+}
+
+/// Some scans of a log, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ScanRange {
+    first: u64,
+    last: u64,
+}
+
+impl std::str::FromStr for ScanRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (first, last) = text.split_once("..=").unwrap_or((text, text));
+        let number = |text: &str| text.parse().map_err(|_| format!("{text:?} is no number"));
+        let (first, last) = (number(first)?, number(last)?);
+        if last < first {
+            return Err("the last scan is before the first one".to_owned());
+        }
+        Ok(Self { first, last })
+    }
+}

@@ -1,0 +1,216 @@
+//! Scan matching: where a scan was taken, by the walls that earlier scans have shown. Odometry drifts; the
+//! local map would be blurred by it. Points are matched with lines (Censi, *An ICP variant using a
+//! point-to-line metric*, 2008). The odometry between two scans is an observation like any other: it decides
+//! what the walls leave open, as the way along a corridor.
+
+use std::collections::BTreeMap;
+
+use toposlam_model::driving::odometry::Odometry;
+
+use super::{
+    params::MatchingParams,
+    plane::{Motion, distance, dot},
+    scan::Scan,
+};
+use crate::least_squares::{NormalEquations, principal_component};
+
+/// Matches scans with the walls of earlier ones.
+#[derive(Clone, Debug)]
+pub struct ScanMatcher {
+    params: MatchingParams,
+    /// Points of walls, by the square metre where they are.
+    walls: BTreeMap<[i64; 2], Vec<WallPoint>>,
+    /// The last pose, by odometry and in the frame of the local map.
+    last: Option<[Odometry; 2]>,
+}
+
+/// A point of a wall.
+#[derive(Clone, Copy, Debug)]
+struct WallPoint {
+    point: [f64; 2],
+    /// The unit vector across the wall, to the side from which it was seen.
+    normal: [f64; 2],
+    /// The length of the robot's way when it was seen, in metres.
+    way: f64,
+}
+
+impl ScanMatcher {
+    /// A matcher that has seen nothing yet.
+    #[must_use]
+    pub fn new(params: MatchingParams) -> Self {
+        Self { params, walls: BTreeMap::new(), last: None }
+    }
+
+    /// The motion from the frame of odometry to that of the local map, at the last scan. They are the same
+    /// at first.
+    #[must_use]
+    pub fn correction(&self) -> Motion {
+        self.last.map_or_else(Motion::default, |[odometry, pose]| Motion::between(&odometry, &pose))
+    }
+
+    /// Takes the next scan, the odometry at its time, and the length of the robot's way until then, in
+    /// metres. Walls that were last seen before `forgotten` on that way are forgotten. Returns the pose in
+    /// the frame of the local map.
+    pub fn see(&mut self, scan: &Scan, odometry: &Odometry, way: f64, forgotten: f64) -> Odometry {
+        let points = wall_points(scan, &self.params, way);
+        let predicted = self.correction().pose(odometry);
+        let pose = match &self.last {
+            Some([last, _]) => self.matched(&points, &predicted, last, odometry),
+            None => predicted,
+        };
+        self.last = Some([*odometry, pose]);
+        for points in self.walls.values_mut() {
+            points.retain(|point| point.way >= forgotten);
+        }
+        self.walls.retain(|_, points| !points.is_empty());
+        self.add(&points, &pose);
+        pose
+    }
+
+    /// The pose at which the points of walls lie best on those that are known.
+    fn matched(
+        &self,
+        points: &[WallPoint],
+        predicted: &Odometry,
+        last: &Odometry,
+        odometry: &Odometry,
+    ) -> Odometry {
+        let params = &self.params;
+        let driven = last.distance(odometry);
+        let turned = last.seen(odometry.heading).abs();
+        let deviation = [
+            params.shift + params.shift_per_metre * driven,
+            params.turn + params.turn_per_metre * driven + params.turn_per_radian * turned,
+        ];
+        let mut pose = *predicted;
+        for round in 0..params.rounds {
+            let part = (round + 1) as f64 / params.rounds as f64;
+            let gate = params.gate + (1.0 - part) * (params.first_gate - params.gate);
+            let mut equations = NormalEquations::<3>::with_pull(0.0);
+            let off = [0, 1].map(|axis| predicted.position[axis] - pose.position[axis]);
+            let back = pose.seen(predicted.heading);
+            let [shift, turn] = deviation.map(|deviation| deviation.powi(-2));
+            equations.add(shift, [1.0, 0.0, 0.0], off[0]);
+            equations.add(shift, [0.0, 1.0, 0.0], off[1]);
+            equations.add(turn, [0.0, 0.0, 1.0], back);
+            let motion = Motion::from_robot(&pose);
+            let direction = Motion { shift: [0.0; 2], ..motion };
+            let mut matches = 0;
+            for point in points {
+                let at = motion.point(point.point);
+                let normal = direction.point(point.normal);
+                let Some((wall, across)) = self.nearest(at, normal, gate) else { continue };
+                matches += 1;
+                // Tukey's biweight: what is far off does not count.
+                let weight = (1.0 - (across / gate).powi(2)).powi(2) / params.deviation.powi(2);
+                let arm = [0, 1].map(|axis| at[axis] - pose.position[axis]);
+                let lever = arm[0] * wall[1] - arm[1] * wall[0];
+                equations.add(weight, [wall[0], wall[1], lever], across);
+            }
+            if matches < params.min_matches {
+                return *predicted;
+            }
+            let Some([east, north, turn]) = equations.solve() else { return *predicted };
+            pose = Odometry {
+                position: [pose.position[0] + east, pose.position[1] + north],
+                heading: pose.whither(turn),
+            };
+        }
+        let [shift, turn] = deviation.map(|deviation| params.max_deviations * deviation);
+        let is_near = predicted.distance(&pose) <= shift
+            && predicted.seen(pose.heading).abs() <= turn
+            && pose.heading.is_finite();
+        if is_near { pose } else { *predicted }
+    }
+
+    /// The normal of the wall on which a point lies, seen from the same side, and the distance to it along
+    /// the normal, in metres, which is at most the gate.
+    fn nearest(&self, at: [f64; 2], normal: [f64; 2], gate: f64) -> Option<([f64; 2], f64)> {
+        let mut nearest = None;
+        let mut least = self.params.reach;
+        let [column, row] = square(at);
+        for square in (-1..=1).flat_map(|x| (-1..=1).map(move |y| [column + x, row + y])) {
+            for wall in self.walls.get(&square).into_iter().flatten() {
+                let off = [0, 1].map(|axis| wall.point[axis] - at[axis]);
+                let across = dot(off, wall.normal);
+                let away = off[0].hypot(off[1]);
+                if away < least
+                    && across.abs() <= gate
+                    && dot(normal, wall.normal) > self.params.same_direction
+                {
+                    least = away;
+                    nearest = Some((wall.normal, across));
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Adds points of walls, in the robot's frame, where there are none yet.
+    fn add(&mut self, points: &[WallPoint], pose: &Odometry) {
+        let motion = Motion::from_robot(pose);
+        let direction = Motion { shift: [0.0; 2], ..motion };
+        for point in points {
+            let added = WallPoint {
+                point: motion.point(point.point),
+                normal: direction.point(point.normal),
+                way: point.way,
+            };
+            let near = self.walls.entry(square(added.point)).or_default();
+            let is_known = near.iter().any(|known| {
+                distance(known.point, added.point) < self.params.spacing
+                    && dot(known.normal, added.normal) > self.params.same_direction
+            });
+            if !is_known {
+                near.push(added);
+            }
+        }
+    }
+}
+
+/// The points of a scan that lie on straight walls, in the robot's frame.
+fn wall_points(scan: &Scan, params: &MatchingParams, way: f64) -> Vec<WallPoint> {
+    let scanner = scan.mount().position;
+    let is_near = |hit: &[f64; 2]| distance(scanner, *hit) <= params.range;
+    let hits: Vec<[f64; 2]> = scan.hits().filter(is_near).collect();
+    let joined = |one: usize| {
+        let [one, other] = [hits.get(one)?, hits.get(one + 1)?];
+        (distance(*one, *other) <= params.max_step).then_some(())
+    };
+    let mut points = Vec::new();
+    for (at, &point) in hits.iter().enumerate() {
+        // As many neighbours on either side as make a line long enough.
+        let mut reach = 0;
+        let line = loop {
+            reach += 1;
+            let first = at.checked_sub(reach);
+            let is_joined = first.and_then(joined).is_some() && joined(at + reach - 1).is_some();
+            let Some(first) = first.filter(|_| is_joined) else { break None };
+            if distance(hits[first], hits[at + reach]) >= params.line {
+                break Some(&hits[first..=at + reach]);
+            }
+        };
+        let Some(normal) = line.and_then(|line| normal(line, params.straight)) else { continue };
+        let to_scanner = [0, 1].map(|axis| scanner[axis] - point[axis]);
+        let side = dot(normal, to_scanner).signum();
+        points.push(WallPoint { point, normal: normal.map(|axis| side * axis), way });
+    }
+    points
+}
+
+/// The unit vector across a line of points, if it is straight: if their deviation from it is at most this
+/// many metres.
+fn normal(line: &[[f64; 2]], straight: f64) -> Option<[f64; 2]> {
+    let count = line.len() as f64;
+    let mean = [0, 1].map(|axis| line.iter().map(|point| point[axis]).sum::<f64>() / count);
+    let product = |one: usize, other: usize| {
+        line.iter().map(|at| (at[one] - mean[one]) * (at[other] - mean[other])).sum::<f64>() / count
+    };
+    let (along, [_, across]) = principal_component(product(0, 0), product(0, 1), product(1, 1));
+    (across <= straight * straight).then_some([-along[1], along[0]])
+}
+
+/// The square metre of a point.
+fn square(point: [f64; 2]) -> [i64; 2] {
+    point.map(|at| at.floor() as i64)
+}

@@ -1,0 +1,213 @@
+//! Pictures of the steps of sensing with a laser scanner: the scan, the local map, the middle lines of its
+//! ways, and the junctions.
+
+use image::{Rgb, RgbImage};
+
+use super::{
+    ends::WayEnd,
+    grid::{Cell, Grid},
+    junctions::LaserJunction,
+    plane::Motion,
+    scan::Scan,
+    sensor::LaserView,
+};
+use crate::{
+    annotate::{BODY, CYAN, DARK, GREEN, LegendSign, ORANGE, REACH, RED, StageLegend, WHITE},
+    draw,
+};
+
+/// The names of the steps, in their order.
+pub const STAGES: [&str; 4] = ["1-scan", "2-map", "3-ways", "4-junctions"];
+
+/// The name of each step, and its picture.
+pub type LaserStages = [(&'static str, RgbImage); 4];
+
+/// The pixels of a side of a cell.
+const ZOOM: usize = 4;
+/// Free space of the local map.
+const FREE: Rgb<u8> = Rgb([62, 74, 92]);
+/// Free space behind what else is drawn.
+const DIM: Rgb<u8> = Rgb([44, 50, 60]);
+/// Walls behind what else is drawn.
+const WALL: Rgb<u8> = Rgb([150, 150, 150]);
+/// How far the lines of the doors of a junction reach beyond its walls, in metres.
+const DOOR: f64 = 1.5;
+/// The radius of the robot, in metres.
+const ROBOT: f64 = 0.25;
+
+/// A picture of each step from a scan to what is seen with it. The x axis of odometry points to the right.
+#[must_use]
+pub fn stages(view: &LaserView, scan: &Scan) -> LaserStages {
+    let [one, two, three, four] = STAGES;
+    [(one, rays(view, scan)), (two, map(view)), (three, ways(view)), (four, junctions(view))]
+}
+
+/// The legend of the picture of a step, by the step's name; empty for any other name.
+#[must_use]
+pub fn legend(stage: &str, cell: f64) -> StageLegend {
+    use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
+    let walls = (Areas(vec![WALL]), "wall or obstacle");
+    let entries = match stage {
+        "1-scan" => vec![
+            (Areas(vec![REACH]), "up to what a ray met"),
+            (Dot(WHITE), "where a ray ended"),
+        ],
+        "2-map" => vec![
+            (Areas(vec![FREE]), "free"),
+            (Areas(vec![WHITE]), "wall or obstacle"),
+            (Areas(vec![DARK]), "unknown"),
+        ],
+        "3-ways" => vec![
+            walls,
+            (Line(CYAN), "middle line of a way"),
+            (Ring(ORANGE), "end of what is known"),
+            (Ring(RED), "end of a way"),
+        ],
+        "4-junctions" => vec![
+            walls,
+            (Line(CYAN), "way that counts"),
+            (Dot(WHITE), "centre of a junction"),
+            (Thick(GREEN), "door"),
+        ],
+        _ => Vec::new(),
+    };
+    let mut entries: Vec<_> =
+        entries.into_iter().map(|(sign, text)| (sign, text.to_owned())).collect();
+    if entries.is_empty() {
+        return StageLegend { entries, metre: None };
+    }
+    entries.push((Robot { body: BODY, outline: WHITE }, "robot".to_owned()));
+    StageLegend { entries, metre: Some(ZOOM as f64 / cell) }
+}
+
+/// A picture of a map.
+struct Canvas<'g> {
+    picture: RgbImage,
+    grid: &'g Grid,
+}
+
+impl<'g> Canvas<'g> {
+    /// Each cell in the colour of its kind.
+    fn new(grid: &'g Grid, colour: impl Fn(Cell) -> Rgb<u8>) -> Self {
+        let [width, height] = [grid.columns, grid.rows()].map(|count| (count * ZOOM) as u32);
+        let picture = RgbImage::from_fn(width, height, |u, v| {
+            let [column, row] = [u, height - 1 - v].map(|at| at as usize / ZOOM);
+            colour(grid.cells[row * grid.columns + column])
+        });
+        Self { picture, grid }
+    }
+
+    /// The pixel of a point.
+    fn at(&self, point: [f64; 2]) -> [f32; 2] {
+        let pixel = |axis: usize| {
+            ((point[axis] - self.grid.origin[axis]) / self.grid.cell * ZOOM as f64) as f32
+        };
+        [pixel(0), self.picture.height() as f32 - pixel(1)]
+    }
+
+    fn pixel(&self, point: [f64; 2]) -> [i32; 2] {
+        self.at(point).map(|at| at as i32)
+    }
+
+    fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+        let (from, to) = (self.at(from), self.at(to));
+        draw::line(&mut self.picture, from, to, colour);
+    }
+
+    fn thick(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb<u8>) {
+        let (from, to) = (self.at(from), self.at(to));
+        for [right, down] in [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+            let pen = |[u, v]: [f32; 2]| [u + right, v + down];
+            draw::line(&mut self.picture, pen(from), pen(to), colour);
+        }
+    }
+
+    fn ring(&mut self, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+        let at = self.pixel(point);
+        for radius in [radius, radius - 1] {
+            draw::ring(&mut self.picture, at, radius, colour);
+        }
+    }
+
+    fn dot(&mut self, point: [f64; 2], radius: i32, colour: Rgb<u8>) {
+        let at = self.pixel(point);
+        draw::disc(&mut self.picture, at, radius, colour);
+    }
+
+    /// The picture with the robot on it.
+    fn with_robot(mut self, view: &LaserView) -> RgbImage {
+        let radius = (ROBOT / self.grid.cell * ZOOM as f64) as i32;
+        self.dot(view.robot.position, radius, BODY);
+        self.ring(view.robot.position, radius, WHITE);
+        let ahead = Motion::from_robot(&view.robot).point([2.0 * ROBOT, 0.0]);
+        self.line(view.robot.position, ahead, WHITE);
+        self.picture
+    }
+}
+
+fn rays(view: &LaserView, scan: &Scan) -> RgbImage {
+    let mut canvas = Canvas::new(&view.grid, |_| DARK);
+    let motion = Motion::from_robot(&view.robot);
+    let hits: Vec<[f64; 2]> = scan.hits().map(|hit| motion.point(hit)).collect();
+    let scanner = motion.point(scan.mount().position);
+    for &hit in &hits {
+        canvas.line(scanner, hit, REACH);
+    }
+    for &hit in &hits {
+        canvas.dot(hit, 1, WHITE);
+    }
+    canvas.with_robot(view)
+}
+
+fn map(view: &LaserView) -> RgbImage {
+    let colour = |cell| match cell {
+        Cell::Unknown => DARK,
+        Cell::Free => FREE,
+        Cell::Occupied => WHITE,
+    };
+    Canvas::new(&view.grid, colour).with_robot(view)
+}
+
+/// The local map in the background.
+fn background(grid: &Grid) -> Canvas<'_> {
+    Canvas::new(grid, |cell| match cell {
+        Cell::Unknown => DARK,
+        Cell::Free => DIM,
+        Cell::Occupied => WALL,
+    })
+}
+
+fn ways(view: &LaserView) -> RgbImage {
+    let mut canvas = background(&view.grid);
+    if let Some(skeleton) = &view.skeleton {
+        for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
+            canvas.dot(view.grid.point(at), 1, CYAN);
+        }
+        for end in &skeleton.ends {
+            let colour = match end.end {
+                WayEnd::Open => ORANGE,
+                WayEnd::Closed => RED,
+            };
+            canvas.ring(view.grid.point(end.cell), 6, colour);
+        }
+    }
+    canvas.with_robot(view)
+}
+
+fn junctions(view: &LaserView) -> RgbImage {
+    let mut canvas = background(&view.grid);
+    for way in &view.graph.ways {
+        for two in way.line.windows(2) {
+            canvas.line(two[0].0, two[1].0, CYAN);
+        }
+    }
+    for LaserJunction { centre, clearance, arms } in &view.junctions {
+        for &arm in arms {
+            let frame = Motion { turn: arm, shift: *centre };
+            let [near, far] = [*clearance, clearance + DOOR];
+            canvas.thick(frame.point([near, 0.0]), frame.point([far, 0.0]), GREEN);
+        }
+        canvas.dot(*centre, 5, WHITE);
+    }
+    canvas.with_robot(view)
+}
