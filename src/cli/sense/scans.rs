@@ -23,7 +23,7 @@ use super::SenseArguments;
 use crate::cli::{
     CliError, input,
     json::print_line,
-    output, picture_file,
+    picture_file,
     scene::{bearing, place_in_words, rounded, rounded_angle},
     text::print_hanging,
 };

@@ -6,7 +6,6 @@ use super::{
     clearances::Clearances,
     grid::{Cell, Grid},
     params::LaserParams,
-    plane::{direction, distance},
 };
 
 /// How a way ends.
@@ -19,31 +18,16 @@ pub enum WayEnd {
 }
 
 /// An end of a way.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
     /// Its cell.
     pub cell: usize,
     /// How it ends.
     pub end: WayEnd,
-    /// Cells of the gap to what is unknown, in metres in the frame of the local map.
-    pub gap: Vec<[f64; 2]>,
+    /// The width of the gap behind it, in metres.
+    pub gap: f64,
     /// How much farther from the robot than the cell the way is known, in metres.
     pub beyond: f64,
-}
-
-impl End {
-    /// The width of its gap across the direction from a point, in metres; at least the width of a way.
-    pub(super) fn width(&self, from: [f64; 2], min_way: f64) -> f64 {
-        let far = |gap: &&[f64; 2]| distance(from, **gap);
-        let farthest = self.gap.iter().max_by(|one, other| far(one).total_cmp(&far(other)));
-        let Some(farthest) = farthest else { return min_way };
-        let (sine, cosine) = direction(from, *farthest).sin_cos();
-        let across = self.gap.iter().map(|gap| gap[1] * cosine - gap[0] * sine);
-        let (low, high) = across
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-        // The cells of a way end half of its least width before its sides.
-        min_way + (high - low)
-    }
 }
 
 /// The lengths of a straight and of a diagonal step, in fifths of a cell.
@@ -106,7 +90,8 @@ pub(super) fn ends(
         ends.push(End {
             cell,
             end: WayEnd::Open,
-            gap: gap.iter().map(|&at| grid.point(at)).collect(),
+            // The cells of the gap are two rows, and end half a way before its sides.
+            gap: params.map.min_width + gap.len() as f64 / 2.0 * grid.cell,
             beyond: metres(farthest - lengths[cell]),
         });
     }
@@ -116,7 +101,7 @@ pub(super) fn ends(
         if !at_gap[cell] {
             let goes_on = is_near(&borders, cell, grid, params.arm.border_near);
             let end = if goes_on { WayEnd::Open } else { WayEnd::Closed };
-            ends.push(End { cell, end, gap: Vec::new(), beyond: 0.0 });
+            ends.push(End { cell, end, gap: params.map.min_width, beyond: 0.0 });
         }
     }
     ends

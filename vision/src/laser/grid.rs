@@ -71,17 +71,6 @@ impl Grid {
         ]
     }
 
-    /// The length from a point in a direction over free cells, in metres.
-    pub(super) fn free_run(&self, from: [f64; 2], direction: f64) -> f64 {
-        let (sine, cosine) = direction.sin_cos();
-        let step = self.cell / 2.0;
-        let run = (0..).map(|number| f64::from(number) * step).take_while(|&length| {
-            let at = self.index([from[0] + length * cosine, from[1] + length * sine]);
-            at.is_some_and(|at| self.cells[at] == Cell::Free)
-        });
-        run.last().unwrap_or_default()
-    }
-
     /// The groups of neighbouring cells of a kind. None of them is on the border.
     pub(super) fn groups(&self, is_member: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let mut seen = vec![false; self.cells.len()];

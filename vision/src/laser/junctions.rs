@@ -90,10 +90,10 @@ impl WayGraph {
         params: &'a CornerParams,
     ) -> impl Iterator<Item = LaserJunction> + 'a {
         (0..self.nodes.len()).filter_map(move |node| {
-            let WayNode { point, clearance, ref end } = self.nodes[node];
+            let WayNode { point, clearance, end } = self.nodes[node];
             let [way] = self.at(node)[..] else { return None };
             let way = self.ways[way].clone().from_node(node);
-            if end.as_ref()?.end != WayEnd::Closed || way.length < params.min_way {
+            if end?.end != WayEnd::Closed || way.length < params.min_way {
                 return None;
             }
             let gate = clearance + arm.direction;

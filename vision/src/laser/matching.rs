@@ -55,8 +55,10 @@ impl ScanMatcher {
         let points = wall_points(scan, &self.params, way);
         let predicted = self.correction().pose(odometry);
         let pose = match &self.last {
-            Some([last, _]) => self.matched(&points, &predicted, last, odometry),
-            None => predicted,
+            Some([last, _]) if self.params.rounds > 0 => {
+                self.matched(&points, &predicted, last, odometry)
+            }
+            _ => predicted,
         };
         self.last = Some([*odometry, pose]);
         for points in self.walls.values_mut() {

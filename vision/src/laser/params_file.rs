@@ -29,6 +29,7 @@ pub enum LaserParamsError {
 /// Least and greatest values; a local map of more cells would need too much memory.
 const CELL: [f64; 2] = [0.02, 1.0];
 const REACH: [f64; 2] = [2.0, 40.0];
+const ROUNDS: [f64; 2] = [0.0, 100.0];
 const COUNT: [f64; 2] = [1.0, 1000.0];
 const ANY: [f64; 2] = [0.0, 1000.0];
 
@@ -68,6 +69,7 @@ fn check(table: &Table, path: &str) -> Result<(), LaserParamsError> {
         let [least, most] = match &*key {
             "map.cell" => CELL,
             "map.reach" => REACH,
+            "matching.rounds" => ROUNDS,
             _ => range,
         };
         if !(least..=most).contains(&number) {

@@ -48,10 +48,9 @@ pub fn legend(stage: &str, cell: f64) -> StageLegend {
     use LegendSign::{Areas, Dot, Line, Ring, Robot, Thick};
     let walls = (Areas(vec![WALL]), "wall or obstacle");
     let entries = match stage {
-        "1-scan" => vec![
-            (Areas(vec![REACH]), "up to what a ray met"),
-            (Dot(WHITE), "where a ray ended"),
-        ],
+        "1-scan" => {
+            vec![(Areas(vec![REACH]), "up to what a ray met"), (Dot(WHITE), "where a ray ended")]
+        }
         "2-map" => vec![
             (Areas(vec![FREE]), "free"),
             (Areas(vec![WHITE]), "wall or obstacle"),

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use super::{
     ends::{End, WayEnd},
     grid::Grid,
-    params::LaserParams,
-    plane::{direction, distance},
+    params::ArmParams,
+    plane::distance,
     skeleton::Skeleton,
 };
 
 /// A meet point, or the end of a way.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayNode {
     /// Where it is, in metres in the frame of odometry.
     pub point: [f64; 2],
@@ -49,11 +49,6 @@ fn length(line: &[([f64; 2], f64)]) -> f64 {
     sparse.windows(2).map(|two| distance(two[0].0, two[1].0)).sum()
 }
 
-/// The direction of a way at its end is that of its last piece of this length, in metres.
-const STRETCH: f64 = 1.5;
-/// Behind an open end one looks in directions that differ by this angle, in radians.
-const FAN: f64 = 0.05;
-
 impl WayGraph {
     /// The graph of a skeleton.
     #[must_use]
@@ -65,7 +60,7 @@ impl WayGraph {
         for at in (0..skeleton.cells.len()).filter(|&at| skeleton.cells[at]) {
             if skeleton.links(at, grid).len() != 2 {
                 node_at.insert(at, nodes.len());
-                let end = skeleton.ends.iter().find(|end| end.cell == at).cloned();
+                let end = skeleton.ends.iter().find(|end| end.cell == at).copied();
                 nodes.push(WayNode { point: grid.point(at), clearance: clearance(at), end });
             }
         }
@@ -89,26 +84,7 @@ impl WayGraph {
                 }
             }
         }
-        let mut graph = Self { nodes, ways };
-        graph.look_beyond(grid);
-        graph
-    }
-
-    /// Measures how far the free space behind each open end is known.
-    fn look_beyond(&mut self, grid: &Grid) {
-        for leaf in 0..self.nodes.len() {
-            let [way] = self.at(leaf)[..] else { continue };
-            let line = self.ways[way].clone().from_node(leaf).line;
-            let WayNode { point, end: Some(end), .. } = &mut self.nodes[leaf] else { continue };
-            let before = line.iter().find(|(at, _)| distance(*at, *point) >= STRETCH);
-            if let Some(&(before, _)) = before.or(line.last())
-                && end.end == WayEnd::Open
-            {
-                let ahead = direction(before, *point);
-                let runs = (-10..=10).map(|step| grid.free_run(*point, ahead + f64::from(step) * FAN));
-                end.beyond = runs.fold(end.beyond, f64::max);
-            }
-        }
+        Self { nodes, ways }
     }
 
     /// The indices of the ways at a node; a loop is there twice.
@@ -122,7 +98,7 @@ impl WayGraph {
     /// The graph with those arms only that count, for a robot at a point. The shortest is removed first,
     /// because others become longer by it.
     #[must_use]
-    pub fn pruned(mut self, robot: [f64; 2], params: &LaserParams) -> Self {
+    pub fn pruned(mut self, robot: [f64; 2], params: &ArmParams) -> Self {
         loop {
             let removed = (0..self.ways.len()).filter(|&way| !self.counts(way, robot, params));
             let shortest = removed
@@ -135,9 +111,7 @@ impl WayGraph {
     }
 
     /// Whether a way counts: it is not an arm of a meet point that ends, or an arm that is no alcove.
-    fn counts(&self, way: usize, robot: [f64; 2], params: &LaserParams) -> bool {
-        let min_way = params.map.min_width;
-        let params = &params.arm;
+    fn counts(&self, way: usize, robot: [f64; 2], params: &ArmParams) -> bool {
         let way = &self.ways[way];
         let [one, other] = way.nodes;
         let (leaf, meet) = match (self.at(one).len(), self.at(other).len()) {
@@ -146,7 +120,7 @@ impl WayGraph {
             _ => return true,
         };
         let (leaf, meet) = (&self.nodes[leaf], &self.nodes[meet]);
-        let Some(end) = &leaf.end else { return true };
+        let Some(end) = leaf.end else { return true };
         let has_robot = distance(robot, meet.point) > meet.clearance + params.min_behind
             && way.line.iter().any(|&(point, _)| distance(point, robot) < params.robot_near);
         if has_robot {
@@ -173,8 +147,7 @@ impl WayGraph {
                 known >= params.min_known
                     && width >= params.min_width
                     && widest <= params.max_width
-                    && (params.min_gap..=params.max_gap)
-                        .contains(&(end.width(meet.point, min_way) / width))
+                    && (params.min_gap..=params.max_gap).contains(&(end.gap / width))
             }
         }
     }
