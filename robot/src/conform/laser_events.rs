@@ -14,7 +14,10 @@ use toposlam_vision::laser::{
     sensor::LaserSensor,
 };
 
-use super::events::{CheckedEvent, CheckedKind, EventSource};
+use super::{
+    events::{CheckedEvent, CheckedKind, EventSource},
+    marked_visits::VisitedJunction,
+};
 use crate::record::Arrival;
 
 /// Infers events from a sequence of scans.
@@ -23,6 +26,8 @@ pub struct LaserEvents {
     sensor: LaserSensor,
     params: VisitParams,
     events: Vec<CheckedEvent>,
+    /// The junctions of the events.
+    junctions: Vec<VisitedJunction>,
     /// The junctions that were seen lately.
     seen: Vec<SeenJunction>,
     /// The visit that goes on.
@@ -94,6 +99,7 @@ impl LaserEvents {
             sensor: LaserSensor::new(params),
             params: params.visit,
             events: Vec::new(),
+            junctions: Vec::new(),
             seen: Vec::new(),
             visit: None,
             waiting: Vec::new(),
@@ -130,12 +136,18 @@ impl LaserEvents {
 
     /// The events, after the last scan.
     #[must_use]
-    pub fn finish(mut self) -> Vec<CheckedEvent> {
+    pub fn finish(self) -> Vec<CheckedEvent> {
+        self.finish_with_junctions().0
+    }
+
+    /// The events, and the junctions of those that are visits.
+    #[must_use]
+    pub fn finish_with_junctions(mut self) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
         let visits = std::mem::take(&mut self.waiting).into_iter().chain(self.visit.take());
         for visit in visits.collect::<Vec<_>>() {
             self.decide(&visit);
         }
-        self.events
+        (self.events, self.junctions)
     }
 
     /// Adds a view to the junctions that the robot is near.
@@ -280,6 +292,7 @@ impl LaserEvents {
             self.push(visit.source, CheckedKind::TurnedBack);
         }
         if votes.iter().any(doubtful) {
+            self.push_junction(visit, Vec::new());
             self.push(visit.source, CheckedKind::Undecided);
             return;
         }
@@ -299,6 +312,7 @@ impl LaserEvents {
             form: None,
             entry: Some(entry),
         };
+        self.push_junction(visit, arms.clone());
         self.push(visit.source, CheckedKind::Arrival { arrival, entry_off: None });
         if let Some(exit) = exit
             && let Some(door) = nearest(&arms, exit)
@@ -307,6 +321,12 @@ impl LaserEvents {
             let door = Door(door as u32);
             self.push(visit.left, CheckedKind::Door { door, number: None, off });
         }
+    }
+
+    /// Adds the junction of the next event.
+    fn push_junction(&mut self, visit: &Visit, doors: Vec<f64>) {
+        let Visit { centre, clearance, .. } = *visit;
+        self.junctions.push(VisitedJunction { event: self.events.len(), centre, clearance, doors });
     }
 
     fn push(&mut self, source: EventSource, kind: CheckedKind) {

@@ -53,6 +53,7 @@ fn conforming(events: usize) -> LogReport {
         picture: None,
         folded: None,
         world: None,
+        twin: None,
     }
 }
 
