@@ -237,13 +237,16 @@ impl ConformArguments {
         if let Some(world) = &world {
             known_world::check_start(world, self.start.as_deref())?;
         }
+        // For events that have no corners.
+        let smooth = world.as_ref().map(NamedWorld::smoothed);
+        let worlds = world.as_ref().zip(smooth.as_ref());
         let mut reports = Vec::new();
         let mut all = RunCoverage::default();
         let mut any_algorithm1 = false;
         let mut logs = SeveralInputs::new();
         let mut cases = Vec::new();
         for path in &self.logs {
-            let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
+            let judged = self.judge(path, worlds, &quirks).map(|judged| {
                 let outcome = outcome(judged.judgement.verdict());
                 (judged, outcome)
             });
@@ -324,11 +327,11 @@ impl ConformArguments {
         Ok(())
     }
 
-    /// Reads and judges a log.
+    /// Reads and judges a log, in the known world or in that without its corners.
     fn judge<'w>(
         &self,
         path: &Path,
-        world: Option<&'w NamedWorld>,
+        worlds: Option<(&'w NamedWorld, &'w NamedWorld)>,
         quirks: &Quirks,
     ) -> Result<Judged<'w>, CliError> {
         let opened = OpenLog::new(path, &self.sources)?;
@@ -350,6 +353,11 @@ impl ConformArguments {
         };
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
+        // Bends of corridors are no vertices of a laser log.
+        let world = worlds.map(|(world, smooth)| match evidence {
+            Evidence::Laser => smooth,
+            _ => world,
+        });
         let marker_start = self.marker_start(&opened, evidence)?;
         let known =
             world.map(|world| Known::new(world, start, (marker, marker_start), run, algorithm));

@@ -2,7 +2,7 @@
 //! in the frame of odometry.
 
 use std::{
-    collections::{BTreeSet, HashSet},
+    collections::{BTreeSet, HashMap},
     fmt::Write as _,
 };
 
@@ -45,8 +45,7 @@ pub struct DrawnVisit {
 /// The cells of a square grid that scans have hit.
 #[derive(Clone, Debug, Default)]
 pub struct ScanHits {
-    once: HashSet<[i32; 2]>,
-    often: HashSet<[i32; 2]>,
+    counts: HashMap<[i32; 2], u32>,
 }
 
 impl ScanHits {
@@ -58,20 +57,27 @@ impl ScanHits {
     /// Adds a point, in metres. Beyond a million cells no new ones are added.
     pub fn add(&mut self, point: [f64; 2]) {
         let cell = point.map(|part| (part / Self::CELL).floor() as i32);
-        if !self.once.contains(&cell) && self.once.len() < Self::MOST {
-            self.once.insert(cell);
-        } else if self.once.contains(&cell) {
-            self.often.insert(cell);
+        if self.counts.len() < Self::MOST {
+            self.counts.entry(cell).or_default();
+        }
+        if let Some(count) = self.counts.get_mut(&cell) {
+            *count = count.saturating_add(1);
         }
     }
 
-    /// The cells that show walls: those that were hit again, and those beside them.
+    /// The cells that show walls: those that were hit more than once, and at least half as often as a usual one
+    /// of these; and those beside them that were hit half as often again.
     fn walls(&self) -> BTreeSet<[i32; 2]> {
-        let is_beside = |&[x, y]: &[i32; 2]| {
+        let mut again: Vec<u32> = self.counts.values().copied().filter(|&count| count > 1).collect();
+        again.sort_unstable();
+        let enough = again.get(again.len() / 2).map_or(2, |usual| usual.div_ceil(2).max(2));
+        let count = |cell: [i32; 2]| self.counts.get(&cell).copied().unwrap_or_default();
+        let is_wall = |[x, y]: [i32; 2]| {
             let around = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]];
-            around.iter().any(|[dx, dy]| self.often.contains(&[x + dx, y + dy]))
+            let beside = || around.iter().any(|[dx, dy]| count([x + dx, y + dy]) >= enough);
+            count([x, y]) >= enough || 2 * count([x, y]) >= enough && beside()
         };
-        self.once.iter().filter(|cell| self.often.contains(*cell) || is_beside(cell)).copied().collect()
+        self.counts.keys().copied().filter(|&cell| is_wall(cell)).collect()
     }
 }
 
@@ -241,8 +247,10 @@ fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
     };
     let along = Point::polar(-heading, 1.0);
     let across = along.quarter_turn();
-    let [tip, base] = [DISC + ARM + 8.0, DISC + ARM - 4.0].map(|length| at + along * length);
-    page.marker(&[tip, base + across * 6.5, base - across * 6.5]);
+    // Beside the stroke of the door, whose end may have numbers.
+    let beside = at + across * 9.0;
+    let [tip, base] = [DISC + ARM + 6.0, DISC].map(|length| beside + along * length);
+    page.marker(&[tip, base + across * 5.5, base - across * 5.5]);
 }
 
 impl Place<'_> {

@@ -3,7 +3,6 @@
 use std::{ffi::OsStr, path::Path};
 
 use toposlam::picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png};
-use toposlam_model::marker::{Directional, Marker};
 use toposlam_robot::{
     conform::{CheckedKind, Evidence, RunEvents, VisitedJunction},
     log::{entries::Content, topic_map::{MarkerPlace, Role}},
@@ -28,8 +27,7 @@ pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliE
     picture.caption = format!("{count} of junctions; the log {verdict}");
     picture.marker = match judged.added {
         Some(AddedMarker::Assumed { place: MarkerPlace { position, heading }, .. }) => {
-            let points = judged.marker.name() == Directional.name();
-            Some((position, heading.filter(|_| points)))
+            Some((position, heading))
         }
         _ => None,
     };

@@ -80,8 +80,11 @@ impl OtherWorld {
             let placed = Some(marker.first_alike(&twin.graph, twin.facing));
             fits(judgement, &twin.graph, marker, State { pose: twin.pose, placed })
         };
-        let count = worlds.iter().filter(explains).count();
-        let Twin { graph: other, facing, .. } = worlds.iter().find(explains)?;
+        let explaining: Vec<_> = worlds.iter().filter(explains).collect();
+        let count = explaining.len();
+        // One that the paper draws is preferred.
+        let known = explaining.iter().find(|twin| figure(&twin.graph).is_some());
+        let Twin { graph: other, facing, .. } = known.or(explaining.first())?;
         let world = NamedWorld::discovered("another-world", "", other, *facing);
         let figures = [graph, other].map(figure);
         let first_marker = start.placed?;

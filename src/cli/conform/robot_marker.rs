@@ -177,6 +177,9 @@ impl ConformArguments {
             let Some(place) = place else { return Ok(None) };
             let seen = assume_marker(events, junctions, marker, place)
                 .map_err(|error| CliError::at("[marker] at of --mapping", error))?;
+            // The direction of an undirected marker does not matter.
+            let heading = place.heading.filter(|_| marker.name() == Directional.name());
+            let place = MarkerPlace { heading, ..place };
             return Ok(Some(AddedMarker::Assumed { place, seen }));
         }
         if opened.mapping.carrier(Role::Marker).is_none() || gathered.evidence != Evidence::Laser {

@@ -160,7 +160,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("[clokwise]\na = [\"b\"]"),
         "line 1, column 2: clokwise: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, start"
+         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
@@ -370,8 +370,8 @@ fn the_vertices_of_lists_may_have_positions() {
     assert_eq!(to_toml(&world), whole);
     assert_eq!(read(to_json_text(&world).as_bytes()), Ok(world));
     for (positions, message) in [
-        ("a = [0, 0]\nb = [2, 0]\n", "line 6, column 2: the vertex `c` has no position"),
-        ("a = [0, 0]\nd = [2, 0]\n", "line 8, column 1: there is no vertex `d`"),
+        ("a = [0, 0]\nb = [2, 0]\n", "line 6, column 2: positions: the vertex `c` has no position"),
+        ("a = [0, 0]\nd = [2, 0]\n", "line 8, column 1: positions.d: there is no vertex `d`"),
         ("a = [0]\n", "line 7, column 5: positions.a: expected a list of two numbers, x and y"),
     ] {
         let error = read(format!("{text}{positions}").as_bytes()).unwrap_err().to_string();
