@@ -46,7 +46,8 @@ fn the_real_buildings_are_the_same_with_and_without_corners() {
     for (name, of_paper, size, smooth) in
         [("aces", "figure-1a", (9, 12), (5, 8)), ("seattle", "shape-6", (6, 6), (2, 2))]
     {
-        let [bare, cornered] = [name, &format!("{name}-corners")].map(|name| read(&format!("real/{name}")));
+        let [bare, cornered] =
+            [name, &format!("{name}-corners")].map(|name| read(&format!("real/{name}")));
         assert_eq!((cornered.graph.vertex_count(), cornered.graph.edge_count()), size);
         assert_eq!((bare.graph.vertex_count(), bare.graph.edge_count()), smooth);
         let smoothed = cornered.smoothed();
@@ -59,7 +60,8 @@ fn the_real_buildings_are_the_same_with_and_without_corners() {
             assert_eq!(bare.positions.as_ref().unwrap()[other.0 as usize], position, "{vertex}");
         }
         for world in [&bare, &cornered] {
-            let file = fs::read_to_string(folder().join(format!("real/{}.toml", world.name))).unwrap();
+            let file =
+                fs::read_to_string(folder().join(format!("real/{}.toml", world.name))).unwrap();
             assert_eq!(world_file::to_toml(world), file);
         }
     }

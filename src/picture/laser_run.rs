@@ -68,7 +68,8 @@ impl ScanHits {
     /// The cells that show walls: those that were hit more than once, and at least half as often as a usual one
     /// of these; and those beside them that were hit half as often again.
     fn walls(&self) -> BTreeSet<[i32; 2]> {
-        let mut again: Vec<u32> = self.counts.values().copied().filter(|&count| count > 1).collect();
+        let mut again: Vec<u32> =
+            self.counts.values().copied().filter(|&count| count > 1).collect();
         again.sort_unstable();
         let enough = again.get(again.len() / 2).map_or(2, |usual| usual.div_ceil(2).max(2));
         let count = |cell: [i32; 2]| self.counts.get(&cell).copied().unwrap_or_default();
@@ -113,8 +114,7 @@ pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
     let metre = (SIDE / sides.x.max(sides.y).max(1e-3)).clamp(METRE[0], METRE[1]);
     let at = |[x, y]: [f64; 2]| Point::new(x * metre, -y * metre);
     let places = places(&picture.visits);
-    let mut extent =
-        Extent { least: metres.least * metre, most: metres.most * metre }.widened(2.0);
+    let mut extent = Extent { least: metres.least * metre, most: metres.most * metre }.widened(2.0);
     for place in &places {
         let room = DISC + ARM + 2.0 * NUMBER;
         extent.join(Extent::around(at(place.visit.centre), room, room));
@@ -278,7 +278,8 @@ impl Place<'_> {
             short(at.y)
         ));
         page.text(&sign, at + Point::new(0.0, DEGREE * 0.36), DEGREE, ink, "degree");
-        let ends = visit.doors.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
+        let ends =
+            visit.doors.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
         for (door, end) in ends.chain([(None, at + Point::new(0.0, DISC + 2.0))]) {
             let left = numbers.iter().filter(|(_, exit)| nearest(&visit.doors, *exit) == door);
             let list: Vec<_> = left.map(|(number, _)| number.to_string()).collect();
@@ -362,9 +363,8 @@ mod tests {
         let svg = laser_run_svg(&picture());
         assert_eq!(svg, laser_run_svg(&picture()));
         let document = Document::parse(&svg).unwrap();
-        let texts = |class| {
-            of_class(&document, class).iter().filter_map(Node::text).collect::<Vec<_>>()
-        };
+        let texts =
+            |class| of_class(&document, class).iter().filter_map(Node::text).collect::<Vec<_>>();
         assert_eq!(texts("degree"), ["3", "?"]);
         assert_eq!(texts("visits"), ["1", "2", "3"]);
         assert_eq!(of_class(&document, "arm").len(), 3);

@@ -20,15 +20,8 @@ const CORRIDORS: [([f64; 2], [f64; 2]); 5] = [
 ];
 
 /// Into the ring to the left, around it, and back into the stem.
-const WAY: [[f64; 2]; 7] = [
-    [-17.0, 0.0],
-    [0.0, 0.0],
-    [0.0, 12.0],
-    [24.0, 12.0],
-    [24.0, -12.0],
-    [0.0, -12.0],
-    [0.0, 0.0],
-];
+const WAY: [[f64; 2]; 7] =
+    [[-17.0, 0.0], [0.0, 0.0], [0.0, 12.0], [24.0, 12.0], [24.0, -12.0], [0.0, -12.0], [0.0, 0.0]];
 
 fn is_free([x, y]: [f64; 2]) -> bool {
     CORRIDORS.iter().any(|([x0, y0], [x1, y1])| {
@@ -56,7 +49,8 @@ fn log(way: &[[f64; 2]]) -> String {
             format!("{:.2}", range([x, y], bearing))
         });
         let ranges = ranges.collect::<Vec<_>>().join(" ");
-        lines += &format!("FLASER 181 {ranges} {x} {y} {heading} {x} {y} {heading} {time} h {time}\n");
+        lines +=
+            &format!("FLASER 181 {ranges} {x} {y} {heading} {x} {y} {heading} {time} h {time}\n");
     };
     for leg in way.windows(2) {
         let [dx, dy] = [0, 1].map(|axis| leg[1][axis] - leg[0][axis]);
@@ -90,7 +84,8 @@ fn written(name: &str) -> (PathBuf, String) {
 
 /// The exit code and the lines of `--json`.
 fn conform(log: &str, options: &[&str]) -> (Option<i32>, Vec<Value>) {
-    let arguments = [&["conform", log, "--events", "laser", "--driver", "anyone", "--json"], options];
+    let arguments =
+        [&["conform", log, "--events", "laser", "--driver", "anyone", "--json"], options];
     let output = run(arguments.concat());
     assert!(output.status.code() != Some(2), "{}", stderr(&output));
     (output.status.code(), objects(&stdout(&output)))
@@ -124,7 +119,9 @@ fn a_marker_can_be_assumed_where_the_robot_began_or_at_a_place() {
         assert_eq!((code, markers(&lines)), (Some(0), vec![&json!(0), &json!(1)]), "{lines:?}");
         let verdict = lines.last().unwrap();
         assert_eq!(verdict["assumed_marker"]["seen"], 2);
-        assert!(verdict["facts"]["marker"].as_str().unwrap().starts_with("assumed, not in the log: "));
+        assert!(
+            verdict["facts"]["marker"].as_str().unwrap().starts_with("assumed, not in the log: ")
+        );
         // The ring is closed; the end of the stem was never seen.
         let never = json!([{"vertex": "v0", "door": 0, "toward": null}]);
         assert_eq!((&verdict["unique"], &verdict["never_followed"]), (&false.into(), &never));
@@ -200,7 +197,8 @@ fn the_picture_of_a_run_shows_its_visits() {
     let (folder, log) = written("laser_picture");
     let [svg, png] = ["run.svg", "run.png"].map(|name| folder.join(name));
     for picture in [&svg, &png] {
-        let (code, _) = conform(&log, &["--marker", "none", "--picture", picture.to_str().unwrap()]);
+        let (code, _) =
+            conform(&log, &["--marker", "none", "--picture", picture.to_str().unwrap()]);
         assert_eq!(code, Some(0));
     }
     let text = fs::read_to_string(svg).unwrap();

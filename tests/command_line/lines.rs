@@ -102,9 +102,11 @@ fn printed_events_are_read_as_they_were_printed() {
         fs::write(&path, text).unwrap();
         let arguments = ["conform", path.to_str().unwrap(), "--world", "worlds/shape-6.toml"];
         let options = ["--start", "any", "--driver", "anyone", "--marker", "none"];
-        let output = run([&arguments[..], &options[..], &["--events", "recorded", "--json"]].concat());
+        let output =
+            run([&arguments[..], &options[..], &["--events", "recorded", "--json"]].concat());
         let lines = objects(&stdout(&output));
-        let events = lines.iter().filter(|line| line["kind"] == "event").cloned().collect::<Vec<_>>();
+        let events =
+            lines.iter().filter(|line| line["kind"] == "event").cloned().collect::<Vec<_>>();
         (output.status.code(), events, lines.last().cloned().unwrap_or_default())
     };
     let (code, events, verdict) = check(&text);

@@ -202,8 +202,7 @@ impl Search<'_> {
         if !self.known.insert(placed_code(&other, self.marker, self.facing)) {
             return;
         }
-        let comparison =
-            Comparison::new(self.marker, (graph, self.facing), (&other, self.facing));
+        let comparison = Comparison::new(self.marker, (graph, self.facing), (&other, self.facing));
         let alike = |pose: &Dart| {
             let Some(relation) = comparison.relation([self.pose, *pose]) else { return false };
             let [here, there] = comparison.starts([self.pose, *pose]);
@@ -255,7 +254,8 @@ mod tests {
         assert_eq!((first.graph.genus(), first.graph.is_simple()), (1, true));
         // A directional marker distinguishes all worlds.
         assert_eq!(twins(&plane.graph, &Directional, hub, hub, &()), Twins::default());
-        let back = twins(&torus.graph, &Undirected, torus.start.unwrap(), torus.start.unwrap(), &());
+        let back =
+            twins(&torus.graph, &Undirected, torus.start.unwrap(), torus.start.unwrap(), &());
         let is_plane = |twin: &Twin| isomorphism(&twin.graph, &plane.graph).is_ok();
         assert!(back.worlds.iter().any(is_plane));
     }

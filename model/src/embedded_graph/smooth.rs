@@ -53,8 +53,9 @@ mod tests {
 
     /// A cycle, by its number of edges.
     fn cycle(edges: u32) -> EmbeddedGraph {
-        let opposite: Vec<u32> =
-            (0..edges).flat_map(|v| [2 * ((v + edges - 1) % edges) + 1, 2 * ((v + 1) % edges)]).collect();
+        let opposite: Vec<u32> = (0..edges)
+            .flat_map(|v| [2 * ((v + edges - 1) % edges) + 1, 2 * ((v + 1) % edges)])
+            .collect();
         let clockwise: Vec<u32> = (0..2 * edges).map(|dart| dart ^ 1).collect();
         EmbeddedGraph::from_permutations(&opposite, &clockwise).unwrap().0
     }

@@ -88,7 +88,8 @@ mod tests {
 
     fn cycle(length: usize) -> EmbeddedGraph {
         let name = |number: usize| (number % length).to_string();
-        let list = |number: usize| (name(number), vec![name(number + 1), name(number + length - 1)]);
+        let list =
+            |number: usize| (name(number), vec![name(number + 1), name(number + length - 1)]);
         EmbeddedGraph::from_neighbour_lists(&(0..length).map(list).collect::<Vec<_>>()).unwrap()
     }
 

@@ -30,7 +30,10 @@ pub fn smallest_world(
             }
             SmallestWorld::NoWorld => continue,
         };
-        if best.as_ref().is_none_or(|(best, _): &(EmbeddedGraph, _)| found.0.edge_count() < best.edge_count()) {
+        if best
+            .as_ref()
+            .is_none_or(|(best, _): &(EmbeddedGraph, _)| found.0.edge_count() < best.edge_count())
+        {
             best = Some(found);
         }
     }

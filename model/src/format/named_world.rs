@@ -137,7 +137,10 @@ impl NamedWorld {
         Self {
             start: start.map(|place| Dart(place as u32)),
             marker: self.marker,
-            vertex_names: graph.vertices().map(|new| self.vertex_names[kept(new)].clone()).collect(),
+            vertex_names: graph
+                .vertices()
+                .map(|new| self.vertex_names[kept(new)].clone())
+                .collect(),
             edge_names: edge_names.or(numbered.edge_names),
             positions: positions.map(|all| graph.vertices().map(|new| all[kept(new)]).collect()),
             ..Self::numbered(&self.name, &self.about, graph.clone(), None)
@@ -327,12 +330,20 @@ mod tests {
         let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
         let names = lists.iter().map(|(name, _)| (*name).to_owned()).collect();
         let positions = Some(vec![[0.0, 1.0], [0.0, 0.0], [1.0, 0.0], [0.0, -1.0]]);
-        let world = NamedWorld { vertex_names: names, positions, ..NamedWorld::numbered("w", "", graph, None) };
-        let started = |text| NamedWorld { start: world.start_from_text(text).ok(), ..world.clone() };
+        let world = NamedWorld {
+            vertex_names: names,
+            positions,
+            ..NamedWorld::numbered("w", "", graph, None)
+        };
+        let started =
+            |text| NamedWorld { start: world.start_from_text(text).ok(), ..world.clone() };
         let smooth = started("t:end").smoothed();
         assert_eq!(smooth.vertex_names, ["t", "end"]);
         assert_eq!(smooth.positions, Some(vec![[0.0, 0.0], [0.0, -1.0]]));
-        assert_eq!(smooth.edge_names.as_deref(), Some(&["e0", "e0", "e1", "e1"].map(str::to_owned)[..]));
+        assert_eq!(
+            smooth.edge_names.as_deref(),
+            Some(&["e0", "e0", "e1", "e1"].map(str::to_owned)[..])
+        );
         assert_eq!(smooth.start.map(|start| smooth.start_text(start)), Some("t:e1".to_owned()));
         assert_eq!(started("c1:c2").smoothed().start, None);
         assert_eq!(smooth.smoothed(), smooth);

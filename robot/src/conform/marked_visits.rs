@@ -108,7 +108,8 @@ pub fn mark_visits(
     for &(time, FiducialSighting { position, heading }) in sightings {
         let apart = |visit: usize| {
             let begun = events.get(junctions[visit].event).map_or(0, |event| event.source.time);
-            let next = events.get(junctions[visit].event + 1).map_or(begun, |event| event.source.time);
+            let next =
+                events.get(junctions[visit].event + 1).map_or(begun, |event| event.source.time);
             begun.saturating_sub(time).max(time.saturating_sub(next))
         };
         let here = (0..junctions.len()).filter(|&visit| junctions[visit].contains(position));

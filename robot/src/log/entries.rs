@@ -189,11 +189,11 @@ impl Entries<'_> {
             None => None,
         };
         let sighting = event.marker.map(encode::sighting_of);
-        let arrival =
-            |degree| Arrival { number: moves, degree, sighting, form: None, entry: None };
+        let arrival = |degree| Arrival { number: moves, degree, sighting, form: None, entry: None };
         let mut contents = Vec::new();
         if self.bound.carries(Role::Percept) {
-            contents.extend(event.turned_back.filter(|turned| *turned).map(|_| Content::TurnedBack));
+            contents
+                .extend(event.turned_back.filter(|turned| *turned).map(|_| Content::TurnedBack));
             let visit = degree.map(|degree| EventKind::Arrival(arrival(degree)).into());
             contents.push(visit.unwrap_or(Content::Undecided));
         }

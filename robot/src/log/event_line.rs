@@ -178,7 +178,11 @@ mod tests {
             ("{\"degree\":2,\"stamp\":-1}", None, "its stamp is -1.0"),
             ("2", Some(&columns), "it has 1 cells, and the header 2"),
             ("2,x", Some(&columns), "its door is \"x\""),
-            ("{\"degree\":2,\"turned_back\":1}", None, "invalid type: integer `1`, expected a boolean"),
+            (
+                "{\"degree\":2,\"turned_back\":1}",
+                None,
+                "invalid type: integer `1`, expected a boolean",
+            ),
         ] {
             assert_eq!(parse(line.as_bytes(), columns), Err(error.to_owned()), "{line}");
         }

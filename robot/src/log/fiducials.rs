@@ -98,7 +98,8 @@ impl Fiducials {
     fn matched(&mut self) -> Vec<Placed> {
         let mut found = Vec::new();
         self.detections.retain(|(stamp, frame)| {
-            let is_its = |(time, child, _): &(Stamp, String, Placed)| time == stamp && child == frame;
+            let is_its =
+                |(time, child, _): &(Stamp, String, Placed)| time == stamp && child == frame;
             let place = self.tags.iter().position(is_its);
             let placed = place.and_then(|place| self.tags.remove(place));
             let waits = placed.is_none();
@@ -138,9 +139,9 @@ fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed
             let score = result.at("hypothesis.score").or_else(|| result.at("score"));
             score.and_then(|score| score.f64()).unwrap_or_default()
         };
-        let best = results.into_iter().reduce(|best, other| {
-            if score(&other) > score(&best) { other } else { best }
-        });
+        let best = results
+            .into_iter()
+            .reduce(|best, other| if score(&other) > score(&best) { other } else { best });
         let Some(best) = best else { continue };
         let name = ["hypothesis.class_id", "id"].into_iter().find_map(|path| {
             let name = best.at(path)?;

@@ -51,7 +51,10 @@ impl Rigid {
     };
 
     /// A pose; `None` if a number is not finite, or the quaternion is no rotation.
-    pub(super) fn new(translation: [f64; 3], Quaternion { x, y, z, w }: Quaternion) -> Option<Self> {
+    pub(super) fn new(
+        translation: [f64; 3],
+        Quaternion { x, y, z, w }: Quaternion,
+    ) -> Option<Self> {
         let norm = (x * x + y * y + z * z + w * w).sqrt();
         let finite = translation.iter().all(|part| part.is_finite());
         if !finite || !norm.is_finite() || norm < 1e-3 {

@@ -68,12 +68,19 @@ fn objects(classes: &[[&str; 2]]) -> Topic {
     for hypotheses in classes {
         message.extend([header_in(9, ""), 2_u32.to_le_bytes().to_vec()].concat());
         for (class, score) in hypotheses.iter().zip([0.25, 0.75]) {
-            message.extend([text(class), numbers([score]), numbers([2.0, 1.0, 0.0, x, y, z, w])].concat());
+            message.extend(
+                [text(class), numbers([score]), numbers([2.0, 1.0, 0.0, x, y, z, w])].concat(),
+            );
             message.extend(numbers([0.0; 36]));
         }
         message.extend(text(""));
     }
-    ("/objects", "vision_msgs/Detection3DArray", Box::leak(definition.into_boxed_str()), vec![message])
+    (
+        "/objects",
+        "vision_msgs/Detection3DArray",
+        Box::leak(definition.into_boxed_str()),
+        vec![message],
+    )
 }
 
 /// A pose in a frame.
@@ -160,7 +167,11 @@ fn a_pose_is_in_the_frame_of_odometry_or_of_the_robot() {
     let found = sightings(&with(pose("odom", [0.0, 4.5, 1.0], wall)), mapping).unwrap();
     assert!(found[0].heading.abs() < 1e-9);
     for (frame, turn, message) in [
-        ("elsewhere", LEFT, "its frame \"elsewhere\" is not connected to the robot: no transform leads"),
+        (
+            "elsewhere",
+            LEFT,
+            "its frame \"elsewhere\" is not connected to the robot: no transform leads",
+        ),
         ("odom", [0.0, -sine, 0.0, cosine], "the x axis of the marker points up or down"),
         ("odom", [0.0; 4], "its `pose` is no pose"),
     ] {

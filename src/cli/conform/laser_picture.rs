@@ -5,7 +5,10 @@ use std::{ffi::OsStr, path::Path};
 use toposlam::picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png};
 use toposlam_robot::{
     conform::{CheckedKind, Evidence, RunEvents, VisitedJunction},
-    log::{entries::Content, topic_map::{MarkerPlace, Role}},
+    log::{
+        entries::Content,
+        topic_map::{MarkerPlace, Role},
+    },
     record::{EventKind, Frame},
 };
 

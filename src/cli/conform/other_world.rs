@@ -67,7 +67,8 @@ impl OtherWorld {
             (Some(known), _) => {
                 let graph = &known.world.graph;
                 let states = known.question().states;
-                let start = states.into_iter().find(|&start| fits(judgement, graph, marker, start))?;
+                let start =
+                    states.into_iter().find(|&start| fits(judgement, graph, marker, start))?;
                 (graph, start)
             }
             (None, Some(SmallestWorld::World { graph, marker: placed, .. })) => {
@@ -123,7 +124,8 @@ impl OtherWorld {
 
     /// The drawing.
     pub(super) fn svg(&self) -> String {
-        let caption = self.figures[1].map_or(String::new(), |figure| format!("{figure} of the paper"));
+        let caption =
+            self.figures[1].map_or(String::new(), |figure| format!("{figure} of the paper"));
         let picture = WorldPicture { marker: self.marker, ..WorldPicture::from(&self.world) };
         picture::svg(&WorldPicture { title: "another world", caption: &caption, ..picture })
     }

@@ -137,7 +137,8 @@ fn positions(
     table: &DocumentTable<'_>,
 ) -> Result<Vec<[f64; 2]>, WorldFileError> {
     let mut positions = vec![None; world.vertex_names.len()];
-    let numbers: HashMap<&str, usize> = (0..).zip(&world.vertex_names).map(|(n, name)| (&**name, n)).collect();
+    let numbers: HashMap<&str, usize> =
+        (0..).zip(&world.vertex_names).map(|(n, name)| (&**name, n)).collect();
     for entry in table.entries() {
         let Some(&vertex) = numbers.get(entry.key) else {
             let vertex = entry.key.escape_debug().to_string();

@@ -363,7 +363,8 @@ fn names_are_printable_without_quotes_and_separators() {
 /// A triangle with positions, in TOML and in JSON.
 #[test]
 fn the_vertices_of_lists_may_have_positions() {
-    let text = "[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\", \"c\"]\nc = [\"a\", \"b\"]\n\n[positions]\n";
+    let text =
+        "[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\", \"c\"]\nc = [\"a\", \"b\"]\n\n[positions]\n";
     let whole = format!("{text}a = [0.0, -1.5]\nb = [2.0, 0.0]\nc = [1.0, 4.0]\n");
     let world = read(whole.as_bytes()).unwrap();
     assert_eq!(world.positions, Some(vec![[0.0, -1.5], [2.0, 0.0], [1.0, 4.0]]));

@@ -57,8 +57,10 @@ pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap
     if let Some(tags) = carried.iter().find(|carried| carried.type_name == APRIL_TAGS).cloned() {
         let is_transforms = |topic: &Topic| is_transforms(&topic.short_type());
         let transforms = topics.iter().enumerate().filter(|(_, topic)| is_transforms(topic));
-        carried.extend(transforms.map(|(topic, named)| {
-            Carried { topic, type_name: named.short_type(), ..tags.clone() }
+        carried.extend(transforms.map(|(topic, named)| Carried {
+            topic,
+            type_name: named.short_type(),
+            ..tags.clone()
         }));
     }
     Ok(BoundTopicMap { carried })
