@@ -4,7 +4,7 @@ use std::{ffi::OsStr, path::Path};
 
 use toposlam::picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png};
 use toposlam_robot::{
-    conform::{CheckedKind, Evidence, RunEvents, VisitedJunction},
+    conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction},
     log::{
         entries::Content,
         topic_map::{MarkerPlace, Role},
@@ -12,7 +12,7 @@ use toposlam_robot::{
     record::{EventKind, Frame},
 };
 
-use super::{CliError, Judged, report_lines, robot_marker::AddedMarker};
+use super::{CliError, Judged, robot_marker::AddedMarker};
 use crate::cli::{output, text::counted};
 
 /// Writes the picture of a run as SVG or PNG.
@@ -25,7 +25,11 @@ pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliE
     picture.visits = visits(&judged.gathered.events, &judged.gathered.junctions);
     let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
     picture.title = name.trim_end_matches(".gz").trim_end_matches(".log").to_owned();
-    let verdict = report_lines::in_words(judged.judgement.verdict());
+    let verdict = match judged.judgement.verdict() {
+        ConformVerdict::Conforms => "conforms",
+        ConformVerdict::Diverged => "diverges",
+        ConformVerdict::Incomplete => "is incomplete",
+    };
     let count = counted(picture.visits.len(), "visit");
     picture.caption = format!("{count} of junctions; the log {verdict}");
     picture.marker = match judged.added {
