@@ -173,7 +173,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("{\"a\\nb\": 1}"),
         "line 1, column 2: a\\nb: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, start"
+         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
     );
     assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
     assert_eq!(
