@@ -96,7 +96,7 @@ impl Rigid {
 }
 
 /// One transform of a message.
-pub(super) struct Transform {
+pub(super) struct FrameTransform {
     pub(super) parent: String,
     pub(super) child: String,
     pub(super) stamp: Option<Stamp>,
@@ -104,7 +104,7 @@ pub(super) struct Transform {
 }
 
 /// The transforms in a message, without those that are no rigid transforms.
-pub(super) fn transforms(message: &Value<'_>) -> Vec<Transform> {
+pub(super) fn transforms(message: &Value<'_>) -> Vec<FrameTransform> {
     let one = |transform: &Value<'_>| {
         let number = |path: &str| transform.at(path)?.f64();
         let translation = [
@@ -118,7 +118,7 @@ pub(super) fn transforms(message: &Value<'_>) -> Vec<Transform> {
             z: number("transform.rotation.z")?,
             w: number("transform.rotation.w")?,
         };
-        Some(Transform {
+        Some(FrameTransform {
             parent: frame_name(&transform.at("header.frame_id")?.text()?),
             child: frame_name(&transform.at("child_frame_id")?.text()?),
             stamp: transform.at("header.stamp").and_then(|stamp| stamp.stamp()),
@@ -151,7 +151,7 @@ fn is_base(frame: &str) -> bool {
 /// The odometry in a message, and its time; `None` if it does not relate the robot to `odom`.
 pub(super) fn odometry(message: &Value<'_>) -> Option<(Odometry, Option<Stamp>)> {
     let mut all = transforms(message).into_iter();
-    let Transform { pose, stamp, .. } =
+    let FrameTransform { pose, stamp, .. } =
         all.find(|transform| is_called(&transform.parent, ODOM) && is_base(&transform.child))?;
     let [x, y, _] = pose.translation;
     let [ahead_x, ahead_y, _] = pose.turned([1.0, 0.0, 0.0]);
@@ -266,7 +266,7 @@ impl Tree {
                 let message = bytes.get(at + within.start..at + within.end).unwrap_or_default();
                 let Ok(message) = file.message(message.to_vec()) else { continue };
                 let Some(Ok(value)) = topic.decode(&message) else { continue };
-                for Transform { parent, child, pose, .. } in transforms(&value) {
+                for FrameTransform { parent, child, pose, .. } in transforms(&value) {
                     self.parents.entry(child).or_insert((parent, pose));
                 }
                 if self.in_base(frame).is_some() {
