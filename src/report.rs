@@ -57,6 +57,8 @@ pub struct LogReport {
     pub folded: Option<FoldedReport>,
     /// The known world, or the smallest one that explains the log, as an SVG document.
     pub world: Option<String>,
+    /// Another world that the marker does not distinguish from it, as an SVG document.
+    pub twin: Option<String>,
 }
 
 /// A folded trail with open doors.

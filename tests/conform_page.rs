@@ -99,6 +99,7 @@ fn conforming(log: &str, events: usize) -> LogReport {
         shorter: Vec::new(),
         command: None,
         picture: None,
+        twin: None,
         folded: None,
         world: Some(world()),
     }

@@ -2,7 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::{env, ffi::OsString, fs, path::Path, process::Command};
+use std::{
+    env,
+    ffi::OsString,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 use toposlam::{
     model::format::{named_world::NamedWorld, world_file},
@@ -111,6 +117,27 @@ fn the_pictures_are_what_the_program_draws() {
     let map = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shape-8-map.svg");
     toposlam(&["explore", "worlds/shape-8.toml", "--svg", map.to_str().unwrap()]);
     assert!(fs::read_to_string(&map).unwrap() == read("docs/shape-8-map.svg"));
+}
+
+/// The logs are not part of the repository. Draw the pictures again with `conform LOG --picture FILE`, with the
+/// options below, look at them, and commit them.
+#[test]
+fn the_pictures_of_real_logs_are_what_the_program_draws() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/carmen");
+    let logs = env::var_os("TOPOSLAM_CARMEN_LOGS").map_or(beside, PathBuf::from);
+    for name in ["aces", "seattle", "freiburg-079"] {
+        let log = logs.join(name).with_extension("log.gz");
+        if !log.is_file() {
+            eprintln!("skipped: there is no {}", log.display());
+            continue;
+        }
+        let drawn = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.svg"));
+        let options = ["--driver", "anyone", "--marker", "none", "--picture"];
+        let paths = [&log, &drawn].map(|path| path.to_str().unwrap());
+        toposlam(&[&["conform", paths[0]], &options[..], &[paths[1]]].concat());
+        let shown = read(&format!("docs/real-logs/{name}.svg"));
+        assert!(fs::read_to_string(&drawn).unwrap() == shown, "{name}");
+    }
 }
 
 /// The times in that table are measured. Its moves are those of the specification.

@@ -39,6 +39,38 @@ fn names() -> Vec<String> {
     names
 }
 
+/// The worlds of real buildings without corners are those with corners, smoothed; and these are Figure 1(a) and
+/// shape 6 of the paper, with the corners of the ring on the rim of the wheel.
+#[test]
+fn the_real_buildings_are_the_same_with_and_without_corners() {
+    for (name, of_paper, size, smooth) in
+        [("aces", "figure-1a", (9, 12), (5, 8)), ("seattle", "shape-6", (6, 6), (2, 2))]
+    {
+        let [bare, cornered] =
+            [name, &format!("{name}-corners")].map(|name| read(&format!("real/{name}")));
+        assert_eq!((cornered.graph.vertex_count(), cornered.graph.edge_count()), size);
+        assert_eq!((bare.graph.vertex_count(), bare.graph.edge_count()), smooth);
+        let smoothed = cornered.smoothed();
+        assert!(isomorphism(&smoothed.graph, &bare.graph).is_ok(), "{name}");
+        let of_paper = read(of_paper).smoothed();
+        assert!(isomorphism(&of_paper.graph, &bare.graph).is_ok(), "{name}");
+        // The same places have the same positions.
+        for (vertex, position) in smoothed.vertex_names.iter().zip(smoothed.positions.unwrap()) {
+            let other = bare.vertex_named(vertex).unwrap();
+            assert_eq!(bare.positions.as_ref().unwrap()[other.0 as usize], position, "{vertex}");
+        }
+        for world in [&bare, &cornered] {
+            let file =
+                fs::read_to_string(folder().join(format!("real/{}.toml", world.name))).unwrap();
+            assert_eq!(world_file::to_toml(world), file);
+        }
+    }
+    // With its corners the building in Seattle is shape 6 itself.
+    let [building, shape] = ["real/seattle-corners", "shape-6"].map(read);
+    let same = isomorphism(&building.graph, &shape.graph).is_ok();
+    assert!(same || mirror_isomorphism(&building.graph, &shape.graph).is_some());
+}
+
 #[test]
 fn every_world_has_a_name_a_description_and_a_start() {
     let readme = fs::read_to_string(folder().join("README.md")).unwrap();

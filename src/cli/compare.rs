@@ -42,6 +42,7 @@ Examples:
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml
   toposlam compare worlds/figure-1a.toml worlds/figure-1b.toml --walk 0,1,1
   toposlam compare worlds/cycle-3.toml worlds/cycle-4.toml --marker none
+  toposlam compare worlds/real/aces.toml worlds/real/aces-corners.toml --smooth-corners
 
 If no walk distinguishes the worlds, the proof is the list of all pairs of states that the robots can \
 be in. If there are more than 100,000 pairs, the proof is the classes of indistinguishable states. In v:2~w:0 the robot in A is at v, entered by the dart 2 places clockwise from the first one \
@@ -66,6 +67,10 @@ pub(super) struct CompareArguments {
     /// Where the robot starts in A; a second --start is for B [default: the starts in the files]
     #[arg(long, value_name = "VERTEX:FACING")]
     start: Vec<String>,
+
+    /// Compare the worlds without their corners: vertices with two doors
+    #[arg(long)]
+    smooth_corners: bool,
 
     /// Print the percepts of a walk in both worlds: doors, pick-up and drop, separated by commas
     #[arg(long, value_name = "ACTIONS")]
@@ -94,6 +99,9 @@ impl CompareArguments {
         let mut worlds = [input::read_world(&self.a)?, input::read_world(&self.b)?];
         if self.start.len() > 2 {
             return Err(CliError::at("--start", "there are two worlds; give it at most twice"));
+        }
+        if self.smooth_corners {
+            worlds = worlds.map(|world| world.smoothed());
         }
         for (world, start) in worlds.iter_mut().zip(&self.start) {
             world.start = Some(input::start_of(world, Some(start))?);

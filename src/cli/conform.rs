@@ -4,18 +4,21 @@ mod expected;
 mod fact_fields;
 mod folded;
 mod known_world;
+mod laser_picture;
 mod minimise;
 mod origin;
+mod other_world;
 mod report;
 mod report_lines;
 mod required;
+mod robot_marker;
 
 use std::{
     io::Write,
     path::{Path, PathBuf},
 };
 
-use clap::{ValueEnum, builder::PossibleValue};
+use clap::ValueEnum;
 use toposlam::{
     page,
     report::{DivergenceReport, LogReport},
@@ -26,7 +29,7 @@ use toposlam_model::{
     folding::{SmallestWorld, WorldSearch},
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
-    marker::{Directional, Marker, NoMarker},
+    marker::{Directional, Marker},
     percept::Sighting,
 };
 use toposlam_robot::conform::{
@@ -48,6 +51,8 @@ use super::{
     progress::Progress,
 };
 use known_world::Known;
+use other_world::OtherWorld;
+use robot_marker::{AddedMarker, RobotMarker};
 
 /// Check logs of runs against the specification
 ///
@@ -69,7 +74,8 @@ use known_world::Known;
 Examples:
   toposlam simulate worlds/shape-6.toml --by-scene --log run.mcap
   toposlam conform run.mcap --world worlds/shape-6.toml --html report.html
-  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml",
+  toposlam conform theirs.bag --mapping mapping.toml --calibration camera.toml --colours colours.toml
+  toposlam conform scans.log.gz --driver anyone --marker directional --assume-marker",
     &[
         (0, "all logs conform"),
         (1, "a log diverges"),
@@ -91,6 +97,10 @@ pub(super) struct ConformArguments {
     /// The robot's marker [default: from the log, or else directional]
     #[arg(long, value_enum, value_name = "MARKER")]
     marker: Option<RobotMarker>,
+    /// For events inferred from laser scans: check the log as if a marker had lain at the place that --mapping
+    /// gives, or else at the first junction that the robot visited, along its entry door
+    #[arg(long)]
+    assume_marker: bool,
     /// What chose the doors
     #[arg(long, value_enum, default_value = "algorithm", value_name = "WHO")]
     driver: Who,
@@ -130,6 +140,9 @@ pub(super) struct ConformArguments {
     /// Write a shorter log that diverges in the same way
     #[arg(long, value_name = "FILE")]
     minimise: Option<PathBuf>,
+    /// Write a picture of a run with a laser scanner: the map, the robot's way and its visits; .svg or .png
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// Write the report as an HTML page
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -153,33 +166,6 @@ enum Who {
     Algorithm,
     /// Anything, in any way
     Anyone,
-}
-
-/// A marker that a log can record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RobotMarker {
-    Directional,
-    None,
-}
-
-impl RobotMarker {
-    fn marker(self) -> &'static dyn Marker {
-        match self {
-            Self::Directional => &Directional,
-            Self::None => &NoMarker,
-        }
-    }
-}
-
-impl ValueEnum for RobotMarker {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Directional, Self::None]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let marker = self.marker();
-        Some(PossibleValue::new(marker.name()).help(marker.about()))
-    }
 }
 
 /// The source of the events.
@@ -212,6 +198,11 @@ struct Judged<'w> {
     judgement: Judgement,
     known: Option<Known<'w>>,
     marker: &'static dyn Marker,
+    /// Sightings that are not recorded as percepts.
+    added: Option<AddedMarker>,
+    /// Another world that explains the log, and that the marker does not distinguish from the known one or the
+    /// smallest.
+    twin: Option<OtherWorld>,
     /// The algorithm with which the doors are compared, unless anyone may have chosen them.
     algorithm: DirectionalAlgorithm,
     /// The limits of the check.
@@ -250,13 +241,16 @@ impl ConformArguments {
         if let Some(world) = &world {
             known_world::check_start(world, self.start.as_deref())?;
         }
+        // For events that have no corners.
+        let smooth = world.as_ref().map(NamedWorld::smoothed);
+        let worlds = world.as_ref().zip(smooth.as_ref());
         let mut reports = Vec::new();
         let mut all = RunCoverage::default();
         let mut any_algorithm1 = false;
         let mut logs = SeveralInputs::new();
         let mut cases = Vec::new();
         for path in &self.logs {
-            let judged = self.judge(path, world.as_ref(), &quirks).map(|judged| {
+            let judged = self.judge(path, worlds, &quirks).map(|judged| {
                 let outcome = outcome(judged.judgement.verdict());
                 (judged, outcome)
             });
@@ -308,6 +302,9 @@ impl ConformArguments {
             report_lines::text(out, &report)?;
         }
         self.write_map(path, &judged.judgement)?;
+        if let Some(picture) = &self.picture {
+            laser_picture::write(picture, path, judged)?;
+        }
         Ok(report)
     }
 
@@ -321,7 +318,12 @@ impl ConformArguments {
         if let Some(path) = &self.minimise {
             output::check_place(path, &["mcap"])?;
         }
-        for (option, path) in [("--map", &self.map), ("--minimise", &self.minimise)] {
+        if let Some(path) = &self.picture {
+            output::check_place(path, &["svg", "png"])?;
+        }
+        let of_one =
+            [("--map", &self.map), ("--minimise", &self.minimise), ("--picture", &self.picture)];
+        for (option, path) in of_one {
             if path.is_some() && self.logs.len() > 1 {
                 return Err(CliError::at(option, "this needs exactly one log"));
             }
@@ -329,23 +331,11 @@ impl ConformArguments {
         Ok(())
     }
 
-    fn check_marker(&self) -> Result<(), CliError> {
-        if self.marker == Some(RobotMarker::None) && self.driver == Who::Algorithm {
-            let cause = "the algorithms need the directional marker; add --driver anyone";
-            return Err(CliError::at("--marker none", cause));
-        }
-        if self.algorithm.is_some() && self.driver == Who::Anyone {
-            let cause = "with --driver anyone the doors are compared with no algorithm";
-            return Err(CliError::at("--algorithm", cause));
-        }
-        Ok(())
-    }
-
-    /// Reads and judges a log.
+    /// Reads and judges a log, in the known world or in that without its corners.
     fn judge<'w>(
         &self,
         path: &Path,
-        world: Option<&'w NamedWorld>,
+        worlds: Option<(&'w NamedWorld, &'w NamedWorld)>,
         quirks: &Quirks,
     ) -> Result<Judged<'w>, CliError> {
         let opened = OpenLog::new(path, &self.sources)?;
@@ -368,7 +358,14 @@ impl ConformArguments {
         };
         let run = opened.run.as_ref();
         let start = self.start.as_deref();
-        let known = world.map(|world| Known::new(world, start, marker, run, algorithm));
+        // Bends of corridors are no vertices of a laser log.
+        let world = worlds.map(|(world, smooth)| match evidence {
+            Evidence::Laser => smooth,
+            _ => world,
+        });
+        let marker_start = self.marker_start(&opened, evidence)?;
+        let known =
+            world.map(|world| Known::new(world, start, (marker, marker_start), run, algorithm));
         let known = known.transpose()?;
         let progress = Progress::endless("reading", "images and scans")?;
         let sensor = opened.sensor();
@@ -380,10 +377,11 @@ impl ConformArguments {
             laser: self.laser.params()?,
         };
         let gathered = extract(&opened.log, &opened.mapping, &config, &progress);
-        let gathered = gathered.map_err(|error| match error {
+        let mut gathered = gathered.map_err(|error| match error {
             ExtractError::TopicMap(error) => opened.wrong_mapping(path, &error),
             error => CliError::in_file(path, error),
         })?;
+        let added = self.add_marker(path, &opened, &mut gathered, marker)?;
         let assumed = self.marker.is_none() && run.is_none_or(|run| run.marker.is_empty());
         if assumed && self.driver == Who::Algorithm && !shows_marker(&gathered.events) {
             let needs = algorithm.in_words();
@@ -413,7 +411,19 @@ impl ConformArguments {
             }
             error => CliError::in_file(path, error),
         })?;
-        Ok(Judged { opened, gathered, judgement, known, marker, algorithm, search, dart_bound })
+        let twin = OtherWorld::of(&judgement, known.as_ref(), marker);
+        Ok(Judged {
+            opened,
+            gathered,
+            judgement,
+            known,
+            marker,
+            added,
+            twin,
+            algorithm,
+            search,
+            dart_bound,
+        })
     }
 
     fn question<'k>(

@@ -58,7 +58,8 @@ impl OpenLog {
         let mapping = match &sources.mapping {
             None => TopicMap::unambiguous(&log),
             Some(file) => TopicMap::read(&input::read(file)?)
-                .map_err(|error| CliError::in_file(file, error))?,
+                .map_err(|error| CliError::in_file(file, error))?
+                .completed(&log),
         };
         let mapping_path = sources.mapping.clone();
         let calibration_path = sources.calibration.clone();

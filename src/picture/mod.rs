@@ -5,7 +5,8 @@
 //! picture, even if edges have to cross. Bottom up: `geometry`, `text`, `doors` and `size`; the `layout` of
 //! the vertices and its `scale`; the `curves`, the `ways` that an edge may take and the chosen `routes`;
 //! `labels`; the `drawing` combines them, `signs` adds the marker, and `svg` and `png` write it. `growth`
-//! draws a map while it is built, which is an `open_graph`, `run` a robot's way through a floor plan, `stage` the legend of a picture of
+//! draws a map while it is built, which is an `open_graph`, `run` a robot's way through a floor plan, `laser_run` one
+//! in a building that it has scanned, `stage` the legend of a picture of
 //! sensing.
 
 #![expect(
@@ -19,6 +20,7 @@ mod drawing;
 mod geometry;
 mod growth;
 mod labels;
+mod laser_run;
 mod layout;
 mod open_graph;
 mod outlines;
@@ -44,6 +46,7 @@ use crate::model::{
 
 pub use growth::open_svg;
 pub(crate) use growth::{growth, open_layout};
+pub use laser_run::{DrawnVisit, LaserRunPicture, ScanHits, laser_run_svg};
 pub use open_graph::OpenGraph;
 pub use png::{PictureError, png};
 #[cfg(test)]

@@ -19,6 +19,20 @@ fn figure_1a_and_figure_1b_are_not_isomorphic_and_not_mirror_images() {
 }
 
 #[test]
+fn a_building_is_the_same_with_and_without_its_corners_if_these_are_left_out() {
+    for name in ["aces", "seattle"] {
+        let files =
+            [name, &format!("{name}-corners")].map(|name| format!("worlds/real/{name}.toml"));
+        let compare = |options: &[&str]| {
+            let files = [&*files[0], &*files[1], "--marker", "none"];
+            let text = stdout_of([&["compare", "--json"], &files[..], options].concat());
+            objects(&text).remove(0)["isomorphic"].clone()
+        };
+        assert_eq!((compare(&[]), compare(&["--smooth-corners"])), (false.into(), true.into()));
+    }
+}
+
+#[test]
 fn a_world_is_isomorphic_to_itself_by_a_bijection_of_all_edge_ends() {
     for path in world_files() {
         let file = path.to_str().unwrap();

@@ -26,7 +26,7 @@ const fn output(
 }
 
 /// All options that write files. WORLD, LOG and IMAGE are other inputs; NEW is another output.
-const OUTPUTS: [OutputOption; 38] = [
+const OUTPUTS: [OutputOption; 39] = [
     output("check", "--worst", &[("w.toml", "check --from IN --worst OUT")]),
     output("check", "--junit", &[("w.xml", "check --from IN --junit OUT")]),
     output("check", "--sarif", &[("w.sarif", "check --from IN --sarif OUT")]),
@@ -113,6 +113,7 @@ const OUTPUTS: [OutputOption; 38] = [
         ],
     ),
     output("conform", "--map", &[("l.toml", "conform IN --map OUT")]),
+    output("conform", "--picture", &[("q.svg", "conform LOG --quirks IN --picture OUT")]),
     output("conform", "--junit", &[("l.xml", "conform IN --junit OUT")]),
     output("conform", "--sarif", &[("l.sarif", "conform IN --sarif OUT")]),
     output(

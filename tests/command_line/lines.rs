@@ -79,6 +79,51 @@ fn events_as_json_lines_or_csv_are_checked() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+/// What `--json` prints of a log is the same log: also that the robot turned back, and that a junction was not
+/// recognised.
+#[test]
+fn printed_events_are_read_as_they_were_printed() {
+    let folder = folder("printed_events");
+    let path = folder.join("events.jsonl");
+    let line = |index: usize, degree: &str, door: u32, turned_back: bool| {
+        format!(
+            "{{\"degree\":{degree},\"door\":{door},\"index\":{index},\"kind\":\"event\",\"marker\":null,\
+             \"schema\":1,\"stamp\":{index}.5,\"turned_back\":{turned_back}}}\n"
+        )
+    };
+    // From the dead end of shape 6 into the wrong arm of its T, back, and around.
+    let around = [(1, 0), (2, 1), (3, 2), (3, 2), (2, 1), (2, 1), (2, 1), (3, 1), (2, 1), (1, 0)];
+    let text: String = around
+        .iter()
+        .enumerate()
+        .map(|(index, (degree, door))| line(index, &degree.to_string(), *door, index == 3))
+        .collect();
+    let check = |text: &str| {
+        fs::write(&path, text).unwrap();
+        let arguments = ["conform", path.to_str().unwrap(), "--world", "worlds/shape-6.toml"];
+        let options = ["--start", "any", "--driver", "anyone", "--marker", "none"];
+        let output =
+            run([&arguments[..], &options[..], &["--events", "recorded", "--json"]].concat());
+        let lines = objects(&stdout(&output));
+        let events =
+            lines.iter().filter(|line| line["kind"] == "event").cloned().collect::<Vec<_>>();
+        (output.status.code(), events, lines.last().cloned().unwrap_or_default())
+    };
+    let (code, events, verdict) = check(&text);
+    assert_eq!((code, &verdict["verdict"]), (Some(0), &"conforms".into()), "{verdict}");
+    assert_eq!(events, objects(&text));
+    let back: Vec<_> = events.iter().map(|event| event["turned_back"] == true).collect();
+    assert_eq!(back.iter().position(|&back| back), Some(3));
+    // Whoever has not turned back has come to another junction.
+    let (code, ..) = check(&text.replace("\"turned_back\":true", "\"turned_back\":false"));
+    assert_eq!(code, Some(1));
+    let undecided = text.replacen("\"degree\":3,\"door\":1", "\"degree\":null,\"door\":null", 1);
+    let (code, events, verdict) = check(&undecided);
+    assert_eq!((code, &verdict["cause"]), (Some(1), &"undecided".into()), "{verdict}");
+    assert_eq!(events, objects(&undecided));
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn info_lists_a_carmen_log() {
     let folder = folder("carmen_log");

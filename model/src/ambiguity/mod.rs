@@ -12,6 +12,7 @@ mod quotient;
 mod search;
 mod space;
 mod state_classes;
+mod twins;
 mod witness;
 
 pub use comparison::{Bisimulation, Comparison};
@@ -19,4 +20,5 @@ pub use findings::{AmbiguousGroup, Findings, PlacedWorld, SizeFindings, Unfinish
 pub use search::AmbiguitySearch;
 pub use space::{PlacedRobot, state_count};
 pub use state_classes::StateClasses;
+pub use twins::{Twin, Twins, twins};
 pub use witness::{Relation, Walk, replay};

@@ -37,6 +37,11 @@ impl Quotient {
         Self { labels, maps, class }
     }
 
+    /// The class of each state of the placed world.
+    pub(super) fn classes(&self) -> &[u32] {
+        &self.class
+    }
+
     /// Whether no two states are indistinguishable.
     pub(super) fn is_discrete(&self) -> bool {
         self.labels.len() == self.class.len()

@@ -9,9 +9,11 @@ mod fault;
 mod grow;
 mod list_error;
 mod relabel;
+mod smooth;
 
 pub use fault::{GraphError, clockwise_fault, opposite_fault, size_fault};
 pub use list_error::ListError;
+pub use smooth::Smoothed;
 
 /// One end of an edge, numbered `0 .. 2m` in a graph with `m` edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

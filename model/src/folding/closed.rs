@@ -8,7 +8,8 @@ use crate::embedded_graph::{Dart, EmbeddedGraph, Vertex};
 pub struct ClosedTrail {
     /// The world.
     pub graph: EmbeddedGraph,
-    /// The dart along which the marker points, if it was seen.
+    /// The dart along which the marker points, or a dart of the vertex at which an undirected one lies, if it was
+    /// seen.
     pub marker: Option<Dart>,
     /// The dart by which the robot has come in.
     pub pose: Dart,
@@ -56,6 +57,7 @@ impl FoldedTrail {
         }
         let numbered = |dart: Dart| Dart(number[dart.at()]);
         let [start, pose] = [self.start(), self.pose()].map(numbered);
-        (ClosedTrail { graph, marker: self.marker().map(numbered), pose }, start)
+        let marker = self.marker().or(self.marked_vertex()).map(numbered);
+        (ClosedTrail { graph, marker, pose }, start)
     }
 }

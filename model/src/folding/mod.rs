@@ -17,15 +17,18 @@
 //! Only [`Sighting::Pointing`](crate::percept::Sighting::Pointing) identifies poses. A sighting of
 //! another marker that lies at a vertex is compared where vertices are identified for another reason,
 //! because the robot returned along known edges. A mark on an edge is not compared. With these
-//! markers a contradiction is still a proof, and its absence proves nothing.
+//! markers a contradiction is still a proof, and its absence proves nothing. An undirected marker lies at one
+//! vertex, so that its sightings can be identified in [several ways](MarkedTrails).
 
 mod certificate;
 mod classes;
 mod closed;
 mod contradiction;
 mod leaf;
+mod marked_vertex;
 mod marker_tree;
 mod smallest;
+mod smallest_marked;
 mod trail;
 
 pub use certificate::{certificate, certificate_length};
@@ -33,8 +36,10 @@ pub use closed::ClosedTrail;
 pub use contradiction::{
     ContradictionReason, FoldError, MAX_DARTS, TrailContradiction, TrailError,
 };
+pub use marked_vertex::MarkedTrails;
 pub(crate) use marker_tree::MarkerTree;
-pub use smallest::{SearchLimit, SmallestWorld, WorldSearch, smallest_world};
+pub use smallest::{SearchLimit, SmallestWorld, WorldSearch};
+pub use smallest_marked::smallest_world;
 pub use trail::FoldedTrail;
 
 use crate::percept::{Door, Percept};

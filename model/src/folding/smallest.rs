@@ -7,8 +7,8 @@
 //! excludes what contradicts the walk. The second joins open darts in pairs as far as the class allows.
 //! Worlds with no fewer edges than the best one so far are left out (branch and bound).
 //!
-//! The walk may be any walk that folds without a contradiction, with the directional marker or without a
-//! marker. The search may take exponential time; it ends after a number of steps.
+//! The walk may be any walk that folds without a contradiction, with the directional marker, without a marker,
+//! or with an undirected one if only one vertex of the trail has it. The search may take exponential time; it ends after a number of steps.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -55,7 +55,8 @@ pub enum SmallestWorld {
     World {
         /// The world; the robot starts with dart 0 behind it.
         graph: EmbeddedGraph,
-        /// The dart along which the marker points, if it was perceived.
+        /// The dart along which the marker points, or a dart of the vertex at which an undirected one lies, if it
+        /// was perceived.
         marker: Option<Dart>,
         /// Why the search ended before all smaller worlds were excluded; `None` if no world of the class
         /// with fewer edges explains the walk.
@@ -87,7 +88,7 @@ pub enum SearchLimit {
 /// start in it, with the directional marker somewhere or without one, has the percepts of the walk. Of
 /// several, it is the first in the order of the search.
 #[must_use]
-pub fn smallest_world(
+pub(super) fn smallest_world(
     trail: &FoldedTrail,
     search: WorldSearch,
     watch: &dyn Watch,
@@ -136,7 +137,8 @@ fn breadth_first(trail: &FoldedTrail) -> Vec<Dart> {
     if trail.vertex_count() == 0 {
         return Vec::new();
     }
-    let root = trail.marker().unwrap_or_else(|| trail.start());
+    let marker = trail.marker().or(trail.marked_vertex());
+    let root = marker.unwrap_or_else(|| trail.start());
     let mut seen = HashSet::from([trail.vertex(root)]);
     let mut order = Vec::new();
     let mut queue = VecDeque::from([root]);

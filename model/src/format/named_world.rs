@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::{
-    embedded_graph::{Dart, EmbeddedGraph, Vertex},
+    embedded_graph::{Dart, EmbeddedGraph, Smoothed, Vertex},
     floor_plan::FloorPlan,
     isomorphism::as_discovered,
     marker::Marker,
@@ -118,6 +118,33 @@ impl NamedWorld {
     #[must_use]
     pub fn discovered(name: &str, about: &str, graph: &EmbeddedGraph, facing: Dart) -> Self {
         Self::numbered(name, about, as_discovered(graph, facing), Some(Dart(0)))
+    }
+
+    /// The same world without corners: see [`EmbeddedGraph::smoothed`]. The names and the positions of the other
+    /// vertices stay, and so does the start unless it is at a corner. Edges have names if they had any, or if
+    /// the result is not simple: an edge gets the name of its first part.
+    #[must_use]
+    pub fn smoothed(&self) -> Self {
+        let Smoothed { graph, darts } = self.graph.smoothed();
+        let kept = |new: Vertex| self.graph.vertex(darts[graph.first_dart(new).at()]).at();
+        let numbered = Self::numbered(&self.name, &self.about, graph.clone(), None);
+        let edge_names = self.edge_names.as_ref().map(|names| {
+            let part = |dart: Dart| names[darts[dart.min(graph.opposite(dart)).at()].at()].clone();
+            graph.darts().map(part).collect()
+        });
+        let start = self.start.and_then(|start| darts.iter().position(|&dart| dart == start));
+        let positions = self.positions.as_ref();
+        Self {
+            start: start.map(|place| Dart(place as u32)),
+            marker: self.marker,
+            vertex_names: graph
+                .vertices()
+                .map(|new| self.vertex_names[kept(new)].clone())
+                .collect(),
+            edge_names: edge_names.or(numbered.edge_names),
+            positions: positions.map(|all| graph.vertices().map(|new| all[kept(new)]).collect()),
+            ..Self::numbered(&self.name, &self.about, graph.clone(), None)
+        }
     }
 
     /// The vertex with this name.
@@ -289,6 +316,41 @@ mod tests {
             ("v2", vec!["v1"]),
         ]);
         NamedWorld::numbered("", "", graph.unwrap(), None)
+    }
+
+    /// A ring with two corners at a vertex `t`, and a dead end.
+    #[test]
+    fn a_world_without_corners_keeps_its_other_names() {
+        let lists = [
+            ("c1", vec!["t", "c2"]),
+            ("t", vec!["c1", "c2", "end"]),
+            ("c2", vec!["c1", "t"]),
+            ("end", vec!["t"]),
+        ];
+        let graph = EmbeddedGraph::from_neighbour_lists(&lists).unwrap();
+        let names = lists.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let positions = Some(vec![[0.0, 1.0], [0.0, 0.0], [1.0, 0.0], [0.0, -1.0]]);
+        let world = NamedWorld {
+            vertex_names: names,
+            positions,
+            ..NamedWorld::numbered("w", "", graph, None)
+        };
+        let started =
+            |text| NamedWorld { start: world.start_from_text(text).ok(), ..world.clone() };
+        let smooth = started("t:end").smoothed();
+        assert_eq!(smooth.vertex_names, ["t", "end"]);
+        assert_eq!(smooth.positions, Some(vec![[0.0, 0.0], [0.0, -1.0]]));
+        assert_eq!(
+            smooth.edge_names.as_deref(),
+            Some(&["e0", "e0", "e1", "e1"].map(str::to_owned)[..])
+        );
+        assert_eq!(smooth.start.map(|start| smooth.start_text(start)), Some("t:e1".to_owned()));
+        assert_eq!(started("c1:c2").smoothed().start, None);
+        assert_eq!(smooth.smoothed(), smooth);
+        // Names of edges stay, those of the first parts.
+        let edges = ["a", "b", "a", "c", "d", "b", "c", "d"].map(str::to_owned).to_vec();
+        let named = NamedWorld { edge_names: Some(edges), ..world.clone() };
+        assert_eq!(named.smoothed().edge_names.unwrap(), ["a", "a", "d", "d"]);
     }
 
     #[test]

@@ -143,6 +143,8 @@ impl RunEvents {
         let mut events: Vec<CheckedEvent> = Vec::new();
         // By how many doors clockwise the next door is farther from the entry of the last arrival.
         let mut turned = 0;
+        // The number of moves that are left out.
+        let mut left_out = 0;
         for event in &self.events {
             let mut event = event.clone();
             match (&mut event.kind, &events[..]) {
@@ -160,6 +162,7 @@ impl RunEvents {
                         && arrival.is_same_from(again, door)
                     {
                         turned = door.0;
+                        left_out += 1;
                         events.truncate(events.len() - 2);
                         continue;
                     }
@@ -172,6 +175,13 @@ impl RunEvents {
                     door.0 = (door.0 + std::mem::take(&mut turned)) % arrival.degree;
                 }
                 _ => turned = 0,
+            }
+            match &mut event.kind {
+                CheckedKind::Arrival { arrival: Arrival { number: Some(number), .. }, .. }
+                | CheckedKind::Door { number: Some(number), .. } => {
+                    *number = number.saturating_sub(left_out);
+                }
+                _ => {}
             }
             events.push(event);
         }

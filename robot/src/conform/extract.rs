@@ -11,7 +11,8 @@ use toposlam_vision::{laser::params::LaserParams, sensing::Sensor};
 
 use super::{
     InferredEvents, LaserEvents, RecordedEvents,
-    events::{CheckedEvent, EventSource, RunEvents},
+    events::{CheckedEvent, CheckedKind, EventSource, RunEvents},
+    marked_visits::{TimedSighting, VisitedJunction},
     scan_odometry::{PlacedScan, ScanOdometry, interpolated},
 };
 use crate::{
@@ -68,6 +69,10 @@ pub struct ExtractedRun {
     pub unreadable: u64,
     /// The number of laser scans that were sensed.
     pub scans: u64,
+    /// The junctions of the events that are inferred from laser scans.
+    pub junctions: Vec<VisitedJunction>,
+    /// The sightings of a marker that is a fiducial.
+    pub sightings: Vec<TimedSighting>,
 }
 
 /// A scene, and where it was sensed.
@@ -162,7 +167,7 @@ impl Evidence {
             Self::Recorded => &[Role::Percept, Role::Door, Role::Odometry],
             Self::Scenes => &[Role::Scene, Role::Odometry],
             Self::Pictures => &[Role::Image, Role::Odometry],
-            Self::Laser => &[Role::Scan, Role::Odometry],
+            Self::Laser => &[Role::Scan, Role::Odometry, Role::Marker],
         }
     }
 }
@@ -206,6 +211,7 @@ pub fn extract(
         laser: LaserEvents::new(laser),
         placing: ScanOdometry::default(),
         scans: 0,
+        sightings: Vec::new(),
     };
     for entry in log.entries(&bound) {
         gathering.take(entry?)?;
@@ -228,6 +234,7 @@ pub fn extract(
         unreadable,
         laser,
         scans,
+        sightings,
         ..
     } = gathering;
     let placed = |(source, time, scene)| {
@@ -235,12 +242,27 @@ pub fn extract(
         Some(SensedScene { source, scene, odometry })
     };
     let seen: Vec<_> = seen.into_iter().filter_map(placed).collect();
+    let mut junctions = Vec::new();
     events.events = match evidence {
         Evidence::Recorded => recorded.finish(),
         Evidence::Scenes | Evidence::Pictures => infer_events(&seen, marked),
-        Evidence::Laser => laser.finish(),
+        Evidence::Laser => {
+            let (events, visited) = laser.finish_with_junctions();
+            junctions = visited;
+            events
+        }
     };
-    Ok(ExtractedRun { events, evidence, run, seen, pictures, unreadable, scans })
+    Ok(ExtractedRun {
+        events,
+        evidence,
+        run,
+        seen,
+        pictures,
+        unreadable,
+        scans,
+        junctions,
+        sightings,
+    })
 }
 
 /// The events that are inferred from scenes.
@@ -275,12 +297,14 @@ struct Extraction<'w, W> {
     /// Scans that wait for their odometry.
     placing: ScanOdometry,
     scans: u64,
+    sightings: Vec<TimedSighting>,
 }
 
 impl<W: SensingProgress> Extraction<'_, W> {
     fn take(&mut self, entry: Entry) -> Result<(), ExtractError> {
         let Entry { time, offset, id, stamp, content, .. } = entry;
         let stamp = stamp.nanoseconds();
+        let source = EventSource { time, id, offset };
         let kind = match content {
             Content::Run(run) => {
                 self.events.has_head = true;
@@ -288,6 +312,16 @@ impl<W: SensingProgress> Extraction<'_, W> {
                 return Ok(());
             }
             Content::Hypothesis(_) => return Ok(()),
+            Content::Fiducial(sighting) => {
+                self.sightings.push((time, sighting));
+                return Ok(());
+            }
+            Content::TurnedBack | Content::Undecided => {
+                let turned = content == Content::TurnedBack;
+                let kind = if turned { CheckedKind::TurnedBack } else { CheckedKind::Undecided };
+                self.recorded.note(source, kind);
+                return Ok(());
+            }
             Content::Event(kind) => kind,
         };
         if matches!(kind, EventKind::Arrival(_) | EventKind::Door { .. }) {
@@ -296,7 +330,6 @@ impl<W: SensingProgress> Extraction<'_, W> {
                 return Err(ExtractError::OutOfOrder { message: id.0, time: stamp, before });
             }
         }
-        let source = EventSource { time, id, offset };
         self.recorded.observe(source, &kind);
         match kind {
             EventKind::Odometry(odometry) => {

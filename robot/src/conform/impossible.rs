@@ -5,7 +5,7 @@ use thiserror::Error;
 use toposlam_model::{
     enumerate::Class,
     folding::{ContradictionReason, FoldError, FoldedTrail, TrailContradiction, fold},
-    marker::{Directional, Marker, NoMarker},
+    marker::{Directional, Marker, NoMarker, Undirected},
     percept::{Percept, Sighting},
     trace::Trace,
 };
@@ -34,6 +34,9 @@ pub enum Impossibility {
         /// The class.
         class: Class,
     },
+    /// The marker was seen at several junctions.
+    #[error("the marker lies at one junction, and was seen at another one")]
+    OnePlace,
     /// All worlds with these percepts are outside of the class.
     #[error("no world of class {class} explains it")]
     Class {
@@ -74,15 +77,15 @@ pub struct FoldedTrace {
 }
 
 impl FoldedTrace {
-    /// Folds the trace of a robot with the directional marker or without one; for other markers nothing is
-    /// decided.
+    /// Folds the trace of a robot with the directional or an undirected marker or without one; for other markers
+    /// nothing is decided. That an undirected marker lies at one vertex is not compared here.
     ///
     /// Whether some world of the class explains the trace is exact, except that of a planar world only the
     /// degrees and the edges are compared here.
     #[must_use]
     pub fn new(trace: &Trace, marker: &dyn Marker, class: Class) -> Self {
-        let directional = marker.name() == Directional.name();
-        if !directional && marker.name() != NoMarker.name() {
+        let kinds: [&dyn Marker; 3] = [&Directional, &Undirected, &NoMarker];
+        if kinds.iter().all(|kind| kind.name() != marker.name()) {
             return Self { trail: None, impossible: None };
         }
         let (mut trail, walk) = match fold(trace.percepts(), trace.doors()) {
@@ -93,7 +96,8 @@ impl FoldedTrace {
             Err(FoldError::TooManyDarts { .. }) => (None, None),
         };
         let first = |is: &dyn Fn(&Percept) -> bool| Some(2 * trace.percepts().iter().position(is)?);
-        let marked = first(&|percept| !directional && percept.sighting != Sighting::Nothing);
+        let bare = marker.name() == NoMarker.name();
+        let marked = first(&|percept| bare && percept.sighting != Sighting::Nothing);
         let crowded = first(&|percept| percept.degree > class.max_degree());
         let marked = marked.map(|event| (event, Impossibility::Marker));
         let crowded = crowded.map(|event| (event, Impossibility::Degree { class }));

@@ -7,9 +7,9 @@ use thiserror::Error;
 use toposlam_model::{
     driving::visit::JunctionShape,
     enumerate::Watch,
-    folding::{FoldedTrail, SearchLimit, SmallestWorld, smallest_world},
+    folding::{FoldedTrail, MarkedTrails, SearchLimit, SmallestWorld, smallest_world},
     mapping::DirectionalAlgorithm,
-    marker::{Directional, Marker},
+    marker::{Directional, Marker, Undirected},
     trace::{
         AlgorithmCoverage, AlgorithmMatch, MatchEnd, Poses, Trace, TraceOrderError,
         match_algorithm, poses,
@@ -41,6 +41,11 @@ pub struct Judgement {
     pub poses: Option<Poses>,
     /// The smallest world that explains the log, if none is known and one of any size may.
     pub smallest: Option<SmallestWorld>,
+    /// Whether the events before the divergence, or all, determine their world; `None` if this is not known.
+    determined: Option<bool>,
+    /// The number of ways in which the visits of an undirected marker can be visits of one junction, as far as
+    /// it was counted; 1 with other markers.
+    pub ways: usize,
     /// How far the algorithm follows the log.
     pub algorithm: Option<AlgorithmMatch>,
     /// The cases that the run covers.
@@ -193,6 +198,8 @@ impl Judgement {
             trail: None,
             poses: None,
             smallest: None,
+            determined: None,
+            ways: 1,
             algorithm: None,
             coverage: RunCoverage { junctions: junctions(events), ..RunCoverage::default() },
             tolerated: Vec::new(),
@@ -228,6 +235,34 @@ impl Judgement {
         }
         let FoldedTrace { mut trail, mut impossible } =
             FoldedTrace::new(trace, question.marker, question.search.class);
+        let marked = (question.marker.name() == Undirected.name())
+            .then(|| trail.as_ref().map(|trail| trail.with_one_marked_vertex(watch)))
+            .flatten();
+        if let (Some(MarkedTrails { trails, may_be_more: false }), Some(before)) = (&marked, &trail)
+            && trails.is_empty()
+        {
+            let is_impossible = |trail: &FoldedTrail| {
+                let found = trail.with_one_marked_vertex(watch);
+                found.trails.is_empty() && !found.may_be_more
+            };
+            let event = first_percept(trace, before.moves(), is_impossible);
+            impossible = impossible.or(Some((event, Impossibility::OnePlace)));
+        }
+        judgement.determined = match &marked {
+            None => trail.as_ref().map(|trail| trail.open_count() == 0),
+            Some(MarkedTrails { trails, may_be_more }) => match &trails[..] {
+                [one] if !may_be_more => Some(one.open_count() == 0),
+                [] | [_] => None,
+                _ => Some(false),
+            },
+        };
+        judgement.ways = marked.as_ref().map_or(1, |marked| marked.trails.len());
+        // If the marked vertices are one in one way only, that is proved.
+        if let Some(MarkedTrails { trails, may_be_more: false }) = &marked
+            && let [one] = &trails[..]
+        {
+            trail = Some(one.clone());
+        }
         if question.world.is_none() && impossible.is_none() {
             let search = |trail: &FoldedTrail| smallest_world(trail, question.search, watch);
             let too_large = SmallestWorld::NotFound { limit: SearchLimit::Decisions };
@@ -296,8 +331,7 @@ impl Judgement {
     /// diverges, or if this is not known.
     #[must_use]
     pub fn determines_world(&self) -> Option<bool> {
-        let trail = self.trail.as_ref().filter(|_| self.divergence.is_none())?;
-        Some(trail.open_count() == 0)
+        self.determined.filter(|_| self.divergence.is_none())
     }
 
     /// The number of candidate poses after the last event that fits; 1 if the world was not known and one

@@ -19,6 +19,7 @@ use toposlam_vision::laser::{
 
 use super::{
     events::{CheckedEvent, CheckedKind, EventSource},
+    marked_visits::VisitedJunction,
     seen_junctions::{SeenArm, SeenJunction, SeenJunctions},
 };
 use crate::record::Arrival;
@@ -29,6 +30,8 @@ pub struct LaserEvents {
     sensor: LaserSensor,
     params: LaserParams,
     events: Vec<CheckedEvent>,
+    /// The junctions of the events.
+    visited: Vec<VisitedJunction>,
     /// Junctions, and corners if they are vertices.
     junctions: SeenJunctions,
     dead_ends: SeenJunctions,
@@ -110,6 +113,7 @@ impl LaserEvents {
             sensor: LaserSensor::new(params),
             params,
             events: Vec::new(),
+            visited: Vec::new(),
             junctions: SeenJunctions::new(params.visit),
             dead_ends: SeenJunctions::new(params.visit),
             visit: None,
@@ -151,12 +155,18 @@ impl LaserEvents {
 
     /// The events, after the last scan.
     #[must_use]
-    pub fn finish(mut self) -> Vec<CheckedEvent> {
+    pub fn finish(self) -> Vec<CheckedEvent> {
+        self.finish_with_junctions().0
+    }
+
+    /// The events, and the junctions of those that are visits.
+    #[must_use]
+    pub fn finish_with_junctions(mut self) -> (Vec<CheckedEvent>, Vec<VisitedJunction>) {
         let visits = std::mem::take(&mut self.waiting).into_iter().chain(self.visit.take());
         for visit in visits.collect::<Vec<_>>() {
             self.decide(&visit);
         }
-        self.events
+        (self.events, self.visited)
     }
 
     /// Ends the visit of a robot that is outside of the junction.
@@ -284,7 +294,10 @@ impl LaserEvents {
         }
         match shown {
             Shown::Doors(doors) => self.arrive(visit, doors, entry),
-            Shown::Doubt | Shown::Nothing => self.push(visit.source, CheckedKind::Undecided),
+            Shown::Doubt | Shown::Nothing => {
+                self.push_junction(visit, &[]);
+                self.push(visit.source, CheckedKind::Undecided);
+            }
         }
     }
 
@@ -306,6 +319,7 @@ impl LaserEvents {
             form: None,
             entry: Some(wrapped(entry + visit.to_odometry.turn)),
         };
+        self.push_junction(visit, &doors);
         self.push(visit.source, CheckedKind::Arrival { arrival, entry_off: None });
         if let Some((exit, _)) = visit.exit
             && let Some(door) = nearest(&doors, exit)
@@ -314,6 +328,17 @@ impl LaserEvents {
             let door = Door(door as u32);
             self.push(visit.left, CheckedKind::Door { door, number: None, off });
         }
+    }
+
+    /// Adds the junction of the next event.
+    fn push_junction(&mut self, visit: &Visit, doors: &[f64]) {
+        let to_odometry = visit.to_odometry;
+        self.visited.push(VisitedJunction {
+            event: self.events.len(),
+            centre: to_odometry.point(visit.centre),
+            clearance: visit.clearance,
+            doors: doors.iter().map(|door| wrapped(door + to_odometry.turn)).collect(),
+        });
     }
 
     fn push(&mut self, source: EventSource, kind: CheckedKind) {

@@ -11,6 +11,7 @@ mod inferred_events;
 mod judgement;
 mod known_world;
 mod laser_events;
+mod marked_visits;
 mod quirks;
 mod recorded_events;
 mod scan_odometry;
@@ -34,6 +35,9 @@ pub use inferred_events::{InferredEvents, NEAR};
 pub use judgement::{ConformVerdict, JudgeError, Judgement, ReachedLimit, RunCoverage, judge};
 pub use known_world::KnownWorld;
 pub use laser_events::LaserEvents;
+pub use marked_visits::{
+    MarkedVisitsError, TimedSighting, VisitedJunction, assume_marker, mark_visits, marker_at_start,
+};
 pub use quirks::{Quirk, QuirkError, Quirks};
 pub use recorded_events::{RecordedEvents, direction};
 pub use shorten::{ShortenedRun, shorten_frames, shorten_run};

@@ -37,6 +37,12 @@ impl RecordedEvents {
         }
     }
 
+    /// An event that is neither an arrival nor a door.
+    pub fn note(&mut self, source: EventSource, kind: CheckedKind) {
+        self.left = None;
+        self.events.push(CheckedEvent { source, kind });
+    }
+
     fn moved(&mut self, odometry: Odometry) {
         if let Some((from, event, direction)) = self.left
             && from.distance(&odometry) >= FAR_ENOUGH

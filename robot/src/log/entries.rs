@@ -13,6 +13,7 @@ use super::{
     encode,
     error::{LogError, LogErrorKind},
     event_line::{self, Parsed},
+    fiducials::{FiducialSighting, Fiducials},
     from_value::FromValue,
     image::image_of,
     laser_scan,
@@ -52,6 +53,12 @@ pub enum Content {
     Run(Run),
     /// A step of Algorithm 1.
     Hypothesis(Hypothesis),
+    /// A sighting of the marker, which is a fiducial.
+    Fiducial(FiducialSighting),
+    /// The robot turned back between two junctions.
+    TurnedBack,
+    /// The robot was at a junction that was not recognised.
+    Undecided,
     /// Any other event. A frame has an image, a scan or a scene, and the last odometry before it.
     Event(EventKind),
 }
@@ -62,6 +69,7 @@ pub struct Entries<'l> {
     bound: BoundTopicMap,
     messages: RawMessages<'l>,
     mounts: Mounts<'l>,
+    fiducials: Fiducials,
     /// The last odometry.
     odometry: Odometry,
     /// What the last message carries beyond its first.
@@ -75,7 +83,8 @@ impl Log {
         let messages = self.read(&mapping.topics());
         let (odometry, next) = (Odometry::default(), VecDeque::new());
         let mounts = Mounts::new(self);
-        Entries { log: self, bound: mapping.clone(), messages, mounts, odometry, next }
+        let fiducials = Fiducials::default();
+        Entries { log: self, bound: mapping.clone(), messages, mounts, fiducials, odometry, next }
     }
 }
 
@@ -143,6 +152,14 @@ impl Entries<'_> {
                         self.add(message, stamp, EventKind::Frame(frame).into());
                     }
                 }
+                (Role::Marker, _) => {
+                    let odometry = self.odometry;
+                    let found =
+                        self.fiducials.sightings(&carried, &value, &odometry, &mut self.mounts)?;
+                    for sighting in found.map_err(wrong)? {
+                        self.add(message, stamp, Content::Fiducial(sighting));
+                    }
+                }
                 (Role::Odometry, _) if carried.own => {
                     if let Some((odometry, stamped)) = transforms::odometry(&value) {
                         let stamp = stamped.unwrap_or(stamp);
@@ -172,10 +189,13 @@ impl Entries<'_> {
             None => None,
         };
         let sighting = event.marker.map(encode::sighting_of);
-        let arrival = Arrival { number: moves, degree, sighting, form: None, entry: None };
+        let arrival = |degree| Arrival { number: moves, degree, sighting, form: None, entry: None };
         let mut contents = Vec::new();
         if self.bound.carries(Role::Percept) {
-            contents.push(EventKind::Arrival(arrival).into());
+            contents
+                .extend(event.turned_back.filter(|turned| *turned).map(|_| Content::TurnedBack));
+            let visit = degree.map(|degree| EventKind::Arrival(arrival(degree)).into());
+            contents.push(visit.unwrap_or(Content::Undecided));
         }
         if let Some(door) = event.door.filter(|_| self.bound.carries(Role::Door)) {
             let number = moves.map(|moves| moves.saturating_add(1));
@@ -216,6 +236,7 @@ fn content(carried: &Carried, value: &Value<'_>, frame: Frame) -> Result<Content
         Role::Image => EventKind::Frame(Frame { image: Some(image_of(value)?), ..frame }),
         // A scan is read by its type.
         Role::Scan => return Err("it is not a scan".to_owned()),
+        Role::Marker => return Err("it is not a marker".to_owned()),
         Role::Scene => {
             let scene = encode::scene_of(&own(value)?).ok_or("there is no such scene")?;
             EventKind::Frame(Frame { scene: Some(scene), ..frame })

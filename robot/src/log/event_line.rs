@@ -5,13 +5,13 @@
 //! {"kind":"event","index":3,"stamp":41.2,"degree":3,"door":1,"marker":null}
 //! ```
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 /// The columns of a CSV file, in their order. Others are ignored.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Columns(Vec<Option<usize>>);
 
-const NAMES: [&str; 5] = ["index", "stamp", "degree", "door", "marker"];
+const NAMES: [&str; 6] = ["index", "stamp", "degree", "door", "marker", "turned_back"];
 
 /// A line.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -20,12 +20,21 @@ pub(super) struct VisitLine {
     pub(super) index: Option<u32>,
     /// When it was, in seconds.
     pub(super) stamp: Option<f64>,
-    /// The number of doors.
-    degree: Option<u32>,
+    /// The number of doors; `Some(None)` if the junction was not recognised.
+    #[serde(default, deserialize_with = "given")]
+    degree: Option<Option<u32>>,
     /// The door by which the robot left, clockwise from the way back; `None` if the log ends there.
     pub(super) door: Option<u32>,
     /// The door along which the marker points; -1: no marker is there. `None`: not recorded.
     pub(super) marker: Option<i64>,
+    /// Whether the robot turned back on its way there.
+    #[serde(default)]
+    pub(super) turned_back: Option<bool>,
+}
+
+/// A field that is there, even if it is `null`.
+fn given<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<Option<u32>>, D::Error> {
+    Deserialize::deserialize(deserializer).map(Some)
 }
 
 /// What a line is, without its other fields.
@@ -37,8 +46,8 @@ struct AnyLine {
 /// What a line is.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Parsed {
-    /// An event with its degree.
-    Event(VisitLine, u32),
+    /// An event with its degree; `None` if the junction was not recognised.
+    Event(VisitLine, Option<u32>),
     /// A line of another kind.
     Other(String),
 }
@@ -82,15 +91,19 @@ impl Columns {
             let Some(name) = column.and_then(|column| NAMES.get(column)) else { continue };
             let cell = cell.trim();
             if cell.is_empty() || cell == "null" {
+                if *name == "degree" {
+                    event.degree = Some(None);
+                }
                 continue;
             }
             let wrong = || format!("its {name} is {:?}", cell.chars().take(20).collect::<String>());
             match *name {
                 "index" => event.index = Some(cell.parse().map_err(|_| wrong())?),
                 "stamp" => event.stamp = Some(cell.parse().map_err(|_| wrong())?),
-                "degree" => event.degree = Some(cell.parse().map_err(|_| wrong())?),
+                "degree" => event.degree = Some(Some(cell.parse().map_err(|_| wrong())?)),
                 "door" => event.door = Some(cell.parse().map_err(|_| wrong())?),
-                _ => event.marker = Some(cell.parse().map_err(|_| wrong())?),
+                "marker" => event.marker = Some(cell.parse().map_err(|_| wrong())?),
+                _ => event.turned_back = Some(cell.parse().map_err(|_| wrong())?),
             }
         }
         Ok(event)
@@ -136,13 +149,15 @@ mod tests {
 
     #[test]
     fn json_and_csv_are_the_same_events() {
-        let columns = Columns::read(b"index, stamp,degree,DOOR,marker,note").unwrap();
+        let columns = Columns::read(b"index, stamp,degree,DOOR,marker,turned_back,note").unwrap();
         for (json, csv) in [
             (
                 r#"{"kind":"event","index":3,"stamp":41.2,"degree":3,"door":1,"marker":null}"#,
-                "3,41.2,3,1,,a note",
+                "3,41.2,3,1,,,a note",
             ),
-            (r#"{"degree":1,"door":null,"marker":-1,"more":[]}"#, ",,1,null,-1,"),
+            (r#"{"degree":1,"door":null,"marker":-1,"more":[]}"#, ",,1,null,-1,,"),
+            // Not recognised, after turning back.
+            (r#"{"degree":null,"turned_back":true}"#, ",,,,,true,"),
         ] {
             let Parsed::Event(event, degree) = parse(json.as_bytes(), None).unwrap() else {
                 panic!("{json}")
@@ -163,6 +178,11 @@ mod tests {
             ("{\"degree\":2,\"stamp\":-1}", None, "its stamp is -1.0"),
             ("2", Some(&columns), "it has 1 cells, and the header 2"),
             ("2,x", Some(&columns), "its door is \"x\""),
+            (
+                "{\"degree\":2,\"turned_back\":1}",
+                None,
+                "invalid type: integer `1`, expected a boolean",
+            ),
         ] {
             assert_eq!(parse(line.as_bytes(), columns), Err(error.to_owned()), "{line}");
         }

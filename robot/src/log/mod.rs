@@ -9,6 +9,7 @@ mod encode;
 pub mod entries;
 pub mod error;
 mod event_line;
+pub mod fiducials;
 mod from_value;
 mod image;
 mod laser_scan;

@@ -23,6 +23,11 @@ pub(super) const TYPE: &str = "tf2_msgs/TFMessage";
 /// The type in older logs of ROS 1.
 pub(super) const OLD_TYPE: &str = "tf/tfMessage";
 
+/// Whether messages of a type are transforms.
+pub(super) fn is_transforms(type_name: &str) -> bool {
+    type_name == TYPE || type_name == OLD_TYPE
+}
+
 /// The frames of a robot's centre.
 const BASES: [&str; 3] = ["base_link", "base_footprint", "base"];
 /// The frame of odometry.
@@ -34,7 +39,7 @@ const LEVEL: f64 = 0.9;
 
 /// The pose of one frame in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Rigid {
+pub(super) struct Rigid {
     rotation: [[f64; 3]; 3],
     translation: [f64; 3],
 }
@@ -46,7 +51,10 @@ impl Rigid {
     };
 
     /// A pose; `None` if a number is not finite, or the quaternion is no rotation.
-    fn new(translation: [f64; 3], Quaternion { x, y, z, w }: Quaternion) -> Option<Self> {
+    pub(super) fn new(
+        translation: [f64; 3],
+        Quaternion { x, y, z, w }: Quaternion,
+    ) -> Option<Self> {
         let norm = (x * x + y * y + z * z + w * w).sqrt();
         let finite = translation.iter().all(|part| part.is_finite());
         if !finite || !norm.is_finite() || norm < 1e-3 {
@@ -61,30 +69,42 @@ impl Rigid {
         Some(Self { rotation, translation })
     }
 
-    fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    pub(super) fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         self.rotation.map(|[a, b, c]| a * x + b * y + c * z)
     }
 
     /// The pose in the outer frame of something with a pose in this one.
-    fn then(&self, inner: &Self) -> Self {
+    pub(super) fn then(&self, inner: &Self) -> Self {
         let [x, y, z] = self.turned(inner.translation);
         let [a, b, c] = self.translation;
         let columns = [0, 1, 2].map(|column| self.turned(inner.rotation.map(|row| row[column])));
         let rotation = [0, 1, 2].map(|row| columns.map(|column| column[row]));
         Self { rotation, translation: [a + x, b + y, c + z] }
     }
+
+    /// The pose of a robot on the floor.
+    pub(super) fn on_floor(Odometry { position: [x, y], heading }: &Odometry) -> Self {
+        let (sine, cosine) = heading.sin_cos();
+        let rotation = [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+        Self { rotation, translation: [*x, *y, 0.0] }
+    }
+
+    /// Where its origin is.
+    pub(super) fn translation(&self) -> [f64; 3] {
+        self.translation
+    }
 }
 
 /// One transform of a message.
-struct Transform {
-    parent: String,
-    child: String,
-    stamp: Option<Stamp>,
-    pose: Rigid,
+pub(super) struct FrameTransform {
+    pub(super) parent: String,
+    pub(super) child: String,
+    pub(super) stamp: Option<Stamp>,
+    pub(super) pose: Rigid,
 }
 
 /// The transforms in a message, without those that are no rigid transforms.
-fn transforms(message: &Value<'_>) -> Vec<Transform> {
+pub(super) fn transforms(message: &Value<'_>) -> Vec<FrameTransform> {
     let one = |transform: &Value<'_>| {
         let number = |path: &str| transform.at(path)?.f64();
         let translation = [
@@ -98,7 +118,7 @@ fn transforms(message: &Value<'_>) -> Vec<Transform> {
             z: number("transform.rotation.z")?,
             w: number("transform.rotation.w")?,
         };
-        Some(Transform {
+        Some(FrameTransform {
             parent: frame_name(&transform.at("header.frame_id")?.text()?),
             child: frame_name(&transform.at("child_frame_id")?.text()?),
             stamp: transform.at("header.stamp").and_then(|stamp| stamp.stamp()),
@@ -110,13 +130,18 @@ fn transforms(message: &Value<'_>) -> Vec<Transform> {
 }
 
 /// The name of a frame without the slash before it.
-fn frame_name(name: &str) -> String {
+pub(super) fn frame_name(name: &str) -> String {
     name.trim_start_matches('/').to_owned()
 }
 
 /// Whether a frame has this name, perhaps behind that of the robot.
 fn is_called(frame: &str, name: &str) -> bool {
     frame.rsplit('/').next() == Some(name)
+}
+
+/// Whether a frame is fixed to the floor on which the robot drives.
+pub(super) fn is_odometry(frame: &str) -> bool {
+    is_called(frame, ODOM)
 }
 
 fn is_base(frame: &str) -> bool {
@@ -126,7 +151,7 @@ fn is_base(frame: &str) -> bool {
 /// The odometry in a message, and its time; `None` if it does not relate the robot to `odom`.
 pub(super) fn odometry(message: &Value<'_>) -> Option<(Odometry, Option<Stamp>)> {
     let mut all = transforms(message).into_iter();
-    let Transform { pose, stamp, .. } =
+    let FrameTransform { pose, stamp, .. } =
         all.find(|transform| is_called(&transform.parent, ODOM) && is_base(&transform.child))?;
     let [x, y, _] = pose.translation;
     let [ahead_x, ahead_y, _] = pose.turned([1.0, 0.0, 0.0]);
@@ -145,11 +170,13 @@ pub(super) struct Mount {
 pub(super) struct Mounts<'l> {
     log: &'l Log,
     known: BTreeMap<String, Result<Mount, String>>,
+    /// The poses of frames in that of the robot.
+    frames: BTreeMap<String, Result<Rigid, String>>,
 }
 
 impl<'l> Mounts<'l> {
     pub(super) fn new(log: &'l Log) -> Self {
-        Self { log, known: BTreeMap::new() }
+        Self { log, known: BTreeMap::new(), frames: BTreeMap::new() }
     }
 
     /// The mount of the scanner of a frame. In a log without transforms it is that of the robot's centre.
@@ -158,20 +185,32 @@ impl<'l> Mounts<'l> {
         if let Some(known) = self.known.get(&frame) {
             return Ok(known.clone());
         }
-        let found = self.find(&frame)?;
+        let found = self.pose_of(&frame)?.and_then(|pose| mount(&pose, &frame));
         if self.known.len() < MOST_FRAMES {
             self.known.insert(frame, found.clone());
         }
         Ok(found)
     }
 
-    fn find(&self, frame: &str) -> Result<Result<Mount, String>, LogError> {
+    /// The pose of a frame in that of the robot. In a log without transforms it is that of the robot's centre.
+    pub(super) fn pose_of(&mut self, frame: &str) -> Result<Result<Rigid, String>, LogError> {
+        if let Some(known) = self.frames.get(frame) {
+            return Ok(known.clone());
+        }
+        let found = self.find(frame)?;
+        if self.frames.len() < MOST_FRAMES {
+            self.frames.insert(frame.to_owned(), found.clone());
+        }
+        Ok(found)
+    }
+
+    fn find(&self, frame: &str) -> Result<Result<Rigid, String>, LogError> {
         let mut tree = Tree::default();
         let is_static = |name: &str| name.ends_with("tf_static");
         for wanted in [true, false] {
             let topics = self.log.topics().iter().enumerate().filter(|(_, topic)| {
                 let kind = topic.short_type();
-                (kind == TYPE || kind == OLD_TYPE) && is_static(&topic.name) == wanted
+                is_transforms(&kind) && is_static(&topic.name) == wanted
             });
             let topics: Vec<_> = topics.map(|(index, _)| index).collect();
             if tree.read(self.log, &topics, frame)? {
@@ -179,8 +218,8 @@ impl<'l> Mounts<'l> {
             }
         }
         Ok(match tree.in_base(frame) {
-            Some(pose) => mount(&pose, frame),
-            None if tree.parents.is_empty() => mount(&Rigid::IDENTITY, frame),
+            Some(pose) => Ok(pose),
+            None if tree.parents.is_empty() => Ok(Rigid::IDENTITY),
             None => Err(format!(
                 "its frame {frame:?} is not connected to the robot: no transform leads from it to {}",
                 BASES.join(", ")
@@ -227,7 +266,7 @@ impl Tree {
                 let message = bytes.get(at + within.start..at + within.end).unwrap_or_default();
                 let Ok(message) = file.message(message.to_vec()) else { continue };
                 let Some(Ok(value)) = topic.decode(&message) else { continue };
-                for Transform { parent, child, pose, .. } in transforms(&value) {
+                for FrameTransform { parent, child, pose, .. } in transforms(&value) {
                     self.parents.entry(child).or_insert((parent, pose));
                 }
                 if self.in_base(frame).is_some() {

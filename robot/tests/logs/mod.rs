@@ -8,6 +8,7 @@
 mod bag;
 mod broken;
 pub(crate) mod carmen;
+mod fiducials;
 mod mcap_file;
 mod recorded;
 mod roles;

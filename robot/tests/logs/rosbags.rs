@@ -18,9 +18,13 @@ use toposlam_robot::{
 };
 use toposlam_vision::laser::scan::Reading;
 
-/// The folder of the logs; `None`, and why, where Python has no rosbags.
 fn written(name: &str) -> Option<PathBuf> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/oracle/write_scans.py");
+    written_by("write_scans.py", name)
+}
+
+/// The folder of the logs that a script writes; `None`, and why, where Python has no rosbags.
+pub(super) fn written_by(script: &str, name: &str) -> Option<PathBuf> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/oracle").join(script);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();

@@ -23,7 +23,7 @@ const TRANSFORMS: &str = "TransformStamped[] transforms\n===\nMSG: geometry_msgs
     time stamp\nstring frame_id\n===\nMSG: geometry_msgs/Transform\nVector3 translation\n\
     Quaternion rotation\n===\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n===\n\
     MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
-const ODOMETRY: &str = "Header header\nPoseWithCovariance pose\n===\nMSG: std_msgs/Header\nuint32 seq\n\
+pub(super) const ODOMETRY: &str = "Header header\nPoseWithCovariance pose\n===\nMSG: std_msgs/Header\nuint32 seq\n\
     time stamp\nstring frame_id\n===\nMSG: geometry_msgs/PoseWithCovariance\nPose pose\n===\n\
     MSG: geometry_msgs/Pose\nPoint position\nQuaternion orientation\n===\nMSG: geometry_msgs/Point\n\
     float64 x\nfloat64 y\nfloat64 z\n===\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\n\
@@ -40,9 +40,9 @@ fn scan(numbers: [f32; 4], ranges: &[f32]) -> Topic {
 }
 
 /// Parent, child, translation and quaternion of each.
-type Transform<'t> = (&'t str, &'t str, [f64; 3], [f64; 4]);
+pub(super) type Transform<'t> = (&'t str, &'t str, [f64; 3], [f64; 4]);
 
-fn transforms(name: &'static str, all: &[Transform]) -> Topic {
+pub(super) fn transforms(name: &'static str, all: &[Transform]) -> Topic {
     let mut message = (all.len() as u32).to_le_bytes().to_vec();
     for (parent, child, translation, rotation) in all {
         message.extend(header_in(9, parent));
@@ -51,7 +51,7 @@ fn transforms(name: &'static str, all: &[Transform]) -> Topic {
     (name, "tf2_msgs/TFMessage", TRANSFORMS, vec![message])
 }
 
-const LEVEL: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
+pub(super) const LEVEL: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// The frame with the scan of a log, or the error.
 fn read(topics: &[Topic]) -> Result<Frame, String> {

@@ -11,6 +11,8 @@ use toposlam_robot::{conform::Evidence, record::RunEnding};
 use super::{
     Judged,
     folded::{OpenDoor, open_doors},
+    other_world::{OtherWorld, OtherWorldFields},
+    robot_marker::{AddedMarker, AssumedMarkerFields},
 };
 use crate::cli::json::TruncatedLine;
 
@@ -18,6 +20,8 @@ use crate::cli::json::TruncatedLine;
 #[derive(Serialize)]
 pub(super) struct FactFields<'j> {
     evidence: &'static str,
+    /// A marker that was assumed, and not in the log.
+    assumed_marker: Option<AssumedMarkerFields>,
     /// The number of images that were sensed.
     images: u64,
     unreadable_images: u64,
@@ -31,6 +35,8 @@ pub(super) struct FactFields<'j> {
     /// The number of doors that were never followed.
     open_doors: Option<usize>,
     never_followed: Option<Vec<NeverFollowed>>,
+    /// Another world that explains the log, and that no walk distinguishes from the known one or the smallest.
+    twin: Option<OtherWorldFields>,
     doors: Option<Doors>,
     map: Option<Map>,
 }
@@ -118,6 +124,7 @@ impl<'j> FactFields<'j> {
                 Evidence::Pictures => "pictures",
                 Evidence::Laser => "laser",
             },
+            assumed_marker: judged.added.and_then(AddedMarker::assumed),
             images: gathered.pictures,
             unreadable_images: gathered.unreadable,
             truncated: opened.log.truncation().map(TruncatedLine::from),
@@ -139,6 +146,7 @@ impl<'j> FactFields<'j> {
             unique: open.as_ref().map(Vec::is_empty),
             open_doors: open.as_ref().map(Vec::len),
             never_followed: open.map(|open| open.into_iter().map(NeverFollowed::from).collect()),
+            twin: judged.twin.as_ref().map(OtherWorld::fields),
             doors: judgement.algorithm.as_ref().map(Doors::of),
             map: judgement.algorithm.as_ref().map(Map::of),
         }

@@ -32,6 +32,9 @@ pub(super) struct OpenDoor {
 pub(super) fn open_doors(judged: &Judged) -> Option<Vec<OpenDoor>> {
     let judgement = &judged.judgement;
     judgement.determines_world()?;
+    if judgement.ways > 1 {
+        return None;
+    }
     let trail = judgement.trail.as_ref()?;
     let entries = trail.first_entries(judgement.trace.doors());
     let known = judged.known.as_ref().map(|known| (known, known_poses(judgement, trail)));

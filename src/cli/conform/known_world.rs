@@ -2,7 +2,7 @@
 
 use toposlam_model::{
     driving::visit::JunctionShape,
-    embedded_graph::Dart,
+    embedded_graph::{Dart, EmbeddedGraph},
     floor_plan::FloorPlan,
     format::named_world::NamedWorld,
     mapping::DirectionalAlgorithm,
@@ -17,7 +17,7 @@ use toposlam_robot::{
     truth::{JunctionTruth, angle},
 };
 
-use super::{CliError, expected::ExpectedRun};
+use super::{CliError, expected::ExpectedRun, robot_marker::MarkerStart};
 use crate::cli::input;
 
 /// A known world.
@@ -50,7 +50,7 @@ impl<'w> Known<'w> {
     pub(super) fn new(
         world: &'w NamedWorld,
         start: Option<&str>,
-        marker: &'static dyn Marker,
+        (marker, lies): (&'static dyn Marker, MarkerStart),
         run: Option<&Run>,
         algorithm: DirectionalAlgorithm,
     ) -> Result<Self, CliError> {
@@ -59,9 +59,13 @@ impl<'w> Known<'w> {
             Some(_) => Some(input::start_of(world, start)?),
             None => run.and_then(|run| recorded_start(world, run)).or(world.start),
         };
-        let states = match start {
-            None => anywhere(&world.graph, &marker),
-            Some(facing) => vec![GraphWorld::with_marker(&world.graph, marker, facing).state()],
+        let graph = &world.graph;
+        let states = match (lies, start) {
+            (MarkerStart::Robot, None) => anywhere(graph, &marker),
+            (MarkerStart::Robot, Some(facing)) => {
+                vec![GraphWorld::with_marker(graph, marker, facing).state()]
+            }
+            (MarkerStart::Anywhere, start) => wherever_it_lies(graph, marker, start)?,
         };
         let reachable = trace::reachable(&world.graph);
         let forms = forms(world);
@@ -102,6 +106,26 @@ impl<'w> Known<'w> {
     pub(super) fn pose(&self, pose: Dart) -> String {
         format!("at {}, having come from {}", self.world.at_text(pose), self.world.leads_to(pose))
     }
+}
+
+/// The most states that are followed.
+const MOST_STATES: usize = 1 << 20;
+
+/// The states of a robot whose marker may lie anywhere: from one pose, or from all.
+fn wherever_it_lies(
+    graph: &EmbeddedGraph,
+    marker: &dyn Marker,
+    start: Option<Dart>,
+) -> Result<Vec<State>, CliError> {
+    let placed = graph.darts().filter(|&dart| marker.first_alike(graph, dart) == dart);
+    let places: Vec<Dart> = placed.collect();
+    let poses: Vec<Dart> = start.map_or_else(|| graph.darts().collect(), |start| vec![start]);
+    if poses.len().saturating_mul(places.len()) > MOST_STATES {
+        let cause = "the world is too large for a marker that may lie anywhere";
+        return Err(CliError::at("--world", format!("{cause}; give --start")));
+    }
+    let with = |placed| poses.iter().map(move |&pose| State { pose, placed: Some(placed) });
+    Ok(places.into_iter().flat_map(with).collect())
 }
 
 /// The start that a log records, if it was recorded in this world.

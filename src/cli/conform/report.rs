@@ -23,7 +23,7 @@ use toposlam_robot::{
     record::{Arrival, RunEnding},
 };
 
-use super::{Judged, LISTED, folded, minimise::Minimised};
+use super::{Judged, LISTED, folded, minimise::Minimised, other_world::OtherWorld};
 use crate::cli::text::{counted, grouped, moment, vertices};
 
 impl Judged<'_> {
@@ -62,6 +62,7 @@ impl Judged<'_> {
             picture,
             folded: if shown { self.folded() } else { None },
             world: self.world().filter(|_| shown),
+            twin: self.twin.as_ref().filter(|_| shown).map(OtherWorld::svg),
         }
     }
 
@@ -151,6 +152,7 @@ impl Judged<'_> {
             }
         };
         let mut facts = vec![("events", format!("{count}, {made}"))];
+        facts.extend(self.added.map(|added| ("marker", added.in_words())));
         match (&self.known, &judgement.poses) {
             (Some(known), Some(poses)) => {
                 let world = known.world;
@@ -174,7 +176,11 @@ impl Judged<'_> {
         }
         if let Some(doors) = folded::open_doors(self) {
             facts.push(("unique", folded::in_words(&doors)));
+        } else if let (Some(false), ways) = (judgement.determines_world(), judgement.ways) {
+            let ways = format!("the junction of the marker may have been entered in {ways} ways");
+            facts.push(("unique", format!("This log does not determine its world: {ways}.")));
         }
+        facts.extend(self.twin.as_ref().map(|twin| ("twin", twin.in_words())));
         if let Some(followed) = &judgement.algorithm {
             let choices = match (followed.choices, followed.algorithm) {
                 (_, DirectionalAlgorithm::Folding) => "those of the folding explorer".to_owned(),
@@ -320,10 +326,20 @@ impl Judged<'_> {
     /// A drawing of the known world, or of the smallest one that explains the log.
     fn world(&self) -> Option<String> {
         match (&self.known, &self.judgement.smallest) {
-            (Some(known), _) => Some(picture::svg(&WorldPicture::from(known.world))),
+            (Some(known), _) => {
+                let own = WorldPicture::from(known.world);
+                let placed = self.twin.as_ref().map(OtherWorld::first_marker);
+                Some(picture::svg(&match placed {
+                    None => own,
+                    Some(placed) => {
+                        WorldPicture { marker: self.marker, start: Some(placed), ..own }
+                    }
+                }))
+            }
             (None, Some(SmallestWorld::World { graph, marker, .. })) => {
                 let start = marker.or(Some(Dart(0)));
                 let world = NamedWorld::numbered("smallest", "", graph.clone(), start);
+                let world = NamedWorld { marker: Some(self.marker), ..world };
                 Some(picture::svg(&WorldPicture::from(&world)))
             }
             _ => None,

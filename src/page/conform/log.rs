@@ -15,7 +15,13 @@ pub(super) fn section(report: &LogReport, number: usize, level: Level) -> String
     let beneath = level.beneath();
     let covered = covered(report, beneath);
     let judged = [facts(report, beneath), tolerated(report, number, beneath)].concat();
-    let seen = [picture(report, beneath), folded(report, beneath), world(report, beneath)].concat();
+    let seen = [
+        picture(report, beneath),
+        folded(report, beneath),
+        world(report, beneath),
+        twin(report, beneath),
+    ];
+    let seen = seen.concat();
     // Without a divergence there is room on the left.
     let (left, right) = if report.divergence.is_some() {
         let led =
@@ -223,6 +229,13 @@ fn world(report: &LogReport, level: Level) -> String {
         (false, None) => "The only world that explains the log",
     };
     panel(level, "", name, &drawn(svg, "A drawing of the world"))
+}
+
+/// Another world that the marker does not distinguish from the first.
+fn twin(report: &LogReport, level: Level) -> String {
+    let drawing = report.twin.as_ref().map(|svg| drawn(svg, "A drawing of another world"));
+    let name = "Another world that explains the log as well";
+    drawing.map_or_else(String::new, |drawing| panel(level, "", name, &drawing))
 }
 
 /// A drawing in an SVG document.

@@ -53,6 +53,7 @@ fn conforming(events: usize) -> LogReport {
         picture: None,
         folded: None,
         world: None,
+        twin: None,
     }
 }
 
@@ -129,6 +130,17 @@ fn the_words_of_a_log_are_escaped_everywhere() {
         assert!(page.contains("{{logs}}"));
         assert_eq!(page.matches("<main>").count(), 1);
     }
+}
+
+#[test]
+fn a_world_and_its_twin_are_both_drawn() {
+    let svg = Some("<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned());
+    let heading = "Another world that explains the log as well";
+    let alone = LogReport { world: svg.clone(), ..conforming(3) };
+    assert!(!page_of(std::slice::from_ref(&alone)).contains(heading));
+    let page = page_of(&[LogReport { twin: svg, ..alone }]);
+    assert!(page.contains(heading));
+    assert_eq!(page.matches("class=\"drawing\"").count(), 2);
 }
 
 #[test]

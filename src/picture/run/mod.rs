@@ -13,9 +13,11 @@ mod trajectory;
 
 use super::{
     geometry::{Extent, Point},
-    svg::{Page, Sheet},
+    svg::{NORTH, Page, Sheet},
 };
 use crate::journal::Journal;
+pub(super) use trajectory::{pieces, ramp};
+
 use calls::Badges;
 use ground::Ground;
 
@@ -25,7 +27,8 @@ pub fn run_svg(journal: &Journal) -> String {
     let drawing = RunDrawing::of(journal);
     let extent = drawing.extent();
     let metre = Some(drawing.ground.metre);
-    let sheet = Sheet { title: &journal.name, caption: &journal.ending, extent, metre };
+    let (title, caption) = (&journal.name, &journal.ending);
+    let sheet = Sheet { title, caption, extent, metre, up: NORTH };
     let legend = sheet.legend(legend(journal));
     sheet.document(&legend, None, |page, shift| drawing.write(page, shift))
 }
@@ -33,7 +36,8 @@ pub fn run_svg(journal: &Journal) -> String {
 /// The drawing alone, with the positions of the frames.
 pub(crate) fn run_drawing(journal: &Journal) -> Drawn {
     let drawing = RunDrawing::of(journal);
-    let sheet = Sheet { title: "", caption: "", extent: drawing.extent(), metre: None };
+    let extent = drawing.extent();
+    let sheet = Sheet { title: "", caption: "", extent, metre: None, up: NORTH };
     let mut moved = Point::default();
     let svg = sheet.document(&[], None, |page, shift| {
         moved = shift;

@@ -32,7 +32,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shi
             "<polyline class=\"trajectory\" data-rounds=\"{first} {last}\" points=\"{}\" \
              stroke=\"{}\"/>",
             points.trim_end(),
-            colour(share)
+            ramp(share)
         ));
     }
     page.line("</g>");
@@ -40,7 +40,7 @@ pub(super) fn write(page: &mut Page, ground: &Ground, rounds: &[FrameEntry], shi
 
 /// The first and the last point of each piece of a line through a number of points, and its share of the
 /// time.
-fn pieces(points: usize) -> impl Iterator<Item = (usize, usize, f64)> {
+pub(in crate::picture) fn pieces(points: usize) -> impl Iterator<Item = (usize, usize, f64)> {
     let steps = points.saturating_sub(1);
     let count = steps.min(COLOURS);
     (0..count).map(move |piece| {
@@ -49,7 +49,8 @@ fn pieces(points: usize) -> impl Iterator<Item = (usize, usize, f64)> {
     })
 }
 
-fn colour(share: f64) -> String {
+/// The colour at a share of the time.
+pub(in crate::picture) fn ramp(share: f64) -> String {
     let (from, to, share) = if share < 0.5 {
         (RAMP[0], RAMP[1], 2.0 * share)
     } else {
@@ -75,6 +76,6 @@ mod tests {
 
     #[test]
     fn the_line_grows_darker() {
-        assert_eq!([0.0, 0.5, 1.0].map(colour), ["#7ebbea", "#2c74ba", "#092042"]);
+        assert_eq!([0.0, 0.5, 1.0].map(ramp), ["#7ebbea", "#2c74ba", "#092042"]);
     }
 }

@@ -18,7 +18,7 @@ use super::{
 
 pub(super) use figure::FLOOR;
 pub(super) use page::{FAINT, INK, MARKER, Page, short};
-pub(super) use sheet::Sheet;
+pub(super) use sheet::{NORTH, Sheet};
 
 /// Whether the picture has a legend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,8 @@ pub(super) fn document(picture: &WorldPicture, drawing: &Drawing, legend: Legend
         extent.join(each);
     }
     let metre = drawing.floor.map(|floor| floor.metre);
-    let sheet = Sheet { title: picture.title, caption: picture.caption, extent, metre };
+    let WorldPicture { title, caption, .. } = *picture;
+    let sheet = Sheet { title, caption, extent, metre, up: NORTH };
     let says = match legend {
         Legend::Below => sheet.legend(says(picture, drawing)),
         Legend::Elsewhere => Vec::new(),

@@ -31,7 +31,12 @@ pub(in super::super) struct Sheet<'a> {
     pub(in super::super) extent: Extent,
     /// Units of the picture in a metre, if the sheet shows a scale.
     pub(in super::super) metre: Option<f64>,
+    /// What is up, beside the scale.
+    pub(in super::super) up: &'a str,
 }
+
+/// What is up in a floor plan.
+pub(in super::super) const NORTH: &str = "north is up";
 
 impl Sheet<'_> {
     fn column(&self) -> f64 {
@@ -92,7 +97,8 @@ impl Sheet<'_> {
         draw(&mut page, Point::new(middle - extent.centre().x, MARGIN + above - extent.least.y));
         let mut baseline = MARGIN + above + extent.size().y + 14.0;
         if let Some(metre) = self.metre {
-            page.scale_bar(metre, extent.size().x, Point::new(middle, baseline + 8.0));
+            let at = Point::new(middle, baseline + 8.0);
+            page.scale_bar(metre, extent.size().x, at, self.up);
             baseline += bar;
         }
         for line in &caption {
@@ -118,8 +124,8 @@ impl Sheet<'_> {
 }
 
 impl Page {
-    /// A bar of a round number of metres, and the direction of north.
-    fn scale_bar(&mut self, metre: f64, room: f64, middle: Point) {
+    /// A bar of a round number of metres, and what is up.
+    fn scale_bar(&mut self, metre: f64, room: f64, middle: Point, up: &str) {
         let fits = |length: &&f64| **length * metre <= (room * 0.75).max(60.0);
         let lengths = [0.1, 0.2, 0.5, 1.0, 2.0, 4.0, 10.0, 20.0, 50.0, 100.0, 500.0];
         let wish = |length: &&f64| **length * metre <= 200.0;
@@ -134,7 +140,7 @@ impl Page {
             short(middle.y),
             short(right),
         ));
-        let words = format!("{length} m, north is up");
+        let words = format!("{length} m, {up}");
         let at = middle + Point::new(0.0, 15.0);
         self.text(&words, at, LEGEND[0], FAINT, "legend");
     }

@@ -48,6 +48,21 @@ pub enum WorldFileErrorKind {
         /// The second key.
         other: &'static str,
     },
+    /// A vertex has no position.
+    #[error("the vertex `{vertex}` has no position")]
+    NoPosition {
+        /// The vertex.
+        vertex: String,
+    },
+    /// There is no such vertex.
+    #[error("there is no vertex `{vertex}`")]
+    NoVertex {
+        /// The name.
+        vertex: String,
+    },
+    /// The junctions of a floor plan have positions.
+    #[error("a floor plan has its positions in [junctions]")]
+    PositionsOfPlan,
     /// The lists are not those of an embedded graph.
     #[error(transparent)]
     Lists(#[from] ListError),

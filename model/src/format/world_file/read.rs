@@ -1,5 +1,7 @@
 //! Reading a world file: bytes in, a [`NamedWorld`] or an error out.
 
+use std::collections::HashMap;
+
 use super::error::{WorldFileError, WorldFileErrorKind};
 use crate::{
     embedded_graph::{Dart, EmbeddedGraph, ListError},
@@ -35,6 +37,7 @@ pub fn read(bytes: &[u8]) -> Result<NamedWorld, WorldFileError> {
         "floor",
         "junctions",
         "hallways",
+        "positions",
         "start",
     ])?;
     let name = file.get("name").map(world_name).transpose()?.unwrap_or_default();
@@ -46,6 +49,12 @@ pub fn read(bytes: &[u8]) -> Result<NamedWorld, WorldFileError> {
     };
     name.clone_into(&mut world.name);
     about.clone_into(&mut world.about);
+    if let Some(value) = file.get("positions") {
+        if world.plan.is_some() {
+            return Err(WorldFileErrorKind::PositionsOfPlan.at(value.position()));
+        }
+        world.positions = Some(positions(&world, &value.any_table()?)?);
+    }
     if let Some(value) = file.get("start") {
         let table = value.table(&["at", "facing", "marker"])?;
         world.start = Some(start(&world, &table)?);
@@ -120,6 +129,29 @@ fn by_plan(file: &DocumentTable<'_>) -> Result<NamedWorld, WorldFileError> {
         plan: Some(plan.clone()),
         ..unnamed(plan.graph().clone(), vertex_names)
     })
+}
+
+/// The position of each vertex.
+fn positions(
+    world: &NamedWorld,
+    table: &DocumentTable<'_>,
+) -> Result<Vec<[f64; 2]>, WorldFileError> {
+    let mut positions = vec![None; world.vertex_names.len()];
+    let numbers: HashMap<&str, usize> =
+        (0..).zip(&world.vertex_names).map(|(n, name)| (&**name, n)).collect();
+    for entry in table.entries() {
+        let Some(&vertex) = numbers.get(entry.key) else {
+            let vertex = entry.key.escape_debug().to_string();
+            return Err(WorldFileErrorKind::NoVertex { vertex }.at(entry.position()));
+        };
+        let [x, y] = entry.value.array("a list of two numbers, x and y")?;
+        positions[vertex] = Some([x.number()?, y.number()?]);
+    }
+    let given = positions.into_iter().zip(&world.vertex_names).map(|(position, vertex)| {
+        let missing = || WorldFileErrorKind::NoPosition { vertex: vertex.clone() };
+        position.ok_or_else(|| missing().at(table.position()))
+    });
+    given.collect()
 }
 
 /// The dart that `[start]` gives.

@@ -160,7 +160,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("[clokwise]\na = [\"b\"]"),
         "line 1, column 2: clokwise: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, start"
+         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
     );
     assert_eq!(
         message("[clockwise]\na = [\"b\"]\nb = [\"a\"]\n[start]\nfrom = \"a\""),
@@ -173,7 +173,7 @@ fn unknown_and_missing_keys_are_named() {
     assert_eq!(
         message("{\"a\\nb\": 1}"),
         "line 1, column 2: a\\nb: unknown key; expected one of: \
-         name, about, clockwise, doors, floor, junctions, hallways, start"
+         name, about, clockwise, doors, floor, junctions, hallways, positions, start"
     );
     assert_eq!(message("[floor]\nhallway_width = 1"), "the key `junctions` is missing");
     assert_eq!(
@@ -358,6 +358,30 @@ fn names_are_printable_without_quotes_and_separators() {
     for name in wrong {
         assert!(!is_name(name), "{name:?}");
     }
+}
+
+/// A triangle with positions, in TOML and in JSON.
+#[test]
+fn the_vertices_of_lists_may_have_positions() {
+    let text =
+        "[clockwise]\na = [\"b\", \"c\"]\nb = [\"a\", \"c\"]\nc = [\"a\", \"b\"]\n\n[positions]\n";
+    let whole = format!("{text}a = [0.0, -1.5]\nb = [2.0, 0.0]\nc = [1.0, 4.0]\n");
+    let world = read(whole.as_bytes()).unwrap();
+    assert_eq!(world.positions, Some(vec![[0.0, -1.5], [2.0, 0.0], [1.0, 4.0]]));
+    assert_eq!(to_toml(&world), whole);
+    assert_eq!(read(to_json_text(&world).as_bytes()), Ok(world));
+    for (positions, message) in [
+        ("a = [0, 0]\nb = [2, 0]\n", "line 6, column 2: positions: the vertex `c` has no position"),
+        ("a = [0, 0]\nd = [2, 0]\n", "line 8, column 1: positions.d: there is no vertex `d`"),
+        ("a = [0]\n", "line 7, column 5: positions.a: expected a list of two numbers, x and y"),
+    ] {
+        let error = read(format!("{text}{positions}").as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
+    let plan = "[floor]\nhallway_width = 1.0\n[junctions]\na = [0, 0]\nb = [4, 0]\n[[hallways]]\n\
+        from = \"a\"\nto = \"b\"\n[positions]\na = [0, 0]\nb = [4, 0]\n";
+    let error = read(plan.as_bytes()).unwrap_err().to_string();
+    assert!(error.ends_with("a floor plan has its positions in [junctions]"), "{error}");
 }
 
 proptest! {

@@ -19,6 +19,11 @@ pub fn to_json(world: &NamedWorld) -> Value {
         (None, Some(_)) => drop(file.insert("doors".to_owned(), lists(world))),
         (None, None) => drop(file.insert("clockwise".to_owned(), lists(world))),
     }
+    if let (Some(positions), None) = (&world.positions, &world.plan) {
+        let positions = world.vertex_names.iter().zip(positions);
+        let positions = positions.map(|(name, position)| (name.clone(), json!(position)));
+        file.insert("positions".to_owned(), Value::Object(positions.collect()));
+    }
     if let Some(dart) = world.start {
         file.insert("start".to_owned(), start(world, dart));
     }

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use super::{
     AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
+    role::APRIL_TAGS,
 };
 use crate::log::{
     definition::{Count, Definition, FieldType},
     topic::Topic,
+    transforms::is_transforms,
 };
 
 /// A mapping that fits a log.
@@ -29,6 +31,10 @@ pub(in crate::log) struct Carried {
     pub(in crate::log) type_name: String,
     pub(in crate::log) length: LengthUnit,
     pub(in crate::log) angle: AngleUnit,
+    /// The name or the number of the marker, among several.
+    pub(in crate::log) id: Option<String>,
+    /// The frame of the marker, if it is not the usual one.
+    pub(in crate::log) frame: Option<String>,
 }
 
 impl BoundTopicMap {
@@ -46,7 +52,18 @@ impl BoundTopicMap {
 
 pub(super) fn bind(mapping: &TopicMap, topics: &[Topic]) -> Result<BoundTopicMap, TopicMapError> {
     let carried = mapping.carriers().map(|(role, carrier)| carried(role, carrier, topics));
-    Ok(BoundTopicMap { carried: carried.collect::<Result<_, _>>()? })
+    let mut carried = carried.collect::<Result<Vec<_>, _>>()?;
+    // The poses of these tags are transforms.
+    if let Some(tags) = carried.iter().find(|carried| carried.type_name == APRIL_TAGS).cloned() {
+        let is_transforms = |topic: &Topic| is_transforms(&topic.short_type());
+        let transforms = topics.iter().enumerate().filter(|(_, topic)| is_transforms(topic));
+        carried.extend(transforms.map(|(topic, named)| Carried {
+            topic,
+            type_name: named.short_type(),
+            ..tags.clone()
+        }));
+    }
+    Ok(BoundTopicMap { carried })
 }
 
 fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, TopicMapError> {
@@ -88,8 +105,9 @@ fn carried(role: Role, carrier: &Carrier, topics: &[Topic]) -> Result<Carried, T
             );
         }
     }
-    let (length, angle) = (carrier.length, carrier.angle);
-    Ok(Carried { role, topic: index, paths, own, type_name, length, angle })
+    let Carrier { length, angle, ref id, ref frame, .. } = *carrier;
+    let (id, frame) = (id.clone(), frame.clone());
+    Ok(Carried { role, topic: index, paths, own, type_name, length, angle, id, frame })
 }
 
 /// The parts without which there is nothing.

@@ -16,12 +16,14 @@ pub struct RoleGuess {
 /// types, also where they have come by way of ROS 1; and those of the types that are usual for it.
 ///
 /// Topics of annotated pictures (`annotated` is a part of the name) are not a camera's. Odometry comes from
-/// transforms, or from the lines of a scanner, if there is no other; `/tf_static` does not move.
+/// transforms, or from the lines of a scanner, if there is no other; `/tf_static` does not move. Whether a tag
+/// or a pose is the marker only a mapping file knows.
 #[must_use]
 pub fn guess(topics: &[Topic]) -> Vec<RoleGuess> {
     let could = |role: Role, topic: &Topic| {
         let annotated = topic.name.split('/').any(|part| part == "annotated");
-        topic.messages > 0
+        role != Role::Marker
+            && topic.messages > 0
             && topic.definition.is_ok()
             && role.usual(&topic.short_type()).is_some()
             && !(role == Role::Image && annotated)

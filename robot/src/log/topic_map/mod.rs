@@ -25,6 +25,18 @@
 //! [door]
 //! topic = "/decision"
 //! door = "exit"
+//!
+//! [marker]                       # AprilTagDetectionArray, Detection3DArray or PoseStamped
+//! topic = "/detections"
+//! id = 3                         # of several tags
+//! frame = "tag36h11:3"           # of its transforms; this is the usual one
+//! ```
+//!
+//! or, for a marker that was not there,
+//!
+//! ```toml
+//! [marker]
+//! at = [12.0, 3.5, 1.57]         # x, y and heading in the frame of odometry
 //! ```
 //!
 //! And `[run]`, `[end]`, `[scene]`, `[command]`, `[hypothesis]` and `[map]`, with a topic, for the
@@ -33,6 +45,7 @@
 mod bound;
 mod error;
 mod guess;
+mod marker_place;
 mod read;
 mod role;
 
@@ -40,6 +53,8 @@ pub use bound::BoundTopicMap;
 pub(super) use bound::Carried;
 pub use error::{TopicMapError, TopicMapErrorKind};
 pub use guess::{RoleGuess, guess};
+pub use marker_place::MarkerPlace;
+pub(super) use role::{APRIL_TAGS, DETECTIONS};
 pub use role::{AngleUnit, LengthUnit, MessagePart, Role};
 
 use std::{collections::BTreeMap, fmt::Write};
@@ -49,9 +64,11 @@ use toposlam_model::format::document::TextPosition;
 use super::reader::Log;
 
 /// The topics that carry each role.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TopicMap {
     carriers: BTreeMap<Role, Carrier>,
+    /// The place of a marker that is assumed.
+    assumed: Option<MarkerPlace>,
 }
 
 /// A topic that carries something.
@@ -65,6 +82,10 @@ pub struct Carrier {
     pub length: LengthUnit,
     /// The unit of angles.
     pub angle: AngleUnit,
+    /// The name or the number of the marker, among several.
+    pub id: Option<String>,
+    /// The frame of the marker, if it is not the usual one.
+    pub frame: Option<String>,
     /// Where the mapping file says so.
     place: TextPosition,
     /// Where it says each path.
@@ -80,6 +101,8 @@ impl Carrier {
             paths: BTreeMap::new(),
             length: LengthUnit::Metres,
             angle: AngleUnit::Radians,
+            id: None,
+            frame: None,
             place: TextPosition::default(),
             places: BTreeMap::new(),
         }
@@ -124,7 +147,24 @@ impl TopicMap {
                 carriers.insert(role, Carrier::usual(&topic.name));
             }
         }
-        Self { carriers }
+        Self { carriers, assumed: None }
+    }
+
+    /// The place of a marker that is assumed to have lain there.
+    #[must_use]
+    pub fn assumed_marker(&self) -> Option<MarkerPlace> {
+        self.assumed
+    }
+
+    /// The same map. If it has at most the marker, it has the unambiguous roles of a log, too.
+    #[must_use]
+    pub fn completed(self, log: &Log) -> Self {
+        if self.carriers.keys().any(|role| *role != Role::Marker) {
+            return self;
+        }
+        let mut whole = Self::unambiguous(log);
+        whole.carriers.extend(self.carriers);
+        Self { assumed: self.assumed, ..whole }
     }
 
     /// The carrier of a role, if there is one.
@@ -141,14 +181,15 @@ impl TopicMap {
     /// One thing, carried by a topic of a usual type.
     #[must_use]
     pub fn of(role: Role, topic: &str) -> Self {
-        Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]) }
+        Self { carriers: BTreeMap::from([(role, Carrier::usual(topic))]), assumed: None }
     }
 
     /// The map of some of the roles.
     #[must_use]
     pub fn only<'r>(&self, roles: impl IntoIterator<Item = &'r Role>) -> Self {
         let carrier = |role: &Role| Some((*role, self.carriers.get(role)?.clone()));
-        Self { carriers: roles.into_iter().filter_map(carrier).collect() }
+        let carriers = roles.into_iter().filter_map(carrier).collect();
+        Self { carriers, assumed: None }
     }
 
     /// Whether nothing is carried.
@@ -184,6 +225,17 @@ impl TopicMap {
             if carrier.angle != AngleUnit::Radians {
                 let _ = writeln!(text, "angle = {}", quoted(carrier.angle.name()));
             }
+            for (key, value) in [("id", &carrier.id), ("frame", &carrier.frame)] {
+                if let Some(value) = value {
+                    let _ = writeln!(text, "{key} = {}", quoted(value));
+                }
+            }
+        }
+        if let Some(place) = self.assumed {
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            let _ = writeln!(text, "[marker]\nat = {place}");
         }
         text
     }

@@ -5,28 +5,56 @@ use std::collections::BTreeMap;
 use toposlam_model::format::document::{Document, DocumentError, DocumentValue};
 
 use super::{
-    AngleUnit, Carrier, LengthUnit, MessagePart, Role, TopicMap, TopicMapError, TopicMapErrorKind,
+    AngleUnit, Carrier, LengthUnit, MarkerPlace, MessagePart, Role, TopicMap, TopicMapError,
+    TopicMapErrorKind,
 };
 
 pub(super) fn read(bytes: &[u8]) -> Result<TopicMap, TopicMapError> {
     let document = Document::parse_toml(bytes)?;
     let file = document.root().table(&Role::ALL.map(Role::name))?;
     let mut carriers = BTreeMap::new();
+    let mut assumed = None;
     for role in Role::ALL {
-        if let Some(value) = file.get(role.name()) {
-            carriers.insert(role, carrier(role, value)?);
+        let Some(value) = file.get(role.name()) else { continue };
+        match assumed_marker(value).filter(|_| role == Role::Marker) {
+            Some(at) => assumed = Some(place(value, at)?),
+            None => drop(carriers.insert(role, carrier(role, value)?)),
         }
     }
-    if carriers.is_empty() {
+    if carriers.is_empty() && assumed.is_none() {
         return Err(TopicMapErrorKind::Empty.at(file.position()));
     }
-    Ok(TopicMap { carriers })
+    Ok(TopicMap { carriers, assumed })
+}
+
+/// Where a marker is assumed, if the table says so.
+fn assumed_marker(value: DocumentValue<'_>) -> Option<DocumentValue<'_>> {
+    value.any_table().ok()?.get("at")
+}
+
+/// The place of a marker that is assumed.
+fn place<'d>(
+    table: DocumentValue<'d>,
+    at: DocumentValue<'d>,
+) -> Result<MarkerPlace, DocumentError> {
+    const EXPECTED: &str = "a list of x, y and heading, or of x and y";
+    table.table(&["at"])?;
+    let numbers = at.list(EXPECTED)?.map(|number| {
+        // The robot's world is far smaller.
+        number.number_in("a coordinate or a heading", -1e7..=1e7)
+    });
+    match numbers.collect::<Result<Vec<_>, _>>()?[..] {
+        [x, y] => Ok(MarkerPlace { position: [x, y], heading: None }),
+        [x, y, heading] => Ok(MarkerPlace { position: [x, y], heading: Some(heading) }),
+        _ => Err(at.expected(EXPECTED)),
+    }
 }
 
 fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapError> {
     let parts = role.parts().iter().map(|part| part.name());
     let units: &[_] = match role {
         Role::Odometry | Role::Motion => &["length", "angle"],
+        Role::Marker => &["id", "frame", "at"],
         _ => &[],
     };
     let known: Vec<_> = ["topic"].into_iter().chain(parts).chain(units.iter().copied()).collect();
@@ -47,6 +75,15 @@ fn carrier(role: Role, value: DocumentValue<'_>) -> Result<Carrier, TopicMapErro
     if let Some(unit) = table.get("angle") {
         carrier.angle =
             unit.word(&[AngleUnit::Radians, AngleUnit::Degrees].map(|it| (it.name(), it)))?;
+    }
+    if let Some(id) = table.get("id") {
+        carrier.id = Some(match id.whole() {
+            Ok(number) => number.to_string(),
+            Err(_) => text(id, "the number or the name of a tag")?.to_owned(),
+        });
+    }
+    if let Some(frame) = table.get("frame") {
+        carrier.frame = Some(text(frame, "the name of a frame")?.to_owned());
     }
     match carrier.places.get(&MessagePart::Quaternion) {
         Some(place) if carrier.paths.contains_key(&MessagePart::Heading) => {

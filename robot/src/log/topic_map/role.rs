@@ -6,6 +6,14 @@ use crate::log::{
     transforms::{OLD_TYPE as OLD_TRANSFORMS, TYPE as TRANSFORMS},
 };
 
+/// Tags of the project AprilTag; their poses are transforms.
+pub(in crate::log) const APRIL_TAGS: &str = "apriltag_msgs/AprilTagDetectionArray";
+/// Detections of objects, with poses.
+pub(in crate::log) const DETECTIONS: &str = "vision_msgs/Detection3DArray";
+/// One pose.
+pub(in crate::log) const POSE: &str = "geometry_msgs/PoseStamped";
+/// One pose.
+pub(in crate::log) const POSE_WITH_COVARIANCE: &str = "geometry_msgs/PoseWithCovarianceStamped";
 const CARMEN_FRONT: &str = "carmen/FLASER";
 const CARMEN_REAR: &str = "carmen/RLASER";
 const CARMEN_ROBOT: &str = "carmen/ROBOTLASER1";
@@ -37,6 +45,8 @@ pub enum Role {
     Map,
     /// The end of a log of the project.
     End,
+    /// Sightings of the marker, which is a fiducial.
+    Marker,
 }
 
 /// A part of a message.
@@ -143,7 +153,7 @@ impl MessagePart {
 
 impl Role {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Image,
         Self::Scan,
         Self::Odometry,
@@ -156,6 +166,7 @@ impl Role {
         Self::Hypothesis,
         Self::Map,
         Self::End,
+        Self::Marker,
     ];
 
     /// As mapping files call it.
@@ -174,6 +185,7 @@ impl Role {
             Self::Hypothesis => "hypothesis",
             Self::Map => "map",
             Self::End => "end",
+            Self::Marker => "marker",
         }
     }
 
@@ -201,7 +213,7 @@ impl Role {
             Self::Hypothesis => Some("toposlam_msgs/Hypothesis"),
             Self::Map => Some("toposlam_msgs/Map"),
             Self::End => Some("toposlam_msgs/End"),
-            Self::Image | Self::Scan | Self::Odometry | Self::Motion => None,
+            Self::Image | Self::Scan | Self::Odometry | Self::Motion | Self::Marker => None,
         }
     }
 
@@ -215,13 +227,14 @@ impl Role {
             | (Self::Scan, "sensor_msgs/LaserScan")
             | (Self::Scan | Self::Odometry, CARMEN_FRONT | CARMEN_REAR | CARMEN_ROBOT)
             | (Self::Odometry, TRANSFORMS | OLD_TRANSFORMS)
-            | (Self::Percept | Self::Door, EVENT) => &[],
-            (Self::Odometry, "nav_msgs/Odometry" | "geometry_msgs/PoseWithCovarianceStamped") => &[
+            | (Self::Percept | Self::Door, EVENT)
+            | (Self::Marker, APRIL_TAGS | DETECTIONS | POSE | POSE_WITH_COVARIANCE) => &[],
+            (Self::Odometry, "nav_msgs/Odometry" | POSE_WITH_COVARIANCE) => &[
                 (MessagePart::X, "pose.pose.position.x"),
                 (MessagePart::Y, "pose.pose.position.y"),
                 (MessagePart::Quaternion, "pose.pose.orientation"),
             ],
-            (Self::Odometry, "geometry_msgs/PoseStamped") => &[
+            (Self::Odometry, POSE) => &[
                 (MessagePart::X, "pose.position.x"),
                 (MessagePart::Y, "pose.position.y"),
                 (MessagePart::Quaternion, "pose.orientation"),

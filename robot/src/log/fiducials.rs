@@ -1,0 +1,187 @@
+//! Sightings of a marker that is a fiducial, as `apriltag_msgs`, `vision_msgs` and `geometry_msgs` record them.
+//! The x axis of the fiducial points along a door.
+//!
+//! `apriltag_msgs` has no poses: the pose of a tag is a transform with the stamp of the detection, from the frame
+//! of the camera to that of the tag, which is called `tag36h11:3` for the tag 3 of the family `tag36h11`.
+
+use std::collections::VecDeque;
+
+use toposlam_model::driving::odometry::Odometry;
+
+use super::{
+    error::LogError,
+    messages::Stamp,
+    standard::Quaternion,
+    topic_map::{APRIL_TAGS, Carried, DETECTIONS},
+    transforms::{self, Mounts, Rigid, frame_name, is_odometry, is_transforms},
+    value::Value,
+};
+
+/// A sighting of the marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiducialSighting {
+    /// Where the marker is, in metres in the frame of odometry.
+    pub position: [f64; 2],
+    /// The direction of its x axis, in radians counter-clockwise from the x axis of odometry.
+    pub heading: f64,
+}
+
+/// Detections and transforms of tags that wait for each other.
+#[derive(Default)]
+pub(super) struct Fiducials {
+    detections: VecDeque<(Stamp, String)>,
+    tags: VecDeque<(Stamp, String, Placed)>,
+}
+
+/// A pose in a frame.
+struct Placed {
+    frame: String,
+    pose: Rigid,
+}
+
+/// The detections and transforms that wait, at most.
+const WAITING: usize = 64;
+/// The x axis of a fiducial has a direction on the floor if so much of it is level: 30 degrees off upright.
+const LEVEL: f64 = 0.5;
+
+impl Fiducials {
+    /// The sightings in a message of the topic of the marker, or in transforms.
+    pub(super) fn sightings(
+        &mut self,
+        carried: &Carried,
+        message: &Value<'_>,
+        odometry: &Odometry,
+        mounts: &mut Mounts<'_>,
+    ) -> Result<Result<Vec<FiducialSighting>, String>, LogError> {
+        let found = match &*carried.type_name {
+            APRIL_TAGS => detected_tags(carried, message).map(|tags| {
+                self.detections.extend(tags);
+                self.matched()
+            }),
+            kind if is_transforms(kind) => {
+                let tags = transforms::transforms(message).into_iter();
+                self.tags.extend(tags.filter_map(|transform| {
+                    let placed = Placed { frame: transform.parent, pose: transform.pose };
+                    Some((transform.stamp?, transform.child, placed))
+                }));
+                Ok(self.matched())
+            }
+            DETECTIONS => detected_objects(carried, message),
+            _ => posed(message).map(|placed| vec![placed]),
+        };
+        let found = match found {
+            Ok(found) => found,
+            Err(what) => return Ok(Err(what)),
+        };
+        let mut sightings = Vec::new();
+        for placed in found {
+            let frame = frame_name(&placed.frame);
+            let pose = if is_odometry(&frame) {
+                placed.pose
+            } else {
+                match mounts.pose_of(&frame)? {
+                    Ok(mount) => Rigid::on_floor(odometry).then(&mount.then(&placed.pose)),
+                    Err(what) => return Ok(Err(what)),
+                }
+            };
+            let [x, y, _] = pose.translation();
+            let [ahead, left, _] = pose.turned([1.0, 0.0, 0.0]);
+            if ahead.hypot(left) < LEVEL {
+                return Ok(Err("the x axis of the marker points up or down".to_owned()));
+            }
+            sightings.push(FiducialSighting { position: [x, y], heading: left.atan2(ahead) });
+        }
+        Ok(Ok(sightings))
+    }
+
+    /// The poses of the tags whose detections and transforms have the same stamp.
+    fn matched(&mut self) -> Vec<Placed> {
+        let mut found = Vec::new();
+        self.detections.retain(|(stamp, frame)| {
+            let is_its =
+                |(time, child, _): &(Stamp, String, Placed)| time == stamp && child == frame;
+            let place = self.tags.iter().position(is_its);
+            let placed = place.and_then(|place| self.tags.remove(place));
+            let waits = placed.is_none();
+            found.extend(placed.map(|(_, _, placed)| placed));
+            waits
+        });
+        // The other of an old one is missing.
+        self.detections.drain(..self.detections.len().saturating_sub(WAITING));
+        self.tags.drain(..self.tags.len().saturating_sub(WAITING));
+        found
+    }
+}
+
+/// The stamps and the frames of the tags in a message of `apriltag_msgs`.
+fn detected_tags(carried: &Carried, message: &Value<'_>) -> Result<Vec<(Stamp, String)>, String> {
+    let stamp = message.at("header.stamp").and_then(|stamp| stamp.stamp());
+    let stamp = stamp.ok_or("it has no `header.stamp`")?;
+    let mut tags = Vec::new();
+    for tag in message.at("detections").and_then(|list| list.elements()).unwrap_or_default() {
+        let id = tag.at("id").and_then(|id| id.i64()).ok_or("a detection in it has no `id`")?;
+        let family = tag.at("family").and_then(|family| Some(family.text()?.into_owned()));
+        let name = format!("{}:{id}", family.unwrap_or_default());
+        let wanted = carried.id.as_ref();
+        if wanted.is_none_or(|wanted| *wanted == id.to_string() || *wanted == name) {
+            tags.push((stamp, carried.frame.as_ref().map_or(name, |frame| frame_name(frame))));
+        }
+    }
+    Ok(tags)
+}
+
+/// The poses in a message of `vision_msgs`: of each detection, that of its best hypothesis.
+fn detected_objects(carried: &Carried, message: &Value<'_>) -> Result<Vec<Placed>, String> {
+    let mut found = Vec::new();
+    for object in message.at("detections").and_then(|list| list.elements()).unwrap_or_default() {
+        let results = object.at("results").and_then(|list| list.elements()).unwrap_or_default();
+        let score = |result: &Value<'_>| {
+            let score = result.at("hypothesis.score").or_else(|| result.at("score"));
+            score.and_then(|score| score.f64()).unwrap_or_default()
+        };
+        let best = results
+            .into_iter()
+            .reduce(|best, other| if score(&other) > score(&best) { other } else { best });
+        let Some(best) = best else { continue };
+        let name = ["hypothesis.class_id", "id"].into_iter().find_map(|path| {
+            let name = best.at(path)?;
+            name.text().map(|text| text.into_owned()).or(name.i64().map(|id| id.to_string()))
+        });
+        if carried.id.is_some() && carried.id != name {
+            continue;
+        }
+        let frame = ["header.frame_id"].into_iter().find_map(|path| {
+            [object.at(path), message.at(path)].into_iter().flatten().find_map(|frame| {
+                frame.text().filter(|frame| !frame.is_empty()).map(|frame| frame.into_owned())
+            })
+        });
+        let pose = pose_at(&best, "pose.pose")?;
+        found.push(Placed { frame: frame.unwrap_or_default(), pose });
+    }
+    Ok(found)
+}
+
+/// The pose in a message of `geometry_msgs`.
+fn posed(message: &Value<'_>) -> Result<Placed, String> {
+    let frame = message.at("header.frame_id");
+    let frame = frame.and_then(|frame| Some(frame.text()?.into_owned())).unwrap_or_default();
+    let nested = message.at("pose.pose").is_some();
+    let pose = pose_at(message, if nested { "pose.pose" } else { "pose" })?;
+    Ok(Placed { frame, pose })
+}
+
+fn pose_at(value: &Value<'_>, path: &str) -> Result<Rigid, String> {
+    let number = |part: &str| {
+        let path = format!("{path}.{part}");
+        let number = value.at(&path).and_then(|number| number.f64());
+        number.ok_or_else(|| format!("it has no number `{path}`"))
+    };
+    let translation = [number("position.x")?, number("position.y")?, number("position.z")?];
+    let rotation = Quaternion {
+        x: number("orientation.x")?,
+        y: number("orientation.y")?,
+        z: number("orientation.z")?,
+        w: number("orientation.w")?,
+    };
+    Rigid::new(translation, rotation).ok_or_else(|| format!("its `{path}` is no pose"))
+}

@@ -1,0 +1,88 @@
+//! The picture of a run that was inferred from laser scans: what they hit, the robot's way, and its visits.
+
+use std::{ffi::OsStr, path::Path};
+
+use toposlam::picture::{DrawnVisit, LaserRunPicture, laser_run_svg, png};
+use toposlam_robot::{
+    conform::{CheckedKind, ConformVerdict, Evidence, RunEvents, VisitedJunction},
+    log::{
+        entries::Content,
+        topic_map::{MarkerPlace, Role},
+    },
+    record::{EventKind, Frame},
+};
+
+use super::{CliError, Judged, robot_marker::AddedMarker};
+use crate::cli::{output, text::counted};
+
+/// Writes the picture of a run as SVG or PNG.
+pub(super) fn write(path: &Path, log: &Path, judged: &Judged) -> Result<(), CliError> {
+    if judged.gathered.evidence != Evidence::Laser {
+        let cause = "this is for events that are inferred from laser scans";
+        return Err(CliError::at("--picture", cause));
+    }
+    let mut picture = scanned(log, judged)?;
+    picture.visits = visits(&judged.gathered.events, &judged.gathered.junctions);
+    let name = log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
+    picture.title = name.trim_end_matches(".gz").trim_end_matches(".log").to_owned();
+    let verdict = match judged.judgement.verdict() {
+        ConformVerdict::Conforms => "conforms",
+        ConformVerdict::Diverged => "diverges",
+        ConformVerdict::Incomplete => "is incomplete",
+    };
+    let count = counted(picture.visits.len(), "visit");
+    picture.caption = format!("{count} of junctions; the log {verdict}");
+    picture.marker = match judged.added {
+        Some(AddedMarker::Assumed { place: MarkerPlace { position, heading }, .. }) => {
+            Some((position, heading))
+        }
+        _ => None,
+    };
+    let svg = laser_run_svg(&picture);
+    let is_png = path.extension().and_then(OsStr::to_str) == Some("png");
+    let bytes = if is_png {
+        png(&svg).map_err(|error| CliError::in_file(path, error))?
+    } else {
+        svg.into_bytes()
+    };
+    output::write_whole(path, &bytes)
+}
+
+/// What the scans hit, and the robot's way.
+fn scanned(path: &Path, judged: &Judged) -> Result<LaserRunPicture, CliError> {
+    let failed = |error: &dyn std::error::Error| CliError::in_file(path, error);
+    let log = &judged.opened.log;
+    let mapping = judged.opened.mapping.only(&[Role::Scan, Role::Odometry]);
+    let bound = mapping.bind(log).map_err(|error| failed(&error))?;
+    let mut picture = LaserRunPicture::default();
+    for entry in log.entries(&bound) {
+        let Content::Event(EventKind::Frame(Frame { scan: Some(scan), odometry, .. })) =
+            entry.map_err(|error| failed(&error))?.content
+        else {
+            continue;
+        };
+        let (sine, cosine) = odometry.heading.sin_cos();
+        let [east, north] = odometry.position;
+        if ![east, north, cosine].iter().all(|number| number.is_finite()) {
+            continue;
+        }
+        picture.way.push(odometry.position);
+        for [x, y] in scan.hits() {
+            picture.hits.add([east + x * cosine - y * sine, north + x * sine + y * cosine]);
+        }
+    }
+    Ok(picture)
+}
+
+/// The visits, with the door of each.
+fn visits(events: &RunEvents, junctions: &[VisitedJunction]) -> Vec<DrawnVisit> {
+    let visit = |junction: &VisitedJunction| {
+        let VisitedJunction { event, centre, clearance, ref doors } = *junction;
+        let exit = match events.events.get(event + 1).map(|event| &event.kind) {
+            Some(CheckedKind::Door { door, .. }) => Some(door.0 as usize),
+            _ => None,
+        };
+        DrawnVisit { centre, clearance, doors: doors.clone(), exit }
+    };
+    junctions.iter().map(visit).collect()
+}

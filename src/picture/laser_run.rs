@@ -1,0 +1,393 @@
+//! A recorded run of a robot with a laser scanner: what its scans hit, its way, and the junctions that it visited,
+//! in the frame of odometry.
+
+use std::{
+    collections::{BTreeSet, HashMap},
+    fmt::Write as _,
+};
+
+use super::{
+    geometry::{Extent, Point},
+    run::{pieces, ramp},
+    svg::{FAINT, INK, MARKER, Page, Sheet, short},
+};
+
+/// A recorded run, to be drawn.
+#[derive(Clone, Debug, Default)]
+pub struct LaserRunPicture {
+    /// Above the drawing.
+    pub title: String,
+    /// Below it.
+    pub caption: String,
+    /// What the scans hit.
+    pub hits: ScanHits,
+    /// The robot's positions, in metres.
+    pub way: Vec<[f64; 2]>,
+    /// The visits of junctions, in order.
+    pub visits: Vec<DrawnVisit>,
+    /// The position of a marker in metres, and the direction in which it points in radians.
+    pub marker: Option<([f64; 2], Option<f64>)>,
+}
+
+/// A visit of a junction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnVisit {
+    /// The centre of the junction, in metres.
+    pub centre: [f64; 2],
+    /// The distance from the centre to the nearest wall, in metres.
+    pub clearance: f64,
+    /// The directions of the doors, in radians; none if the visit is undecided.
+    pub doors: Vec<f64>,
+    /// The index of the door by which the robot left.
+    pub exit: Option<usize>,
+}
+
+/// The cells of a square grid that scans have hit.
+#[derive(Clone, Debug, Default)]
+pub struct ScanHits {
+    counts: HashMap<[i32; 2], u32>,
+}
+
+impl ScanHits {
+    /// The side of a cell, in metres.
+    pub const CELL: f64 = 0.2;
+    /// The most cells that are kept.
+    const MOST: usize = 1 << 20;
+
+    /// Adds a point, in metres. Beyond a million cells no new ones are added.
+    pub fn add(&mut self, point: [f64; 2]) {
+        let cell = point.map(|part| (part / Self::CELL).floor() as i32);
+        if self.counts.len() < Self::MOST {
+            self.counts.entry(cell).or_default();
+        }
+        if let Some(count) = self.counts.get_mut(&cell) {
+            *count = count.saturating_add(1);
+        }
+    }
+
+    /// The cells that show walls: those that were hit more than once, and at least half as often as a usual one
+    /// of these; and those beside them that were hit half as often again.
+    fn walls(&self) -> BTreeSet<[i32; 2]> {
+        let mut again: Vec<u32> =
+            self.counts.values().copied().filter(|&count| count > 1).collect();
+        again.sort_unstable();
+        let enough = again.get(again.len() / 2).map_or(2, |usual| usual.div_ceil(2).max(2));
+        let count = |cell: [i32; 2]| self.counts.get(&cell).copied().unwrap_or_default();
+        let is_wall = |[x, y]: [i32; 2]| {
+            let around = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]];
+            let beside = || around.iter().any(|[dx, dy]| count([x + dx, y + dy]) >= enough);
+            count([x, y]) >= enough || 2 * count([x, y]) >= enough && beside()
+        };
+        self.counts.keys().copied().filter(|&cell| is_wall(cell)).collect()
+    }
+}
+
+/// The longer side of the drawing, in units.
+const SIDE: f64 = 600.0;
+/// The bounds of the scale, in units per metre.
+const METRE: [f64; 2] = [1.0, 40.0];
+/// The radius of the disc of a junction, and the length of its arms beyond it.
+const DISC: f64 = 8.5;
+const ARM: f64 = 12.0;
+/// The sizes of the fonts.
+const DEGREE: f64 = 12.0;
+const NUMBER: f64 = 11.0;
+/// Visits of junctions with centres nearer than this, in metres, and with the same doors are drawn as one.
+const SAME: f64 = 3.0;
+/// Walls, and paper behind numbers.
+const WALL: &str = "#9aa1ab";
+const PAPER: &str = "#fdfcf9";
+
+/// Visits of one junction.
+struct Place<'v> {
+    visit: &'v DrawnVisit,
+    /// The number of each visit, from 1, and the direction in which the robot left.
+    numbers: Vec<(usize, Option<f64>)>,
+}
+
+/// The picture of a recorded run as an SVG document. The same run gives the same bytes.
+#[must_use]
+pub fn laser_run_svg(picture: &LaserRunPicture) -> String {
+    let walls = picture.hits.walls();
+    let metres = extent(picture, &walls);
+    let sides = metres.size();
+    let metre = (SIDE / sides.x.max(sides.y).max(1e-3)).clamp(METRE[0], METRE[1]);
+    let at = |[x, y]: [f64; 2]| Point::new(x * metre, -y * metre);
+    let places = places(&picture.visits);
+    let mut extent = Extent { least: metres.least * metre, most: metres.most * metre }.widened(2.0);
+    for place in &places {
+        let room = DISC + ARM + 2.0 * NUMBER;
+        extent.join(Extent::around(at(place.visit.centre), room, room));
+    }
+    let sheet = Sheet {
+        title: &picture.title,
+        caption: &picture.caption,
+        extent,
+        metre: Some(metre),
+        up: "the y axis of odometry is up",
+    };
+    let legend = sheet.legend(legend(picture));
+    sheet.document(&legend, None, |page, shift| {
+        write_walls(page, &walls, metre, shift);
+        write_way(page, &picture.way.iter().map(|&point| at(point) + shift).collect::<Vec<_>>());
+        for place in &places {
+            place.write(page, at(place.visit.centre) + shift);
+        }
+        if let Some((position, heading)) = picture.marker {
+            write_marker(page, at(position) + shift, heading);
+        }
+    })
+}
+
+/// The box around everything, in metres, with y down.
+fn extent(picture: &LaserRunPicture, walls: &BTreeSet<[i32; 2]>) -> Extent {
+    let cells = walls.iter().flat_map(|[x, y]| {
+        let corner = |x: i32, y: i32| [x, y].map(|part| f64::from(part) * ScanHits::CELL);
+        [corner(*x, *y), corner(x + 1, y + 1)]
+    });
+    let visits = picture.visits.iter().map(|visit| visit.centre);
+    let all = cells.chain(picture.way.iter().copied()).chain(visits);
+    let extent = Extent::of(all.map(|[x, y]| Point::new(x, -y)));
+    if extent.least.x.is_finite() { extent } else { Extent::of([Point::default()]) }
+}
+
+/// The visits by their junctions, in the order of the first visits.
+fn places(visits: &[DrawnVisit]) -> Vec<Place<'_>> {
+    let mut places: Vec<Place> = Vec::new();
+    for (number, visit) in (1..).zip(visits) {
+        let [x, y] = visit.centre;
+        let is_here = |place: &&mut Place| {
+            let [u, v] = place.visit.centre;
+            (x - u).hypot(y - v) < SAME && place.visit.doors.len() == visit.doors.len()
+        };
+        let exit = visit.exit.and_then(|exit| visit.doors.get(exit).copied());
+        match places.iter_mut().find(is_here) {
+            Some(place) => place.numbers.push((number, exit)),
+            None => places.push(Place { visit, numbers: vec![(number, exit)] }),
+        }
+    }
+    places
+}
+
+/// The meaning of the signs.
+fn legend(picture: &LaserRunPicture) -> Vec<String> {
+    let mut lines = vec![
+        "grey: what the scans hit; line: the robot's way, from light to dark".to_owned(),
+        "in a circle: the number of doors, with a stroke towards each".to_owned(),
+        "at a stroke: the numbers of the visits after which the robot left there".to_owned(),
+    ];
+    if picture.visits.iter().any(|visit| visit.doors.is_empty()) {
+        lines.push("a question mark: a visit that is undecided".to_owned());
+    }
+    if picture.marker.is_some() {
+        lines.push("red arrow or ring: the marker".to_owned());
+    }
+    lines
+}
+
+/// The cells, in runs along x.
+fn write_walls(page: &mut Page, walls: &BTreeSet<[i32; 2]>, metre: f64, shift: Point) {
+    let mut rows: Vec<[i32; 2]> = walls.iter().map(|&[x, y]| [y, x]).collect();
+    rows.sort_unstable();
+    let mut path = String::new();
+    let mut index = 0;
+    while let Some(&[y, x]) = rows.get(index) {
+        let mut length = 1;
+        while rows.get(index + length) == Some(&[y, x + length as i32]) {
+            length += 1;
+        }
+        index += length;
+        // Writing to a string does not fail.
+        let _ = write!(path, "M{x} {}h{length}v1h-{length}z", -1 - y);
+    }
+    page.line(&format!(
+        "<path class=\"hits\" transform=\"translate({} {}) scale({})\" d=\"{path}\" fill=\"{WALL}\"/>",
+        short(shift.x),
+        short(shift.y),
+        (metre * ScanHits::CELL * 1e4).round() / 1e4,
+    ));
+}
+
+/// The robot's way: one piece for each colour, each from the end of the last.
+fn write_way(page: &mut Page, points: &[Point]) {
+    page.line(
+        "<g fill=\"none\" stroke-width=\"2\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
+    );
+    for (first, last, share) in pieces(points.len()) {
+        let mut line = String::new();
+        let mut before = None;
+        for at in points.get(first..=last).unwrap_or_default() {
+            let place = format!("{},{} ", short(at.x), short(at.y));
+            // A robot that stands adds nothing.
+            if before.as_ref() != Some(&place) {
+                line.push_str(&place);
+                before = Some(place);
+            }
+        }
+        page.line(&format!(
+            "<polyline class=\"way\" points=\"{}\" stroke=\"{}\"/>",
+            line.trim_end(),
+            ramp(share)
+        ));
+    }
+    page.line("</g>");
+}
+
+/// The marker: an arrow, or a ring if it points nowhere.
+fn write_marker(page: &mut Page, at: Point, heading: Option<f64>) {
+    let Some(heading) = heading else {
+        page.line(&format!(
+            "<circle class=\"marker\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{MARKER}\" \
+             stroke-width=\"2.6\"/>",
+            short(at.x),
+            short(at.y),
+            short(DISC + 3.5),
+        ));
+        return;
+    };
+    let along = Point::polar(-heading, 1.0);
+    let across = along.quarter_turn();
+    // Beside the stroke of the door, whose end may have numbers.
+    let beside = at + across * 9.0;
+    let [tip, base] = [DISC + ARM + 6.0, DISC].map(|length| beside + along * length);
+    page.marker(&[tip, base + across * 5.5, base - across * 5.5]);
+}
+
+impl Place<'_> {
+    fn write(&self, page: &mut Page, at: Point) {
+        let Self { visit, numbers } = self;
+        for &door in &visit.doors {
+            let along = Point::polar(-door, 1.0);
+            let [from, to] = [DISC, DISC + ARM].map(|length| at + along * length);
+            page.line(&format!(
+                "<path class=\"arm\" d=\"M{} {}L{} {}\" stroke=\"{INK}\" stroke-width=\"2.4\"/>",
+                short(from.x),
+                short(from.y),
+                short(to.x),
+                short(to.y)
+            ));
+        }
+        let (sign, ink) = match visit.doors.len() {
+            0 => ("?".to_owned(), MARKER),
+            degree => (degree.to_string(), INK),
+        };
+        page.line(&format!(
+            "<circle class=\"junction\" cx=\"{}\" cy=\"{}\" r=\"{DISC}\" fill=\"{PAPER}\" \
+             stroke=\"{ink}\" stroke-width=\"1.8\"/>",
+            short(at.x),
+            short(at.y)
+        ));
+        page.text(&sign, at + Point::new(0.0, DEGREE * 0.36), DEGREE, ink, "degree");
+        let ends =
+            visit.doors.iter().map(|&door| (Some(door), at + Point::polar(-door, DISC + ARM)));
+        for (door, end) in ends.chain([(None, at + Point::new(0.0, DISC + 2.0))]) {
+            let left = numbers.iter().filter(|(_, exit)| nearest(&visit.doors, *exit) == door);
+            let list: Vec<_> = left.map(|(number, _)| number.to_string()).collect();
+            if list.is_empty() {
+                continue;
+            }
+            let text = list.join(", ");
+            // Beside the end of the stroke, so that the way stays visible.
+            let along = Point::polar(door.map_or(std::f64::consts::FRAC_PI_2, |door| -door), 1.0);
+            let half = super::text::width(&text, NUMBER) / 2.0;
+            let off = along.x.abs() * half + along.y.abs() * NUMBER * 0.5 + 3.0;
+            let middle = end + along * off;
+            let room = Extent::around(middle, half + 1.5, NUMBER * 0.55);
+            page.line(&format!(
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"2\" fill=\"{PAPER}\" \
+                 fill-opacity=\"0.85\"/>",
+                short(room.least.x),
+                short(room.least.y),
+                short(room.size().x),
+                short(room.size().y)
+            ));
+            let fill = if door.is_some() { INK } else { FAINT };
+            page.text(&text, middle + Point::new(0.0, NUMBER * 0.36), NUMBER, fill, "visits");
+        }
+    }
+}
+
+/// The door nearest to a direction; `None` without a direction.
+fn nearest(doors: &[f64], direction: Option<f64>) -> Option<f64> {
+    let direction = direction?;
+    let off = |door: f64| super::geometry::wrapped(door - direction).abs();
+    doors.iter().copied().min_by(|one, other| off(*one).total_cmp(&off(*other)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use resvg::usvg::roxmltree::{Document, Node};
+
+    use super::*;
+
+    /// A corridor along x with a T in its middle, driven there and into the stem and back.
+    fn picture() -> LaserRunPicture {
+        let mut hits = ScanHits::default();
+        for step in 0..100 {
+            for _ in 0..2 {
+                hits.add([0.2 * f64::from(step), 1.1]);
+                hits.add([0.2 * f64::from(step), -1.1]);
+            }
+        }
+        // A person: nothing else was hit near them.
+        hits.add([5.0, 0.0]);
+        let visit = |centre, exit| DrawnVisit {
+            centre,
+            clearance: 1.1,
+            doors: vec![PI, FRAC_PI_2, 0.0],
+            exit,
+        };
+        LaserRunPicture {
+            title: "a <log>".to_owned(),
+            caption: "conforms".to_owned(),
+            hits,
+            way: vec![[1.0, 0.0], [10.0, 0.0], [10.0, 5.0], [10.0, 0.0], [19.0, 0.0]],
+            visits: vec![
+                visit([10.0, 0.0], Some(1)),
+                visit([10.5, 0.5], Some(2)),
+                DrawnVisit { doors: Vec::new(), exit: None, ..visit([15.0, 0.0], None) },
+            ],
+            marker: Some(([10.0, 0.0], Some(PI))),
+        }
+    }
+
+    fn of_class<'a, 'i>(document: &'a Document<'i>, class: &str) -> Vec<Node<'a, 'i>> {
+        let is = |node: &Node| node.attribute("class") == Some(class);
+        document.descendants().filter(is).collect()
+    }
+
+    #[test]
+    fn each_visited_junction_is_one_disc_with_its_doors_and_its_visits() {
+        let svg = laser_run_svg(&picture());
+        assert_eq!(svg, laser_run_svg(&picture()));
+        let document = Document::parse(&svg).unwrap();
+        let texts =
+            |class| of_class(&document, class).iter().filter_map(Node::text).collect::<Vec<_>>();
+        assert_eq!(texts("degree"), ["3", "?"]);
+        assert_eq!(texts("visits"), ["1", "2", "3"]);
+        assert_eq!(of_class(&document, "arm").len(), 3);
+        assert_eq!(of_class(&document, "marker").len(), 1);
+        assert_eq!(texts("title"), ["a <log>"]);
+        // The first visit left by the stem, which is above the disc.
+        let number = |node: &Node, name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+        let disc = of_class(&document, "junction")[0];
+        let first = of_class(&document, "visits")[0];
+        assert!(number(&first, "y") < number(&disc, "cy"));
+        assert!((number(&first, "x") - number(&disc, "cx")).abs() < 1.0);
+    }
+
+    #[test]
+    fn what_was_hit_once_is_no_wall() {
+        let walls = picture().hits.walls();
+        assert_eq!(walls.len(), 200);
+        assert!(walls.iter().all(|[_, y]| [5, -6].contains(y)));
+    }
+
+    #[test]
+    fn a_run_without_anything_is_drawn() {
+        let svg = laser_run_svg(&LaserRunPicture::default());
+        assert!(Document::parse(&svg).is_ok() && !svg.contains("NaN") && !svg.contains("inf"));
+    }
+}
