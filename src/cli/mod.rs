@@ -35,6 +35,7 @@ mod renamed;
 mod render;
 mod replay;
 mod report_output;
+mod robot_sensor;
 mod scene;
 mod sense;
 mod simulate;

@@ -16,6 +16,7 @@ mod files;
 mod folding;
 mod help;
 mod info;
+mod laser;
 mod lines;
 mod log;
 mod names;

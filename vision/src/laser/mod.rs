@@ -10,6 +10,8 @@
 //! * [`skeleton`]: their middle lines, the generalised Voronoi graph;
 //! * [`way_graph`]: its meet points and the arms that count, and [`junctions`];
 //! * [`sensor`]: all of these steps.
+//!
+//! [`scene`] is another way, for the small buildings with right angles of Algorithm 2.
 
 #![allow(clippy::cast_possible_wrap, reason = "a map has far fewer cells")]
 
@@ -21,6 +23,7 @@ pub mod junctions;
 pub mod params;
 mod ray_counts;
 pub mod scan;
+pub mod scene;
 pub mod sensor;
 pub mod skeleton;
 pub mod way_graph;

@@ -1,0 +1,140 @@
+//! Robots with a laser scanner: `toposlam simulate --sensor`, `evaluate control` and `runs --sensor`, and
+//! `evaluate laser`, on a few cases.
+
+use std::fs;
+
+use super::{folder, objects, run, stderr, stdout, stdout_of};
+
+const PLAN: &str = "worlds/laser/long-8.toml";
+
+#[test]
+fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
+    let folder = folder("simulate_laser");
+    let log = folder.join("laser.mcap");
+    let log = log.to_str().unwrap();
+    let text = stdout_of(["simulate", PLAN, "--sensor", "laser", "--log", log]);
+    assert!(text.contains("The map is right") && text.contains("\n  scans             "), "{text}");
+    stdout_of(["conform", log, "--world", PLAN]);
+    let topics = stdout_of(["info", log]);
+    assert!(topics.contains("/scan") && !topics.contains("/camera"), "{topics}");
+    // To a laser scanner corners are no junctions: shape 8 is two vertices joined by three edges.
+    let world = "worlds/theta-plane.toml";
+    let options = ["--events", "laser", "--driver", "anyone", "--marker", "none", "--start", "any"];
+    let text = stdout_of([&["conform", log, "--world", world][..], &options].concat());
+    assert!(text.contains("conforms"), "{text}");
+    // A cross is another world.
+    let other = "worlds/figure-1a.toml";
+    let output = run([&["conform", log, "--world", other][..], &options].concat());
+    assert_ne!(output.status.code(), Some(2), "{}", stderr(&output));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_robot_with_both_sensors_drives_by_its_camera_and_records_scans() {
+    let folder = folder("simulate_both");
+    let log = folder.join("both.mcap");
+    let log = log.to_str().unwrap();
+    let scanner = folder.join("scanner.toml");
+    fs::write(&scanner, "field_of_view = 180.0\nnoise = 0.0\n").unwrap();
+    let scanner = scanner.to_str().unwrap();
+    let options = ["--by-scene", "--sensor", "both", "--scanner", scanner, "--log", log];
+    let text = stdout_of([&["simulate", "worlds/shape-6.toml"][..], &options].concat());
+    assert!(text.contains("\n  pictures          "), "{text}");
+    let lines = objects(&stdout_of(["info", log, "--json"]));
+    let count = |name: &str| {
+        let topic = lines.iter().find(|line| line["topic"] == name);
+        topic.unwrap_or_else(|| panic!("{lines:?}"))["messages"].clone()
+    };
+    assert_eq!(count("/scan"), count("/toposlam/scene"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn options_without_an_effect_on_a_laser_scanner_are_errors() {
+    let folder = folder("laser_bad");
+    let write = |name: &str, text: &str| {
+        let file = folder.join(name);
+        fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let unknown = write("unknown.toml", "noises = 1.0\n");
+    let far = write("far.toml", "range = 1000.0\n");
+    let simulate = ["simulate", PLAN];
+    let laser = ["simulate", PLAN, "--sensor", "laser"];
+    let cases: [(&[&str], &[&str], &str); 10] = [
+        (&simulate, &["--scanner", &far], "--scanner: the robot has no laser scanner"),
+        (&laser, &["--by-scene"], "--by-scene: has no effect with --sensor laser"),
+        (&laser, &["--size", "640x480"], "--size: has no effect with --sensor laser"),
+        (&laser, &["--look", "vinyl"], "--look: has no effect with --sensor laser"),
+        (&laser, &["--effect", "blur=1"], "--effect: has no effect with --sensor laser"),
+        (&laser, &["--scanner", &unknown], "unknown field `noises`"),
+        (&laser, &["--scanner", &far], "range = 1000 is not from 3 to 100"),
+        (
+            &["evaluate", "control", "--sensor", "laser"],
+            &["--images"],
+            "--images: has no effect with --sensor laser",
+        ),
+        (&["evaluate", "runs"], &["--scanner", &far], "--scanner: the robot has no laser scanner"),
+        (&["evaluate", "laser"], &["--drift", "-1"], "expected a number of degrees from 0 to 90"),
+    ];
+    for (verb, options, cause) in cases {
+        let output = run([verb, options].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {message}");
+        assert!(message.contains(cause), "{options:?}: {message}");
+        assert!(output.stdout.is_empty(), "{options:?}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn control_and_runs_can_be_measured_by_laser() {
+    let control = ["evaluate", "control", "--sensor", "laser", "--plan", "worlds/shape-6.toml"];
+    let folder = folder("laser_control");
+    let plain = folder.join("plain.toml");
+    fs::write(&plain, "glass = 0\nblack = 0\ndoors = 0\nfurniture = 0\npeople = 0\n").unwrap();
+    let options = ["--traversals", "26", "--scanner", plain.to_str().unwrap()];
+    let text = stdout_of([&control[..], &options].concat());
+    assert!(text.contains("Driving by scans of a laser scanner"), "{text}");
+    assert!(text.contains("holds in these traversals"), "{text}");
+    let runs = ["evaluate", "runs", "--sensor", "laser", "--plan", "worlds/shape-8.toml"];
+    let options = ["--starts", "1", "--scanner", plain.to_str().unwrap(), "--json"];
+    let lines = objects(&stdout_of([&runs[..], &options].concat()));
+    assert_eq!(lines.last().unwrap()["holds"], true);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn walks_are_measured_alike_on_any_number_of_threads() {
+    let measured = |threads| {
+        let arguments = ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1", "--json"];
+        let output = run([&arguments[..], &["--threads", threads]].concat());
+        (output.status.code(), stdout(&output))
+    };
+    let (code, text) = measured("1");
+    assert_eq!((code, text.clone()), measured("2"));
+    let lines = objects(&text);
+    let rate = |of: &str, what: &str| {
+        let line = lines.iter().find(|line| {
+            (&line["kind"], &line["of"], &line["what"]) == (&"rate".into(), &of.into(), &what.into())
+        });
+        line.unwrap_or_else(|| panic!("{text}")).clone()
+    };
+    let visits = rate("visit", "wrong");
+    assert!(visits["cases"].as_u64().unwrap() > 3, "{visits}");
+    assert_eq!(rate("walk", "wrong")["cases"], 3);
+    assert_eq!(rate("run", "wrong")["cases"], 1);
+    assert!(rate("hallway", "called junction")["cases"].as_u64().unwrap() > 30);
+    // Three walks are too few to show anything but a miss.
+    let expected = if lines.last().unwrap()["target"] == "missed" { 1 } else { 3 };
+    assert_eq!(code, Some(expected));
+}
+
+#[test]
+fn one_walk_is_printed_visit_by_visit() {
+    let output = run(["evaluate", "laser", "--walk", "4", "--places", "6"]);
+    let text = stdout(&output);
+    assert!(text.contains("Laser scanner on 1 walk with ") && text.contains("walk 4, "), "{text}");
+    assert!(text.contains(" doors, left by door "), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+}
