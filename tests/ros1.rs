@@ -165,7 +165,10 @@ impl Stage {
             _alone: alone,
         };
         until("odometry", || stage.received("/odom"));
-        until("pictures", || sensor == "laser" || stage.received("/camera"));
+        match sensor {
+            "camera" => until("pictures", || stage.received("/camera")),
+            _ => until("scans", || stage.received("/scan 360")),
+        }
         Some(stage)
     }
 

@@ -63,7 +63,8 @@ fn rates(walks: &[JudgedWalk]) -> Vec<Rate> {
     let views: Vec<JunctionVerdict> =
         walks.iter().flat_map(|walk| walk.views.iter().copied()).collect();
     let views_that = |verdict| views.iter().filter(|&&view| view == verdict).count();
-    let corridor_views = |index: usize| walks.iter().map(|walk| walk.corridor_views[index]).sum();
+    let corridor_views =
+        |index: usize| -> usize { walks.iter().map(|walk| walk.corridor_views[index]).sum() };
     let visits: Vec<&JudgedLaserVisit> = walks.iter().flat_map(|walk| &walk.visits).collect();
     let visits_that = |is: fn(LaserVerdict) -> bool| {
         visits.iter().filter(|visit| is(visit.verdict)).count()
