@@ -98,7 +98,10 @@ const COMMANDS: [(&str, &[&str]); 17] = [
         "evaluate-control",
         &["evaluate control --traversals 60", "evaluate control --traversals 300 --noise 5"],
     ),
-    ("evaluate-laser", &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"]),
+    (
+        "evaluate-laser",
+        &["evaluate laser --walks 2 --runs 1", "evaluate laser --walk 1 --drift 30"],
+    ),
     (
         "evaluate-runs",
         &["evaluate runs --plans 2 --starts 1", "evaluate runs --plans 2 --starts 1 --faults"],

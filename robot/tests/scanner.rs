@@ -8,12 +8,8 @@ use std::{
 };
 
 use toposlam_model::{
-    driving::odometry::Odometry,
-    embedded_graph::Dart,
-    floor_plan::FloorPlan,
-    format::world_file,
-    mapping::DirectionalAlgorithm,
-    percept::Door,
+    driving::odometry::Odometry, embedded_graph::Dart, floor_plan::FloorPlan, format::world_file,
+    mapping::DirectionalAlgorithm, percept::Door,
 };
 use toposlam_robot::{
     conform::{CheckedKind, Evidence, RunEvents, extract},
@@ -32,10 +28,7 @@ use toposlam_robot::{
         SimulationConfig,
     },
 };
-use toposlam_vision::laser::{
-    scan::Reading,
-    scene::ScanPlaceSensor,
-};
+use toposlam_vision::laser::{scan::Reading, scene::ScanPlaceSensor};
 
 use crate::laser;
 
@@ -53,9 +46,8 @@ fn the_simulated_scanner_measures_what_another_ray_caster_computes() {
     let params = ScannerParams { range: 80.0, ..ScannerParams::PLAIN };
     let building = Arc::new(ScannedBuilding::new(&plan, &params, 1));
     let scanner = LaserScanner::new(building, &params, 1);
-    for (number, [x, y]) in [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]]
-        .into_iter()
-        .enumerate()
+    for (number, [x, y]) in
+        [[-15.0, 0.4], [2.7, 1.3], [8.0, 9.3], [-6.5, -7.5], [13.6, 18.6]].into_iter().enumerate()
     {
         let heading = 0.7 * number as f64;
         let scan = scanner.scan(Pose { position: [x, y], heading }, 1, 0.0).unwrap();
@@ -163,10 +155,8 @@ fn visits_in(log: &Path, evidence: Evidence) -> Vec<(u32, Option<u32>)> {
 
 #[test]
 fn the_scans_of_a_run_show_the_visits_that_it_records() {
-    for (name, params) in
-        [("plain", ScannerParams::PLAIN), ("default", ScannerParams::default())]
-    {
-        let sensor = RobotSensor::Laser(ScanPlaceSensor::default());
+    for (name, params) in [("plain", ScannerParams::PLAIN), ("default", ScannerParams::default())] {
+        let sensor = RobotSensor::Laser(Box::default());
         let log = logged(&format!("laser-{name}.mcap"), |config| config.by_laser(&params), sensor);
         let recorded = visits_in(&log, Evidence::Recorded);
         assert!(recorded.len() >= 4, "{recorded:?}");
@@ -177,8 +167,7 @@ fn the_scans_of_a_run_show_the_visits_that_it_records() {
 #[test]
 fn a_log_with_camera_and_laser_can_be_judged_by_either() {
     let params = ScannerParams::default();
-    let robot =
-        |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
+    let robot = |config: &SimulationConfig| config.by_scene().with_scanner(config.scanner(&params));
     let log = logged("camera-and-laser.mcap", robot, NoSensor);
     let recorded = visits_in(&log, Evidence::Recorded);
     assert!(recorded.len() >= 4, "{recorded:?}");

@@ -28,7 +28,7 @@ use toposlam_robot::{
     run::{offline, run},
     simulator::{Effects, FAULTS, PICTURE_TIME, RobotFault, SimulatedRobot, SimulationConfig},
 };
-use toposlam_vision::{camera::Camera, laser::scene::ScanPlaceSensor};
+use toposlam_vision::camera::Camera;
 
 use super::{
     CliError, Outcome,
@@ -84,7 +84,13 @@ pub(super) struct SimulateArguments {
     #[command(flatten)]
     appearance: Appearance,
     /// Sensors of the robot: camera, laser or both
-    #[arg(long, value_enum, value_name = "SENSOR", default_value = "camera", hide_possible_values = true)]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SENSOR",
+        default_value = "camera",
+        hide_possible_values = true
+    )]
     sensor: SensorChoice,
     /// Parameters of the laser scanner and of what makes its scans harder to read, .toml
     #[arg(long, value_name = "FILE")]
@@ -175,7 +181,7 @@ impl SimulateArguments {
             if let Some(master) = &self.ros {
                 return node::run(robot, master, self.speed, out);
             }
-            let sensor = RobotSensor::Laser(ScanPlaceSensor::default());
+            let sensor = RobotSensor::Laser(Box::default());
             let log = self.recorder(&simulation, None)?;
             return self.simulate(&simulation, robot, Some(sensor), Pictures::None, log, out);
         }

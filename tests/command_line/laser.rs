@@ -107,7 +107,8 @@ fn control_and_runs_can_be_measured_by_laser() {
 #[test]
 fn walks_are_measured_alike_on_any_number_of_threads() {
     let measured = |threads| {
-        let arguments = ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1", "--json"];
+        let arguments =
+            ["evaluate", "laser", "--walks", "3", "--places", "6", "--runs", "1", "--json"];
         let output = run([&arguments[..], &["--threads", threads]].concat());
         (output.status.code(), stdout(&output))
     };
@@ -116,7 +117,8 @@ fn walks_are_measured_alike_on_any_number_of_threads() {
     let lines = objects(&text);
     let rate = |of: &str, what: &str| {
         let line = lines.iter().find(|line| {
-            (&line["kind"], &line["of"], &line["what"]) == (&"rate".into(), &of.into(), &what.into())
+            (&line["kind"], &line["of"], &line["what"])
+                == (&"rate".into(), &of.into(), &what.into())
         });
         line.unwrap_or_else(|| panic!("{text}")).clone()
     };

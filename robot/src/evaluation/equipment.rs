@@ -2,7 +2,6 @@
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use toposlam_vision::laser::scene::ScanPlaceSensor;
 
 use super::LearnedSensors;
 use crate::{
@@ -37,7 +36,7 @@ impl RobotEquipment {
                 (robot, Some(RobotSensor::Camera(Box::new(eyes.sensor(look)))))
             }
             Self::Laser(params) => {
-                let sensor = RobotSensor::Laser(ScanPlaceSensor::default());
+                let sensor = RobotSensor::Laser(Box::default());
                 (config.by_laser(params), Some(sensor))
             }
         }

@@ -61,7 +61,7 @@ pub enum RobotSensor {
     /// A camera.
     Camera(Box<Sensor>),
     /// A laser scanner.
-    Laser(ScanPlaceSensor),
+    Laser(Box<ScanPlaceSensor>),
 }
 
 impl FrameSensor for RobotSensor {

@@ -6,7 +6,8 @@ use super::{
     RobotTopics,
     base::LiveBase,
     messages::{
-        LiveMarker, LiveScan, Nanoseconds, Photograph, TWIST, read_marker, read_odometry, read_picture, read_scan,
+        LiveMarker, LiveScan, Nanoseconds, Photograph, TWIST, read_marker, read_odometry,
+        read_picture, read_scan,
     },
     node::{Node, Subscription},
     wheels::Wheels,
@@ -109,9 +110,10 @@ impl LiveRobot {
                 })
             }
             SensorTopics::Laser { scans, markers } => {
-                let scanned = scans.wait(base.patience(), base.stop(), |LiveScan { stamp, scan }| {
-                    Some(Frame { scan: Some(Arc::new(scan)), ..is_fresh(stamp)? })
-                });
+                let scanned =
+                    scans.wait(base.patience(), base.stop(), |LiveScan { stamp, scan }| {
+                        Some(Frame { scan: Some(Arc::new(scan)), ..is_fresh(stamp)? })
+                    });
                 // The marker is reported only where it is seen.
                 scanned.and_then(|frame| {
                     let seen = |LiveMarker { stamp, marker }| {

@@ -276,15 +276,8 @@ pub(super) fn scan(number: u32, stamp: Nanoseconds, scan: &Scan) -> Vec<u8> {
         ranges,
         ..
     } = LaserScanMessage::new(Stamp::default(), scan);
-    let numbers = [
-        angle_min,
-        angle_max,
-        angle_increment,
-        time_increment,
-        scan_time,
-        range_min,
-        range_max,
-    ];
+    let numbers =
+        [angle_min, angle_max, angle_increment, time_increment, scan_time, range_min, range_max];
     let message: ScanFields<_> =
         (header(number, stamp, BASE), numbers, ranges.to_vec(), Vec::new());
     write(&message)

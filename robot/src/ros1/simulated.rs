@@ -8,8 +8,8 @@ use std::{
 use super::{
     RobotTopics,
     messages::{
-        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SCAN, SECOND, frames, marker,
-        odometry, picture, read_twist, scan,
+        FRAMES, MARKER_POSE, Nanoseconds, ODOMETRY, PICTURE, Reckoning, SCAN, SECOND, frames,
+        marker, odometry, picture, read_twist, scan,
     },
     node::{Node, Publisher, Subscription},
 };

@@ -28,7 +28,6 @@ use toposlam_robot::{
 use toposlam_vision::{
     camera::{Camera, calibration},
     colour::ColourModel,
-    laser::scene::ScanPlaceSensor,
     sensing::Sensor,
 };
 
@@ -57,7 +56,7 @@ impl DriveArguments {
                 let sensor = Box::new(Sensor::new(camera, colours));
                 (RobotSensor::Camera(sensor), LiveSensor::Camera)
             }
-            None => (RobotSensor::Laser(ScanPlaceSensor::default()), LiveSensor::Laser),
+            None => (RobotSensor::Laser(Box::default()), LiveSensor::Laser),
         };
         let world = match &self.plan {
             Some(path) => {

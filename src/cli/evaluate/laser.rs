@@ -165,9 +165,8 @@ impl EvaluateLaserArguments {
             let text = format!("run {number}, {moves}, {way:.0} m: {}", verdict.name());
             print_indented(out, "  ", 4, &text)?;
         }
-        let count = |is: TargetStatus| {
-            report.rates.iter().filter(|rate| rate.standing() == is).count()
-        };
+        let count =
+            |is: TargetStatus| report.rates.iter().filter(|rate| rate.standing() == is).count();
         let verdict = match outcome {
             Outcome::Holds => "holds: all targets are met".to_owned(),
             Outcome::Violated => {

@@ -10,7 +10,7 @@ use std::{
 
 use toposlam_model::driving::{
     odometry::Odometry,
-    scene::{Place, wrapped},
+    scene::{JunctionView, Place, Reason, wrapped},
 };
 
 use super::scan::{Reading, Scan};
@@ -38,6 +38,9 @@ const REMEMBERED: usize = 24;
 /// and by less than this part. Half a degree before a gap there is no wall.
 const STEP: f64 = 0.15;
 const STEP_PART: f64 = 0.1;
+/// A robot is at most this far past the turning point of a dead end, in metres: half of a hallway's width
+/// less its radius.
+const PAST_DEAD_END: f64 = 0.45;
 /// Successive readings are neighbours if their bearings differ by less than this, in radians.
 const NEXT: f64 = 0.06;
 
@@ -52,7 +55,15 @@ impl ScanPlaceSensor {
     pub fn sense(&mut self, scan: &Scan, odometry: &Odometry) -> Place {
         let boundary = self.boundary(scan, odometry);
         self.remember(scan, odometry);
-        place_within(boundary, 0.0, &self.params).0
+        let (place, trace) = place_within(boundary, 0.0, &self.params);
+        match &place {
+            Place::Junction(junction) if is_behind_its_wall(junction) => {
+                trace.hallway.map_or(Place::Unknown(Reason::NothingFits), |hallway| {
+                    Place::Hallway(hallway.view(0.0, &self.params.outline))
+                })
+            }
+            _ => place,
+        }
     }
 
     /// What the scan shows on each bearing, and behind its field of view the last scans.
@@ -66,8 +77,10 @@ impl ScanPlaceSensor {
                 *known = Some(known.map_or(range, |known| known.min(range)));
             }
         }
-        let mut sights: Vec<Sight> =
-            sights.into_iter().map(|range| range.map_or_else(Sight::default, Sight::measured)).collect();
+        let mut sights: Vec<Sight> = sights
+            .into_iter()
+            .map(|range| range.map_or_else(Sight::default, Sight::measured))
+            .collect();
         let readings: Vec<(f64, Option<f64>)> = scan
             .readings()
             .map(|(bearing, reading)| match reading {
@@ -108,12 +121,19 @@ impl ScanPlaceSensor {
         }
         let (sine, cosine) = odometry.heading.sin_cos();
         let [east, north] = odometry.position;
-        let place = |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
+        let place =
+            |[x, y]: [f64; 2]| [east + x * cosine - y * sine, north + x * sine + y * cosine];
         self.last.push_back((*odometry, scan.hits().map(place).collect()));
         while self.last.len() > REMEMBERED {
             self.last.pop_front();
         }
     }
+}
+
+/// Whether a robot at a junction would stand behind its wall: furniture along a corridor looks like the end of a
+/// narrow one.
+fn is_behind_its_wall(junction: &JunctionView) -> bool {
+    junction.doors.len() == 1 && junction.distance() < -PAST_DEAD_END
 }
 
 /// What is seen between two readings. A reading without a return shows nothing.

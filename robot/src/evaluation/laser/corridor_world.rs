@@ -94,7 +94,8 @@ impl CorridorWorld {
             let direction = direction(self.places[place], self.places[to]);
             Some(CorridorArm { to, direction, width: corridor.width })
         };
-        let mut arms: Vec<_> = self.links.iter().zip(&self.plan.corridors).filter_map(arm).collect();
+        let mut arms: Vec<_> =
+            self.links.iter().zip(&self.plan.corridors).filter_map(arm).collect();
         arms.sort_by(|one, other| other.direction.total_cmp(&one.direction));
         arms
     }
@@ -111,8 +112,7 @@ impl CorridorWorld {
     /// The radius of the free circle around a place, in metres.
     #[must_use]
     pub fn clearance(&self, place: usize) -> f64 {
-        let at = |lobby: &&Lobby| lobby.middle == self.places[place];
-        let lobby = self.plan.lobbies.iter().find(at).map(|lobby| lobby.radius);
+        let lobby = self.lobby(place).map(|lobby| lobby.radius);
         let widest = self.arms(place).iter().map(|arm| arm.width / 2.0).fold(0.0, f64::max);
         lobby.unwrap_or(widest)
     }
@@ -120,7 +120,12 @@ impl CorridorWorld {
     /// Whether a place is a round lobby.
     #[must_use]
     pub fn is_lobby(&self, place: usize) -> bool {
-        self.plan.lobbies.iter().any(|lobby| lobby.middle == self.places[place])
+        self.lobby(place).is_some()
+    }
+
+    fn lobby(&self, place: usize) -> Option<&Lobby> {
+        let middle = self.places[place];
+        self.plan.lobbies.iter().find(|lobby| distance(lobby.middle, middle) < 0.1)
     }
 }
 
@@ -143,7 +148,8 @@ impl Lattice {
 
     /// Points at a distance of 1 may be joined.
     fn near(points: Vec<[f64; 2]>, moved: f64) -> Self {
-        let near = |one: usize, other: usize| (distance(points[one], points[other]) - 1.0).abs() < 0.01;
+        let near =
+            |one: usize, other: usize| (distance(points[one], points[other]) - 1.0).abs() < 0.01;
         let pairs = (0..points.len()).flat_map(|one| (0..one).map(move |other| [one, other]));
         let pairs = pairs.filter(|&[one, other]| near(one, other)).collect();
         Self { points, pairs, moved }
@@ -191,8 +197,7 @@ fn planned(
     let usual = chance.random_range(WIDTHS[0]..WIDTHS[1]);
     let is_varied = chance.random::<bool>();
     let corridor = |&[one, other]: &[usize; 2]| {
-        let width =
-            if is_varied { chance.random_range(WIDTHS[0]..WIDTHS[1]) } else { usual };
+        let width = if is_varied { chance.random_range(WIDTHS[0]..WIDTHS[1]) } else { usual };
         Corridor { ends: [places[one], places[other]], width }
     };
     let corridors: Vec<Corridor> = links.iter().map(corridor).collect();

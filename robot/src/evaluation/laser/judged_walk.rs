@@ -206,7 +206,8 @@ impl WalkSampler {
         let is_seen = |direction: f64| {
             found.arms.iter().any(|&arm| wrapped(arm - direction - turned).abs() < SAME_ARM)
         };
-        let is_right = found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
+        let is_right =
+            found.arms.len() == arms.len() && arms.iter().all(|arm| is_seen(arm.direction));
         let verdict = if is_right { JunctionVerdict::Right } else { JunctionVerdict::Wrong };
         Some(SeenFrom::Junction(verdict))
     }

@@ -66,26 +66,18 @@ fn rates(walks: &[JudgedWalk]) -> Vec<Rate> {
     let corridor_views =
         |index: usize| -> usize { walks.iter().map(|walk| walk.corridor_views[index]).sum() };
     let visits: Vec<&JudgedLaserVisit> = walks.iter().flat_map(|walk| &walk.visits).collect();
-    let visits_that = |is: fn(LaserVerdict) -> bool| {
-        visits.iter().filter(|visit| is(visit.verdict)).count()
-    };
+    let visits_that =
+        |is: fn(LaserVerdict) -> bool| visits.iter().filter(|visit| is(visit.verdict)).count();
     let invented: usize = walks.iter().map(|walk| walk.invented.len()).sum();
     let derived = visits.iter().filter(|visit| visit.found.is_some()).count() + invented;
     let turned: Vec<bool> = visits.iter().filter_map(|visit| visit.turning_right).collect();
-    let whole = |is: fn(LaserVerdict) -> bool| {
-        walks.iter().filter(|walk| is(walk.verdict())).count()
-    };
+    let whole =
+        |is: fn(LaserVerdict) -> bool| walks.iter().filter(|walk| is(walk.verdict())).count();
     let (view, visit, walk) = (ReportSubject::Junction, ReportSubject::Visit, ReportSubject::Walk);
     vec![
         rate(view, "not seen", views_that(JunctionVerdict::Unseen), views.len(), None),
         rate(view, "arms wrong", views_that(JunctionVerdict::Wrong), views.len(), None),
-        rate(
-            ReportSubject::Hallway,
-            "called junction",
-            corridor_views(1),
-            corridor_views(0),
-            None,
-        ),
+        rate(ReportSubject::Hallway, "called junction", corridor_views(1), corridor_views(0), None),
         rate(visit, "wrong", visits_that(LaserVerdict::is_wrong), visits.len(), Some(WRONG)),
         rate(visit, "missed", visits_that(|v| v == LaserVerdict::Missed), visits.len(), None),
         rate(
@@ -95,7 +87,13 @@ fn rates(walks: &[JudgedWalk]) -> Vec<Rate> {
             visits.len(),
             None,
         ),
-        rate(visit, "door wrong", visits_that(|v| v == LaserVerdict::WrongDoor), visits.len(), None),
+        rate(
+            visit,
+            "door wrong",
+            visits_that(|v| v == LaserVerdict::WrongDoor),
+            visits.len(),
+            None,
+        ),
         rate(
             visit,
             "undecided",

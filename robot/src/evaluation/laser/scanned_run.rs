@@ -190,7 +190,7 @@ impl World for ScannedWorld<'_> {
         }
         self.truth.traverse(door).map_err(|_| ScanFailure::WrongDoor)?;
         for &place in &self.smoothed.chains[dart.at()][1..] {
-            self.driver.to_place(self.world.places[place]);
+            self.driver.drive_near(self.world.places[place]);
         }
         self.sense()?;
         self.check_doors()
@@ -230,7 +230,7 @@ impl WalkSampler {
         let off = [0, 1].map(|axis| behind[axis] - start[axis]);
         let share = (BEFORE / off[0].hypot(off[1])).min(0.5);
         driver.begin_at([0, 1].map(|axis| start[axis] + share * off[axis]));
-        driver.to_place(start);
+        driver.drive_near(start);
         let mut scanned = ScannedWorld {
             world: &world,
             smoothed: &smoothed,

@@ -99,7 +99,7 @@ impl LaserWalk {
             } else {
                 driver.chance.random_range(1..arms.len())
             };
-            driver.to_place(world.places[at]);
+            driver.drive_near(world.places[at]);
             let to = arms[door].to;
             let is_junction = arms.len() >= 3;
             // Who has not been at a junction yet comes from anywhere.
@@ -113,7 +113,7 @@ impl LaserWalk {
             }
             (from, at) = (at, to);
         }
-        driver.to(middle(driver.at, world.places[at]));
+        driver.drive_to(middle(driver.at, world.places[at]));
         Self { passed, steps: driver.steps }
     }
 }
@@ -131,13 +131,13 @@ impl WalkDriver {
     }
 
     /// Drives to a place, nearly.
-    pub(super) fn to_place(&mut self, place: [f64; 2]) {
+    pub(super) fn drive_near(&mut self, place: [f64; 2]) {
         let off = [(); 2].map(|()| OFF * self.chance.random_range(-1.0..=1.0));
-        self.to([0, 1].map(|axis| place[axis] + off[axis]));
+        self.drive_to([0, 1].map(|axis| place[axis] + off[axis]));
     }
 
     /// Turns, and drives to a point.
-    pub(super) fn to(&mut self, point: [f64; 2]) {
+    pub(super) fn drive_to(&mut self, point: [f64; 2]) {
         let from = self.at;
         let length = distance(from, point);
         let ahead = (point[1] - from[1]).atan2(point[0] - from[0]);

@@ -215,7 +215,8 @@ mod tests {
     #[test]
     fn a_lobby_is_round() {
         let lobby = Lobby { middle: [10.0, 0.0], radius: 2.5 };
-        let plan = CorridorPlan { lobbies: vec![lobby], ..plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]) };
+        let plan =
+            CorridorPlan { lobbies: vec![lobby], ..plan(&[([[0.0, 0.0], [20.0, 0.0]], 2.0)]) };
         let pose = Pose { position: [10.0, 0.0], heading: 0.0 };
         for degrees in [40.0, 90.0, 135.0, -90.0] {
             let found = range(&plan, pose, degrees);

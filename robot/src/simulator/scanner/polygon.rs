@@ -84,9 +84,8 @@ impl ConvexPolygon {
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
         let is_apart = |one: &Self, other: &Self| {
-            one.sides().any(|side| {
-                other.corners.iter().all(|&corner| depth(side, corner) <= TOLERANCE)
-            })
+            one.sides()
+                .any(|side| other.corners.iter().all(|&corner| depth(side, corner) <= TOLERANCE))
         };
         !is_apart(self, other) && !is_apart(other, self)
     }
@@ -106,8 +105,7 @@ pub(super) fn border(polygons: &[ConvexPolygon]) -> Vec<(usize, Segment)> {
     for (number, polygon) in polygons.iter().enumerate() {
         for side in polygon.sides() {
             let others = polygons.iter().enumerate().filter(|&(other, _)| other != number);
-            let mut hidden: Vec<_> =
-                others.filter_map(|(_, other)| other.inside(side)).collect();
+            let mut hidden: Vec<_> = others.filter_map(|(_, other)| other.inside(side)).collect();
             hidden.sort_by(|one, other| one[0].total_cmp(&other[0]));
             hidden.push([1.0, 1.0]);
             let mut seen = 0.0;
@@ -153,7 +151,7 @@ mod tests {
         // Four ends of 2 m, and eight walls of 4 m.
         assert!((total(&border) - 40.0).abs() < 1e-3, "{}", total(&border));
         let in_crossing = |point: &[f64; 2]| point.iter().all(|part| part.abs() < 0.99);
-        assert!(!border.iter().flatten().any(|point| in_crossing(point)));
+        assert!(!border.iter().flatten().any(in_crossing));
     }
 
     #[test]

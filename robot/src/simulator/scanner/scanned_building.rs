@@ -175,11 +175,7 @@ fn beside_wall(
 }
 
 /// A random place along a corridor for something with this half length, and the side: 1 is the left one.
-fn place_in(
-    corridor: &Corridor,
-    half: f64,
-    chance: &mut Xoshiro256PlusPlus,
-) -> Option<(f64, f64)> {
+fn place_in(corridor: &Corridor, half: f64, chance: &mut Xoshiro256PlusPlus) -> Option<(f64, f64)> {
     let from_end = corridor.width / 2.0 + FROM_END + half;
     let free = corridor.length() - 2.0 * from_end;
     let (share, is_left) = (chance.random::<f64>(), chance.random::<bool>());
@@ -194,14 +190,14 @@ fn surfaces(
 ) -> Vec<ScannedWall> {
     let whole = length(wall);
     let mut stretches: Vec<(f64, f64, WallSurface)> = Vec::new();
-    for (often, surface, least, greatest) in [
-        (params.glass, WallSurface::Glass, 1.0, 3.0),
-        (params.black, WallSurface::Black, 0.5, 1.5),
-    ] {
+    for (often, surface, least, greatest) in
+        [(params.glass, WallSurface::Glass, 1.0, 3.0), (params.black, WallSurface::Black, 0.5, 1.5)]
+    {
         for _ in 0..about(often * whole / 10.0, chance) {
             let long: f64 = chance.random_range(least..greatest);
             let from = chance.random::<f64>() * (whole - long);
-            let meets = |&(other, to, _): &(f64, f64, WallSurface)| from < to && other < from + long;
+            let meets =
+                |&(other, to, _): &(f64, f64, WallSurface)| from < to && other < from + long;
             if from >= 0.0 && !stretches.iter().any(meets) {
                 stretches.push((from, from + long, surface));
             }
@@ -290,9 +286,8 @@ mod tests {
     fn an_open_door_is_a_gap_of_90_cm_with_a_room_behind_it() {
         let params = ScannerParams { doors: 0.25, ..ScannerParams::PLAIN };
         let building = ScannedBuilding::new(&corridor(), &params, 3);
-        let on_wall = |wall: &&ScannedWall| {
-            wall.ends.iter().all(|end| (end[1].abs() - 1.0).abs() < 1e-6)
-        };
+        let on_wall =
+            |wall: &&ScannedWall| wall.ends.iter().all(|end| (end[1].abs() - 1.0).abs() < 1e-6);
         let walls: f64 = building.walls().iter().filter(on_wall).map(|w| length(w.ends)).sum();
         // One door in 40 m; the walls at both ends are 2 m wide.
         assert!((walls - (84.0 + 4.0 - 0.9)).abs() < 1e-4, "{walls}");
@@ -315,7 +310,10 @@ mod tests {
         }
         assert!((lengths.iter().sum::<f64>() - 88.0).abs() < 1e-6, "{lengths:?}");
         // In 88 m: 4.4 stretches of 2 m, 8.8 of 1 m; some are left out because they would overlap.
-        assert!((7.0..8.9).contains(&lengths[1]) && (6.5..8.9).contains(&lengths[2]), "{lengths:?}");
+        assert!(
+            (7.0..8.9).contains(&lengths[1]) && (6.5..8.9).contains(&lengths[2]),
+            "{lengths:?}"
+        );
     }
 
     #[test]
