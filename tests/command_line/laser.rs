@@ -12,7 +12,7 @@ fn a_robot_that_has_only_a_laser_scanner_maps_a_plan_and_its_log_conforms() {
     let folder = folder("simulate_laser");
     let log = folder.join("laser.mcap");
     let log = log.to_str().unwrap();
-    let text = stdout_of(["simulate", PLAN, "--sensor", "laser", "--log", log]);
+    let text = stdout_of(["simulate", PLAN, "--sensor", "laser", "--noise", "0.1", "--log", log]);
     assert!(text.contains("The map is right") && text.contains("\n  scans             "), "{text}");
     stdout_of(["conform", log, "--world", PLAN]);
     let topics = stdout_of(["info", log]);
@@ -40,10 +40,11 @@ fn a_robot_with_both_sensors_drives_by_its_camera_and_records_scans() {
     let options = ["--by-scene", "--sensor", "both", "--scanner", scanner, "--log", log];
     let text = stdout_of([&["simulate", "worlds/shape-6.toml"][..], &options].concat());
     assert!(text.contains("\n  pictures          "), "{text}");
-    let lines = objects(&stdout_of(["info", log, "--json"]));
+    let object = objects(&stdout_of(["info", log, "--json"])).remove(0);
     let count = |name: &str| {
-        let topic = lines.iter().find(|line| line["topic"] == name);
-        topic.unwrap_or_else(|| panic!("{lines:?}"))["messages"].clone()
+        let topics = object["topics"].as_array().unwrap();
+        let topic = topics.iter().find(|topic| topic["name"] == name);
+        topic.unwrap_or_else(|| panic!("{object}"))["messages"].clone()
     };
     assert_eq!(count("/scan"), count("/toposlam/scene"));
     fs::remove_dir_all(folder).unwrap();
@@ -75,7 +76,7 @@ fn options_without_an_effect_on_a_laser_scanner_are_errors() {
             "--images: has no effect with --sensor laser",
         ),
         (&["evaluate", "runs"], &["--scanner", &far], "--scanner: the robot has no laser scanner"),
-        (&["evaluate", "laser"], &["--drift", "-1"], "expected a number of degrees from 0 to 90"),
+        (&["evaluate", "laser"], &["--drift", "91"], "expected a number of degrees from 0 to 90"),
     ];
     for (verb, options, cause) in cases {
         let output = run([verb, options].concat());
